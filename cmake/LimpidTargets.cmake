@@ -1,0 +1,63 @@
+# Helpers that every folder's CMakeLists.txt uses, so that a folder lists only what it has.
+
+add_library(limpid_options INTERFACE)
+target_include_directories(limpid_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_compile_options(limpid_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+if(LIMPID_WERROR)
+  target_compile_options(limpid_options INTERFACE -Werror)
+endif()
+if(LIMPID_SANITIZE)
+  target_compile_options(limpid_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                  -fno-omit-frame-pointer)
+  target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ...): the static library limpid_NAME, alias limpid::NAME.
+function(limpid_library NAME)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  add_library(limpid_${NAME} STATIC ${ARG_SOURCES})
+  add_library(limpid::${NAME} ALIAS limpid_${NAME})
+  target_link_libraries(limpid_${NAME} PUBLIC limpid_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+endfunction()
+
+# limpid_shaders(TARGET a.comp ...): compiles each shader of the current folder and embeds it in TARGET as
+# `limpid::shaders::a_comp` (gpu/shader.h: ShaderCode), declared in the generated header "a.comp.h".
+# -g and no -O: the names that the frame graph binds by must survive.
+function(limpid_shaders TARGET)
+  set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/shaders)
+  file(MAKE_DIRECTORY ${GENERATED})
+  file(RELATIVE_PATH FOLDER ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  foreach(SOURCE ${ARGN})
+    string(MAKE_C_IDENTIFIER ${SOURCE} SYMBOL)
+    set(SHADER_SYMBOL ${SYMBOL})
+    set(SHADER_NAME ${FOLDER}/${SOURCE})
+    set(SHADER_WORDS ${GENERATED}/${SOURCE}.inc)
+    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${SOURCE}.h @ONLY)
+    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${SOURCE}.cpp @ONLY)
+    add_custom_command(
+      OUTPUT ${SHADER_WORDS}
+      COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -mfmt=num -MD -MF ${SHADER_WORDS}.d -I ${CMAKE_SOURCE_DIR}/src
+              -o ${SHADER_WORDS} ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
+      DEPFILE ${SHADER_WORDS}.d
+      VERBATIM)
+    set_source_files_properties(${GENERATED}/${SOURCE}.cpp PROPERTIES OBJECT_DEPENDS ${SHADER_WORDS})
+    target_sources(${TARGET} PRIVATE ${GENERATED}/${SOURCE}.cpp)
+  endforeach()
+  target_include_directories(${TARGET} PUBLIC ${GENERATED})
+endfunction()
+
+# limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): a GoogleTest program; every case is a ctest test.
+function(limpid_test NAME)
+  cmake_parse_arguments(ARG "" "LABELS" "SOURCES;DEPS" ${ARGN})
+  if(NOT LIMPID_TESTS)
+    return()
+  endif()
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS fast)
+  endif()
+  add_executable(${NAME} ${ARG_SOURCES})
+  target_link_libraries(${NAME} PRIVATE ${ARG_DEPS} GTest::gmock_main GTest::gtest)
+  target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABELS} TIMEOUT 600)
+endfunction()

@@ -1,0 +1,101 @@
+#include "base/file.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace limpid {
+namespace fs = std::filesystem;
+namespace {
+
+std::string systemMessage(int error) {
+    return std::generic_category().message(error);
+}
+
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// A name beside `path` that no other process uses; the file exists (empty) on return.
+fs::path createTemporary(const fs::path& path) {
+    const fs::path suffix = path.extension();
+    std::string pattern = (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
+    const int file = ::mkstemps(pattern.data(), static_cast<int>(suffix.string().size()));
+    if (file < 0) throw OutputError(path, "cannot create a file beside it: " + systemMessage(errno));
+    // mkstemps makes files private; an output gets what the user's umask grants any new file.
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::fchmod(file, 0666 & ~mask);
+    ::close(file);
+    return pattern;
+}
+
+/// A full disk may show only when the data is flushed, after the writer closed the file.
+void flushToDisk(const fs::path& temporary, const fs::path& path) {
+    const int file = ::open(temporary.c_str(), O_RDONLY);
+    if (file < 0) throw OutputError(path, "cannot be written: " + systemMessage(errno));
+    const int result = ::fsync(file);
+    const int error = errno;
+    ::close(file);
+    if (result != 0) throw OutputError(path, "cannot be written: " + systemMessage(error));
+}
+
+}  // namespace
+
+std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
+    std::error_code status;
+    if (fs::is_directory(path, status)) throw InputError(path, "is a directory, not a file");
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    if (!stream) throw InputError(path, "cannot be opened: " + systemMessage(errno));
+    const std::streamoff size = stream.tellg();
+    if (size < 0) throw InputError(path, "is not a regular file");
+    if (static_cast<uint64_t>(size) > maxBytes) {
+        throw InputError(path, fmt::format("is {} bytes long, more than the {} accepted", size, maxBytes));
+    }
+    std::vector<std::byte> bytes(static_cast<size_t>(size));
+    stream.seekg(0);
+    stream.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (stream.gcount() != size) throw InputError(path, "ended before its stated size");
+    return bytes;
+}
+
+void checkWritable(const fs::path& path) {
+    std::error_code status;
+    if (path.filename().empty() || fs::is_directory(path, status)) {
+        throw OutputError(path, "is a directory, not a file name");
+    }
+    const fs::path folder = folderOf(path);
+    if (!fs::is_directory(folder, status)) throw OutputError(path, "the folder " + folder.string() + " does not exist");
+    if (::access(folder.c_str(), W_OK) != 0) {
+        throw OutputError(path, "the folder cannot be written: " + systemMessage(errno));
+    }
+}
+
+void writeAtomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
+    checkWritable(path);
+    const fs::path temporary = createTemporary(path);
+    try {
+        write(temporary);
+        flushToDisk(temporary, path);
+        fs::rename(temporary, path);
+    } catch (const fs::filesystem_error& error) {
+        fs::remove(temporary);
+        throw OutputError(path, "cannot be renamed into place: " + error.code().message());
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        throw;
+    }
+}
+
+}  // namespace limpid

@@ -1,0 +1,77 @@
+#include "base/file.h"
+
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <fstream>
+
+namespace limpid {
+namespace fs = std::filesystem;
+namespace {
+
+class FileTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder = fs::temp_directory_path() / fs::path("limpid_file_test." + std::to_string(::getpid()));
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    static void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+    static std::string get(const fs::path& path) {
+        std::ifstream stream(path);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    size_t files() const {
+        return static_cast<size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+    }
+    fs::path folder;
+};
+
+TEST_F(FileTest, ReplacesAnOutputOnlyWhenTheWriterSucceeds) {
+    const fs::path out = folder / "a.txt";
+    put(out, "old");
+    EXPECT_THROW(writeAtomically(out,
+                                 [](const fs::path& temporary) {
+                                     put(temporary, "half");
+                                     throw Error("stopped");
+                                 }),
+                 Error);
+    EXPECT_EQ(get(out), "old");
+    EXPECT_EQ(files(), 1u) << "the temporary file must be gone";
+    writeAtomically(out, [](const fs::path& temporary) { put(temporary, "new"); });
+    EXPECT_EQ(get(out), "new");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(FileTest, RefusesADirectoryAndAMissingFolderBeforeTheWriterRuns) {
+    const auto never = [](const fs::path&) { FAIL() << "the writer ran"; };
+    EXPECT_THROW(writeAtomically(folder, never), OutputError);
+    EXPECT_THROW(writeAtomically(folder / "none" / "a.png", never), OutputError);
+}
+
+TEST_F(FileTest, FullDiskIsAnErrorAndNotATruncatedFile) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+    // /dev/full cannot be renamed onto, so test the writer's side: a stream that meets a full disk must throw.
+    EXPECT_THROW(writeAtomically(folder / "a.txt",
+                                 [](const fs::path&) {
+                                     std::ofstream full("/dev/full");
+                                     full.exceptions(std::ios::badbit | std::ios::failbit);
+                                     full << "data" << std::flush;
+                                 }),
+                 std::exception);
+    EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(FileTest, ReadsAndRefuses) {
+    put(folder / "a", "four");
+    EXPECT_EQ(readFile(folder / "a").size(), 4u);
+    EXPECT_THROW(readFile(folder / "a", 3), InputError);
+    EXPECT_THROW(readFile(folder), InputError);
+    EXPECT_THROW(readFile(folder / "none"), InputError);
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,38 @@
+#include "base/log.h"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace limpid::log {
+namespace {
+
+spdlog::logger& logger() {
+    static const auto instance = [] {
+        auto created = spdlog::stderr_color_mt("limpid");
+        created->set_pattern("%^%l%$: %v");
+        return created;
+    }();
+    return *instance;
+}
+
+spdlog::level::level_enum toSpdlog(Level level) {
+    switch (level) {
+        case Level::Debug: return spdlog::level::debug;
+        case Level::Info: return spdlog::level::info;
+        case Level::Warning: return spdlog::level::warn;
+        case Level::Error: return spdlog::level::err;
+    }
+    return spdlog::level::info;
+}
+
+}  // namespace
+
+void setLevel(Level level) {
+    logger().set_level(toSpdlog(level));
+}
+
+void write(Level level, const std::string& message) {
+    logger().log(toSpdlog(level), message);
+}
+
+}  // namespace limpid::log

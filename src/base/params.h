@@ -1,0 +1,82 @@
+// Parameter tables: name, default, range, unit, one line of help, stated once per technique.
+// The table drives `--set group.name=value`, presets, `limpid info` and the viewer's sliders.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace limpid {
+
+using ParamValue = std::variant<bool, int, float>;
+
+/// One parameter as a user sees it. A bool has the range 0..1.
+struct ParamInfo {
+    std::string name;
+    ParamValue defaultValue;
+    double minimum = 0.0;
+    double maximum = 1.0;
+    std::string unit;  ///< "" if it has none
+    std::string help;  ///< one line: what it is, and what more of it does
+};
+
+/// Text to the type of `like`. Throws UsageError naming `name` if the text is no such value.
+ParamValue parseParam(std::string_view name, std::string_view text, const ParamValue& like);
+std::string toString(const ParamValue& value);
+/// Throws UsageError naming the parameter and its range if `value` is outside it (NaN always is).
+void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value);
+
+/// The parameters of the technique whose settings are the struct `Settings`. Defaults are the struct's own.
+template <typename Settings>
+class ParamTable {
+  public:
+    explicit ParamTable(std::string group) : group_(std::move(group)) {}
+
+    template <typename T>
+    ParamTable& add(std::string name, T Settings::*member, double minimum, double maximum, std::string unit,
+                    std::string help) {
+        const T initial = Settings{}.*member;
+        infos_.push_back({std::move(name), initial, minimum, maximum, std::move(unit), std::move(help)});
+        setters_.push_back([member](Settings& s, const ParamValue& v) { s.*member = std::get<T>(v); });
+        getters_.push_back([member](const Settings& s) -> ParamValue { return s.*member; });
+        return *this;
+    }
+    ParamTable& add(std::string name, bool Settings::*member, std::string help) {
+        return add(std::move(name), member, 0.0, 1.0, "", std::move(help));
+    }
+
+    const std::string& group() const { return group_; }
+    const std::vector<ParamInfo>& infos() const { return infos_; }
+    ParamValue get(const Settings& settings, size_t index) const { return getters_[index](settings); }
+
+    /// Returns false if the table has no such name. Throws UsageError on a bad text or a value out of range.
+    bool set(Settings& settings, std::string_view name, std::string_view text) const {
+        for (size_t i = 0; i < infos_.size(); ++i) {
+            if (infos_[i].name != name) continue;
+            const ParamValue value = parseParam(group_ + "." + infos_[i].name, text, infos_[i].defaultValue);
+            checkRange(group_, infos_[i], value);
+            setters_[i](settings, value);
+            return true;
+        }
+        return false;
+    }
+
+  private:
+    std::string group_;
+    std::vector<ParamInfo> infos_;
+    std::vector<std::function<void(Settings&, const ParamValue&)>> setters_;
+    std::vector<std::function<ParamValue(const Settings&)>> getters_;
+};
+
+/// "group.name=value" in its three parts. Throws UsageError if the text is not of that form.
+struct Assignment {
+    std::string group, name, value;
+};
+Assignment parseAssignment(std::string_view text);
+
+}  // namespace limpid

@@ -1,0 +1,147 @@
+// The frame graph: what a frame does, rebuilt each frame by plain function calls.
+//
+// A technique is a function that takes the graph and image handles and returns image handles:
+//
+//     ImageHandle tonemap(FrameGraph& graph, ImageHandle color, const TonemapParams& params) {
+//         const ImageHandle out = graph.transient("tonemap", Format::RGBA8Unorm, graph.extent(color));
+//         graph.dispatch({.pass = "tonemap",
+//                         .shader = shaders::tonemap_comp,
+//                         .bindings = {{"color", color}, {"result", out}},
+//                         .params = paramsOf(params),
+//                         .extent = graph.extent(color)});
+//         return out;
+//     }
+//
+// Recording checks every dispatch against the shader's reflection and needs no device; execute() needs one.
+// Execution is in recording order, images stay in GENERAL layout, and a pass that touches what an earlier one wrote,
+// or writes what an earlier one still reads, waits for it. Access follows from the GLSL qualifiers: `readonly` reads,
+// `writeonly` writes, neither does both.
+#pragma once
+
+#include "gpu/device.h"
+#include "gpu/shader.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace limpid::gpu {
+
+struct Extent {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    bool operator==(const Extent&) const = default;
+};
+
+/// Valid from its creation until the next beginFrame().
+struct ImageHandle {
+    uint32_t index = UINT32_MAX;
+    explicit operator bool() const { return index != UINT32_MAX; }
+    bool operator==(const ImageHandle&) const = default;
+};
+
+/// An image pair that lives from frame to frame.
+struct History {
+    ImageHandle previous;  ///< what `current` was in the last frame that recorded this history
+    ImageHandle current;
+    bool valid = false;  ///< false on the first frame, after resize, a change of format, and resetHistories()
+};
+
+struct Binding {
+    std::string_view name;  ///< the GLSL variable's (for a buffer block: the instance's) name
+    std::variant<ImageHandle, const Buffer*> resource;
+};
+
+/// The parameter struct of a dispatch, by value; it must have exactly the size of the shader's uniform block.
+/// Struct members match on both sides through scalar block layout.
+template <typename T>
+std::span<const std::byte> paramsOf(const T& params) {
+    return std::as_bytes(std::span<const T, 1>(&params, 1));
+}
+
+/// A specialisation constant's value, by the constant's GLSL name. Bools are 0 and 1.
+struct ConstantValue {
+    std::string_view name;
+    uint32_t value = 0;
+};
+
+struct Dispatch {
+    std::string_view pass;  ///< "technique/step": shown by the profiler and named on the command line
+    const ShaderCode& shader;
+    std::vector<Binding> bindings;
+    std::span<const std::byte> params;  ///< copied at once
+    std::vector<ConstantValue> constants;
+    Extent extent;  ///< threads; the group count follows from the shader's workgroup size
+};
+
+/// Why a pass waits: for tests, and for whoever reads a frame.
+struct Hazard {
+    enum class Kind { ReadAfterWrite, WriteAfterWrite, WriteAfterRead };
+    Kind kind{};
+    std::string resource;
+    std::string earlierPass;
+};
+
+struct RecordedPass {
+    std::string name;
+    std::string shader;
+    std::vector<std::string> reads, writes;  ///< resource names
+    std::vector<Hazard> hazards;             ///< empty: runs without a barrier
+    std::array<uint32_t, 3> groups{};
+};
+
+struct PassTime {
+    std::string name;
+    double milliseconds = 0.0;
+};
+
+class FrameGraph {
+  public:
+    FrameGraph();
+    ~FrameGraph();
+    FrameGraph(const FrameGraph&) = delete;
+    FrameGraph& operator=(const FrameGraph&) = delete;
+
+    /// Starts a new frame; the handles of the last one are void.
+    void beginFrame();
+
+    /// An image for this frame; its content is undefined until a pass writes it. Names are unique within a frame.
+    ImageHandle transient(const std::string& name, Format format, Extent extent);
+    /// A pair that lives across frames. One call per frame and name. Not recording it in a frame drops it.
+    History history(const std::string& name, Format format, Extent extent);
+    /// From the next frame on, every history starts anew (scene cut, changed settings).
+    void resetHistories();
+
+    Extent extent(ImageHandle image) const;
+    Format format(ImageHandle image) const;
+    const std::string& name(ImageHandle image) const;
+
+    /// Records a pass. Throws Error naming pass and variable if a binding is missing, extra, of the wrong kind or
+    /// format, or read though nothing wrote it; if the parameter struct's size is not the uniform block's; if a
+    /// constant is unknown; if the extent is empty.
+    void dispatch(const Dispatch& dispatch);
+
+    /// What has been recorded since beginFrame().
+    const std::vector<RecordedPass>& passes() const;
+    /// Images that the pass writes, for --dump. Empty if there is no such pass.
+    std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;
+
+    /// Submits the recorded frame. Returns at once; at most two frames are under way.
+    void execute(Device& device);
+    /// The pixels of an image of the last executed frame, all components, row 0 first. Waits for the device.
+    std::vector<float> downloadFloat(Device& device, ImageHandle image);
+    std::vector<uint32_t> downloadUint(Device& device, ImageHandle image);
+    /// Time per pass, of the latest frame that is finished on the device (waits for the last one submitted).
+    std::vector<PassTime> passTimes(Device& device);
+
+    struct Impl;
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace limpid::gpu

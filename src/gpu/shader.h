@@ -1,0 +1,57 @@
+// A compute shader as data: its SPIR-V and what reflection says of it. Needs no device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limpid::gpu {
+
+/// SPIR-V embedded at build time by limpid_shaders() (cmake/LimpidTargets.cmake).
+struct ShaderCode {
+    std::string_view name;  ///< path of the source below src/, for messages
+    std::span<const uint32_t> words;
+};
+
+enum class BindingKind { StorageImage, StorageTexelBuffer, StorageBuffer, UniformBuffer };
+
+/// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares it.
+enum class Format { R32Float, R32Uint, RG32Float, RG32Uint, RGBA32Float, RGBA32Uint, RGBA16Float, RGBA8Unorm };
+
+uint32_t bytesPerTexel(Format format);
+uint32_t componentCount(Format format);
+std::string_view toString(Format format);
+
+/// One resource that the shader declares, named as in GLSL.
+struct ShaderBinding {
+    std::string name;
+    uint32_t binding = 0;
+    BindingKind kind = BindingKind::StorageImage;
+    Format format = Format::RGBA32Float;  ///< of images and texel buffers
+    bool readable = true;                 ///< false if declared `writeonly`
+    bool writable = true;                 ///< false if declared `readonly`
+    uint32_t blockSize = 0;               ///< bytes, of a uniform buffer
+};
+
+/// A specialisation constant: layout(constant_id = id) const T name = ...;
+struct ShaderConstant {
+    std::string name;
+    uint32_t id = 0;
+};
+
+struct ShaderReflection {
+    std::vector<ShaderBinding> bindings;    ///< descriptor set 0 only; another set is an error
+    std::vector<ShaderConstant> constants;
+    std::array<uint32_t, 3> workgroupSize{};
+
+    const ShaderBinding* find(std::string_view name) const;
+};
+
+/// Reads the bindings of a compute shader with SPIRV-Cross. Throws Error naming the shader if it uses what Limpid
+/// does not (sampled images, another set than 0, an unlisted format, several uniform blocks).
+ShaderReflection reflect(const ShaderCode& code);
+
+}  // namespace limpid::gpu
