@@ -3,6 +3,10 @@
 add_library(limpid_options INTERFACE)
 target_include_directories(limpid_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
 target_compile_options(limpid_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 sees overlaps inside std::string that are not there (its bug 105651).
+  target_compile_options(limpid_options INTERFACE -Wno-restrict)
+endif()
 if(LIMPID_WERROR)
   target_compile_options(limpid_options INTERFACE -Werror)
 endif()
@@ -20,20 +24,22 @@ function(limpid_library NAME)
   target_link_libraries(limpid_${NAME} PUBLIC limpid_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
 endfunction()
 
-# limpid_shaders(TARGET a.comp ...): compiles each shader of the current folder and embeds it in TARGET as
-# `limpid::shaders::a_comp` (gpu/shader.h: ShaderCode), declared in the generated header "a.comp.h".
+# limpid_shaders(TARGET a/b.comp ...): compiles shaders below the current folder and embeds each in TARGET as
+# `limpid::shaders::b_comp` (gpu/shader.h: ShaderCode), declared in the generated header "b.comp.h".
 # -g and no -O: the names that the frame graph binds by must survive.
 function(limpid_shaders TARGET)
   set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   file(MAKE_DIRECTORY ${GENERATED})
   file(RELATIVE_PATH FOLDER ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
   foreach(SOURCE ${ARGN})
-    string(MAKE_C_IDENTIFIER ${SOURCE} SYMBOL)
+    get_filename_component(FILE ${SOURCE} NAME)
+    string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
     set(SHADER_SYMBOL ${SYMBOL})
+    set(SHADER_FILE ${FILE})
     set(SHADER_NAME ${FOLDER}/${SOURCE})
-    set(SHADER_WORDS ${GENERATED}/${SOURCE}.inc)
-    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${SOURCE}.h @ONLY)
-    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${SOURCE}.cpp @ONLY)
+    set(SHADER_WORDS ${GENERATED}/${FILE}.inc)
+    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${FILE}.h @ONLY)
+    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
     add_custom_command(
       OUTPUT ${SHADER_WORDS}
       COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -mfmt=num -MD -MF ${SHADER_WORDS}.d -I ${CMAKE_SOURCE_DIR}/src
@@ -41,8 +47,8 @@ function(limpid_shaders TARGET)
       DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
       DEPFILE ${SHADER_WORDS}.d
       VERBATIM)
-    set_source_files_properties(${GENERATED}/${SOURCE}.cpp PROPERTIES OBJECT_DEPENDS ${SHADER_WORDS})
-    target_sources(${TARGET} PRIVATE ${GENERATED}/${SOURCE}.cpp)
+    set_source_files_properties(${GENERATED}/${FILE}.cpp PROPERTIES OBJECT_DEPENDS ${SHADER_WORDS})
+    target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.cpp)
   endforeach()
   target_include_directories(${TARGET} PUBLIC ${GENERATED})
 endfunction()

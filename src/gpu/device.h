@@ -1,8 +1,6 @@
-// The Vulkan device: choosing it, creating it, and memory on it. Everything below src/gpu is the only code that
-// calls Vulkan; other folders see Device, Buffer, Image and FrameGraph.
+// The Vulkan device: choosing it, creating it, and memory on it. Everything below src/gpu is the only code
+// that calls Vulkan; other folders see Device, Buffer, Image and FrameGraph.
 #pragma once
-
-#include "gpu/shader.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +8,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "gpu/shader.h"
 
 namespace limpid::gpu {
 
@@ -23,17 +24,18 @@ struct DeviceInfo {
     std::string apiVersion;
     uint64_t memoryBytes = 0;  ///< the largest device-local heap
     bool usable = false;
-    std::string whyNot;  ///< the missing features, if it is not usable
-    std::vector<std::pair<std::string, bool>> features;        ///< required and optional ones, by Vulkan name
-    std::vector<std::pair<std::string, uint64_t>> limits;      ///< those that Limpid heeds, by Vulkan name
+    std::string whyNot;                                    ///< the missing features, if it is not usable
+    std::vector<std::pair<std::string, bool>> features;    ///< required and optional ones, by Vulkan name
+    std::vector<std::pair<std::string, uint64_t>> limits;  ///< those that Limpid heeds, by Vulkan name
 };
 
 struct DeviceOptions {
-    /// "" picks the best usable device (discrete before integrated before cpu); "cpu" a software device; a number the
-    /// device of that index; anything else the first device whose name contains it, ignoring case.
+    /// "" picks the best usable device (discrete before integrated before cpu); "cpu" a software device; a
+    /// number the device of that index; anything else the first device whose name contains it, ignoring case.
     std::string select;
-    /// Khronos validation layer with synchronisation validation. Every message is logged and counted. Also switched
-    /// on by the environment variable LIMPID_VALIDATION=1. Throws Error if asked for and not installed.
+    /// Khronos validation layer with synchronisation validation. Every message is logged and counted. Also
+    /// switched on by the environment variable LIMPID_VALIDATION=1. Throws Error if asked for and not
+    /// installed.
     bool validation = false;
 };
 
@@ -50,15 +52,15 @@ class Buffer {
     Buffer& operator=(Buffer&&) noexcept;
     ~Buffer();
 
-    uint64_t size() const;            ///< bytes, as asked for
+    uint64_t size() const;                      ///< bytes, as asked for
     std::optional<Format> texelFormat() const;  ///< set if it is a texel buffer
     explicit operator bool() const { return impl_ != nullptr; }
 
-    struct Impl;
+    struct Impl;  ///< gpu/buffer.h, for this folder only
+    explicit Buffer(std::unique_ptr<Impl> impl);
     const Impl* impl() const { return impl_.get(); }
 
   private:
-    friend class Device;
     std::unique_ptr<Impl> impl_;
 };
 
@@ -71,13 +73,14 @@ class Device {
 
     const DeviceInfo& info() const;
     bool isCpu() const { return info().type == "cpu"; }
-    /// Messages of the validation layer so far (warnings and errors). Tests want 0.
+    /// Messages of the validation layer so far (warnings and errors, not performance advice). Tests want 0.
     uint64_t validationMessages() const;
     uint64_t maxTexelBufferElements() const;
     uint64_t maxBufferBytes() const;  ///< the smaller of maxBufferSize and maxMemoryAllocationSize
 
-    /// A device-local storage texel buffer holding `data` (at least one texel; empty data gives one zero texel).
-    /// Throws Error naming the limit if the data exceeds maxTexelBufferElements or the device's allocation limits.
+    /// A device-local storage texel buffer holding `data` (at least one texel; empty data gives one zero
+    /// texel). Throws Error naming the limit if the data exceeds maxTexelBufferElements or the device's
+    /// allocation limits.
     Buffer createTexelBuffer(const std::string& name, Format format, std::span<const std::byte> data);
     /// A device-local storage buffer of `bytes` bytes, zeroed, or holding `data`.
     Buffer createStorageBuffer(const std::string& name, uint64_t bytes);

@@ -13,14 +13,12 @@
 //     }
 //
 // Recording checks every dispatch against the shader's reflection and needs no device; execute() needs one.
-// Execution is in recording order, images stay in GENERAL layout, and a pass that touches what an earlier one wrote,
-// or writes what an earlier one still reads, waits for it. Access follows from the GLSL qualifiers: `readonly` reads,
-// `writeonly` writes, neither does both.
+// Execution is in recording order, images stay in GENERAL layout, and a pass that touches what an earlier one
+// wrote, or writes what an earlier one still reads, waits for it. Access follows from the GLSL qualifiers:
+// `readonly` reads, `writeonly` writes, neither does both.
 #pragma once
 
-#include "gpu/device.h"
-#include "gpu/shader.h"
-
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -28,6 +26,9 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "gpu/device.h"
+#include "gpu/shader.h"
 
 namespace limpid::gpu {
 
@@ -37,7 +38,8 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-/// Valid from its creation until the next beginFrame().
+/// Valid from its creation until the next beginFrame(); a later use throws Error. The upper bits of `index`
+/// are the frame's number (modulo), so do not use it as an index.
 struct ImageHandle {
     uint32_t index = UINT32_MAX;
     explicit operator bool() const { return index != UINT32_MAX; }
@@ -109,9 +111,12 @@ class FrameGraph {
     /// Starts a new frame; the handles of the last one are void.
     void beginFrame();
 
-    /// An image for this frame; its content is undefined until a pass writes it. Names are unique within a frame.
+    /// An image for this frame; its content is undefined until a pass writes it. Names are unique within a
+    /// frame.
     ImageHandle transient(const std::string& name, Format format, Extent extent);
     /// A pair that lives across frames. One call per frame and name. Not recording it in a frame drops it.
+    /// `previous` can only be read; while the history is invalid it is zero. The history is valid in the next
+    /// frame if this frame writes `current` and is executed.
     History history(const std::string& name, Format format, Extent extent);
     /// From the next frame on, every history starts anew (scene cut, changed settings).
     void resetHistories();
@@ -120,9 +125,11 @@ class FrameGraph {
     Format format(ImageHandle image) const;
     const std::string& name(ImageHandle image) const;
 
-    /// Records a pass. Throws Error naming pass and variable if a binding is missing, extra, of the wrong kind or
-    /// format, or read though nothing wrote it; if the parameter struct's size is not the uniform block's; if a
-    /// constant is unknown; if the extent is empty.
+    /// Records a pass. Throws Error naming pass and variable if a binding is missing, extra, of the wrong
+    /// kind or format, or read though nothing wrote it; if one resource is bound twice and one of the two can
+    /// write; if the parameter struct's size is not the uniform block's; if a constant is unknown; if the
+    /// extent is empty. Every variable that the shader declares must be bound, used or not; the uniform block
+    /// is filled from params. A recorded Buffer may be destroyed: the frame keeps what it needs.
     void dispatch(const Dispatch& dispatch);
 
     /// What has been recorded since beginFrame().
@@ -130,8 +137,11 @@ class FrameGraph {
     /// Images that the pass writes, for --dump. Empty if there is no such pass.
     std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;
 
-    /// Submits the recorded frame. Returns at once; at most two frames are under way.
+    /// Submits the recorded frame. Returns at once; at most two frames are under way. Once per frame, and
+    /// always on the same device.
     void execute(Device& device);
+    /// As if execute() had run: lets tests follow histories over frames without a device.
+    void assumeExecuted();
     /// The pixels of an image of the last executed frame, all components, row 0 first. Waits for the device.
     std::vector<float> downloadFloat(Device& device, ImageHandle image);
     std::vector<uint32_t> downloadUint(Device& device, ImageHandle image);

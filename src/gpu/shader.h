@@ -18,8 +18,18 @@ struct ShaderCode {
 
 enum class BindingKind { StorageImage, StorageTexelBuffer, StorageBuffer, UniformBuffer };
 
-/// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares it.
-enum class Format { R32Float, R32Uint, RG32Float, RG32Uint, RGBA32Float, RGBA32Uint, RGBA16Float, RGBA8Unorm };
+/// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares
+/// it.
+enum class Format {
+    R32Float,
+    R32Uint,
+    RG32Float,
+    RG32Uint,
+    RGBA32Float,
+    RGBA32Uint,
+    RGBA16Float,
+    RGBA8Unorm
+};
 
 uint32_t bytesPerTexel(Format format);
 uint32_t componentCount(Format format);
@@ -43,15 +53,21 @@ struct ShaderConstant {
 };
 
 struct ShaderReflection {
-    std::vector<ShaderBinding> bindings;    ///< descriptor set 0 only; another set is an error
+    std::vector<ShaderBinding> bindings;  ///< descriptor set 0 only; another set is an error
     std::vector<ShaderConstant> constants;
     std::array<uint32_t, 3> workgroupSize{};
+    /// The constant ids of layout(local_size_x_id = ...); noConstant where the size is fixed.
+    std::array<uint32_t, 3> workgroupSizeIds{noConstant, noConstant, noConstant};
 
+    static constexpr uint32_t noConstant = UINT32_MAX;
     const ShaderBinding* find(std::string_view name) const;
 };
 
-/// Reads the bindings of a compute shader with SPIRV-Cross. Throws Error naming the shader if it uses what Limpid
-/// does not (sampled images, another set than 0, an unlisted format, several uniform blocks).
+/// Reads the bindings of a compute shader with SPIRV-Cross: all that the SPIR-V declares, used or not (glslc
+/// without -O keeps unused ones), in the order of their binding numbers. A buffer block is named by its
+/// instance, or by the block if it has none. Constants that have no GLSL name are left out. Throws Error
+/// naming the shader if it uses what Limpid does not (sampled images, push constants, arrays of resources,
+/// another set than 0, an unlisted format, several uniform blocks, two variables at one binding).
 ShaderReflection reflect(const ShaderCode& code);
 
 }  // namespace limpid::gpu

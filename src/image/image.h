@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,7 +23,9 @@ struct Image {
     Image(uint32_t w, uint32_t h, uint32_t c, float value = 0.0f)
         : width(w), height(h), components(c), pixels(size_t{w} * h * c, value) {}
     float& at(uint32_t x, uint32_t y, uint32_t c) { return pixels[(size_t{y} * width + x) * components + c]; }
-    float at(uint32_t x, uint32_t y, uint32_t c) const { return pixels[(size_t{y} * width + x) * components + c]; }
+    float at(uint32_t x, uint32_t y, uint32_t c) const {
+        return pixels[(size_t{y} * width + x) * components + c];
+    }
 };
 
 /// How a channel is stored in an EXR file.
@@ -47,6 +50,9 @@ struct LayeredImage {
     void add(std::string_view layer, std::string_view suffixes, const Image& image, Storage storage);
     /// Gathers channels layer.suffixes[c] into one Image. Throws Error if one is missing.
     Image get(std::string_view layer, std::string_view suffixes) const;
+    /// The layer that a viewer would show: the one that has R, G and B and is unnamed, else whose name ends
+    /// in "Combined" (Blender), else the first in the file's order. Empty if no layer has the three.
+    std::optional<std::string> colorLayer() const;
 };
 
 }  // namespace limpid::image

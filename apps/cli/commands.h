@@ -1,0 +1,13 @@
+// The subcommands. Each adds itself to the program; its callback runs it and throws limpid::Error on failure.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace limpid::cli {
+
+void addRenderCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
+void addBenchCommand(CLI::App& app);
+void addInfoCommand(CLI::App& app);
+
+}  // namespace limpid::cli

@@ -1,0 +1,107 @@
+// limpid info: devices with features and limits, pipelines, built-in scenes, every parameter.
+#include "commands.h"
+#include "gpu/device.h"
+#include "passes/pathtrace/pathtrace.h"
+#include "renderer/layers.h"
+#include "scene/builtin.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace limpid::cli {
+namespace {
+
+using nlohmann::json;
+
+json devicesJson(const std::vector<gpu::DeviceInfo>& devices) {
+    json list = json::array();
+    for (const gpu::DeviceInfo& device : devices) {
+        json features = json::object(), limits = json::object();
+        for (const auto& [name, present] : device.features) features[name] = present;
+        for (const auto& [name, value] : device.limits) limits[name] = value;
+        list.push_back({{"index", device.index},
+                        {"name", device.name},
+                        {"type", device.type},
+                        {"driver", device.driver},
+                        {"api_version", device.apiVersion},
+                        {"memory_bytes", device.memoryBytes},
+                        {"usable", device.usable},
+                        {"why_not", device.whyNot},
+                        {"features", features},
+                        {"limits", limits}});
+    }
+    return list;
+}
+
+json parametersJson() {
+    json list = json::array();
+    const auto& table = pathtraceParams();
+    for (const ParamInfo& info : table.infos()) {
+        list.push_back({{"name", table.group() + "." + info.name},
+                        {"default", toString(info.defaultValue)},
+                        {"minimum", info.minimum},
+                        {"maximum", info.maximum},
+                        {"unit", info.unit},
+                        {"help", info.help}});
+    }
+    return list;
+}
+
+json scenesJson() {
+    json list = json::array();
+    for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
+        list.push_back({{"name", "builtin:" + info.name}, {"help", info.help}});
+    }
+    return list;
+}
+
+void printDevice(const gpu::DeviceInfo& device) {
+    fmt::print("{}: {} ({}, {}, Vulkan {}, {:.1f} GiB)\n", device.index, device.name, device.type, device.driver,
+               device.apiVersion, static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
+    if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);
+    for (const auto& [name, present] : device.features) fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
+    for (const auto& [name, value] : device.limits) fmt::print("   {:<40} {}\n", name, value);
+}
+
+void printText(const std::vector<gpu::DeviceInfo>& devices) {
+    fmt::print("Devices\n");
+    if (devices.empty()) fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
+    for (const gpu::DeviceInfo& device : devices) printDevice(device);
+    fmt::print("\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\ncompute   our own tree in a "
+               "compute shader; every device\n\nBuilt-in scenes\n");
+    for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
+        fmt::print("{:<28} {}\n", "builtin:" + info.name, info.help);
+    }
+    fmt::print("\nLayers (--aov)\n");
+    for (const std::string& name : layerNames()) fmt::print("{} ", name);
+    fmt::print("\n\nParameters (--set group.name=value)\n");
+    const auto& table = pathtraceParams();
+    for (const ParamInfo& info : table.infos()) {
+        fmt::print("{:<28} default {}, {} to {} {}\n   {}\n", table.group() + "." + info.name,
+                   toString(info.defaultValue), info.minimum, info.maximum, info.unit, info.help);
+    }
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("info", "List devices, pipelines, built-in scenes and every parameter");
+    auto asJson = std::make_shared<bool>(false);
+    command->add_flag("--json", *asJson, "One JSON object on stdout");
+    command->callback([asJson] {
+        const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
+        if (!*asJson) return printText(devices);
+        const json object{{"version", LIMPID_VERSION},
+                          {"devices", devicesJson(devices)},
+                          {"pipelines", {"path"}},
+                          {"tracers", {"compute"}},
+                          {"scenes", scenesJson()},
+                          {"layers", layerNames()},
+                          {"parameters", parametersJson()}};
+        fmt::print("{}\n", object.dump(2));
+    });
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,44 @@
+// Recording one dispatch: checks against reflection, hazards against earlier passes.
+#pragma once
+
+#include "gpu/frame_graph_impl.h"
+
+namespace limpid::gpu {
+
+class DispatchRecorder {
+  public:
+    DispatchRecorder(FrameGraph::Impl& graph, const Dispatch& dispatch);
+    /// Adds the pass to the frame. If it throws, the frame is as before.
+    void record();
+
+  private:
+    /// A binding that passed its checks.
+    struct Bound {
+        const ShaderBinding* variable = nullptr;
+        BoundResource resource;
+        std::string name;  ///< the resource's
+    };
+
+    [[noreturn]] void fail(const std::string& fault) const;
+    [[noreturn]] void fail(std::string_view variable, const std::string& fault) const;
+    Bound bind(const Binding& binding) const;
+    void bindImage(Bound& bound, ImageHandle handle) const;
+    void bindBuffer(Bound& bound, const Buffer* buffer) const;
+    void checkComplete() const;
+    void checkAliases() const;
+    void checkParams();
+    void readConstants();
+    void computeGroups();
+    ResourceUse& useOf(const Bound& bound);
+    void findHazards();
+    void noteUses();
+
+    FrameGraph::Impl& graph_;
+    const Dispatch& dispatch_;
+    std::shared_ptr<const Shader> shader_;
+    std::vector<Bound> bound_;
+    RecordedDispatch result_;
+    RecordedPass pass_;
+};
+
+}  // namespace limpid::gpu

@@ -1,0 +1,184 @@
+// Recording: frames, images and histories. Dispatches are in dispatch_recorder.cpp, execution in
+// frame_executor.cpp.
+#include "gpu/frame_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.h"
+#include "gpu/dispatch_recorder.h"
+#include "gpu/frame_executor.h"
+#include "gpu/frame_graph_impl.h"
+
+namespace limpid::gpu {
+namespace {
+
+/// A handle's lower bits are the image's index, its upper bits the frame's number modulo `generations`. One
+/// less than the bits hold, so that no handle equals the empty one.
+constexpr uint32_t indexBits = 20;
+constexpr uint32_t indexMask = (1u << indexBits) - 1;
+constexpr uint32_t generations = (1u << (32 - indexBits)) - 1;
+
+uint32_t generation(uint64_t frame) {
+    return static_cast<uint32_t>(frame % generations);
+}
+
+bool sameWords(const std::vector<uint32_t>& a, std::span<const uint32_t> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
+}
+
+}  // namespace
+
+FrameGraph::Impl::Impl() = default;
+FrameGraph::Impl::~Impl() = default;
+
+void FrameGraph::Impl::requireRecording() const {
+    if (frame.number == 0) throw Error("the frame graph has no frame yet: call beginFrame() first");
+    if (frame.executed) throw Error("the frame has been executed: call beginFrame() before recording more");
+}
+
+/// The frame that was executed decides what the next one inherits; one that was only recorded leaves no
+/// trace.
+void FrameGraph::Impl::commitHistories() {
+    if (!frame.executed) return;
+    for (auto& [name, state] : histories) {
+        const auto recorded = recordedHistories.find(name);
+        if (recorded == recordedHistories.end()) {
+            state.valid = false;
+            continue;
+        }
+        const RecordedImage& current = frame.images[recorded->second];
+        state.format = current.key.format;
+        state.extent = current.extent();
+        state.currentHalf = current.key.half;
+        state.valid = current.written;
+    }
+    std::erase_if(histories, [&](const auto& entry) { return !recordedHistories.contains(entry.first); });
+}
+
+void FrameGraph::Impl::claimName(const std::string& name) {
+    if (name.empty()) throw Error("an image needs a name");
+    if (!names.insert(name).second)
+        throw Error(fmt::format("image '{}' is created twice in one frame", name));
+}
+
+ImageHandle FrameGraph::Impl::addImage(RecordedImage image) {
+    if (image.key.width == 0 || image.key.height == 0) {
+        throw Error(fmt::format("image '{}' is empty: {} x {} pixels", image.name, image.key.width,
+                                image.key.height));
+    }
+    const uint32_t index = static_cast<uint32_t>(frame.images.size());
+    if (index >= indexMask) throw Error("too many images in one frame");
+    frame.images.push_back(std::move(image));
+    imageUses.emplace_back();
+    return {index | generation(frame.number) << indexBits};
+}
+
+uint32_t FrameGraph::Impl::indexOf(ImageHandle handle) const {
+    if (!handle) throw Error("the image handle is empty");
+    const uint32_t index = handle.index & indexMask;
+    if (handle.index >> indexBits != generation(frame.number) || index >= frame.images.size()) {
+        throw Error("the image handle is from an earlier frame, or of another graph");
+    }
+    return index;
+}
+
+/// Compares the code itself: the viewer may load changed code under the same name, even at the same address.
+std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code) {
+    const auto found = shaders.find(code.name);
+    if (found != shaders.end() && sameWords(found->second->words, code.words)) return found->second;
+    auto shader = std::make_shared<const Shader>(Shader{
+        std::string(code.name), std::vector<uint32_t>(code.words.begin(), code.words.end()), reflect(code)});
+    shaders.insert_or_assign(std::string(code.name), shader);
+    return shader;
+}
+
+FrameGraph::FrameGraph() : impl_(std::make_unique<Impl>()) {}
+FrameGraph::~FrameGraph() = default;
+
+void FrameGraph::beginFrame() {
+    impl_->commitHistories();
+    if (std::exchange(impl_->resetRequested, false)) impl_->histories.clear();
+    const uint64_t number = impl_->frame.number + 1;
+    impl_->frame = {};
+    impl_->frame.number = number;
+    impl_->names.clear();
+    impl_->recordedHistories.clear();
+    impl_->imageUses.clear();
+    impl_->bufferUses.clear();
+    impl_->lastBarrier = 0;
+}
+
+ImageHandle FrameGraph::transient(const std::string& name, Format format, Extent extent) {
+    impl_->requireRecording();
+    impl_->claimName(name);
+    return impl_->addImage({.name = name, .key = {name, 0, format, extent.width, extent.height}});
+}
+
+History FrameGraph::history(const std::string& name, Format format, Extent extent) {
+    impl_->requireRecording();
+    const std::string previousName = name + " (previous)";
+    impl_->claimName(name);
+    impl_->claimName(previousName);
+    HistoryState& state = impl_->histories[name];
+    const bool valid = state.valid && state.format == format && state.extent == extent;
+    const uint32_t half = state.currentHalf;
+    History result;
+    result.valid = valid;
+    result.previous = impl_->addImage({.name = previousName,
+                                       .key = {name, half, format, extent.width, extent.height},
+                                       .role = RecordedImage::Role::Previous,
+                                       .clear = !valid});
+    result.current = impl_->addImage({.name = name,
+                                      .key = {name, half ^ 1, format, extent.width, extent.height},
+                                      .role = RecordedImage::Role::Current,
+                                      .clear = !valid});
+    impl_->recordedHistories[name] = impl_->indexOf(result.current);
+    return result;
+}
+
+void FrameGraph::resetHistories() {
+    impl_->resetRequested = true;
+}
+
+Extent FrameGraph::extent(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].extent();
+}
+
+Format FrameGraph::format(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].key.format;
+}
+
+const std::string& FrameGraph::name(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].name;
+}
+
+void FrameGraph::dispatch(const Dispatch& dispatch) {
+    impl_->requireRecording();
+    DispatchRecorder(*impl_, dispatch).record();
+}
+
+const std::vector<RecordedPass>& FrameGraph::passes() const {
+    return impl_->frame.passes;
+}
+
+std::vector<ImageHandle> FrameGraph::imagesWrittenBy(std::string_view pass) const {
+    std::vector<ImageHandle> images;
+    const RecordedFrame& frame = impl_->frame;
+    for (uint32_t i = 0; i < frame.images.size(); ++i) {
+        const bool writes = std::ranges::any_of(frame.passes, [&](const RecordedPass& p) {
+            return p.name == pass && std::ranges::find(p.writes, frame.images[i].name) != p.writes.end();
+        });
+        if (writes) images.push_back({i | generation(frame.number) << indexBits});
+    }
+    return images;
+}
+
+void FrameGraph::assumeExecuted() {
+    impl_->requireRecording();
+    impl_->frame.executed = true;
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,28 @@
+// Device memory, one allocation per resource: there are tens of them, far below any maxMemoryAllocationCount.
+#pragma once
+
+#include <cstddef>
+
+#include "gpu/context.h"
+
+namespace limpid::gpu {
+
+struct Memory {
+    UniqueMemory handle;
+    std::byte* mapped = nullptr;  ///< set if the host can see it (coherent): always mapped
+};
+
+enum class MemoryUse {
+    Device,    ///< device-local; mapped where that memory is host-visible anyway (lavapipe, integrated GPUs)
+    Upload,    ///< written by the host
+    Download,  ///< read by the host: cached if possible
+};
+
+/// Throws Error naming `name` and the size if it exceeds the device's limit or memory runs out.
+Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
+                const std::string& name);
+
+/// "12.5 MiB": for messages.
+std::string bytesText(uint64_t bytes);
+
+}  // namespace limpid::gpu

@@ -1,0 +1,46 @@
+// Compute pipelines, made at the first dispatch that needs them.
+#pragma once
+
+#include "gpu/context.h"
+#include "gpu/frame_graph_impl.h"
+
+namespace limpid::gpu {
+
+class PipelineCache {
+  public:
+    explicit PipelineCache(std::shared_ptr<const Context> context) : context_(std::move(context)) {}
+
+    struct Pipeline {
+        VkPipeline pipeline = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    };
+
+    /// Throws Error naming the shader if it exceeds a limit of the device.
+    Pipeline get(const RecordedDispatch& dispatch);
+
+  private:
+    struct Layouts {
+        UniqueSetLayout set;
+        UniquePipelineLayout pipeline;
+        UniqueShaderModule module;
+    };
+    using Constants = std::vector<std::pair<uint32_t, uint32_t>>;
+
+    const Layouts& layoutsOf(const std::shared_ptr<const Shader>& shader);
+    Layouts makeLayouts(const Shader& shader) const;
+    UniqueSetLayout makeSetLayout(const Shader& shader) const;
+    UniquePipelineLayout makePipelineLayout(const Shader& shader, VkDescriptorSetLayout set) const;
+    UniqueShaderModule makeModule(const Shader& shader) const;
+    UniquePipeline makePipeline(const RecordedDispatch& dispatch, const Layouts& layouts) const;
+
+    std::shared_ptr<const Context> context_;
+    // The shared pointers as keys keep the shaders alive, so that no other can take their address.
+    std::map<std::shared_ptr<const Shader>, Layouts> layouts_;
+    std::map<std::pair<std::shared_ptr<const Shader>, Constants>, UniquePipeline> pipelines_;
+};
+
+/// The Vulkan name of a kind of binding.
+VkDescriptorType descriptorType(BindingKind kind);
+
+}  // namespace limpid::gpu

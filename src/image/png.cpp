@@ -1,0 +1,153 @@
+#include "image/png.h"
+
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <memory>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "image/limits.h"
+#include "image/png_check.h"
+
+namespace limpid::image {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename T>
+struct Decoded {
+    std::unique_ptr<T, void (*)(void*)> pixels;  ///< RGBA
+    uint32_t width, height;
+};
+
+int stbLength(std::span<const std::byte> bytes) {
+    return static_cast<int>(bytes.size());
+}
+
+const stbi_uc* stbBytes(std::span<const std::byte> bytes) {
+    return reinterpret_cast<const stbi_uc*>(bytes.data());
+}
+
+/// Everything that can be known before a pixel is decoded.
+void checkBeforeDecoding(std::span<const std::byte> bytes, const fs::path& name) {
+    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+        throw InputError(name, fmt::format("is {} bytes long, too much for a picture", bytes.size()));
+    }
+    const bool png = looksLikePng(bytes);
+    // stb_image would try a dozen formats; its other decoders are not meant for files of unknown origin.
+    if (!png && !looksLikeJpeg(bytes)) throw InputError(name, "is neither PNG nor JPEG");
+    if (png) {
+        checkPng(bytes, name);
+    } else {
+        checkJpeg(bytes, name);
+    }
+    int width = 0, height = 0, components = 0;
+    if (!stbi_info_from_memory(stbBytes(bytes), stbLength(bytes), &width, &height, &components)) {
+        throw InputError(name, fmt::format("cannot be decoded: {}", stbi_failure_reason()));
+    }
+    // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one. A JPEG needs at least a bit per
+    // block of 64 pixels, and that for a subsampled colour may stand for 4 blocks.
+    const uint64_t pixelsPerByte = png ? 8 * 1032 : 8 * 256;
+    checkDimensions(name, static_cast<uint64_t>(width), static_cast<uint64_t>(height), bytes.size(),
+                    pixelsPerByte);
+}
+
+template <typename T, typename Load>
+Decoded<T> decodeWith(Load load, std::span<const std::byte> bytes, const fs::path& name) {
+    int width = 0, height = 0, components = 0;
+    Decoded<T> decoded{
+        {load(stbBytes(bytes), stbLength(bytes), &width, &height, &components, 4), stbi_image_free}, 0, 0};
+    if (!decoded.pixels) throw InputError(name, fmt::format("cannot be decoded: {}", stbi_failure_reason()));
+    decoded.width = static_cast<uint32_t>(width);
+    decoded.height = static_cast<uint32_t>(height);
+    return decoded;
+}
+
+uint8_t toByte(float value) {
+    if (!(value > 0.0f)) return 0;  // NaN too
+    return static_cast<uint8_t>(std::min(value, 1.0f) * 255.0f + 0.5f);
+}
+
+void appendBytes(void* context, void* data, int size) {
+    auto* target = static_cast<std::vector<char>*>(context);
+    const auto* bytes = static_cast<const char*>(data);
+    target->insert(target->end(), bytes, bytes + size);
+}
+
+std::vector<char> encodePng(const fs::path& path, const ByteImage& image) {
+    const uint64_t rowBytes = uint64_t{image.width} * image.components;
+    const bool right = (image.components == 3 || image.components == 4) && image.width > 0 &&
+                       image.height > 0 && image.pixels.size() == rowBytes * image.height;
+    if (!right) throw OutputError(path, "cannot be written: a PNG wants RGB or RGBA, and at least one pixel");
+    // stb_image_write counts in int.
+    if ((rowBytes + 1) * image.height > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
+        throw OutputError(
+            path, fmt::format("cannot be written: {}x{} is too large for PNG", image.width, image.height));
+    }
+    std::vector<char> bytes;
+    const int written = stbi_write_png_to_func(
+        appendBytes, &bytes, static_cast<int>(image.width), static_cast<int>(image.height),
+        static_cast<int>(image.components), image.pixels.data(), static_cast<int>(rowBytes));
+    if (!written) throw OutputError(path, "cannot be encoded as PNG");
+    return bytes;
+}
+
+}  // namespace
+
+ByteImage toBytes(const Image& encoded) {
+    if (encoded.components != 1 && encoded.components != 3 && encoded.components != 4) {
+        throw Error(fmt::format("an image of {} components cannot become bytes", encoded.components));
+    }
+    ByteImage image{encoded.width, encoded.height, std::max(3u, encoded.components), {}};
+    const size_t repeat = encoded.components == 1 ? 3 : 1;
+    image.pixels.reserve(encoded.pixels.size() * repeat);
+    for (const float value : encoded.pixels) image.pixels.insert(image.pixels.end(), repeat, toByte(value));
+    return image;
+}
+
+void writePng(const fs::path& path, const ByteImage& image) {
+    checkWritable(path);
+    const std::vector<char> bytes = encodePng(path, image);
+    writeAtomically(path, [&](const fs::path& temporary) {
+        std::ofstream file(temporary, std::ios::binary);
+        file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        file.close();
+        if (!file) throw OutputError(path, "cannot be written: the disk may be full");
+    });
+}
+
+ByteImage decodeImage(std::span<const std::byte> bytes, const fs::path& name) {
+    checkBeforeDecoding(bytes, name);
+    const auto decoded = decodeWith<stbi_uc>(stbi_load_from_memory, bytes, name);
+    ByteImage image{decoded.width, decoded.height, 4, {}};
+    const size_t count = size_t{image.width} * image.height * 4;
+    image.pixels.assign(decoded.pixels.get(), decoded.pixels.get() + count);
+    return image;
+}
+
+ByteImage readPngOrJpeg(const fs::path& path) {
+    return decodeImage(readFile(path), path);
+}
+
+Image decodeImageFloat(std::span<const std::byte> bytes, const fs::path& name) {
+    checkBeforeDecoding(bytes, name);
+    const auto convert = [](const auto& decoded, float largest) {
+        Image image(decoded.width, decoded.height, 4);
+        const auto* pixels = decoded.pixels.get();
+        for (size_t i = 0; i < image.pixels.size(); ++i)
+            image.pixels[i] = static_cast<float>(pixels[i]) / largest;
+        return image;
+    };
+    if (stbi_is_16_bit_from_memory(stbBytes(bytes), stbLength(bytes))) {
+        return convert(decodeWith<stbi_us>(stbi_load_16_from_memory, bytes, name), 65535.0f);
+    }
+    return convert(decodeWith<stbi_uc>(stbi_load_from_memory, bytes, name), 255.0f);
+}
+
+}  // namespace limpid::image

@@ -1,0 +1,20 @@
+// Whether the bytes are a whole, undamaged PNG or JPEG: stb_image checks no checksum, and shows a JPEG that
+// was cut off as if it were complete. Private to src/image.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace limpid::image {
+
+bool looksLikePng(std::span<const std::byte> bytes);
+bool looksLikeJpeg(std::span<const std::byte> bytes);
+
+/// Throws InputError unless all chunks up to IEND are there and their checksums are right.
+void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& name);
+
+/// Throws InputError unless the markers lead from start to end of image.
+void checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name);
+
+}  // namespace limpid::image

@@ -1,0 +1,70 @@
+#include "image/tonemap.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/color.h"
+
+namespace limpid::image {
+namespace {
+
+#include "image/tonemap_curve.h"
+
+float pixelLuminance(const Image& image, size_t pixel) {
+    const float* p = &image.pixels[pixel * image.components];
+    return image.components < 3 ? p[0] : luminance(p[0], p[1], p[2]);
+}
+
+bool usable(float value) {
+    return std::isfinite(value) && value > 0.0f;
+}
+
+}  // namespace
+
+float filmicCurve(float radiance) {
+    if (!(radiance > 0.0f)) return 0.0f;
+    const float x = filmicScale * std::min(radiance, filmicLargest);
+    const float y = x * (filmicA * x + filmicB) / (x * (filmicC * x + filmicD) + filmicE);
+    return std::min(y, 1.0f);
+}
+
+float autoExposure(const Image& radiance) {
+    const size_t count = size_t{radiance.width} * radiance.height;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        const float value = pixelLuminance(radiance, i);
+        if (usable(value)) sum += value;
+    }
+    const double threshold = 1e-5 * sum / std::max<double>(1.0, static_cast<double>(count));
+    double logSum = 0.0;
+    size_t used = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const float value = pixelLuminance(radiance, i);
+        if (!usable(value) || value < threshold) continue;
+        logSum += std::log2(static_cast<double>(value));
+        ++used;
+    }
+    if (used == 0) return 0.0f;
+    const double stops = std::log2(static_cast<double>(filmicKey)) - logSum / static_cast<double>(used);
+    return static_cast<float>(std::clamp(stops, -40.0, 40.0));
+}
+
+Image tonemap(const Image& radiance, float stops) {
+    Image encoded(radiance.width, radiance.height, radiance.components);
+    const float scale = std::exp2(stops);
+    const size_t components = radiance.components;
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.pixels.size(), 1 << 14), [&](const auto& range) {
+        for (size_t i = range.begin(); i != range.end(); ++i) {
+            const float value = radiance.pixels[i];
+            const bool alpha = components == 4 && i % 4 == 3;
+            encoded.pixels[i] =
+                alpha ? std::clamp(value, 0.0f, 1.0f) : srgbEncode(filmicCurve(value * scale));
+        }
+    });
+    return encoded;
+}
+
+}  // namespace limpid::image

@@ -1,0 +1,23 @@
+// The view of linear radiance on a screen: exposure, filmic curve, sRGB. CPU version; metrics use no curve.
+#pragma once
+
+#include "image/image.h"
+
+namespace limpid::image {
+
+/// Exposed linear radiance to linear display value in [0,1]; monotone. NaN and below 0 give 0.
+/// image/tonemap_curve.h
+float filmicCurve(float radiance);
+
+/// The exposure in stops that brings the picture's average luminance to 0.18: log2(0.18 / average). The
+/// average is geometric (Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002), over
+/// pixels that are finite and brighter than 1e-5 of the arithmetic mean: black backgrounds have no logarithm
+/// and say nothing about exposure. 0 if there is no such pixel; within [-40, 40]. `radiance`: linear, 3 or
+/// more components (1: grey).
+float autoExposure(const Image& radiance);
+
+/// Encoded sRGB in [0,1] for a PNG: filmicCurve(radiance * 2^stops), then sRGB, for the first 3 components; a
+/// fourth is alpha and is only clamped. `radiance`: linear, 1, 3 or 4 components; the result has as many.
+Image tonemap(const Image& radiance, float stops);
+
+}  // namespace limpid::image

@@ -1,0 +1,80 @@
+#include "image/tonemap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "image/color.h"
+
+namespace limpid::image {
+namespace {
+
+TEST(Srgb, KnownValuesAndInverse) {
+    EXPECT_EQ(srgbEncode(0.0f), 0.0f);
+    EXPECT_EQ(srgbEncode(1.0f), 1.0f);
+    EXPECT_EQ(srgbDecode(1.0f), 1.0f);
+    EXPECT_NEAR(srgbEncode(0.5f), 0.735357f, 1e-5f);
+    EXPECT_NEAR(srgbEncode(0.0031308f), 0.04045f, 1e-5f);
+    EXPECT_NEAR(srgbEncode(0.001f), 0.01292f, 1e-7f);
+    EXPECT_NEAR(srgbDecode(0.5f), 0.214041f, 1e-5f);
+    for (int i = 0; i <= 4096; ++i) {
+        const float x = static_cast<float>(i) / 4096.0f;
+        ASSERT_NEAR(srgbDecode(srgbEncode(x)), x, 2e-6f);
+        ASSERT_EQ(srgbEncode(-x), -srgbEncode(x));
+    }
+}
+
+TEST(FilmicCurve, IsMonotoneFrom0To1) {
+    EXPECT_EQ(filmicCurve(0.0f), 0.0f);
+    EXPECT_EQ(filmicCurve(-1.0f), 0.0f);
+    EXPECT_EQ(filmicCurve(std::nanf("")), 0.0f);
+    EXPECT_EQ(filmicCurve(std::numeric_limits<float>::infinity()), 1.0f);
+    EXPECT_EQ(filmicCurve(std::numeric_limits<float>::max()), 1.0f);
+    // x = 0.6: (0.6 (1.506 + 0.03)) / (0.6 (1.458 + 0.59) + 0.14)
+    EXPECT_NEAR(filmicCurve(1.0f), 0.9216f / 1.3688f, 1e-6f);
+    float previous = 0.0f;
+    for (float x = 1e-6f; x < 1e6f; x *= 1.01f) {
+        const float y = filmicCurve(x);
+        ASSERT_GE(y, previous) << x;
+        ASSERT_LE(y, 1.0f);
+        previous = y;
+    }
+}
+
+TEST(AutoExposure, BringsTheAverageToTheKey) {
+    EXPECT_NEAR(autoExposure(Image(8, 8, 3, 0.18f)), 0.0f, 1e-5f);
+    EXPECT_NEAR(autoExposure(Image(8, 8, 4, 0.72f)), -2.0f, 1e-5f);
+    EXPECT_NEAR(autoExposure(Image(8, 8, 1, 0.09f)), 1.0f, 1e-5f);
+    Image image(2, 1, 3, 0.09f);
+    for (uint32_t c = 0; c < 3; ++c) image.at(1, 0, c) = 0.36f;
+    EXPECT_NEAR(autoExposure(image), 0.0f, 1e-5f) << "the geometric mean";
+}
+
+TEST(AutoExposure, IgnoresBlackAndInvalidPixels) {
+    EXPECT_EQ(autoExposure(Image(8, 8, 3)), 0.0f);
+    EXPECT_EQ(autoExposure(Image()), 0.0f);
+    EXPECT_EQ(autoExposure(Image(2, 2, 3, std::nanf(""))), 0.0f);
+    Image image(4, 4, 3);
+    for (uint32_t c = 0; c < 3; ++c) {
+        image.at(0, 0, c) = 0.18f;
+        image.at(1, 0, c) = std::nanf("");
+        image.at(2, 0, c) = std::numeric_limits<float>::infinity();
+        image.at(3, 0, c) = -5.0f;
+        image.at(0, 1, c) = 1e-30f;
+    }
+    EXPECT_NEAR(autoExposure(image), 0.0f, 1e-5f);
+    EXPECT_EQ(autoExposure(Image(2, 2, 3, 1e-35f)), 40.0f);
+}
+
+TEST(Tonemap, ExposesEncodesAndKeepsAlpha) {
+    Image image(1, 1, 4, 0.25f);
+    const Image view = tonemap(image, 2.0f);
+    EXPECT_FLOAT_EQ(view.at(0, 0, 0), srgbEncode(filmicCurve(1.0f)));
+    EXPECT_EQ(view.at(0, 0, 3), 0.25f);
+    EXPECT_EQ(tonemap(Image(3, 2, 1, 1.0f), 0.0f).components, 1u);
+    EXPECT_EQ(tonemap(Image(1, 1, 3, std::nanf("")), 0.0f).pixels, (std::vector<float>(3, 0.0f)));
+}
+
+}  // namespace
+}  // namespace limpid::image

@@ -1,0 +1,156 @@
+// A unidirectional path tracer: at each vertex one light is sampled and one direction from the material, combined by
+// multiple importance sampling (E. Veach, 1997). Depth D counts scattering events: D = 0 shows emitters only.
+#include "passes/pathtrace/pathtrace_params.h"
+#include "shaders/bsdf.glsl"
+#include "shaders/trace.glsl"
+#include "shaders/lights.glsl"
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    PathtraceParams params;
+};
+
+/// What the camera sees first, for the layers.
+struct FirstHit {
+    bool hit;
+    vec3 position;  // of a miss: the direction
+    vec3 normal, albedo, albedoSpecular;
+    float depth;
+    uvec2 ids;  // instance, material
+};
+
+struct PathRadiance {
+    vec3 emission;           // seen directly
+    vec3 diffuse, specular;  // by the first surface's lobes; their sum is all scattered light
+};
+
+Ray cameraRay(vec2 pixel) {
+    const CameraParams camera = params.camera;
+    const vec2 p = vec2(2.0, -2.0) * pixel / vec2(params.width, params.height) + vec2(-1.0, 1.0);
+    const vec3 offset = p.x * camera.right + p.y * camera.up;
+    if (camera.orthographic != 0u) return Ray(camera.origin + offset, camera.forward, INFINITE_DISTANCE);
+    return Ray(camera.origin, normalize(camera.forward + offset), INFINITE_DISTANCE);
+}
+
+vec2 subpixel(uint sampleIndex, inout uint rng) {
+    const vec2 u = random2(rng);
+    if (params.jitterPerPixel == 0u) return params.jitter;
+    return params.frame == 0u && sampleIndex == 0u ? vec2(0.5) : u;
+}
+
+vec3 clampFirefly(vec3 radiance, uint depth) {
+    const float l = luminance(radiance);
+    return params.fireflyClamp > 0.0 && depth > 0u && l > params.fireflyClamp ? radiance * (params.fireflyClamp / l)
+                                                                               : radiance;
+}
+
+struct Path {
+    Ray ray;
+    vec3 throughput;
+    vec3 diffuseShare;  // of what this path still finds, per channel
+    float bsdfPdf;      // of the direction being followed
+    bool delta;         // that direction can only be found by following it
+    float coneWidth;
+    PathRadiance radiance;
+    uint rays;
+};
+
+/// Adds what a path finds at vertex `depth`; depth 0 is the emission layer.
+void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
+    if (depth == 0u) {
+        path.radiance.emission += radiance;
+        return;
+    }
+    const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
+    const vec3 found = clampFirefly(path.throughput * radiance * weight, depth - 1u);
+    path.radiance.diffuse += found * path.diffuseShare;
+    path.radiance.specular += found * (1.0 - path.diffuseShare);
+}
+
+void addEnvironment(inout Path path, uint depth) {
+    if (!HAS_ENVIRONMENT) return;
+    const vec2 uv = latLongOf(path.ray.direction);
+    const float density = environmentPdf(uv, params.scene) * params.scene.environmentProbability;
+    addEmission(path, environmentRadiance(uv, params.scene), density, depth);
+}
+
+void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+    const LightSample light = sampleLight(surface.position, params.scene, rng);
+    const BsdfValue value = evaluateBsdf(bsdf, light.direction);
+    const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
+    const vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
+    vec3 diffuse = incident * value.diffuse, specular = incident * value.specular;
+    if (depth > 0u) {
+        const vec3 sum = diffuse + specular;
+        diffuse = sum * path.diffuseShare;
+        specular = sum - diffuse;
+    }
+    if (light.pdf > 0.0 && luminance(diffuse) + luminance(specular) > 0.0) {
+        const float side = dot(light.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
+        const vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
+        ++path.rays;
+        if (!traceAny(Ray(start, light.direction, light.distance), params.scene.rootNode, rng)) {
+            path.radiance.diffuse += diffuse;
+            path.radiance.specular += specular;
+        }
+    }
+}
+
+/// Follows the material's sample. False ends the path.
+bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+    const BsdfSample next = sampleBsdf(bsdf, rng);
+    if (!next.valid) return false;
+    const vec3 value = next.value.diffuse + next.value.specular;
+    if (depth == 0u) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
+    path.throughput *= value / next.value.pdf;
+    path.bsdfPdf = next.value.pdf;
+    path.delta = next.delta;
+    if (depth >= params.rouletteDepth) {
+        const float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), 0.95);
+        if (random(rng) >= survival) return false;
+        path.throughput /= survival;
+    }
+    const float side = dot(next.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
+    path.ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), next.direction,
+                   INFINITE_DISTANCE);
+    return path.throughput != vec3(0.0);
+}
+
+FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth) {
+    return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
+                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material));
+}
+
+PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
+    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, 0.0, PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
+    float spread = params.camera.spread;
+    if (params.camera.orthographic != 0u) {
+        path.coneWidth = spread;
+        spread = 0.0;
+    }
+    first = FirstHit(false, ray.direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE));
+    for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
+        ++path.rays;
+        const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
+        if (!isHit(hit)) {
+            addEnvironment(path, depth);
+            break;
+        }
+        path.coneWidth += spread * hit.t;
+        const vec3 toViewer = -path.ray.direction;
+        const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
+        const Bsdf bsdf = makeBsdf(surface, toViewer);
+        if (depth == 0u) first = firstHitOf(surface, bsdf, hit.t);
+        for (bool emits = surface.emission != vec3(0.0); emits; emits = false) {
+            const float density =
+                HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;
+            addEmission(path, surface.emission, density, depth);
+        }
+        if (depth == params.maxDepth || surface.unlit) break;
+        addDirectLight(path, surface, bsdf, depth, rng);
+        if (!scatter(path, surface, bsdf, depth, rng)) break;
+        // A rough bounce blurs what lies behind it: a wider cone reads coarser mip levels.
+        if (HAS_TEXTURES && !path.delta) spread = max(spread, 0.1);
+    }
+    rays += path.rays;
+    return path.radiance;
+}

@@ -1,0 +1,20 @@
+#include "renderer/reset_rule.h"
+
+namespace limpid {
+namespace {
+
+bool sameCamera(const CameraParams& a, const CameraParams& b) {
+    return a.origin == b.origin && a.orthographic == b.orthographic && a.forward == b.forward && a.spread == b.spread &&
+           a.right == b.right && a.up == b.up;
+}
+
+}  // namespace
+
+bool mustReset(const AccumulationState& before, const AccumulationState& now) {
+    RenderSettings settings = now.settings;
+    settings.samplesPerLaunch = before.settings.samplesPerLaunch;
+    return !sameCamera(before.camera, now.camera) || before.settings != settings ||
+           before.sceneVersion != now.sceneVersion;
+}
+
+}  // namespace limpid

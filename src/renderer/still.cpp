@@ -1,0 +1,100 @@
+#include "renderer/still.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+
+namespace limpid {
+namespace {
+
+bool isUint(gpu::Format format) {
+    return format == gpu::Format::R32Uint || format == gpu::Format::RG32Uint || format == gpu::Format::RGBA32Uint;
+}
+
+}  // namespace
+
+ProgressiveStill::ProgressiveStill(gpu::Device& device, const scene::GpuScene& scene, uint64_t maxSamples)
+    : device_(device), scene_(scene), maxSamples_(maxSamples) {}
+
+void ProgressiveStill::update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion) {
+    const AccumulationState now{camera, settings, sceneVersion};
+    if (frame_ > 0 && mustReset(state_, now)) {
+        graph_.resetHistories();
+        samples_ = 0;
+        frame_ = 0;
+    }
+    state_ = now;
+}
+
+bool ProgressiveStill::launch() {
+    if (samples_ >= maxSamples_) return false;
+    FrameInput input{.camera = state_.camera, .previousCamera = state_.camera};
+    input.frame = frame_;
+    input.samplesBefore = samples_;
+    input.samples =
+        static_cast<uint32_t>(std::min<uint64_t>(state_.settings.samplesPerLaunch, maxSamples_ - samples_));
+    graph_.beginFrame();
+    images_ = recordPathFrame(graph_, scene_, state_.settings, input);
+    graph_.execute(device_);
+    if (frame_ == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
+    samples_ += input.samples;
+    ++frame_;
+    return true;
+}
+
+RenderCounters ProgressiveStill::counters() {
+    if (frame_ == 0) return {};
+    const std::vector<uint32_t> values = graph_.downloadUint(device_, images_.counters);
+    RenderCounters sum;
+    for (size_t i = 0; i + 1 < values.size(); i += 2) {
+        sum.rays += values[i];
+        sum.rejected += values[i + 1];
+    }
+    return sum;
+}
+
+RenderedLayers ProgressiveStill::download() {
+    if (frame_ == 0) throw Error("nothing has been rendered yet");
+    RenderedLayers layers;
+    layers.extent = state_.settings.extent;
+    layers.samples = samples_;
+    const auto get = [&](gpu::ImageHandle handle) {
+        return handle ? graph_.downloadFloat(device_, handle) : std::vector<float>();
+    };
+    layers.beauty = get(images_.beauty);
+    layers.diffuse = get(images_.diffuse);
+    layers.specular = get(images_.specular);
+    layers.emission = get(images_.emission);
+    layers.albedo = get(images_.albedo);
+    layers.albedoSpecular = get(images_.albedoSpecular);
+    layers.normal = get(images_.normal);
+    layers.depth = get(images_.depth);
+    layers.motion = get(images_.motion);
+    layers.ids = ids_;
+    return layers;
+}
+
+std::vector<std::pair<std::string, image::Image>> ProgressiveStill::dump(const std::string& pass) {
+    const std::vector<gpu::ImageHandle> handles = graph_.imagesWrittenBy(pass);
+    if (handles.empty()) {
+        std::string names;
+        for (const gpu::RecordedPass& recorded : graph_.passes()) names += " " + recorded.name;
+        throw UsageError("there is no pass '" + pass + "' in this pipeline; its passes are" + names);
+    }
+    std::vector<std::pair<std::string, image::Image>> result;
+    for (const gpu::ImageHandle handle : handles) {
+        const gpu::Extent extent = graph_.extent(handle);
+        image::Image picture(extent.width, extent.height, gpu::componentCount(graph_.format(handle)));
+        if (isUint(graph_.format(handle))) {
+            const std::vector<uint32_t> values = graph_.downloadUint(device_, handle);
+            std::transform(values.begin(), values.end(), picture.pixels.begin(),
+                           [](uint32_t v) { return static_cast<float>(v); });
+        } else {
+            picture.pixels = graph_.downloadFloat(device_, handle);
+        }
+        result.emplace_back(graph_.name(handle), std::move(picture));
+    }
+    return result;
+}
+
+}  // namespace limpid

@@ -1,0 +1,54 @@
+// A progressive still: frames are launched until the wanted number of samples is in the mean, then nothing costs.
+#pragma once
+
+#include "gpu/device.h"
+#include "gpu/frame_graph.h"
+#include "renderer/frame.h"
+#include "renderer/layers.h"
+#include "renderer/reset_rule.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace limpid {
+
+struct RenderCounters {
+    uint64_t rays = 0;      ///< closest-hit and shadow rays
+    uint64_t rejected = 0;  ///< samples dropped because they were NaN or infinite
+};
+
+class ProgressiveStill {
+  public:
+    /// `maxSamples` per pixel. The scene must outlive this.
+    ProgressiveStill(gpu::Device& device, const scene::GpuScene& scene, uint64_t maxSamples);
+
+    /// Takes the camera and the settings from now on; resets the mean if the reset rule says so.
+    void update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion = 0);
+    /// Launches one frame, or does nothing and returns false if the maximum is reached. Does not wait for the device.
+    bool launch();
+    void finish() { device_.waitIdle(); }
+
+    uint64_t samples() const { return samples_; }
+    uint32_t frames() const { return frame_; }
+
+    /// The means so far, as host images. Waits for the device. Throws Error before the first launch.
+    RenderedLayers download();
+    RenderCounters counters();
+    std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
+    /// The images that the pass of this name wrote in the last frame, for --dump; throws UsageError listing the passes
+    /// if there is none.
+    std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass);
+
+  private:
+    gpu::Device& device_;
+    const scene::GpuScene& scene_;
+    uint64_t maxSamples_;
+    gpu::FrameGraph graph_;
+    AccumulationState state_;
+    FrameImages images_;
+    std::vector<uint32_t> ids_;  ///< of frame 0, whose first sample goes through the pixel's centre
+    uint64_t samples_ = 0;
+    uint32_t frame_ = 0;
+};
+
+}  // namespace limpid

@@ -1,0 +1,183 @@
+#include "scene/builtin.h"
+
+#include "base/error.h"
+#include "scene/camera.h"
+#include "scene/mesh_builder.h"
+
+#include <cmath>
+
+namespace limpid::scene {
+namespace {
+
+Material lambertian(std::string name, const vec3& albedo) {
+    Material m;
+    m.name = std::move(name);
+    m.baseColor = vec4(albedo, 1.0f);
+    m.metallic = 0.0f;
+    m.specular = 0.0f;
+    return m;
+}
+
+Material emitter(std::string name, const vec3& albedo, const vec3& radiance) {
+    Material m = lambertian(std::move(name), albedo);
+    m.emission = radiance;
+    return m;
+}
+
+void addMesh(Scene& scene, Mesh mesh, int material) {
+    Instance instance;
+    instance.name = mesh.name;
+    instance.mesh = static_cast<int>(scene.meshes.size());
+    instance.material = material;
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back(std::move(instance));
+}
+
+enum CornellSlot : uint16_t { White, Red, Green, Light };
+
+/// From the data's millimetres (camera at negative z, x to the left) to our metres, x centred.
+vec3 fromData(float x, float y, float z) {
+    return vec3(278.0f - x, y, 279.6f - z) * 1e-3f;
+}
+
+void addCornellRoom(MeshBuilder& builder) {
+    const auto p = fromData;
+    builder.quad(p(552.8f, 0, 0), p(0, 0, 0), p(0, 0, 559.2f), p(549.6f, 0, 559.2f), White);
+    builder.quad(p(556, 548.8f, 0), p(556, 548.8f, 559.2f), p(0, 548.8f, 559.2f), p(0, 548.8f, 0), White);
+    builder.quad(p(549.6f, 0, 559.2f), p(0, 0, 559.2f), p(0, 548.8f, 559.2f), p(556, 548.8f, 559.2f), White);
+    builder.quad(p(0, 0, 559.2f), p(0, 0, 0), p(0, 548.8f, 0), p(0, 548.8f, 559.2f), Green);
+    builder.quad(p(552.8f, 0, 0), p(549.6f, 0, 559.2f), p(556, 548.8f, 559.2f), p(556, 548.8f, 0), Red);
+    // The data has the light in a hole of the ceiling; half a millimetre below it needs no hole.
+    builder.quad(p(343, 548.3f, 227), p(343, 548.3f, 332), p(213, 548.3f, 332), p(213, 548.3f, 227), Light);
+}
+
+Scene emptyCornell(std::string name) {
+    Scene scene;
+    scene.name = std::move(name);
+    scene.materials = {lambertian("white", vec3(0.73f)), lambertian("red", {0.65f, 0.05f, 0.05f}),
+                       lambertian("green", {0.12f, 0.45f, 0.15f}), emitter("light", vec3(0.78f), {18.4f, 15.6f, 8.0f})};
+    // Lens of 35 mm before a film of 25 mm, 800 mm in front of the box.
+    scene.cameras = {lookAt(fromData(278, 273, -800), fromData(278, 273, 0), vec3(0, 1, 0), 2.0f * std::atan(12.5f / 35.0f))};
+    scene.cameras[0].name = "cornell";
+    return scene;
+}
+
+Material glossy(std::string name, const vec3& color, float metallic, float roughness) {
+    Material m;
+    m.name = std::move(name);
+    m.baseColor = vec4(color, 1.0f);
+    m.metallic = metallic;
+    m.roughness = roughness;
+    return m;
+}
+
+/// A small generator of fixed sequence, so that built-in scenes are the same everywhere.
+class Sequence {
+  public:
+    float next(float low, float high) {
+        state_ = state_ * 747796405u + 2891336453u;
+        const uint32_t word = ((state_ >> ((state_ >> 28) + 4u)) ^ state_) * 277803737u;
+        return low + (high - low) * static_cast<float>(((word >> 22) ^ word) >> 8) * 0x1p-24f;
+    }
+
+  private:
+    uint32_t state_ = 1;
+};
+
+}  // namespace
+
+Scene cornellScene() {
+    Scene scene = emptyCornell("cornell");
+    MeshBuilder builder("cornell");
+    addCornellRoom(builder);
+    const auto p = fromData;
+    builder.prism(p(130, 0, 65), p(82, 0, 225), p(240, 0, 272), p(290, 0, 114), 0.165f, White);
+    builder.prism(p(423, 0, 247), p(265, 0, 296), p(314, 0, 456), p(472, 0, 406), 0.330f, White);
+    addMesh(scene, builder.take(), 0);
+    return scene;
+}
+
+Scene cornellSpheresScene() {
+    Scene scene = emptyCornell("cornell-spheres");
+    MeshBuilder room("room");
+    addCornellRoom(room);
+    addMesh(scene, room.take(), 0);
+    Material glass = glossy("glass", vec3(1.0f), 0.0f, 0.0f);
+    glass.transmission = 1.0f;
+    glass.thin = false;
+    const auto addSphere = [&](const Material& material, const vec3& center, float radius) {
+        scene.materials.push_back(material);
+        MeshBuilder builder(material.name, true);
+        builder.sphere(center, radius, 96, 48);
+        addMesh(scene, builder.take(), static_cast<int>(scene.materials.size() - 1));
+    };
+    addSphere(glass, {0.13f, 0.1f, 0.1f}, 0.1f);
+    addSphere(glossy("mirror", vec3(0.95f), 1.0f, 0.0f), {-0.13f, 0.12f, -0.1f}, 0.12f);
+    addSphere(glossy("glossy", {0.9f, 0.6f, 0.25f}, 1.0f, 0.35f), {0.14f, 0.085f, -0.13f}, 0.085f);
+    return scene;
+}
+
+Scene heavyScene() {
+    Scene scene;
+    scene.name = "heavy";
+    scene.materials = {lambertian("wall", vec3(0.7f)), lambertian("floor", {0.5f, 0.45f, 0.4f}),
+                       lambertian("rust", {0.7f, 0.3f, 0.2f}), lambertian("teal", {0.2f, 0.5f, 0.55f}),
+                       emitter("light", vec3(0.5f), vec3(12.0f))};
+    MeshBuilder builder("heavy");
+    builder.box({-5, 0, -5}, {5, 4, 5}, 0, true);
+    builder.quad({-5, 0.001f, 5}, {5, 0.001f, 5}, {5, 0.001f, -5}, {-5, 0.001f, -5}, 1);
+    for (const float x : {-2.5f, 2.5f}) {
+        for (const float z : {-2.5f, 2.5f}) {
+            builder.quad({x - 0.6f, 3.99f, z - 0.6f}, {x + 0.6f, 3.99f, z - 0.6f}, {x + 0.6f, 3.99f, z + 0.6f},
+                         {x - 0.6f, 3.99f, z + 0.6f}, 4);
+        }
+    }
+    Sequence random;
+    for (int row = 0; row < 6; ++row) {
+        for (int column = 0; column < 6; ++column) {
+            const vec3 center(-4.0f + 1.6f * static_cast<float>(column) + random.next(-0.2f, 0.2f),
+                              random.next(0.55f, 2.2f), -4.0f + 1.5f * static_cast<float>(row) + random.next(-0.2f, 0.2f));
+            const auto slot = static_cast<uint16_t>((row + column) % 2 == 0 ? 2 : 3);
+            builder.torus(center, 0.45f, 0.12f, 64, 32, slot);
+            builder.sphere(center, random.next(0.15f, 0.3f), 64, 32, slot);
+        }
+    }
+    addMesh(scene, builder.take(), 0);
+    scene.cameras = {lookAt({0, 1.7f, 4.8f}, {0, 1.2f, 0}, {0, 1, 0}, 1.1f)};
+    scene.cameras[0].name = "heavy";
+    return scene;
+}
+
+Scene furnaceScene(float albedo) {
+    Scene scene;
+    scene.name = "furnace";
+    scene.materials = {emitter("furnace", vec3(albedo), vec3(1.0f))};
+    scene.materials[0].doubleSided = true;
+    MeshBuilder builder("furnace");
+    builder.box(vec3(-2.0f), vec3(2.0f), 0, true);
+    builder.box({-0.7f, -2.0f, -0.9f}, {0.5f, -0.5f, 0.2f}, 0);
+    builder.sphere({0.8f, -0.2f, 0.1f}, 0.6f, 32, 16, 0);
+    addMesh(scene, builder.take(), 0);
+    scene.cameras = {lookAt({0.2f, 0.1f, 1.9f}, {0, -0.3f, 0}, {0, 1, 0}, 1.0f)};
+    scene.cameras[0].name = "furnace";
+    return scene;
+}
+
+std::vector<BuiltinInfo> builtinScenes() {
+    return {{"cornell", "the Cornell box, true dimensions, diffuse, 36 triangles"},
+            {"cornell-spheres", "the Cornell box with a glass, a mirror and a glossy sphere"},
+            {"heavy", "about 300,000 triangles in a closed lit room, diffuse"},
+            {"furnace", "a closed room where every surface emits 1 and reflects half: known brightness"}};
+}
+
+Scene builtinScene(std::string_view name) {
+    if (name == "cornell") return cornellScene();
+    if (name == "cornell-spheres") return cornellSpheresScene();
+    if (name == "heavy") return heavyScene();
+    if (name == "furnace") return furnaceScene();
+    std::string names;
+    for (const BuiltinInfo& info : builtinScenes()) names += " builtin:" + info.name;
+    throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" + names);
+}
+
+}  // namespace limpid::scene

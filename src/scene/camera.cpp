@@ -1,0 +1,29 @@
+#include "scene/camera.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+
+namespace limpid::scene {
+
+CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height) {
+    const float halfHeight = camera.orthographic ? camera.halfHeight : std::tan(0.5f * camera.verticalFov);
+    const float halfWidth = halfHeight * static_cast<float>(width) / static_cast<float>(height);
+    CameraParams params{};
+    params.origin = vec3(camera.toWorld[3]);
+    params.orthographic = camera.orthographic ? 1u : 0u;
+    params.forward = -glm::normalize(vec3(camera.toWorld[2]));
+    params.right = halfWidth * glm::normalize(vec3(camera.toWorld[0]));
+    params.up = halfHeight * glm::normalize(vec3(camera.toWorld[1]));
+    params.spread = 2.0f * halfHeight / static_cast<float>(height);
+    return params;
+}
+
+Camera lookAt(const vec3& eye, const vec3& target, const vec3& up, float verticalFov) {
+    Camera camera;
+    camera.toWorld = glm::inverse(glm::lookAt(eye, target, up));
+    camera.verticalFov = verticalFov;
+    return camera;
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,17 @@
+// A camera for scenes that have none.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace limpid::scene {
+
+/// A perspective camera named "framing" that shows the whole scene in a picture at least as wide as high:
+///  - a room closed on all six sides: from inside, at the +Z wall, towards the opposite wall;
+///  - a room with one open wall: from outside, straight through the opening;
+///  - a scene that is flat along Z: straight from +Z;
+///  - everything else: from the front (+Z), a little to the right and above.
+/// A side counts as closed if triangles within 5 % of that side of the bounding box cover half of it; a closed box
+/// whose triangles face outward is no room.
+Camera frameScene(const Scene& scene);
+
+}  // namespace limpid::scene

@@ -1,0 +1,18 @@
+// glTF 2.0 files (.gltf, .glb) to a Scene. See gltf_document.h, gltf_mesh.h and gltf_material.h for what is
+// supported; animations are not (the rest pose of skins and morph targets is applied to the vertices).
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace limpid::scene::gltf {
+
+/// Throws InputError with the file and the fault. Memory is bounded by the limits of the parts
+/// (gltf_access.h, gltf_mesh.h, texture_pool.h, scene_files.h) and `maxInstances`, time by the document's
+/// size and those limits.
+Scene load(const std::filesystem::path& file);
+
+inline constexpr size_t maxInstances = size_t{1} << 20;
+
+}  // namespace limpid::scene::gltf

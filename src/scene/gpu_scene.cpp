@@ -1,0 +1,62 @@
+#include "scene/gpu_scene.h"
+
+#include <string>
+
+namespace limpid::scene {
+
+GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
+    : features_(data.features), params_(data.params), stackSize_(data.stackSize) {
+    using gpu::Format;
+    const auto add = [&](const char* name, Format format, const auto& values) {
+        buffers_.push_back({name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
+    };
+    add("bvhNodes", Format::RGBA32Uint, data.bvhNodes);
+    add("bvhTriangles", Format::RGBA32Float, data.bvhTriangles);
+    add("bvhInstances", Format::RGBA32Uint, data.bvhInstances);
+    add("triangles", Format::RGBA32Uint, data.triangles);
+    add("vertices", Format::RGBA32Uint, data.vertices);
+    add("instances", Format::RGBA32Uint, data.instances);
+    add("materials", Format::RGBA32Uint, data.materials);
+    add("textureRefs", Format::RGBA32Uint, data.textureRefs);
+    add("lights", Format::RGBA32Uint, data.lights);
+    add("lightAlias", Format::RG32Uint, data.lightAlias);
+    add("lightOfPrimitive", Format::R32Uint, data.lightOfPrimitive);
+    add("environment", Format::RGBA32Float, data.environment);
+    add("environmentAlias", Format::RG32Uint, data.environmentAlias);
+    add("ggxTable", Format::RGBA32Float, data.ggxTable);
+    add("dielectricTable", Format::R32Float, data.dielectricTable);
+    constexpr std::array<const char*, layout::TEXEL_BUFFERS> names{"texels0", "texels1", "texels2", "texels3"};
+    for (uint32_t i = 0; i < layout::TEXEL_BUFFERS; ++i) {
+        add(names[i], Format::R32Uint, data.texels[i]);
+        if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
+    }
+}
+
+std::vector<gpu::Binding> GpuScene::bindings() const {
+    std::vector<gpu::Binding> result;
+    for (const NamedBuffer& named : buffers_) result.push_back({named.name, &named.buffer});
+    return result;
+}
+
+std::vector<gpu::ConstantValue> GpuScene::constants() const {
+    return {{"TWO_LEVEL", features_.twoLevel},
+            {"HAS_VERTEX_DATA", features_.vertexData},
+            {"HAS_TEXTURES", features_.textures},
+            {"HAS_ALPHA", features_.alpha},
+            {"HAS_SPECULAR", features_.specular},
+            {"HAS_TRANSMISSION", features_.transmission},
+            {"HAS_TRIANGLE_LIGHTS", features_.triangleLights},
+            {"HAS_PUNCTUAL_LIGHTS", features_.punctualLights},
+            {"HAS_ENVIRONMENT", features_.environment},
+            {"HAS_MIRRORED", features_.mirrored},
+            {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
+            {"TEXEL_BUFFER_COUNT", texelBufferCount_}};
+}
+
+uint64_t GpuScene::byteCount() const {
+    uint64_t sum = 0;
+    for (const NamedBuffer& named : buffers_) sum += named.buffer.size();
+    return sum;
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,40 @@
+#include "scene/load.h"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.h"
+#include "scene/gltf_load.h"
+#include "scene/obj.h"
+#include "scene/validate.h"
+
+namespace limpid::scene {
+namespace {
+
+Scene dispatch(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".gltf" || extension == ".glb") return gltf::load(path);
+    if (extension == ".obj") return loadObj(path);
+    throw InputError(path, "is no scene format that is read (.gltf, .glb, .obj)");
+}
+
+}  // namespace
+
+Scene loadScene(const std::filesystem::path& path) {
+    try {
+        Scene scene = dispatch(path);
+        if (const auto fault = findFault(scene)) throw InputError(path, *fault);
+        return scene;
+    } catch (const std::bad_alloc&) {
+        throw InputError(path, "does not fit into memory");
+    } catch (const std::length_error&) {
+        throw InputError(path, "does not fit into memory");
+    }
+}
+
+}  // namespace limpid::scene

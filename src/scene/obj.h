@@ -1,0 +1,22 @@
+// Wavefront OBJ and MTL files to a Scene.
+//
+// Format: B1. Object Files, and MTL material format, Alias|Wavefront Advanced Visualizer manual, appendix B.
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace limpid::scene {
+
+/// Each group or object ("g", "o") becomes one Mesh with one Instance; its triangles may use several
+/// materials (Mesh::materialSlots). Polygons are triangulated, texture coordinates turned to v = 0 at the
+/// top. Normals are used where given; smoothing groups are not computed. Six numbers after "v" are a position
+/// and a linear colour. Lines, points, curves and surfaces are skipped. Materials: see obj_material.h.
+///
+/// Throws InputError naming file, line and fault: a number that is none or not finite, an index out of range,
+/// a texture that is missing or malformed, no triangles. A missing material file or name is a warning, and
+/// grey.
+Scene loadObj(const std::filesystem::path& file);
+
+}  // namespace limpid::scene

@@ -1,0 +1,33 @@
+// The steps of buildSceneData(), a file each.
+#pragma once
+
+#include "scene/bvh.h"
+#include "scene/scene.h"
+#include "scene/scene_data.h"
+
+#include <bit>
+
+namespace limpid::scene {
+
+/// Trees, shading triangles, vertices and instances; needs features.vertexData.
+void packGeometry(const Scene& scene, SceneData& data);
+/// Materials, texture references and mip levels; sets the features that follow from materials.
+void packMaterials(const Scene& scene, SceneData& data);
+/// Light list, its alias table, and the environment; needs the geometry's instances.
+void packLights(const Scene& scene, SceneData& data);
+/// Directional albedo of GGX reflection (see shaders/bsdf.glsl).
+void fillGgxTable(std::vector<vec4>& table);
+/// Energy that single scattering keeps at a rough dielectric boundary.
+void fillDielectricTable(std::vector<float>& table);
+
+inline uint32_t bits(float value) {
+    return std::bit_cast<uint32_t>(value);
+}
+inline uvec4 bits(const vec3& v, uint32_t w) {
+    return {bits(v.x), bits(v.y), bits(v.z), w};
+}
+inline uvec4 bits(const vec3& v, float w) {
+    return bits(v, bits(w));
+}
+
+}  // namespace limpid::scene

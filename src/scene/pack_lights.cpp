@@ -1,0 +1,186 @@
+#include "scene/alias_table.h"
+#include "scene/mip_levels.h"
+#include "scene/pack.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limpid::scene {
+namespace {
+
+/// How often next-event estimation asks the environment where there are other lights too.
+constexpr float environmentShare = 0.5f;
+
+double luminance(const vec3& c) {
+    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+}
+
+vec2 transformed(const TextureRef& ref, const vec2& uv) {
+    const vec3 p(uv, 1.0f);
+    return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
+}
+
+/// Mean luminance of the emission texture over a triangle, from points as dense as its texels (16 to 1,024 of them).
+double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b, vec2 c) {
+    a = transformed(ref, a);
+    b = transformed(ref, b);
+    c = transformed(ref, c);
+    const vec2 e1 = (b - a) * vec2(texture.width, texture.height), e2 = (c - a) * vec2(texture.width, texture.height);
+    const double texels = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
+    const int side = static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
+    double sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < side; ++i) {
+        for (int j = 0; i + j < side; ++j) {
+            const float u = (static_cast<float>(i) + 1.0f / 3.0f) / static_cast<float>(side);
+            const float v = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(side);
+            sum += luminance(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+class LightPacker {
+  public:
+    LightPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {}
+
+    void pack() {
+        for (size_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
+        data_.features.triangleLights = !weights_.empty();
+        for (const PunctualLight& light : scene_.lights) packPunctual(light);
+        data_.features.punctualLights = !scene_.lights.empty();
+        const AliasTable table = buildAliasTable(weights_);
+        data_.lightAlias = table.entries;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
+        }
+        data_.params.lightCount = static_cast<uint32_t>(weights_.size());
+    }
+
+  private:
+    void packInstance(size_t index) {
+        const Instance& instance = scene_.instances[index];
+        const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+        const size_t tableStart = data_.lightOfPrimitive.size();
+        bool any = false;
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+            const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
+            const auto material = static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
+            uint32_t light = layout::NONE;
+            if (scene_.materials[material].emission != vec3(0.0f)) {
+                light = packTriangle(index, instance, mesh, t, material);
+                any = true;
+            }
+            data_.lightOfPrimitive.push_back(light);
+        }
+        if (any) {
+            data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
+        } else {
+            data_.lightOfPrimitive.resize(tableStart);
+        }
+    }
+
+    uint32_t packTriangle(size_t instanceIndex, const Instance& instance, const Mesh& mesh, size_t t,
+                          uint32_t materialIndex) {
+        const Material& material = scene_.materials[materialIndex];
+        const uint32_t* index = &mesh.indices[3 * t];
+        vec3 v[3];
+        for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
+        if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
+        double radiance = luminance(material.emission);
+        const TextureRef& ref = material.emissionTexture;
+        if (ref) {
+            const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
+            const vec2 zero(0.0f);
+            radiance = meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref, material.emission,
+                                            uv.empty() ? zero : uv[index[0]], uv.empty() ? zero : uv[index[1]],
+                                            uv.empty() ? zero : uv[index[2]]);
+        }
+        const double area = 0.5 * glm::length(glm::cross(v[1] - v[0], v[2] - v[0]));
+        const double sides = material.doubleSided ? 2.0 : 1.0;
+        const uint32_t kind = material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE;
+        const uint32_t firstTriangle = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3].z;
+        const bool mirrored = glm::determinant(mat3(instance.transform)) < 0.0f;
+        data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
+        data_.lights.push_back(bits(v[1], 0u));
+        data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
+        data_.lights.push_back(bits(material.emission, ref ? materialIndex : layout::NONE));
+        return addWeight(std::numbers::pi * area * sides * radiance);
+    }
+
+    void packPunctual(const PunctualLight& light) {
+        const double strength = luminance(light.intensity);
+        uint32_t kind = layout::LIGHT_POINT;
+        double power = 4.0 * std::numbers::pi * strength;
+        if (light.kind == PunctualLight::Kind::Spot) {
+            kind = layout::LIGHT_SPOT;
+            power = 2.0 * std::numbers::pi * (1.0 - std::cos(double{light.outerCone})) * strength;
+        } else if (light.kind == PunctualLight::Kind::Directional) {
+            kind = layout::LIGHT_DIRECTIONAL;
+            power = std::numbers::pi * double{data_.params.sceneRadius} * data_.params.sceneRadius * strength;
+        }
+        data_.lights.push_back(bits(light.position, kind));
+        data_.lights.push_back(bits(light.direction, 0u));
+        data_.lights.push_back(bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
+        data_.lights.push_back(bits(light.intensity, 0u));
+        addWeight(power);
+    }
+
+    uint32_t addWeight(double weight) {
+        weights_.push_back(std::isfinite(weight) ? std::max(weight, 0.0) : 0.0);
+        return static_cast<uint32_t>(weights_.size() - 1);
+    }
+
+    const Scene& scene_;
+    SceneData& data_;
+    std::vector<double> weights_;
+};
+
+/// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's solid
+/// angle.
+std::vector<double> environmentWeights(const Environment& env) {
+    const auto width = static_cast<int>(env.width), height = static_cast<int>(env.height);
+    std::vector<double> weights(size_t{env.width} * env.height);
+    tbb::parallel_for(0, height, [&](int y) {
+        const double sine = std::sin(std::numbers::pi * (y + 0.5) / height);
+        for (int x = 0; x < width; ++x) {
+            double sum = 0.0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int row = std::clamp(y + dy, 0, height - 1);
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int column = (x + dx + width) % width;
+                    sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
+                           luminance(env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
+                }
+            }
+            weights[static_cast<size_t>(y) * env.width + static_cast<size_t>(x)] = std::max(sum, 0.0) * sine;
+        }
+    });
+    return weights;
+}
+
+void packEnvironment(const Environment& env, SceneData& data) {
+    data.features.environment = true;
+    const AliasTable table = buildAliasTable(environmentWeights(env));
+    data.environmentAlias = table.entries;
+    data.environment.reserve(env.radiance.size());
+    for (size_t i = 0; i < env.radiance.size(); ++i) {
+        data.environment.emplace_back(env.radiance[i], table.probabilities[i]);
+    }
+    data.params.environmentWidth = env.width;
+    data.params.environmentHeight = env.height;
+    data.params.environmentProbability = data.params.lightCount > 0 ? environmentShare : 1.0f;
+}
+
+}  // namespace
+
+void packLights(const Scene& scene, SceneData& data) {
+    LightPacker(scene, data).pack();
+    if (!scene.environment.empty()) packEnvironment(scene.environment, data);
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,43 @@
+// A scene in the form that shaders read (shaders/scene_layout.h), still on the CPU and testable there.
+#pragma once
+
+#include "scene/scene.h"
+#include "shaders/scene_layout.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace limpid::scene {
+
+/// Which parts of the shaders a scene needs; each member is a specialisation constant in scene_data.glsl.
+struct SceneFeatures {
+    bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false, transmission = false,
+         triangleLights = false, punctualLights = false, environment = false, mirrored = false;
+    bool operator==(const SceneFeatures&) const = default;
+};
+
+/// Walker's alias table: entry i is kept with `keep`, otherwise replaced by `other`.
+struct AliasEntry {
+    float keep = 1.0f;
+    uint32_t other = 0;
+};
+
+struct SceneData {
+    std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, materials, textureRefs, lights;
+    std::vector<vec4> bvhTriangles, environment, ggxTable;
+    std::vector<AliasEntry> lightAlias, environmentAlias;
+    std::vector<uint32_t> lightOfPrimitive;
+    std::vector<float> dielectricTable;
+    std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
+    SceneFeatures features;
+    layout::SceneParams params{};
+    uint32_t stackSize = 0;
+
+    uint64_t byteCount() const;
+};
+
+/// Builds trees, light tables and mip levels. Throws Error if the textures exceed 4 x 2^27 texels.
+SceneData buildSceneData(const Scene& scene);
+
+}  // namespace limpid::scene

@@ -1,0 +1,242 @@
+// The material's scattering function: glTF 2.0 metallic-roughness with transmission.
+//
+//   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
+//
+// metal: GGX reflection plus what bounces several times between the facets (C. Kulla, A. Conty, "Revisiting physically
+// based shading at Imageworks", SIGGRAPH 2017). plastic: GGX reflection over a diffuse base that gets exactly the
+// energy the coat lets through, in and out. glass: thin (a pane: the transmitted lobe is the reflected one mirrored
+// behind the surface) or a boundary that refracts, divided by the energy that one scattering keeps. A white surface of
+// any kind reflects and transmits everything. Energy form: crossing a boundary does not scale radiance by eta^2; the
+// factors cancel for every path that leaves the body again.
+//
+// All f below include the cosine. Directions are local: the shading normal is +Z.
+#ifndef LIMPID_BSDF_GLSL
+#define LIMPID_BSDF_GLSL
+
+#include "shaders/material.glsl"
+#include "shaders/microfacet.glsl"
+
+struct Bsdf {
+    mat3 frame;
+    vec3 wo;
+    vec3 geometricNormal;  // world, on the viewer's side
+    vec3 diffuse;          // albedo of the base below the coat
+    vec3 f0;               // Schlick's terms of the reflecting lobe
+    float f90;
+    float coatF0, coatF90;  // of the dielectric coat alone
+    vec3 multiple;         // factor of the metal's multiple scattering
+    vec3 through;          // tint and weight of the thin pane's transmitted lobe
+    vec3 glass;            // tint of the refracting boundary's transmitted light
+    float glassWeight;
+    float alpha, roughness, eta;
+    bool smoothSurface;
+    vec4 albedo;     // ggxAlbedo at wo
+    float coatLoss;  // energy that the coat keeps from the base at wo
+    float glassAlbedo;
+    vec4 probability;  // of choosing diffuse, reflecting, thin transmitting, refracting lobe
+};
+
+struct BsdfValue {
+    vec3 diffuse, specular;  // f cos
+    float pdf;
+};
+
+struct BsdfSample {
+    vec3 direction;  // world
+    BsdfValue value;
+    bool delta;       // no other technique finds this direction
+    bool valid;
+};
+
+Bsdf lambertianBsdf(Surface s, vec3 toViewer) {
+    Bsdf b;
+    b.frame = frameAround(s.normal);
+    b.wo = toViewer * b.frame;
+    b.geometricNormal = s.geometricNormal;
+    b.diffuse = s.unlit ? vec3(0.0) : s.baseColor;
+    return b;
+}
+
+Bsdf makeBsdf(Surface s, vec3 toViewer) {
+    Bsdf b = lambertianBsdf(s, toViewer);
+    if (!HAS_SPECULAR) return b;
+    const float dielectric = s.unlit ? 0.0 : 1.0 - s.metallic;
+    const float metal = s.unlit ? 0.0 : s.metallic;
+    const float transmission = HAS_TRANSMISSION ? s.transmission : 0.0;
+    const float refracting = s.thin ? 0.0 : dielectric * transmission;
+    b.roughness = s.roughness;
+    b.alpha = max(s.roughness * s.roughness, 1e-4);
+    b.smoothSurface = s.roughness < SMOOTH_ROUGHNESS;
+    b.eta = s.front ? s.ior : 1.0 / s.ior;
+    const float root = (s.ior - 1.0) / (s.ior + 1.0);
+    b.coatF0 = root * root * s.specular;
+    b.coatF90 = s.specular;
+    b.f0 = metal * s.baseColor + vec3((dielectric - refracting) * b.coatF0);
+    b.f90 = metal + (dielectric - refracting) * b.coatF90;
+    b.albedo = ggxAlbedo(b.wo.z, b.roughness);
+    b.coatLoss = b.coatF0 * b.albedo.x + b.coatF90 * b.albedo.y;
+    b.diffuse = s.baseColor * (dielectric * (1.0 - transmission));
+    b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
+    b.glassWeight = refracting;
+    b.glass = s.baseColor;
+    b.glassAlbedo = 1.0;
+    if (HAS_TRANSMISSION) {
+        for (bool rough = refracting > 0.0 && !b.smoothSurface; rough; rough = false) {
+            b.glassAlbedo = dielectricAlbedo(b.wo.z, b.roughness, b.eta);
+        }
+    }
+    const float average = b.albedo.z + b.albedo.w;
+    const vec3 averageFresnel = s.baseColor + (1.0 - s.baseColor) / 21.0;
+    b.multiple = metal * averageFresnel * averageFresnel * average / (1.0 - averageFresnel * (1.0 - average));
+    const float missing = 1.0 - b.albedo.x - b.albedo.y;
+    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + luminance(b.multiple) * missing,
+                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y,
+                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight);
+    b.probability = weights / max(dot(weights, vec4(1.0)), 1e-20);
+    return b;
+}
+
+/// True if wi leaves on the side of the true surface that it leaves on at the shading normal.
+bool sidesAgree(Bsdf b, vec3 wi) {
+    return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;
+}
+
+/// Density of the half vector m seen from wo, as a density of the reflected direction.
+float reflectionPdf(Bsdf b, vec3 m) {
+    return ggxDistribution(m, b.alpha) / (4.0 * b.wo.z * (1.0 + ggxLambda(b.wo.z, b.alpha)));
+}
+
+void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
+    const vec4 albedo = ggxAlbedo(wi.z, b.roughness);
+    const float cosinePdf = wi.z / PI;
+    const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
+    const float coatAverage = b.coatF0 * albedo.z + b.coatF90 * albedo.w;
+    value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
+    const float missing = (1.0 - b.albedo.x - b.albedo.y) * (1.0 - albedo.x - albedo.y);
+    value.specular += b.multiple * (missing / max(1.0 - albedo.z - albedo.w, 1e-6) * cosinePdf);
+    value.pdf += b.probability.x * cosinePdf;
+    if (b.smoothSurface) return;
+    const vec3 m = normalize(b.wo + wi);
+    const float cosine = dot(b.wo, m);
+    const float pdf = reflectionPdf(b, m);
+    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(wi.z, b.alpha);
+    const vec3 fresnel = mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+    value.specular += fresnel * (pdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
+    value.pdf += b.probability.y * pdf;
+    if (HAS_TRANSMISSION) {
+        const float reflectance = fresnelDielectric(cosine, b.eta);
+        value.specular += vec3(b.glassWeight * reflectance * pdf / ((1.0 + lambdaIn) * b.glassAlbedo));
+        value.pdf += b.probability.w * reflectance * pdf;
+    }
+}
+
+void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
+    if (b.smoothSurface) return;
+    const vec3 mirrored = vec3(wi.xy, -wi.z);
+    const vec3 paneHalf = normalize(b.wo + mirrored);
+    const float panePdf = reflectionPdf(b, paneHalf);
+    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(mirrored.z, b.alpha);
+    const float single = b.albedo.x + b.albedo.y;
+    value.specular += b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
+    value.pdf += b.probability.z * panePdf;
+    vec3 m = b.wo + b.eta * wi;
+    m *= m.z < 0.0 ? -1.0 : 1.0;
+    const float length2 = dot(m, m);
+    m *= inversesqrt(max(length2, 1e-20));
+    const float cosOut = dot(b.wo, m), cosIn = dot(wi, m);
+    // A half vector of nearly no length: eta is 1 and the light goes straight through; no density is left there.
+    if (cosOut <= 0.0 || cosIn >= 0.0 || length2 < 1e-12) return;
+    const float reflectance = fresnelDielectric(cosOut, b.eta);
+    const float root = cosOut + b.eta * cosIn;
+    const float pdf = ggxDistribution(m, b.alpha) * cosOut / (b.wo.z * (1.0 + lambdaOut)) *
+                      (b.eta * b.eta * -cosIn / max(root * root, 1e-20)) * (1.0 - reflectance);
+    value.specular += b.glass * (b.glassWeight * pdf / ((1.0 + lambdaIn) * b.glassAlbedo));
+    value.pdf += b.probability.w * pdf;
+}
+
+/// f cos and the density with which sampleBsdf draws wi (local); without the perfectly smooth lobes.
+BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
+    BsdfValue value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (!HAS_SPECULAR) {
+        value.pdf = max(wi.z, 0.0) / PI;
+        value.diffuse = b.diffuse * value.pdf;
+        return value;
+    }
+    for (bool above = wi.z > 0.0; above; above = false) addReflection(b, wi, value);
+    if (HAS_TRANSMISSION) {
+        for (bool below = wi.z < 0.0; below; below = false) addTransmission(b, wi, value);
+    }
+    return value;
+}
+
+BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
+    const vec3 wi = direction * b.frame;
+    BsdfValue value = evaluateLocal(b, wi);
+    if (!sidesAgree(b, wi)) value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    return value;
+}
+
+/// A perfectly smooth lobe's direction; value holds f cos / pdf of the lobe with pdf 1.
+BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
+    BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), true, true);
+    const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
+    vec3 wi = reflected;
+    if (lobe == 1u) {
+        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) / b.probability.y;
+    } else if (lobe == 2u) {
+        wi = -b.wo;
+        result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
+    } else {
+        const float reflectance = fresnelDielectric(b.wo.z, b.eta);
+        const bool transmits = u >= reflectance;
+        const float cosine = sqrt(max(0.0, 1.0 - (1.0 - b.wo.z * b.wo.z) / (b.eta * b.eta)));
+        wi = transmits ? vec3(-b.wo.xy / b.eta, -cosine) : reflected;
+        result.value.specular = (transmits ? b.glass : vec3(1.0)) * (b.glassWeight / b.probability.w);
+    }
+    result.direction = b.frame * wi;
+    result.valid = sidesAgree(b, wi);
+    return result;
+}
+
+/// A local direction from the chosen lobe; z = 0 if there is none.
+vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
+    const vec3 m = sampleVisibleNormal(b.wo, b.alpha, u);
+    const float cosine = dot(b.wo, m);
+    const vec3 reflected = 2.0 * cosine * m - b.wo;
+    if (lobe == 1u) return reflected.z > 0.0 ? reflected : vec3(0.0);
+    if (lobe == 2u) return reflected.z > 0.0 ? vec3(reflected.xy, -reflected.z) : vec3(0.0);
+    if (choice < fresnelDielectric(cosine, b.eta)) return reflected.z > 0.0 ? reflected : vec3(0.0);
+    const float transmitted = sqrt(max(0.0, 1.0 - (1.0 - cosine * cosine) / (b.eta * b.eta)));
+    const vec3 refracted = (cosine / b.eta - transmitted) * m - b.wo / b.eta;
+    return refracted.z < 0.0 ? refracted : vec3(0.0);
+}
+
+/// Draws a direction; value.diffuse + value.specular over value.pdf is the throughput.
+BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
+    const vec2 u = random2(rng);
+    vec3 wi = sampleCosineHemisphere(u);
+    uint lobe = 0u;
+    float choice = 0.0;
+    if (HAS_SPECULAR) {
+        choice = random(rng);
+        const vec3 bounds = vec3(b.probability.x, b.probability.x + b.probability.y, 1.0 - b.probability.w);
+        // Reusing the number inside its interval, for the choice between reflection and refraction.
+        lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : 3u;
+        choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
+        if (lobe != 0u && b.smoothSurface) return sampleSmooth(b, lobe, choice);
+        for (bool rough = lobe != 0u; rough; rough = false) wi = sampleRough(b, lobe, u, choice);
+    }
+    const BsdfValue value = evaluateLocal(b, wi);
+    return BsdfSample(b.frame * wi, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
+}
+
+/// What the specular lobes reflect and transmit of uniform light: the albedoSpecular layer.
+vec3 specularAlbedo(Bsdf b) {
+    if (!HAS_SPECULAR) return vec3(0.0);
+    const float missing = 1.0 - b.albedo.x - b.albedo.y;
+    const float reflectance = fresnelDielectric(b.wo.z, b.eta);
+    return b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
+           b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
+}
+
+#endif

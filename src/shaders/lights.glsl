@@ -1,0 +1,135 @@
+// Next-event estimation: one light drawn by power, one point on it; and the density of that for a ray that found a
+// light by itself (multiple importance sampling). Punctual lights: KHR_lights_punctual.
+#ifndef LIMPID_LIGHTS_GLSL
+#define LIMPID_LIGHTS_GLSL
+
+#include "shaders/environment.glsl"
+#include "shaders/material.glsl"
+
+struct LightSample {
+    vec3 direction;
+    float distance;  // the shadow ray ends here
+    vec3 radiance;   // incident, for punctual lights divided by nothing: weight = radiance / pdf
+    float pdf;       // per solid angle; for punctual lights the probability of choosing the light
+    bool delta;      // only this technique finds the light
+};
+
+/// KHR_lights_punctual's cone and range attenuation over squared distance.
+float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, vec3 shape) {
+    if (kind == LIGHT_DIRECTIONAL) return 1.0;
+    float attenuation = 1.0 / max(distance * distance, 1e-20);
+    if (shape.z > 0.0) {
+        const float ratio = distance / shape.z;
+        const float r2 = ratio * ratio;
+        attenuation *= clamp(1.0 - r2 * r2, 0.0, 1.0);
+    }
+    if (kind == LIGHT_SPOT) {
+        const float scale = 1.0 / max(0.001, shape.x - shape.y);
+        const float cone = clamp((dot(axis, -direction) - shape.y) * scale, 0.0, 1.0);
+        attenuation *= cone * cone;
+    }
+    return attenuation;
+}
+
+/// Barycentrics are of the mesh, not of the light.
+vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics) {
+    vec3 emission = uintBitsToFloat(record3.xyz);
+    if (HAS_TEXTURES) {
+        for (bool textured = record3.w != NONE; textured; textured = false) {
+            const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
+            emission *= materialTexture(imageLoad(materials, int(record3.w * MATERIAL_TEXELS) + 4).w, data, 0.0).rgb;
+        }
+    }
+    return emission;
+}
+
+LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 from, vec2 u) {
+    const vec3 v0 = uintBitsToFloat(r0.xyz), v1 = uintBitsToFloat(r1.xyz), v2 = uintBitsToFloat(r2.xyz);
+    const vec2 barycentrics = sampleTriangle(u);
+    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
+    const float doubleArea = length(perpendicular);
+    const vec3 point = interpolate(v0, v1, v2, barycentrics);
+    const vec3 toLight = point - from;
+    const float distance2 = dot(toLight, toLight);
+    vec3 normal = perpendicular / max(doubleArea, 1e-37);
+    float cosine = -dot(normal, toLight) * inversesqrt(max(distance2, 1e-37));
+    if ((r0.w & LIGHT_KIND_MASK) == LIGHT_TRIANGLE_TWO_SIDED && cosine < 0.0) {
+        cosine = -cosine;
+        normal = -normal;
+    }
+    LightSample light;
+    const vec3 end = offsetRay(point, normal, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)))) - from;
+    light.distance = length(end);
+    light.direction = end / max(light.distance, 1e-37);
+    const bool visible = cosine > 0.0 && doubleArea > 0.0;
+    light.pdf = visible ? uintBitsToFloat(r1.w) * 2.0 * distance2 / (doubleArea * cosine) : 0.0;
+    const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
+    light.radiance = visible ? lightEmission(r3, r2.w, order) : vec3(0.0);
+    light.delta = false;
+    return light;
+}
+
+LightSample samplePunctualLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 from, SceneParams scene) {
+    const uint kind = r0.w & LIGHT_KIND_MASK;
+    const vec3 axis = uintBitsToFloat(r1.xyz);
+    LightSample light;
+    if (kind == LIGHT_DIRECTIONAL) {
+        light.direction = -axis;
+        light.distance = INFINITE_DISTANCE;
+    } else {
+        const vec3 toLight = uintBitsToFloat(r0.xyz) - from;
+        light.distance = length(toLight);
+        light.direction = toLight / max(light.distance, 1e-37);
+    }
+    light.radiance = uintBitsToFloat(r3.xyz) *
+                     punctualAttenuation(kind, light.direction, axis, light.distance, uintBitsToFloat(r2.xyz));
+    light.pdf = uintBitsToFloat(r1.w);
+    light.delta = true;
+    return light;
+}
+
+/// A light as seen from `from`; pdf 0: nothing to be had there.
+LightSample sampleLight(vec3 from, SceneParams scene, inout uint rng) {
+    const float choice = random(rng), decision = random(rng);
+    const vec2 u = random2(rng);
+    LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0, false);
+    const float environmentShare = HAS_ENVIRONMENT ? scene.environmentProbability : 0.0;
+    if (HAS_ENVIRONMENT) {
+        for (bool chosen = choice < environmentShare; chosen; chosen = false) {
+            const EnvironmentSample s = sampleEnvironment(vec2(choice / environmentShare, decision), u, scene);
+            light = LightSample(s.direction, INFINITE_DISTANCE, s.radiance, s.pdf * environmentShare, false);
+        }
+    }
+    if (HAS_TRIANGLE_LIGHTS || HAS_PUNCTUAL_LIGHTS) {
+        for (bool chosen = choice >= environmentShare && scene.lightCount > 0u; chosen; chosen = false) {
+            const float rescaled = (choice - environmentShare) / max(1.0 - environmentShare, 1e-20);
+            uint index = min(uint(rescaled * float(scene.lightCount)), scene.lightCount - 1u);
+            const uvec2 entry = imageLoad(lightAlias, int(index)).xy;
+            index = decision < uintBitsToFloat(entry.x) ? index : entry.y;
+            const int at = int(index * LIGHT_TEXELS);
+            const uvec4 r0 = imageLoad(lights, at), r1 = imageLoad(lights, at + 1);
+            const uvec4 r2 = imageLoad(lights, at + 2), r3 = imageLoad(lights, at + 3);
+            const bool punctual = (r0.w & LIGHT_KIND_MASK) >= LIGHT_POINT;
+            if (HAS_TRIANGLE_LIGHTS && !(HAS_PUNCTUAL_LIGHTS && punctual)) {
+                light = sampleTriangleLight(r0, r1, r2, r3, from, u);
+            } else if (HAS_PUNCTUAL_LIGHTS) {
+                light = samplePunctualLight(r0, r1, r2, r3, from, scene);
+            }
+            light.pdf *= 1.0 - environmentShare;
+        }
+    }
+    return light;
+}
+
+/// Density per solid angle with which sampleLight draws the point where a ray of length `distance` met the surface.
+float lightPdf(Surface s, float distance, vec3 direction, SceneParams scene) {
+    const uint first = imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).y;
+    const uint light = first == NONE ? NONE : imageLoad(lightOfPrimitive, int(first + s.primitive)).x;
+    if (light == NONE) return 0.0;
+    const float probability = uintBitsToFloat(imageLoad(lights, int(light * LIGHT_TEXELS) + 1).w);
+    const float cosine = abs(dot(s.geometricNormal, direction));
+    const float share = HAS_ENVIRONMENT ? 1.0 - scene.environmentProbability : 1.0;
+    return cosine > 0.0 ? share * probability * distance * distance / (s.area * cosine) : 0.0;
+}
+
+#endif

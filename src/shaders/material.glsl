@@ -1,0 +1,237 @@
+// From a hit to the surface there: geometry, material parameters after textures and vertex colours, alpha test.
+// Materials: glTF 2.0, section 3.9 and appendix B.
+#ifndef LIMPID_MATERIAL_GLSL
+#define LIMPID_MATERIAL_GLSL
+
+#include "shaders/sampling.glsl"
+#include "shaders/rng.glsl"
+#include "shaders/texture.glsl"
+
+struct Surface {
+    vec3 position;
+    vec3 geometricNormal;  // unit, on the viewer's side
+    vec3 normal;           // shading normal: unit, on the viewer's side
+    float magnitude;       // the largest coordinate behind `position`, for offsetRay
+    bool front;            // the viewer is on the side that the winding calls front
+    uint instance, primitive, material;
+    vec3 baseColor;
+    float metallic, roughness, specular, ior, transmission;
+    bool thin, unlit;
+    vec3 emission;  // radiance towards the viewer
+    float area;     // of the triangle
+};
+
+/// What a triangle in bvhTriangles says of itself.
+struct TriangleIds {
+    uint instance, primitive, shadingTriangle;
+};
+
+TriangleIds loadTriangleIds(uint triangle, uint instance) {
+    const int at = int(triangle * BVH_TRIANGLE_TEXELS);
+    const uint primitive = floatBitsToUint(imageLoad(bvhTriangles, at).w) & ~BVH_TRIANGLE_ALPHA;
+    const uint named = floatBitsToUint(imageLoad(bvhTriangles, at + 1).w);
+    return TriangleIds(named != NONE ? named : instance, primitive, floatBitsToUint(imageLoad(bvhTriangles, at + 2).w));
+}
+
+/// Materials of static triangles are absolute; those of instanced meshes count from the instance's.
+uint materialOf(uint word, uint instance) {
+    uint material = word & TRIANGLE_MATERIAL_MASK;
+    if (TWO_LEVEL && instance != NONE) {
+        material += imageLoad(instances, int(instance * INSTANCE_TEXELS) + 3).x;
+    }
+    return material;
+}
+
+vec3 interpolate(vec3 a, vec3 b, vec3 c, vec2 barycentrics) {
+    return a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
+}
+
+struct VertexData {
+    vec3 normal;
+    vec4 tangent;
+    vec2 uv0, uv1;
+    vec4 color;
+    vec2 uvDensity;  // |area in uv| of the triangle, for both sets
+};
+
+float crossArea(vec2 a, vec2 b, vec2 c) {
+    const vec2 e1 = b - a, e2 = c - a;
+    return abs(e1.x * e2.y - e1.y * e2.x);
+}
+
+VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
+    const vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
+    VertexData data = VertexData(vec3(0.0), vec4(0.0), vec2(0.0), vec2(0.0), vec4(0.0), vec2(0.0));
+    vec2 uv0[3], uv1[3];
+    for (int i = 0; i < 3; ++i) {
+        const int at = int(indices[i] * VERTEX_TEXELS);
+        const uvec4 a = imageLoad(vertices, at), b = imageLoad(vertices, at + 1);
+        data.normal += weights[i] * decodeOctahedral(a.x);
+        data.tangent.xyz += weights[i] * decodeOctahedral(a.y);
+        if (i == 0) data.tangent.w = (a.y & 1u) != 0u ? -1.0 : 1.0;
+        uv0[i] = uintBitsToFloat(a.zw);
+        uv1[i] = uintBitsToFloat(b.xy);
+        data.color += weights[i] * vec4(unpackUnorm2x16(b.z), unpackUnorm2x16(b.w));
+    }
+    data.uv0 = weights.x * uv0[0] + weights.y * uv0[1] + weights.z * uv0[2];
+    data.uv1 = weights.x * uv1[0] + weights.y * uv1[1] + weights.z * uv1[2];
+    data.uvDensity = vec2(crossArea(uv0[0], uv0[1], uv0[2]), crossArea(uv1[0], uv1[1], uv1[2]));
+    return data;
+}
+
+/// Looks a material's texture up; white if it has none. `footprint`: the ray's width over the surface, relative to the
+/// root of twice the triangle's area.
+vec4 materialTexture(uint index, VertexData data, float footprint) {
+    vec4 result = vec4(1.0);
+    for (bool present = index != NONE; present; present = false) {
+        const TextureRef ref = loadTextureRef(index);
+        const bool second = (ref.flags & TEXTURE_UV1) != 0u;
+        const vec3 uv = vec3(second ? data.uv1 : data.uv0, 1.0);
+        const float determinant = abs(ref.rowU.x * ref.rowV.y - ref.rowU.y * ref.rowV.x);
+        const float density = (second ? data.uvDensity.y : data.uvDensity.x) * determinant;
+        result = sampleTexture(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)),
+                               log2(max(footprint * sqrt(density), 1e-20)));
+    }
+    return result;
+}
+
+/// True if a candidate hit on a MASK or BLEND material counts.
+bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, inout uint rng) {
+    const TriangleIds ids = loadTriangleIds(triangle, instance);
+    const uvec4 indices = imageLoad(triangles, int(ids.shadingTriangle));
+    const int at = int(materialOf(indices.w, instance) * MATERIAL_TEXELS);
+    const uint flags = imageLoad(materials, at).w;
+    const uvec4 alphaTexel = imageLoad(materials, at + 3);
+    float alpha = uintBitsToFloat(alphaTexel.x);
+    if (HAS_VERTEX_DATA) {
+        const VertexData data = loadVertexData(indices.xyz, barycentrics);
+        alpha *= data.color.a;
+        if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data, 0.0).a;
+    }
+    const float threshold = (flags & MATERIAL_BLEND) != 0u ? random(rng) : uintBitsToFloat(alphaTexel.y);
+    const bool opaque = (flags & (MATERIAL_BLEND | MATERIAL_MASK)) == 0u;
+    return opaque || ((flags & MATERIAL_BLEND) != 0u ? alpha > threshold : alpha >= threshold);
+}
+
+/// The tangent-space normal of the map, in world space.
+vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
+    const vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
+    const float length2 = dot(t, t);
+    if (length2 < 1e-12) return normal;
+    const vec3 local = (texel * 2.0 - 1.0) * vec3(scale, scale, 1.0);
+    const vec3 unit = t * inversesqrt(length2);
+    const vec3 mapped = local.x * unit + local.y * tangent.w * cross(normal, unit) + local.z * normal;
+    return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : normal;
+}
+
+vec3 objectToWorldNormal(uint instance, vec3 n) {
+    const int at = int(instance * INSTANCE_TEXELS);
+    const vec3 r0 = uintBitsToFloat(imageLoad(instances, at).xyz);
+    const vec3 r1 = uintBitsToFloat(imageLoad(instances, at + 1).xyz);
+    const vec3 r2 = uintBitsToFloat(imageLoad(instances, at + 2).xyz);
+    // Cofactors: the inverse transpose up to the determinant, whose sign keeps the side.
+    const vec3 result = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
+    return normalize(dot(r0, cross(r1, r2)) < 0.0 ? -result : result);
+}
+
+vec3 objectToWorld(uint instance, vec4 p) {
+    const int at = int(instance * INSTANCE_TEXELS);
+    return vec3(dot(uintBitsToFloat(imageLoad(instances, at)), p), dot(uintBitsToFloat(imageLoad(instances, at + 1)), p),
+                dot(uintBitsToFloat(imageLoad(instances, at + 2)), p));
+}
+
+/// The shading normal on the viewer's side. A mapped or interpolated normal may point away from the viewer at
+/// silhouettes; it is tilted back until it just faces them.
+vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
+    const float cosine = dot(normal, toViewer);
+    const float least = 0.01;
+    if (cosine >= least) return normal;
+    const vec3 tilted = normal + (least - cosine) * toViewer;
+    return dot(tilted, tilted) > 1e-8 ? normalize(tilted) : geometricNormal;
+}
+
+/// `toViewer`: unit; `coneWidth`: width of the ray's footprint here, for texture levels.
+Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, float coneWidth) {
+    Surface s;
+    const int at = int(triangle * BVH_TRIANGLE_TEXELS);
+    const vec4 t0 = imageLoad(bvhTriangles, at), t1 = imageLoad(bvhTriangles, at + 1), t2 = imageLoad(bvhTriangles, at + 2);
+    const bool instanced = TWO_LEVEL && hitInstance != NONE;
+    s.primitive = floatBitsToUint(t0.w) & ~BVH_TRIANGLE_ALPHA;
+    s.instance = instanced ? hitInstance : floatBitsToUint(t1.w);
+    vec3 v0 = t0.xyz, v1 = t1.xyz, v2 = t2.xyz;
+    bool mirrored = false;
+    if (TWO_LEVEL) {
+        for (bool moved = instanced; moved; moved = false) {
+            v0 = objectToWorld(hitInstance, vec4(v0, 1.0));
+            v1 = objectToWorld(hitInstance, vec4(v1, 1.0));
+            v2 = objectToWorld(hitInstance, vec4(v2, 1.0));
+        }
+    }
+    s.position = interpolate(v0, v1, v2, barycentrics);
+    s.magnitude = max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)));
+    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
+    const float doubleArea = length(perpendicular);
+    s.area = 0.5 * doubleArea;
+    vec3 windingNormal = perpendicular / max(doubleArea, 1e-37);
+    const uvec4 shading = imageLoad(triangles, int(floatBitsToUint(t2.w)));
+    s.material = materialOf(shading.w, instanced ? hitInstance : NONE);
+    if (HAS_MIRRORED) {
+        mirrored = (imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).w & INSTANCE_MIRRORED) != 0u;
+    }
+    if (mirrored) windingNormal = -windingNormal;
+    s.front = dot(windingNormal, toViewer) >= 0.0;
+    s.geometricNormal = s.front ? windingNormal : -windingNormal;
+    s.normal = s.geometricNormal;
+
+    const int material = int(s.material * MATERIAL_TEXELS);
+    const uvec4 m0 = imageLoad(materials, material), m1 = imageLoad(materials, material + 1);
+    const uvec4 m2 = imageLoad(materials, material + 2);
+    s.baseColor = uintBitsToFloat(m0.xyz);
+    s.emission = uintBitsToFloat(m1.xyz);
+    s.roughness = uintBitsToFloat(m1.w);
+    s.metallic = uintBitsToFloat(m2.x);
+    s.specular = uintBitsToFloat(m2.y);
+    s.ior = uintBitsToFloat(m2.z);
+    s.transmission = uintBitsToFloat(m2.w);
+    s.thin = (m0.w & MATERIAL_THIN) != 0u;
+    s.unlit = (m0.w & MATERIAL_UNLIT) != 0u;
+    if (HAS_VERTEX_DATA) {
+        const VertexData data = loadVertexData(shading.xyz, barycentrics);
+        vec3 normal = data.normal;
+        vec3 tangent = data.tangent.xyz;
+        const bool smoothShaded = (shading.w & TRIANGLE_SMOOTH) != 0u;
+        if (TWO_LEVEL) {
+            for (bool moved = instanced; moved; moved = false) {
+                normal = objectToWorldNormal(hitInstance, normal);
+                tangent = objectToWorld(hitInstance, vec4(tangent, 0.0));
+            }
+        }
+        normal = smoothShaded && dot(normal, normal) > 1e-12 ? normalize(normal) : windingNormal;
+        s.baseColor *= data.color.rgb;
+        if (HAS_TEXTURES) {
+            const uvec4 refs = imageLoad(materials, material + 4);
+            const float footprint = coneWidth / (sqrt(max(doubleArea, 1e-37)) * max(dot(s.geometricNormal, toViewer), 0.05));
+            s.baseColor *= materialTexture(refs.x, data, footprint).rgb;
+            s.emission *= materialTexture(refs.w, data, footprint).rgb;
+            const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);
+            s.roughness *= metallicRoughness.g;
+            s.metallic *= metallicRoughness.b;
+            for (bool mapped = refs.z != NONE; mapped; mapped = false) {
+                const float scale = uintBitsToFloat(imageLoad(materials, material + 3).z);
+                const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
+                normal = mappedNormal(normal, vec4(tangent, handedness), materialTexture(refs.z, data, footprint).rgb, scale);
+            }
+            if (HAS_TRANSMISSION) {
+                s.transmission *= materialTexture(imageLoad(materials, material + 5).x, data, footprint).r;
+            }
+        }
+        s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);
+    }
+    const bool emits = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
+    s.emission = s.unlit ? s.baseColor : emits ? s.emission : vec3(0.0);
+    s.roughness = clamp(s.roughness, 0.0, 1.0);
+    s.metallic = clamp(s.metallic, 0.0, 1.0);
+    return s;
+}
+
+#endif

@@ -1,0 +1,159 @@
+// Ray traversal of the quantised four-wide trees that scene/bvh.h describes.
+//
+// Two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG
+// 2009): first all lanes descend to a leaf, then all test triangles. Triangle test: signed volumes of the edges as in
+// Embree's robust mode; an edge shared by two triangles gives the same number with opposite sign, so that no ray slips
+// between them.
+#ifndef LIMPID_TRACE_COMPUTE_GLSL
+#define LIMPID_TRACE_COMPUTE_GLSL
+
+const uint REF_LEAF = 0x80000000u;
+const uint REF_INDEX = 0x0fffffffu;
+const uint REF_DONE = 0xffffffffu;           // an unreachable leaf: traversal ends
+const uint REF_LEAVE_INSTANCE = 0xfffffffeu;  // back to world space
+const uint KEY_MISS = 0xffffffffu;
+
+struct TraversalRay {
+    vec3 origin, direction, inverse;
+};
+
+TraversalRay traversalRay(vec3 origin, vec3 direction) {
+    // A component of 0 would make 0 * infinity; the smallest direction that does not overflow stands for it.
+    const vec3 tiny = vec3(1e-18);
+    const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
+    return TraversalRay(origin, direction, 1.0 / safe);
+}
+
+vec4 bytesOf(uint word) {
+    return vec4(float(word & 255u), float((word >> 8) & 255u), float((word >> 16) & 255u), float(word >> 24));
+}
+
+float exponentScale(uint biased) {
+    return uintBitsToFloat(biased << 23);
+}
+
+/// Entry distances of the four children as sortable keys: distance bits with the child's number in the lowest two;
+/// KEY_MISS where the ray misses.
+uvec4 intersectChildren(uint node, TraversalRay ray, float tMax, out uvec4 children) {
+    const int at = int(node * BVH_NODE_TEXELS);
+    const uvec4 head = imageLoad(bvhNodes, at);
+    const uvec4 boundsA = imageLoad(bvhNodes, at + 1);
+    const uvec4 boundsB = imageLoad(bvhNodes, at + 2);
+    children = imageLoad(bvhNodes, at + 3);
+    const vec3 scale = ray.inverse * vec3(exponentScale(head.w & 255u), exponentScale((head.w >> 8) & 255u),
+                                          exponentScale((head.w >> 16) & 255u));
+    const vec3 base = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse;
+    const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
+    const vec4 nearX = bytesOf(flip.x ? boundsA.w : boundsA.x) * scale.x + base.x;
+    const vec4 nearY = bytesOf(flip.y ? boundsB.x : boundsA.y) * scale.y + base.y;
+    const vec4 nearZ = bytesOf(flip.z ? boundsB.y : boundsA.z) * scale.z + base.z;
+    const vec4 farX = bytesOf(flip.x ? boundsA.x : boundsA.w) * scale.x + base.x;
+    const vec4 farY = bytesOf(flip.y ? boundsA.y : boundsB.x) * scale.y + base.y;
+    const vec4 farZ = bytesOf(flip.z ? boundsA.z : boundsB.y) * scale.z + base.z;
+    const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
+    // The far side is widened by the rounding of the slabs: T. Ize, "Robust BVH ray traversal", JCGT 2013.
+    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax))) * 1.0000005;
+    const uvec4 keys = (floatBitsToUint(tNear) & ~3u) | uvec4(0u, 1u, 2u, 3u);
+    return mix(uvec4(KEY_MISS), keys, lessThanEqual(tNear, tFar));
+}
+
+uint childOf(uint key, uvec4 children) {
+    const uint low = (key & 1u) != 0u ? children.y : children.x;
+    const uint high = (key & 1u) != 0u ? children.w : children.z;
+    return (key & 2u) != 0u ? high : low;
+}
+
+/// Ascending, by a network of five comparisons.
+uvec4 sortKeys(uvec4 k) {
+    k = uvec4(min(k.xy, k.zw), max(k.xy, k.zw));
+    k = uvec4(min(k.x, k.y), max(k.x, k.y), min(k.z, k.w), max(k.z, k.w));
+    return uvec4(k.x, min(k.y, k.z), max(k.y, k.z), k.w);
+}
+
+/// Replaces `hit` if the triangle is nearer.
+void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hit, inout uint rng) {
+    const int at = int(index * BVH_TRIANGLE_TEXELS);
+    const vec4 texel0 = imageLoad(bvhTriangles, at);
+    const vec3 v0 = texel0.xyz - ray.origin;
+    const vec3 v1 = imageLoad(bvhTriangles, at + 1).xyz - ray.origin;
+    const vec3 v2 = imageLoad(bvhTriangles, at + 2).xyz - ray.origin;
+    const vec3 e0 = v2 - v0, e1 = v0 - v1, e2 = v1 - v2;
+    const float u = dot(cross(e0, v2 + v0), ray.direction);
+    const float v = dot(cross(e1, v0 + v1), ray.direction);
+    const float w = dot(cross(e2, v1 + v2), ray.direction);
+    const vec3 normal = cross(e1, e0);
+    const float denominator = dot(normal, ray.direction);
+    const float t = dot(v0, normal) / denominator;
+    const bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+    // Written so that a NaN from a degenerate triangle is no hit.
+    bool accepted = inside && denominator != 0.0 && t > 0.0 && t < hit.t;
+    const float area = u + v + w;
+    const vec2 barycentrics = vec2(u, v) / area;
+    if (HAS_ALPHA) {
+        for (bool candidate = accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u; candidate;
+             candidate = false) {
+            accepted = passesAlphaTest(index, instance, barycentrics, rng);
+        }
+    }
+    if (accepted) hit = Hit(t, barycentrics, index, instance);
+}
+
+/// With `anyHit` the first hit found ends the traversal.
+Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
+    Hit hit = Hit(worldRay.tMax, vec2(0.0), NONE, NONE);
+    TraversalRay ray = traversalRay(worldRay.origin, worldRay.direction);
+    uint instance = NONE;
+    bool inTopTree = TWO_LEVEL;
+    uint stack[STACK_SIZE];
+    stack[0] = REF_DONE;
+    int top = 1;  // entries in use
+    uint current = rootNode;
+    while (current != REF_DONE) {
+        while (current < REF_LEAF) {
+            uvec4 children;
+            const uvec4 keys = sortKeys(intersectChildren(current, ray, hit.t, children));
+            // Stores past the top are harmless, so they need no branches.
+            stack[top] = childOf(keys.w, children);
+            top += keys.w != KEY_MISS ? 1 : 0;
+            stack[top] = childOf(keys.z, children);
+            top += keys.z != KEY_MISS ? 1 : 0;
+            stack[top] = childOf(keys.y, children);
+            top += keys.y != KEY_MISS ? 1 : 0;
+            const bool miss = keys.x == KEY_MISS;
+            top -= miss ? 1 : 0;
+            current = miss ? stack[top] : childOf(keys.x, children);
+        }
+        if (TWO_LEVEL && current == REF_LEAVE_INSTANCE) {
+            ray = traversalRay(worldRay.origin, worldRay.direction);
+            instance = NONE;
+            inTopTree = true;
+        } else if (TWO_LEVEL && inTopTree && current != REF_DONE) {
+            const int at = int((current & REF_INDEX) * BVH_INSTANCE_TEXELS);
+            const vec4 row0 = uintBitsToFloat(imageLoad(bvhInstances, at));
+            const vec4 row1 = uintBitsToFloat(imageLoad(bvhInstances, at + 1));
+            const vec4 row2 = uintBitsToFloat(imageLoad(bvhInstances, at + 2));
+            const uvec4 record = imageLoad(bvhInstances, at + 3);
+            // Not normalised: distances stay those of world space.
+            const vec4 origin = vec4(worldRay.origin, 1.0), direction = vec4(worldRay.direction, 0.0);
+            ray = traversalRay(vec3(dot(row0, origin), dot(row1, origin), dot(row2, origin)),
+                               vec3(dot(row0, direction), dot(row1, direction), dot(row2, direction)));
+            instance = record.y;
+            inTopTree = false;
+            stack[top++] = REF_LEAVE_INSTANCE;
+            current = record.x;
+            continue;
+        } else if (current != REF_DONE) {
+            const uint first = current & REF_INDEX;
+            const uint end = first + ((current >> 28) & 7u) + 1u;
+            for (uint index = first; index < end; ++index) {
+                intersectTriangle(index, ray, instance, hit, rng);
+            }
+        }
+        current = stack[--top];
+        if (anyHit && hit.triangle != NONE) break;
+    }
+    if (hit.triangle == NONE) hit.t = INFINITE_DISTANCE;
+    return hit;
+}
+
+#endif
