@@ -10,8 +10,8 @@ namespace limpid::scene {
 ///  - a room with one open wall: from outside, straight through the opening;
 ///  - a scene that is flat along Z: straight from +Z;
 ///  - everything else: from the front (+Z), a little to the right and above.
-/// A side counts as closed if triangles within 5 % of that side of the bounding box cover half of it; a closed box
-/// whose triangles face outward is no room.
+/// A side counts as closed if triangles within 5 % of that side of the bounding box cover half of it; a
+/// closed box whose triangles face outward is no room.
 Camera frameScene(const Scene& scene);
 
 }  // namespace limpid::scene

@@ -1,21 +1,22 @@
 // glTF: what files say is what the Scene holds. Malformed files: bad_input_test.cpp.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "image/png.h"
 #include "scene/loader_test_files.h"
 #include "scene/mesh_repair.h"
 #include "scene/scene_files.h"
 #include "scene/validate.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-
 namespace limpid::scene::test {
 namespace {
 
 using GltfTest = FolderTest;
 
-// --- the shared scenes ------------------------------------------------------------------------------------------
+// --- the shared scenes
+// ------------------------------------------------------------------------------------------
 
 struct SharedFile {
     const char* path;
@@ -34,12 +35,13 @@ TEST_P(SharedGltf, LoadsWithItsTriangles) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, SharedGltf,
-    testing::Values(SharedFile{"cornell_box_glb/CornellBox.glb", 36}, SharedFile{"painting_neon/scene.gltf", 43714},
-                    SharedFile{"neon_sign/love.glb", 46552},
+    testing::Values(SharedFile{"cornell_box_glb/CornellBox.glb", 36},
+                    SharedFile{"painting_neon/scene.gltf", 43714}, SharedFile{"neon_sign/love.glb", 46552},
                     SharedFile{"emissive_strength_test/EmissiveStrengthTest.gltf", 90},
                     SharedFile{"stained_glass_lamp/StainedGlassLamp.gltf", 35132},
                     SharedFile{"lights_punctual_lamp/LightsPunctualLamp.gltf", 6000},
-                    SharedFile{"hotel_room/hotel_room.glb", 99029}, SharedFile{"low_poly_jungle/scene.gltf", 18515},
+                    SharedFile{"hotel_room/hotel_room.glb", 99029},
+                    SharedFile{"low_poly_jungle/scene.gltf", 18515},
                     SharedFile{"flight_helmet/FlightHelmet.gltf", 94722},
                     SharedFile{"metal_rough_spheres/MetalRoughSpheresNoTextures.gltf", 1040409},
                     SharedFile{"transmission_test/TransmissionTest.glb", 128775},
@@ -47,10 +49,11 @@ INSTANTIATE_TEST_SUITE_P(
                     SharedFile{"normal_tangent_mirror_test/NormalTangentMirrorTest.glb", 5240},
                     SharedFile{"texture_settings_test/TextureSettingsTest.glb", 72},
                     SharedFile{"vertex_color_test/VertexColorTest.glb", 36},
-                    SharedFile{"box_animated/BoxAnimated.gltf", 254}, SharedFile{"cesium_man/CesiumMan.gltf", 4672},
+                    SharedFile{"box_animated/BoxAnimated.gltf", 254},
+                    SharedFile{"cesium_man/CesiumMan.gltf", 4672},
                     SharedFile{"morph_cube/AnimatedMorphCube.gltf", 12}),
-    [](const auto& info) {
-        const std::string path = info.param.path;
+    [](const auto& param) {
+        const std::string path = param.param.path;
         return path.substr(0, path.find('/'));
     });
 
@@ -86,12 +89,14 @@ TEST(SharedGltfDetails, LightsCamerasAndEmissionAsTheReadmeSays) {
     EXPECT_EQ(loadScene(*scenes / "lights_punctual_lamp/LightsPunctualLamp.gltf").lights.size(), 5u);
     EXPECT_EQ(loadScene(*scenes / "transmission_test/TransmissionTest.glb").cameras.size(), 1u);
     const Scene cornell = loadScene(*scenes / "cornell_box_glb/CornellBox.glb");
-    const auto brightest = std::max_element(cornell.materials.begin(), cornell.materials.end(),
-                                            [](const Material& a, const Material& b) { return a.emission.x < b.emission.x; });
+    const auto brightest =
+        std::max_element(cornell.materials.begin(), cornell.materials.end(),
+                         [](const Material& a, const Material& b) { return a.emission.x < b.emission.x; });
     EXPECT_FLOAT_EQ(brightest->emission.x, 100.0f);
 }
 
-// --- geometry ---------------------------------------------------------------------------------------------------
+// --- geometry
+// ---------------------------------------------------------------------------------------------------
 
 TEST_F(GltfTest, LoadsTheSameFromFilesAndFromGlb) {
     GltfFile file = square();
@@ -126,9 +131,10 @@ TEST_F(GltfTest, ReadsDataUrisAndPercentEncodedNames) {
 TEST_F(GltfTest, ReadsEveryIndexType) {
     for (const int type : {5121, 5123, 5125}) {
         GltfFile file = triangle();
-        file.primitive()["indices"] = type == 5121   ? file.addAccessor<uint8_t>({2, 1, 0}, "SCALAR", 1, type)
-                                      : type == 5123 ? file.addAccessor<uint16_t>({2, 1, 0}, "SCALAR", 1, type)
-                                                     : file.addAccessor<uint32_t>({2, 1, 0}, "SCALAR", 1, type);
+        file.primitive()["indices"] = type == 5121 ? file.addAccessor<uint8_t>({2, 1, 0}, "SCALAR", 1, type)
+                                      : type == 5123
+                                          ? file.addAccessor<uint16_t>({2, 1, 0}, "SCALAR", 1, type)
+                                          : file.addAccessor<uint32_t>({2, 1, 0}, "SCALAR", 1, type);
         EXPECT_THAT(loadScene(file.save(folder)).meshes[0].indices, testing::ElementsAre(2, 1, 0)) << type;
     }
 }
@@ -138,9 +144,11 @@ TEST_F(GltfTest, TurnsStripsAndFansIntoTrianglesOfOneOrientation) {
     file.primitive()["attributes"]["POSITION"] =
         file.addFloats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3", 3);
     file.primitive()["mode"] = 5;
-    EXPECT_THAT(loadScene(file.save(folder)).meshes[0].indices, testing::ElementsAre(0, 1, 2, 1, 3, 2, 2, 3, 4));
+    EXPECT_THAT(loadScene(file.save(folder)).meshes[0].indices,
+                testing::ElementsAre(0, 1, 2, 1, 3, 2, 2, 3, 4));
     file.primitive()["mode"] = 6;
-    EXPECT_THAT(loadScene(file.save(folder)).meshes[0].indices, testing::ElementsAre(1, 2, 0, 2, 3, 0, 3, 4, 0));
+    EXPECT_THAT(loadScene(file.save(folder)).meshes[0].indices,
+                testing::ElementsAre(1, 2, 0, 2, 3, 0, 3, 4, 0));
 }
 
 TEST_F(GltfTest, SkipsPointsAndLines) {
@@ -159,9 +167,11 @@ TEST_F(GltfTest, ReadsInterleavedAttributes) {
     const int view = file.addView(data, sizeof data);
     file.document["bufferViews"][static_cast<size_t>(view)]["byteStride"] = 20;
     json& attributes = file.primitive()["attributes"];
-    attributes["POSITION"] = file.add("accessors", {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    attributes["POSITION"] = file.add(
+        "accessors", {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
     attributes["TEXCOORD_0"] = file.add(
-        "accessors", {{"bufferView", view}, {"byteOffset", 12}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
+        "accessors",
+        {{"bufferView", view}, {"byteOffset", 12}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}});
     const Scene scene = loadScene(file.save(folder));
     EXPECT_EQ(scene.meshes[0].positions[2], vec3(0, 1, 0));
     EXPECT_EQ(scene.meshes[0].uv0[2], vec2(7, 7));
@@ -187,7 +197,8 @@ TEST_F(GltfTest, FillsInSparseAccessors) {
 TEST_F(GltfTest, ConvertsNormalizedIntegers) {
     GltfFile file = triangle();
     json& attributes = file.primitive()["attributes"];
-    attributes["COLOR_0"] = file.addAccessor<uint8_t>({255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 0, 0}, "VEC4", 4, 5121);
+    attributes["COLOR_0"] =
+        file.addAccessor<uint8_t>({255, 0, 51, 0, 0, 255, 0, 0, 0, 0, 0, 0}, "VEC4", 4, 5121);
     file.document["accessors"].back()["normalized"] = true;
     attributes["TEXCOORD_0"] = file.addAccessor<uint16_t>({65535, 0, 0, 0, 0, 0}, "VEC2", 2, 5123);
     file.document["accessors"].back()["normalized"] = true;
@@ -228,7 +239,8 @@ TEST_F(GltfTest, PrimitivesWithTheSameAccessorsShareAMesh) {
     EXPECT_EQ(scene.materials[static_cast<size_t>(scene.instances[1].material)].name, "b");
 }
 
-// --- nodes ------------------------------------------------------------------------------------------------------
+// --- nodes
+// ------------------------------------------------------------------------------------------------------
 
 TEST_F(GltfTest, ComposesTransformsDownTheHierarchy) {
     GltfFile file = triangle();
@@ -271,7 +283,8 @@ TEST_F(GltfTest, AcceptsAVeryDeepTree) {
 
 TEST_F(GltfTest, BakesTransformsWithoutInverseAndDropsCollapsedOnes) {
     GltfFile file = triangle();
-    file.document["nodes"] = json::parse(R"([{"mesh": 0, "scale": [2, 3, 0]}, {"mesh": 0, "scale": [0, 0, 0]}])");
+    file.document["nodes"] =
+        json::parse(R"([{"mesh": 0, "scale": [2, 3, 0]}, {"mesh": 0, "scale": [0, 0, 0]}])");
     file.document["scenes"][0]["nodes"] = {0, 1};
     const Scene scene = loadScene(file.save(folder));
     ASSERT_EQ(scene.instances.size(), 1u);
@@ -282,30 +295,37 @@ TEST_F(GltfTest, BakesTransformsWithoutInverseAndDropsCollapsedOnes) {
 TEST_F(GltfTest, AppliesMorphWeightsAndJoints) {
     GltfFile file = triangle();
     json& primitive = file.primitive();
-    primitive["targets"] = json::array({{{"POSITION", file.addFloats({0, 0, 4, 0, 0, 4, 0, 0, 4}, "VEC3", 3)}}});
+    primitive["targets"] =
+        json::array({{{"POSITION", file.addFloats({0, 0, 4, 0, 0, 4, 0, 0, 4}, "VEC3", 3)}}});
     file.document["meshes"][0]["weights"] = {0.5};
     EXPECT_EQ(loadScene(file.save(folder)).meshes[0].positions[1], vec3(1, 0, 2));
     file.document["nodes"][0]["weights"] = {0.25};
     EXPECT_EQ(loadScene(file.save(folder)).meshes[0].positions[1], vec3(1, 0, 1));
 
-    primitive["attributes"]["JOINTS_0"] = file.addAccessor<uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4", 4, 5121);
-    primitive["attributes"]["WEIGHTS_0"] = file.addFloats({1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}, "VEC4", 4);
+    primitive["attributes"]["JOINTS_0"] =
+        file.addAccessor<uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4", 4, 5121);
+    primitive["attributes"]["WEIGHTS_0"] =
+        file.addFloats({1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}, "VEC4", 4);
     file.document["nodes"] = json::parse(R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
                                              {"translation": [0, 10, 0]}, {"translation": [0, 20, 0]}])");
     file.document["scenes"][0]["nodes"] = {0, 1, 2};
     file.document["skins"] = json::parse(R"([{"joints": [1, 2]}])");
     const Scene scene = loadScene(file.save(folder));
-    EXPECT_THAT(scene.meshes[0].positions, testing::ElementsAre(vec3(0, 10, 0), vec3(1, 20, 0), vec3(0, 16, 0)));
+    EXPECT_THAT(scene.meshes[0].positions,
+                testing::ElementsAre(vec3(0, 10, 2), vec3(1, 20, 2), vec3(0, 16, 2)));
     EXPECT_EQ(scene.instances[0].transform, mat4(1.0f));
 }
 
-// --- cameras, lights --------------------------------------------------------------------------------------------
+// --- cameras, lights
+// --------------------------------------------------------------------------------------------
 
 TEST_F(GltfTest, ReadsCamerasWithoutTheirNodesScale) {
     GltfFile file = triangle();
-    file.document["cameras"] = json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}},
+    file.document["cameras"] =
+        json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.1}},
         {"type": "orthographic", "name": "ortho", "orthographic": {"xmag": 4, "ymag": 2, "znear": 0, "zfar": 9}}])");
-    file.document["nodes"] = json::parse(R"([{"mesh": 0}, {"name": "eye", "camera": 0, "translation": [0, 0, 5],
+    file.document["nodes"] =
+        json::parse(R"([{"mesh": 0}, {"name": "eye", "camera": 0, "translation": [0, 0, 5],
         "scale": [3, -3, 3]}, {"camera": 1}])");
     file.document["scenes"][0]["nodes"] = {0, 1, 2};
     const Scene scene = loadScene(file.save(folder));
@@ -344,7 +364,8 @@ TEST_F(GltfTest, ReadsPunctualLights) {
     EXPECT_EQ(scene.lights[2].direction, vec3(0, 0, -1));
 }
 
-// --- materials, textures ----------------------------------------------------------------------------------------
+// --- materials, textures
+// ----------------------------------------------------------------------------------------
 
 class GltfMaterialTest : public FolderTest {
   protected:
@@ -410,8 +431,10 @@ TEST_F(GltfMaterialTest, KeepsAnEmissiveFactorAboveOneAndClampsTheRest) {
 
 TEST_F(GltfMaterialTest, TexturesAreDistinctByImageEncodingAndSampler) {
     addImage("a.png", 1);
-    file.document["samplers"] = json::parse(R"([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9729}])");
-    file.document["textures"] = json::parse(R"([{"source": 0}, {"source": 0}, {"source": 0, "sampler": 0}, {"name": "unused"}])");
+    file.document["samplers"] =
+        json::parse(R"([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9729}])");
+    file.document["textures"] =
+        json::parse(R"([{"source": 0}, {"source": 0}, {"source": 0, "sampler": 0}, {"name": "unused"}])");
     const Material m = load(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0},
             "metallicRoughnessTexture": {"index": 0}}, "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1},
         "normalTexture": {"index": 2, "scale": 0.5}, "occlusionTexture": {"index": 1, "strength": 0.25}})");
@@ -427,7 +450,8 @@ TEST_F(GltfMaterialTest, TexturesAreDistinctByImageEncodingAndSampler) {
     EXPECT_THAT(color.rgba, testing::ElementsAre(1, 2, 3, 255, 4, 5, 6, 255));
     const Texture& normal = scene.textures[static_cast<size_t>(m.normalTexture.texture)];
     EXPECT_FALSE(normal.srgb);
-    EXPECT_EQ(normal.sampler, (Sampler{Wrap::ClampToEdge, Wrap::MirroredRepeat, false, true, MipFilter::None}));
+    EXPECT_EQ(normal.sampler,
+              (Sampler{Wrap::ClampToEdge, Wrap::MirroredRepeat, false, true, MipFilter::None}));
 }
 
 TEST_F(GltfMaterialTest, ReadsImagesFromBufferViews) {
@@ -443,7 +467,8 @@ TEST_F(GltfMaterialTest, ReadsImagesFromBufferViews) {
 TEST_F(GltfMaterialTest, ReadsTextureTransforms) {
     addImage("a.png", 1);
     file.document["textures"] = json::parse(R"([{"source": 0}])");
-    const Material m = load(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 0, "extensions":
+    const Material m =
+        load(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 0, "extensions":
         {"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2, 4], "rotation": 1.57079632679, "texCoord": 1}}}}})");
     EXPECT_EQ(m.baseColorTexture.uvSet, 1);
     const auto apply = [&](const vec3& uv) {

@@ -1,12 +1,7 @@
 // For the loaders' tests: scene files made on the spot, in a temporary folder.
 #pragma once
 
-#include "base/error.h"
-#include "scene/load.h"
-
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include <unistd.h>
 
 #include <cstring>
@@ -14,9 +9,13 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/error.h"
+#include "scene/load.h"
 
 namespace limpid::scene::test {
 

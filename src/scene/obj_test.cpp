@@ -1,12 +1,12 @@
 // OBJ and MTL: what files say is what the Scene holds. Malformed files: bad_input_test.cpp.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
 #include "image/png.h"
 #include "scene/loader_test_files.h"
 #include "scene/obj_polygon.h"
 #include "scene/validate.h"
-
-#include <gmock/gmock.h>
-
-#include <cmath>
 
 namespace limpid::scene::test {
 namespace {
@@ -20,7 +20,8 @@ class ObjTest : public FolderTest {
     }
     /// The material "m" of an MTL file with these statements.
     Material material(const std::string& statements, const std::string& name = "m") {
-        return load(corners + "usemtl " + name + "\nf 1 2 3\n", "newmtl " + name + "\n" + statements).materials.at(0);
+        return load(corners + "usemtl " + name + "\nf 1 2 3\n", "newmtl " + name + "\n" + statements)
+            .materials.at(0);
     }
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 };
@@ -38,7 +39,9 @@ TEST(SharedObj, LoadWithTheirTriangles) {
 }
 
 TEST_F(ObjTest, ReadsFacesWithAllKindsOfCorners) {
-    const Scene scene = load(corners + "vt 0.25 0.75\nvn 0 0 2\nf 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 -3/-1/-1 3/1/1 4/1/1\n");
+    const Scene scene = load(
+        corners +
+        "vt 0.25 0.75\nvn 0 0 2\nf 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 -3/-1/-1 3/1/1 4/1/1\n");
     ASSERT_EQ(scene.meshes.size(), 1u);
     const Mesh& mesh = scene.meshes[0];
     EXPECT_EQ(mesh.triangleCount(), 5u);
@@ -55,8 +58,9 @@ TEST_F(ObjTest, SharesVerticesAndSkipsWhatItDoesNotDraw) {
 }
 
 TEST_F(ObjTest, GroupsBecomeMeshesWithMaterialSlots) {
-    const Scene scene = load(corners + "o one\nusemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\no empty\no two\nf 1 2 4\n",
-                             "newmtl a\nnewmtl b\nKd 0.1 0.2 0.3\nnewmtl c\n");
+    const Scene scene =
+        load(corners + "o one\nusemtl b\nf 1 2 3\nusemtl c\nf 1 3 4\no empty\no two\nf 1 2 4\n",
+             "newmtl a\nnewmtl b\nKd 0.1 0.2 0.3\nnewmtl c\n");
     ASSERT_EQ(scene.meshes.size(), 2u);
     EXPECT_THAT(scene.meshes[0].materialSlots, testing::ElementsAre(0, 1));
     EXPECT_EQ(scene.instances[0].material, 1);
@@ -111,13 +115,15 @@ TEST_F(ObjTest, EmissionAndAlpha) {
 
 TEST_F(ObjTest, ReadsMaps) {
     image::writePng(folder / "my picture.png", {1, 1, 3, {1, 2, 3}});
-    const Scene scene = load(corners + "usemtl m\nf 1 2 3\n",
-                             "newmtl m\nKd 0 0 0\nmap_Kd -s 2 3 -o 0.5 -clamp on my picture.png\nnorm my picture.png\n");
+    const Scene scene =
+        load(corners + "usemtl m\nf 1 2 3\n",
+             "newmtl m\nKd 0 0 0\nmap_Kd -s 2 3 -o 0.5 -clamp on my picture.png\nnorm my picture.png\n");
     const Material& m = scene.materials.at(0);
     EXPECT_EQ(m.baseColor, vec4(1.0f));
     ASSERT_TRUE(m.baseColorTexture && m.normalTexture);
     EXPECT_TRUE(scene.textures[static_cast<size_t>(m.baseColorTexture.texture)].srgb);
-    EXPECT_EQ(scene.textures[static_cast<size_t>(m.baseColorTexture.texture)].sampler.wrapU, Wrap::ClampToEdge);
+    EXPECT_EQ(scene.textures[static_cast<size_t>(m.baseColorTexture.texture)].sampler.wrapU,
+              Wrap::ClampToEdge);
     EXPECT_FALSE(scene.textures[static_cast<size_t>(m.normalTexture.texture)].srgb);
     // v = 1 - v' of the file: 0 is the file's 1, scaled to 3, which is -2 from the top
     EXPECT_EQ(m.baseColorTexture.rowU, vec3(2, 0, 0.5f));
@@ -130,7 +136,7 @@ float areaOf(const std::vector<vec3>& corners, const std::array<uint32_t, 3>& t)
 
 TEST(Triangulate, CoversConcavePolygonsExactly) {
     const std::vector<std::vector<vec3>> polygons = {
-        {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5f, 0}},                                             // a dart
+        {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5f, 0}},                                           // a dart
         {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}},  // a U
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-0.5f, 0.5f, 0}},
     };

@@ -1,15 +1,15 @@
 // What prepare() adds to a scene: camera, tangents, sky; and what it refuses.
 #include "scene/prepare.h"
 
+#include <cmath>
+#include <functional>
+#include <limits>
+
 #include "scene/environment.h"
 #include "scene/framing.h"
 #include "scene/loader_test_files.h"
 #include "scene/tangents.h"
 #include "scene/validate.h"
-
-#include <cmath>
-#include <functional>
-#include <limits>
 
 namespace limpid::scene::test {
 namespace {
@@ -55,7 +55,8 @@ void expectInView(const Camera& camera, const vec3& point) {
     EXPECT_LE(std::abs(p.y), -p.z * slope);
 }
 
-// --- camera -----------------------------------------------------------------------------------------------------
+// --- camera
+// -----------------------------------------------------------------------------------------------------
 
 TEST(Prepare, FramesEverythingFromTheFront) {
     Scene scene = squareScene();
@@ -109,7 +110,8 @@ TEST(Prepare, KeepsTheCameraThatThereIs) {
     EXPECT_EQ(scene.cameras[0].name, "mine");
 }
 
-// --- light ------------------------------------------------------------------------------------------------------
+// --- light
+// ------------------------------------------------------------------------------------------------------
 
 TEST(Prepare, AddsASkyOnlyWhereNothingShines) {
     Scene dark = squareScene();
@@ -150,7 +152,8 @@ TEST(Environment, LoadsTheSharedOnes) {
     EXPECT_GT(brightest, 100.0f) << "the sun";
 }
 
-// --- tangents ---------------------------------------------------------------------------------------------------
+// --- tangents
+// ---------------------------------------------------------------------------------------------------
 
 TEST(Tangents, PointAlongUWithTheHandednessOfThePicture) {
     Mesh mesh = squareScene().meshes[0];
@@ -190,7 +193,8 @@ TEST(Tangents, AreAddedOnlyForNormalMapsAndWithFlatNormalsIfNeeded) {
 TEST(Tangents, AgreeWithThoseThatFilesBring) {
     const auto scenes = sharedScenes();
     if (!scenes) GTEST_SKIP() << "the shared scenes are missing";
-    for (const char* path : {"flight_helmet/FlightHelmet.gltf", "normal_tangent_mirror_test/NormalTangentMirrorTest.glb"}) {
+    for (const char* path :
+         {"flight_helmet/FlightHelmet.gltf", "normal_tangent_mirror_test/NormalTangentMirrorTest.glb"}) {
         size_t corners = 0, agree = 0;
         for (const Mesh& mesh : loadScene(*scenes / path).meshes) {
             Mesh own = mesh;
@@ -207,7 +211,8 @@ TEST(Tangents, AgreeWithThoseThatFilesBring) {
     }
 }
 
-// --- invariants -------------------------------------------------------------------------------------------------
+// --- invariants
+// -------------------------------------------------------------------------------------------------
 
 TEST(Prepare, RefusesBrokenScenes) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -219,7 +224,9 @@ TEST(Prepare, RefusesBrokenScenes) {
         [](Scene& s) { s.meshes[0].normals[0] = vec3(0.0f); },
         [](Scene& s) { s.meshes[0].tangents.assign(4, vec4(1, 0, 0, 0)); },
         [](Scene& s) { s.meshes[0].materialSlots = {0}; },
-        [](Scene& s) { s.meshes[0].materialSlots = {0, 1}; },
+        [](Scene& s) {
+            s.meshes[0].materialSlots = {0, 1};
+        },
         [&](Scene& s) { s.meshes[0].positions[1].y = nan; },
         [&](Scene& s) { s.meshes[0].uv0[1].y = nan; },
         [](Scene& s) { s.instances[0].mesh = 1; },
@@ -231,11 +238,15 @@ TEST(Prepare, RefusesBrokenScenes) {
         [](Scene& s) { s.materials[0].emission.x = -1.0f; },
         [&](Scene& s) { s.materials[0].roughness = nan; },
         [](Scene& s) { s.materials[0].baseColorTexture.texture = 0; },
-        [](Scene& s) { s.textures.push_back({"t", 2, 2, {1, 2, 3}, false, {}}); },
+        [](Scene& s) {
+            s.textures.push_back({"t", 2, 2, {1, 2, 3}, false, {}});
+        },
         [](Scene& s) { s.lights.emplace_back().direction = vec3(0.0f); },
         [](Scene& s) { s.cameras.emplace_back().toWorld *= 2.0f; },
         [](Scene& s) { s.environment.width = 3; },
-        [&](Scene& s) { s.environment = {1, 1, {vec3(nan)}}; },
+        [&](Scene& s) {
+            s.environment = {1, 1, {vec3(nan)}};
+        },
     };
     for (size_t i = 0; i < faults.size(); ++i) {
         Scene scene = squareScene();

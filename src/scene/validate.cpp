@@ -180,7 +180,9 @@ std::optional<std::string> findFault(const Scene& scene) {
     if (Fault f = checkAll("light", scene.lights, checkLight)) return f;
     if (Fault f = checkAll("camera", scene.cameras, checkCamera)) return f;
     const Environment& environment = scene.environment;
-    if (environment.radiance.size() != size_t{environment.width} * environment.height) {
+    const bool hasExtent = environment.width != 0 || environment.height != 0;
+    if (environment.radiance.size() != size_t{environment.width} * environment.height ||
+        hasExtent == environment.empty()) {
         return "the environment has pixels missing";
     }
     if (!std::all_of(environment.radiance.begin(), environment.radiance.end(), isRadiance)) {

@@ -81,7 +81,7 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.glass = s.baseColor;
     b.glassAlbedo = 1.0;
     if (HAS_TRANSMISSION) {
-        for (bool rough = refracting > 0.0 && !b.smoothSurface; rough; rough = false) {
+        if (refracting > 0.0 && !b.smoothSurface) {
             b.glassAlbedo = dielectricAlbedo(b.wo.z, b.roughness, b.eta);
         }
     }
@@ -162,9 +162,9 @@ BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
         value.diffuse = b.diffuse * value.pdf;
         return value;
     }
-    for (bool above = wi.z > 0.0; above; above = false) addReflection(b, wi, value);
+    if (wi.z > 0.0) addReflection(b, wi, value);
     if (HAS_TRANSMISSION) {
-        for (bool below = wi.z < 0.0; below; below = false) addTransmission(b, wi, value);
+        if (wi.z < 0.0) addTransmission(b, wi, value);
     }
     return value;
 }
@@ -224,7 +224,7 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
         lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : 3u;
         choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
         if (lobe != 0u && b.smoothSurface) return sampleSmooth(b, lobe, choice);
-        for (bool rough = lobe != 0u; rough; rough = false) wi = sampleRough(b, lobe, u, choice);
+        if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
     }
     const BsdfValue value = evaluateLocal(b, wi);
     return BsdfSample(b.frame * wi, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));

@@ -35,7 +35,7 @@ float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, 
 vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics) {
     vec3 emission = uintBitsToFloat(record3.xyz);
     if (HAS_TEXTURES) {
-        for (bool textured = record3.w != NONE; textured; textured = false) {
+        if (record3.w != NONE) {
             const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
             emission *= materialTexture(imageLoad(materials, int(record3.w * MATERIAL_TEXELS) + 4).w, data, 0.0).rgb;
         }
@@ -95,13 +95,13 @@ LightSample sampleLight(vec3 from, SceneParams scene, inout uint rng) {
     LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0, false);
     const float environmentShare = HAS_ENVIRONMENT ? scene.environmentProbability : 0.0;
     if (HAS_ENVIRONMENT) {
-        for (bool chosen = choice < environmentShare; chosen; chosen = false) {
+        if (choice < environmentShare) {
             const EnvironmentSample s = sampleEnvironment(vec2(choice / environmentShare, decision), u, scene);
             light = LightSample(s.direction, INFINITE_DISTANCE, s.radiance, s.pdf * environmentShare, false);
         }
     }
     if (HAS_TRIANGLE_LIGHTS || HAS_PUNCTUAL_LIGHTS) {
-        for (bool chosen = choice >= environmentShare && scene.lightCount > 0u; chosen; chosen = false) {
+        if (choice >= environmentShare && scene.lightCount > 0u) {
             const float rescaled = (choice - environmentShare) / max(1.0 - environmentShare, 1e-20);
             uint index = min(uint(rescaled * float(scene.lightCount)), scene.lightCount - 1u);
             const uvec2 entry = imageLoad(lightAlias, int(index)).xy;

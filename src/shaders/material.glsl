@@ -83,7 +83,7 @@ VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
 /// root of twice the triangle's area.
 vec4 materialTexture(uint index, VertexData data, float footprint) {
     vec4 result = vec4(1.0);
-    for (bool present = index != NONE; present; present = false) {
+    if (index != NONE) {
         const TextureRef ref = loadTextureRef(index);
         const bool second = (ref.flags & TEXTURE_UV1) != 0u;
         const vec3 uv = vec3(second ? data.uv1 : data.uv0, 1.0);
@@ -161,7 +161,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     vec3 v0 = t0.xyz, v1 = t1.xyz, v2 = t2.xyz;
     bool mirrored = false;
     if (TWO_LEVEL) {
-        for (bool moved = instanced; moved; moved = false) {
+        if (instanced) {
             v0 = objectToWorld(hitInstance, vec4(v0, 1.0));
             v1 = objectToWorld(hitInstance, vec4(v1, 1.0));
             v2 = objectToWorld(hitInstance, vec4(v2, 1.0));
@@ -201,7 +201,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         vec3 tangent = data.tangent.xyz;
         const bool smoothShaded = (shading.w & TRIANGLE_SMOOTH) != 0u;
         if (TWO_LEVEL) {
-            for (bool moved = instanced; moved; moved = false) {
+            if (instanced) {
                 normal = objectToWorldNormal(hitInstance, normal);
                 tangent = objectToWorld(hitInstance, vec4(tangent, 0.0));
             }
@@ -216,7 +216,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);
             s.roughness *= metallicRoughness.g;
             s.metallic *= metallicRoughness.b;
-            for (bool mapped = refs.z != NONE; mapped; mapped = false) {
+            if (refs.z != NONE) {
                 const float scale = uintBitsToFloat(imageLoad(materials, material + 3).z);
                 const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
                 normal = mappedNormal(normal, vec4(tangent, handedness), materialTexture(refs.z, data, footprint).rgb, scale);

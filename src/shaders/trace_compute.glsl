@@ -90,8 +90,7 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const float area = u + v + w;
     const vec2 barycentrics = vec2(u, v) / area;
     if (HAS_ALPHA) {
-        for (bool candidate = accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u; candidate;
-             candidate = false) {
+        if (accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u) {
             accepted = passesAlphaTest(index, instance, barycentrics, rng);
         }
     }
@@ -108,7 +107,7 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
     stack[0] = REF_DONE;
     int top = 1;  // entries in use
     uint current = rootNode;
-    while (current != REF_DONE) {
+    while (true) {
         while (current < REF_LEAF) {
             uvec4 children;
             const uvec4 keys = sortKeys(intersectChildren(current, ray, hit.t, children));
@@ -123,11 +122,12 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
             top -= miss ? 1 : 0;
             current = miss ? stack[top] : childOf(keys.x, children);
         }
+        if (current == REF_DONE) break;
         if (TWO_LEVEL && current == REF_LEAVE_INSTANCE) {
             ray = traversalRay(worldRay.origin, worldRay.direction);
             instance = NONE;
             inTopTree = true;
-        } else if (TWO_LEVEL && inTopTree && current != REF_DONE) {
+        } else if (TWO_LEVEL && inTopTree) {
             const int at = int((current & REF_INDEX) * BVH_INSTANCE_TEXELS);
             const vec4 row0 = uintBitsToFloat(imageLoad(bvhInstances, at));
             const vec4 row1 = uintBitsToFloat(imageLoad(bvhInstances, at + 1));
@@ -142,7 +142,7 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
             stack[top++] = REF_LEAVE_INSTANCE;
             current = record.x;
             continue;
-        } else if (current != REF_DONE) {
+        } else {
             const uint first = current & REF_INDEX;
             const uint end = first + ((current >> 28) & 7u) + 1u;
             for (uint index = first; index < end; ++index) {

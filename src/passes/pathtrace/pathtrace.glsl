@@ -140,7 +140,7 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
         const Bsdf bsdf = makeBsdf(surface, toViewer);
         if (depth == 0u) first = firstHitOf(surface, bsdf, hit.t);
-        for (bool emits = surface.emission != vec3(0.0); emits; emits = false) {
+        if (surface.emission != vec3(0.0)) {
             const float density =
                 HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;
             addEmission(path, surface.emission, density, depth);
