@@ -113,7 +113,7 @@ Scene cornellSpheresScene() {
     };
     addSphere(glass, {0.13f, 0.1f, 0.1f}, 0.1f);
     addSphere(glossy("mirror", vec3(0.95f), 1.0f, 0.0f), {-0.13f, 0.12f, -0.1f}, 0.12f);
-    addSphere(glossy("glossy", {0.9f, 0.6f, 0.25f}, 1.0f, 0.35f), {0.14f, 0.085f, -0.13f}, 0.085f);
+    addSphere(glossy("glossy", {0.9f, 0.6f, 0.25f}, 1.0f, 0.35f), {0.0f, 0.06f, 0.17f}, 0.06f);
     return scene;
 }
 

@@ -124,10 +124,12 @@ void fillGgxTable(std::vector<vec4>& table) {
 }
 
 void fillDielectricTable(std::vector<float>& table) {
-    constexpr uint32_t size = layout::DIELECTRIC_TABLE_SIZE;
-    table.resize(size_t{size} * size * size);
-    tbb::parallel_for(0u, size * size, [&](uint32_t line) {
-        const float exponent = 2.0f * static_cast<float>(line / size) / static_cast<float>(size - 1) - 1.0f;
+    constexpr uint32_t size = layout::DIELECTRIC_TABLE_SIZE, nodes = layout::DIELECTRIC_ETA_NODES;
+    table.resize(size_t{2} * nodes * size * size);
+    tbb::parallel_for(0u, 2 * nodes * size, [&](uint32_t line) {
+        const uint32_t etaIndex = line / size;
+        const float coordinate = static_cast<float>(etaIndex % nodes) / static_cast<float>(nodes - 1);
+        const float exponent = (etaIndex < nodes ? -1.0f : 1.0f) * coordinate * coordinate;
         const float eta = std::pow(layout::DIELECTRIC_ETA_MAX, exponent);
         for (uint32_t column = 0; column < size; ++column) {
             table[size_t{line} * size + column] =

@@ -5,7 +5,7 @@
 namespace limpid::scene {
 
 GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
-    : features_(data.features), params_(data.params), stackSize_(data.stackSize) {
+    : features_(data.features), params_(data.params), stackSize_(data.stackSize), cpuDevice_(device.isCpu()) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
         buffers_.push_back({name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
@@ -20,7 +20,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
     add("textureRefs", Format::RGBA32Uint, data.textureRefs);
     add("lights", Format::RGBA32Uint, data.lights);
     add("lightAlias", Format::RG32Uint, data.lightAlias);
-    add("lightOfPrimitive", Format::R32Uint, data.lightOfPrimitive);
+    add("lightDensity", Format::R32Float, data.lightDensity);
     add("environment", Format::RGBA32Float, data.environment);
     add("environmentAlias", Format::RG32Uint, data.environmentAlias);
     add("ggxTable", Format::RGBA32Float, data.ggxTable);
@@ -50,7 +50,8 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_ENVIRONMENT", features_.environment},
             {"HAS_MIRRORED", features_.mirrored},
             {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
-            {"TEXEL_BUFFER_COUNT", texelBufferCount_}};
+            {"TEXEL_BUFFER_COUNT", texelBufferCount_},
+            {"CPU_DEVICE", cpuDevice_}};
 }
 
 uint64_t GpuScene::byteCount() const {

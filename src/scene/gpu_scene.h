@@ -31,6 +31,7 @@ class GpuScene {
     layout::SceneParams params_;
     uint32_t stackSize_;
     uint32_t texelBufferCount_ = 1;
+    bool cpuDevice_;
 };
 
 }  // namespace limpid::scene

@@ -58,6 +58,13 @@ class LightPacker {
         for (size_t i = 0; i < weights_.size(); ++i) {
             data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
         }
+        data_.lightDensity.resize(lightOfPrimitive_.size(), 0.0f);
+        for (size_t i = 0; i < lightOfPrimitive_.size(); ++i) {
+            const uint32_t light = lightOfPrimitive_[i];
+            if (light != layout::NONE && areas_[light] > 0.0f) {
+                data_.lightDensity[i] = table.probabilities[light] / areas_[light];
+            }
+        }
         data_.params.lightCount = static_cast<uint32_t>(weights_.size());
     }
 
@@ -65,7 +72,7 @@ class LightPacker {
     void packInstance(size_t index) {
         const Instance& instance = scene_.instances[index];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
-        const size_t tableStart = data_.lightOfPrimitive.size();
+        const size_t tableStart = lightOfPrimitive_.size();
         bool any = false;
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
@@ -75,12 +82,12 @@ class LightPacker {
                 light = packTriangle(index, instance, mesh, t, material);
                 any = true;
             }
-            data_.lightOfPrimitive.push_back(light);
+            lightOfPrimitive_.push_back(light);
         }
         if (any) {
             data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
         } else {
-            data_.lightOfPrimitive.resize(tableStart);
+            lightOfPrimitive_.resize(tableStart);
         }
     }
 
@@ -109,6 +116,7 @@ class LightPacker {
         data_.lights.push_back(bits(v[1], 0u));
         data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
         data_.lights.push_back(bits(material.emission, ref ? materialIndex : layout::NONE));
+        areas_.push_back(static_cast<float>(area));
         return addWeight(std::numbers::pi * area * sides * radiance);
     }
 
@@ -138,6 +146,8 @@ class LightPacker {
     const Scene& scene_;
     SceneData& data_;
     std::vector<double> weights_;
+    std::vector<float> areas_;                ///< of the triangle lights, which come first
+    std::vector<uint32_t> lightOfPrimitive_;  ///< of every primitive of an emissive instance, or NONE
 };
 
 /// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's solid

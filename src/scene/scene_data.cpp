@@ -28,7 +28,7 @@ size_t Scene::triangleCount() const {
 
 uint64_t SceneData::byteCount() const {
     uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightAlias) +
-                   bytesIn(environmentAlias) + bytesIn(lightOfPrimitive) + bytesIn(dielectricTable);
+                   bytesIn(environmentAlias) + bytesIn(lightDensity) + bytesIn(dielectricTable);
     for (const auto* records :
          {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances, &materials, &textureRefs, &lights}) {
         sum += bytesIn(*records);

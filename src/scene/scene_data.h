@@ -27,8 +27,7 @@ struct SceneData {
     std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, materials, textureRefs, lights;
     std::vector<vec4> bvhTriangles, environment, ggxTable;
     std::vector<AliasEntry> lightAlias, environmentAlias;
-    std::vector<uint32_t> lightOfPrimitive;
-    std::vector<float> dielectricTable;
+    std::vector<float> lightDensity, dielectricTable;
     std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
     SceneFeatures features;
     layout::SceneParams params{};

@@ -124,12 +124,11 @@ LightSample sampleLight(vec3 from, SceneParams scene, inout uint rng) {
 /// Density per solid angle with which sampleLight draws the point where a ray of length `distance` met the surface.
 float lightPdf(Surface s, float distance, vec3 direction, SceneParams scene) {
     const uint first = imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).y;
-    const uint light = first == NONE ? NONE : imageLoad(lightOfPrimitive, int(first + s.primitive)).x;
-    if (light == NONE) return 0.0;
-    const float probability = uintBitsToFloat(imageLoad(lights, int(light * LIGHT_TEXELS) + 1).w);
+    if (first == NONE) return 0.0;
+    const float perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
     const float cosine = abs(dot(s.geometricNormal, direction));
     const float share = HAS_ENVIRONMENT ? 1.0 - scene.environmentProbability : 1.0;
-    return cosine > 0.0 ? share * probability * distance * distance / (s.area * cosine) : 0.0;
+    return cosine > 0.0 ? share * perArea * distance * distance / cosine : 0.0;
 }
 
 #endif

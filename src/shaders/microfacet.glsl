@@ -60,17 +60,18 @@ vec4 ggxAlbedo(float cosine, float roughness) {
 /// Energy that reflection and refraction keep together after one scattering.
 float dielectricAlbedo(float cosine, float roughness, float eta) {
     const int size = int(DIELECTRIC_TABLE_SIZE);
-    const float last = float(size - 1);
-    const float etaCoordinate = 0.5 + 0.5 * log2(eta) / log2(DIELECTRIC_ETA_MAX);
+    const vec3 last = vec3(vec2(size - 1), float(DIELECTRIC_ETA_NODES - 1u));
+    const float etaCoordinate = sqrt(abs(log2(eta)) / log2(DIELECTRIC_ETA_MAX));
     const vec3 p = clamp(vec3(cosine, roughness, etaCoordinate), 0.0, 1.0) * last;
     const vec3 base = min(floor(p), last - 1.0);
     const vec3 f = p - base;
+    const int half_ = eta < 1.0 ? 0 : int(DIELECTRIC_ETA_NODES);
     float sum = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const ivec3 offset = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
         const vec3 w = mix(1.0 - f, f, vec3(offset));
         const ivec3 i = ivec3(base) + offset;
-        sum += w.x * w.y * w.z * imageLoad(dielectricTable, (i.z * size + i.y) * size + i.x).x;
+        sum += w.x * w.y * w.z * imageLoad(dielectricTable, ((half_ + i.z) * size + i.y) * size + i.x).x;
     }
     return sum;
 }

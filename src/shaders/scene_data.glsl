@@ -17,6 +17,7 @@ layout(constant_id = 8) const bool HAS_ENVIRONMENT = true;
 layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack entries
 layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
 layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
+layout(constant_id = 12) const bool CPU_DEVICE = false;         // runs on a CPU: no branch skips its body
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
 layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;
@@ -28,7 +29,7 @@ layout(set = 0, binding = 6, rgba32ui) uniform readonly uimageBuffer materials;
 layout(set = 0, binding = 7, rgba32ui) uniform readonly uimageBuffer textureRefs;
 layout(set = 0, binding = 8, rgba32ui) uniform readonly uimageBuffer lights;
 layout(set = 0, binding = 9, rg32ui) uniform readonly uimageBuffer lightAlias;
-layout(set = 0, binding = 10, r32ui) uniform readonly uimageBuffer lightOfPrimitive;
+layout(set = 0, binding = 10, r32f) uniform readonly imageBuffer lightDensity;
 layout(set = 0, binding = 11, rgba32f) uniform readonly imageBuffer environment;
 layout(set = 0, binding = 12, rg32ui) uniform readonly uimageBuffer environmentAlias;
 layout(set = 0, binding = 13, rgba32f) uniform readonly imageBuffer ggxTable;

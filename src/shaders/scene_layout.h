@@ -31,8 +31,9 @@ LIMPID_CONST uint TRIANGLE_SMOOTH = 0x80000000u;  // has vertex normals
 // vertices: normal (octahedral 2 x snorm16) | tangent (octahedral, lowest bit: sign) | uv0; uv1 | colour (4 x unorm16).
 LIMPID_CONST uint VERTEX_TEXELS = 2u;
 
-// instances: three rows of object-to-world; material | first entry in lightOfPrimitive or NONE | first shading
-// triangle | flags.
+// instances: three rows of object-to-world; material | first entry in lightDensity or NONE | first shading
+// triangle | flags. lightDensity: one float for each primitive of an emissive instance, the probability that
+// next-event estimation chooses it over its area.
 LIMPID_CONST uint INSTANCE_TEXELS = 4u;
 LIMPID_CONST uint INSTANCE_MIRRORED = 1u;  // negative determinant: front faces turn clockwise
 
@@ -78,9 +79,11 @@ LIMPID_CONST uint LIGHT_MIRRORED = 8u;  // v1 and v2 are swapped against the mes
 // ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + B), their
 // cosine-weighted averages over the row (A, B).
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
-// dielectricTable: energy that single scattering keeps at a rough refracting surface:
-// [eta][roughness][cosine]; eta = ETA_MAX^(2 i / (SIZE - 1) - 1) is the index behind over the index before it.
+// dielectricTable: energy that single scattering keeps at a rough refracting surface, [eta][roughness][cosine]. The
+// first DIELECTRIC_ETA_NODES are for eta (index behind over index before) below 1, the others for above: total
+// reflection makes two functions of it. Node i has |log eta| = (i / (NODES - 1))^2 log ETA_MAX, dense near 1.
 LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 16u;
+LIMPID_CONST uint DIELECTRIC_ETA_NODES = 16u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
 
 // Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.

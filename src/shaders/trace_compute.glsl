@@ -81,12 +81,13 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const float u = dot(cross(e0, v2 + v0), ray.direction);
     const float v = dot(cross(e1, v0 + v1), ray.direction);
     const float w = dot(cross(e2, v1 + v2), ray.direction);
+    const bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+    if (!inside) return;
     const vec3 normal = cross(e1, e0);
     const float denominator = dot(normal, ray.direction);
     const float t = dot(v0, normal) / denominator;
-    const bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
     // Written so that a NaN from a degenerate triangle is no hit.
-    bool accepted = inside && denominator != 0.0 && t > 0.0 && t < hit.t;
+    bool accepted = denominator != 0.0 && t > 0.0 && t < hit.t;
     const float area = u + v + w;
     const vec2 barycentrics = vec2(u, v) / area;
     if (HAS_ALPHA) {
@@ -110,17 +111,26 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
     while (true) {
         while (current < REF_LEAF) {
             uvec4 children;
-            const uvec4 keys = sortKeys(intersectChildren(current, ray, hit.t, children));
-            // Stores past the top are harmless, so they need no branches.
-            stack[top] = childOf(keys.w, children);
-            top += keys.w != KEY_MISS ? 1 : 0;
-            stack[top] = childOf(keys.z, children);
-            top += keys.z != KEY_MISS ? 1 : 0;
-            stack[top] = childOf(keys.y, children);
-            top += keys.y != KEY_MISS ? 1 : 0;
-            const bool miss = keys.x == KEY_MISS;
-            top -= miss ? 1 : 0;
-            current = miss ? stack[top] : childOf(keys.x, children);
+            uvec4 keys = intersectChildren(current, ray, hit.t, children);
+            // Any hit will do for a shadow ray: its order does not matter.
+            if (!anyHit || CPU_DEVICE) keys = sortKeys(keys);
+            if (CPU_DEVICE) {
+                // Branches cost both sides here; stores past the top are harmless.
+                stack[top] = childOf(keys.w, children);
+                top += keys.w != KEY_MISS ? 1 : 0;
+                stack[top] = childOf(keys.z, children);
+                top += keys.z != KEY_MISS ? 1 : 0;
+                stack[top] = childOf(keys.y, children);
+                top += keys.y != KEY_MISS ? 1 : 0;
+                top -= keys.x == KEY_MISS ? 1 : 0;
+                current = keys.x == KEY_MISS ? stack[top] : childOf(keys.x, children);
+            } else {
+                if (keys.w != KEY_MISS) stack[top++] = childOf(keys.w, children);
+                if (keys.z != KEY_MISS) stack[top++] = childOf(keys.z, children);
+                if (keys.y != KEY_MISS) stack[top++] = childOf(keys.y, children);
+                if (keys.x != KEY_MISS) stack[top++] = childOf(keys.x, children);
+                current = stack[--top];
+            }
         }
         if (current == REF_DONE) break;
         if (TWO_LEVEL && current == REF_LEAVE_INSTANCE) {

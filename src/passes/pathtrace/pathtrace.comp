@@ -10,7 +10,7 @@ layout(set = 0, binding = 22, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 23, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
 
 void main() {
-    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     uint rng = startStream(pixel.y * params.width + pixel.x, params.frame, params.seed);
     uint rays = 0u, rejected = 0u;

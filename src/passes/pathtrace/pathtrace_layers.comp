@@ -54,7 +54,7 @@ vec4 motionOf(FirstHit first) {
 }
 
 void main() {
-    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
     uint rng = startStream(pixel.y * params.width + pixel.x, params.frame, params.seed);

@@ -1,0 +1,36 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// Draws lights; of what a ray in the drawn direction finds, the density with which it would have been drawn.
+#include "lights_test.glsl"
+
+struct DrawnLight {
+    vec3 direction;
+    float distance;
+    vec3 radiance;
+    float pdf;
+    uint delta;
+    float hitDistance, hitPdf;  // hitDistance is negative where nothing was hit
+};
+
+layout(set = 0, binding = 21, scalar) writeonly buffer Results {
+    DrawnLight values[];
+} results;
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x;
+    if (i >= params.count) return;
+    uint rng = startStream(i, 0u, params.seed);
+    const LightSample light = sampleLight(params.from, params.scene, rng);
+    DrawnLight drawn = DrawnLight(light.direction, light.distance, light.radiance, light.pdf, light.delta ? 1u : 0u, -1.0, 0.0);
+    if (!light.delta && light.pdf > 0.0) {
+        const Hit hit = traceClosest(Ray(params.from, light.direction, INFINITE_DISTANCE), params.scene.rootNode, rng);
+        if (isHit(hit)) {
+            const Surface s = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -light.direction, 0.0);
+            drawn.hitDistance = hit.t;
+            drawn.hitPdf = lightPdf(s, hit.t, light.direction, params.scene);
+        } else if (HAS_ENVIRONMENT) {
+            drawn.hitPdf = environmentPdf(latLongOf(light.direction), params.scene) * params.scene.environmentProbability;
+        }
+    }
+    results.values[i] = drawn;
+}

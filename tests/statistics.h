@@ -1,0 +1,28 @@
+// Statistical tests with their p-values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace limpid::test {
+
+/// P(X >= statistic) of the chi-square distribution: Press et al., "Numerical Recipes", section 6.2.
+double chiSquareTail(double statistic, double degreesOfFreedom);
+
+/// P(|Z| >= |z|) of the normal distribution.
+double normalTail(double z);
+
+struct ChiSquare {
+    double statistic = 0.0;
+    int degreesOfFreedom = 0;
+    double p = 1.0;
+    /// Something was found where nothing is expected.
+    bool impossible = false;
+    std::string worst;  ///< the bin that contributes most, for the message of a failure
+};
+
+/// Neighbouring bins are joined until `least` are expected. Expectations must add up to the number of observations
+/// (the caller includes a bin of what fell nowhere).
+ChiSquare chiSquare(const std::vector<double>& observed, const std::vector<double>& expected, double least = 5.0);
+
+}  // namespace limpid::test
