@@ -1,4 +1,11 @@
 // limpid bench: how fast rays are traced, and how fast the picture converges.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "commands.h"
@@ -11,13 +18,6 @@
 #include "renderer/still.h"
 #include "scene/camera.h"
 #include "scene_options.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <chrono>
-#include <memory>
 
 namespace limpid::cli {
 namespace {
@@ -63,7 +63,8 @@ RenderSettings settingsOf(const BenchOptions& o) {
 }
 
 double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
     return values[values.size() / 2];
 }
 
@@ -99,8 +100,8 @@ void runTrace(const BenchOptions& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     json results = json::array();
     if (!o.json) {
-        fmt::print("{}, {}x{}, depth {}\n{:<24}{:>12}{:>14}{:>14}{:>14}\n", device->info().name, o.width, o.height,
-                   o.maxDepth, "scene", "triangles", "ms a sample", "Mrays/s", "tree s");
+        fmt::print("{}, {}x{}, depth {}\n{:<24}{:>12}{:>14}{:>14}{:>14}\n", device->info().name, o.width,
+                   o.height, o.maxDepth, "scene", "triangles", "ms a sample", "Mrays/s", "tree s");
     }
     for (const std::string& name : o.scenes) {
         const json r = traceBench(*device, o, name);
@@ -112,8 +113,12 @@ void runTrace(const BenchOptions& o) {
         }
     }
     if (!o.json) return;
-    const json object{{"device", device->info().name}, {"driver", device->info().driver}, {"width", o.width},
-                      {"height", o.height},            {"max_depth", o.maxDepth},         {"frames", o.frames},
+    const json object{{"device", device->info().name},
+                      {"driver", device->info().driver},
+                      {"width", o.width},
+                      {"height", o.height},
+                      {"max_depth", o.maxDepth},
+                      {"frames", o.frames},
                       {"results", results}};
     fmt::print("{}\n", object.dump(2));
 }
@@ -121,7 +126,8 @@ void runTrace(const BenchOptions& o) {
 /// Files of a scene are named after it, without path and prefix.
 std::string fileStem(const std::string& scene) {
     constexpr std::string_view prefix = "builtin:";
-    return scene.starts_with(prefix) ? scene.substr(prefix.size()) : std::filesystem::path(scene).stem().string();
+    return scene.starts_with(prefix) ? scene.substr(prefix.size())
+                                     : std::filesystem::path(scene).stem().string();
 }
 
 struct Picture {
@@ -131,7 +137,8 @@ struct Picture {
     RenderedLayers layers;
 };
 
-Picture renderPicture(ProgressiveStill& still, const CameraParams& camera, RenderSettings settings, uint64_t samples) {
+Picture renderPicture(ProgressiveStill& still, const CameraParams& camera, RenderSettings settings,
+                      uint64_t samples) {
     Picture picture;
     settings.samplesPerLaunch = static_cast<uint32_t>(std::min<uint64_t>(samples, 4));
     still.update(camera, settings);
@@ -195,14 +202,15 @@ void runConvergence(const BenchOptions& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     json all = json::array();
     if (!o.json) {
-        fmt::print("{}, {}x{}\n{:<26}{:>9}{:>10}{:>10}{:>10}\n", device->info().name, o.width, o.height, "scene",
-                   "samples", "seconds", "Mrays/s", "PSNR dB");
+        fmt::print("{}, {}x{}\n{:<26}{:>9}{:>10}{:>10}{:>10}\n", device->info().name, o.width, o.height,
+                   "scene", "samples", "seconds", "Mrays/s", "PSNR dB");
     }
     for (const std::string& name : o.scenes) {
         for (const json& row : convergence(*device, o, name)) {
             all.push_back(row);
             if (o.json) continue;
-            const std::string psnr = row["psnr"].is_null() ? "reference" : fmt::format("{:.2f}", row["psnr"].get<double>());
+            const std::string psnr =
+                row["psnr"].is_null() ? "reference" : fmt::format("{:.2f}", row["psnr"].get<double>());
             fmt::print("{:<26}{:>9}{:>10.2f}{:>10.2f}{:>10}\n", name, row["samples"].get<uint64_t>(),
                        row["seconds"].get<double>(), row["million_rays_per_second"].get<double>(), psnr);
         }
@@ -233,8 +241,8 @@ void addBenchCommand(CLI::App& app) {
         if (options->scenes.empty()) options->scenes = {"builtin:cornell", "builtin:heavy"};
         runTrace(*options);
     });
-    CLI::App* converge =
-        bench->add_subcommand("convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG and EXR");
+    CLI::App* converge = bench->add_subcommand(
+        "convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG and EXR");
     addCommon(*converge, options);
     converge->add_option("--spp", options->referenceSamples, "Samples of the converged picture (1024)")
         ->check(CLI::Range(2, 1 << 24));

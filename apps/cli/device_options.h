@@ -1,11 +1,10 @@
 // --device and --tracer, the same for every command that uses a device.
 #pragma once
 
-#include "gpu/device.h"
-
 #include <CLI/CLI.hpp>
-
 #include <string>
+
+#include "gpu/device.h"
 
 namespace limpid::cli {
 

@@ -1,14 +1,14 @@
 // limpid info: devices with features and limits, pipelines, built-in scenes, every parameter.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
 #include "commands.h"
 #include "gpu/device.h"
 #include "passes/pathtrace/pathtrace.h"
 #include "renderer/layers.h"
 #include "scene/builtin.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <memory>
 
 namespace limpid::cli {
 namespace {
@@ -58,19 +58,24 @@ json scenesJson() {
 }
 
 void printDevice(const gpu::DeviceInfo& device) {
-    fmt::print("{}: {} ({}, {}, Vulkan {}, {:.1f} GiB)\n", device.index, device.name, device.type, device.driver,
-               device.apiVersion, static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
+    fmt::print("{}: {} ({}, {}, Vulkan {}, {:.1f} GiB)\n", device.index, device.name, device.type,
+               device.driver, device.apiVersion,
+               static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
     if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);
-    for (const auto& [name, present] : device.features) fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
+    for (const auto& [name, present] : device.features)
+        fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
     for (const auto& [name, value] : device.limits) fmt::print("   {:<40} {}\n", name, value);
 }
 
 void printText(const std::vector<gpu::DeviceInfo>& devices) {
     fmt::print("Devices\n");
-    if (devices.empty()) fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
+    if (devices.empty())
+        fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
     for (const gpu::DeviceInfo& device : devices) printDevice(device);
-    fmt::print("\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\ncompute   our own tree in a "
-               "compute shader; every device\n\nBuilt-in scenes\n");
+    fmt::print(
+        "\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\ncompute   our own "
+        "tree in a "
+        "compute shader; every device\n\nBuilt-in scenes\n");
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         fmt::print("{:<28} {}\n", "builtin:" + info.name, info.help);
     }
@@ -87,18 +92,16 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
 }  // namespace
 
 void addInfoCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "List devices, pipelines, built-in scenes and every parameter");
+    CLI::App* command =
+        app.add_subcommand("info", "List devices, pipelines, built-in scenes and every parameter");
     auto asJson = std::make_shared<bool>(false);
     command->add_flag("--json", *asJson, "One JSON object on stdout");
     command->callback([asJson] {
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
         if (!*asJson) return printText(devices);
-        const json object{{"version", LIMPID_VERSION},
-                          {"devices", devicesJson(devices)},
-                          {"pipelines", {"path"}},
-                          {"tracers", {"compute"}},
-                          {"scenes", scenesJson()},
-                          {"layers", layerNames()},
+        const json object{{"version", LIMPID_VERSION},     {"devices", devicesJson(devices)},
+                          {"pipelines", {"path"}},         {"tracers", {"compute"}},
+                          {"scenes", scenesJson()},        {"layers", layerNames()},
                           {"parameters", parametersJson()}};
         fmt::print("{}\n", object.dump(2));
     });

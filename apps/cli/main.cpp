@@ -1,9 +1,10 @@
-// limpid: the command line. Exit codes: 0 done, 1 failed while running, 2 wrong usage, 3 an input could not be read.
+// limpid: the command line. Exit codes: 0 done, 1 failed while running, 2 wrong usage, 3 an input could not
+// be read.
+#include <new>
+
 #include "base/error.h"
 #include "base/log.h"
 #include "commands.h"
-
-#include <new>
 
 namespace limpid::cli {
 namespace {

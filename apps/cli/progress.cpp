@@ -1,7 +1,6 @@
 #include "progress.h"
 
 #include <fmt/format.h>
-
 #include <unistd.h>
 
 #include <cstdio>

@@ -1,4 +1,10 @@
 // limpid render: a scene to an image file.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -11,12 +17,6 @@
 #include "renderer/still.h"
 #include "scene/camera.h"
 #include "scene_options.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <chrono>
-#include <memory>
 
 namespace limpid::cli {
 namespace {
@@ -48,7 +48,8 @@ double since(Clock::time_point start) {
 
 void addOptions(CLI::App& command, RenderOptions& o) {
     addSceneOptions(command, o.scene);
-    command.add_option("-o,--output", o.output, "Output file: .exr (linear, layers) or .png (tone-mapped)")->required();
+    command.add_option("-o,--output", o.output, "Output file: .exr (linear, layers) or .png (tone-mapped)")
+        ->required();
     command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
     command.add_option("--spp", o.samples, "Samples per pixel (64)")->check(CLI::Range(1, 1 << 24));
@@ -84,7 +85,8 @@ RenderSettings settingsOf(const RenderOptions& o) {
         const Assignment a = parseAssignment(text);
         const auto& table = pathtraceParams();
         if (a.group != table.group() || !table.set(settings.pathtrace, a.name, a.value)) {
-            throw UsageError("there is no parameter '" + a.group + "." + a.name + "'; 'limpid info' lists them");
+            throw UsageError("there is no parameter '" + a.group + "." + a.name +
+                             "'; 'limpid info' lists them");
         }
     }
     return settings;
@@ -145,13 +147,15 @@ void writeDump(const RenderOptions& o, ProgressiveStill& still) {
     }
 }
 
-void report(const RenderOptions& o, const gpu::Device& device, const RenderCounters& counters, const Timings& t,
-            const scene::Scene& scene, const scene::GpuScene& gpuScene, const std::vector<gpu::PassTime>& passes) {
-    if (counters.rejected > 0) log::warn("{} samples were NaN or infinite and count as black", counters.rejected);
+void report(const RenderOptions& o, const gpu::Device& device, const RenderCounters& counters,
+            const Timings& t, const scene::Scene& scene, const scene::GpuScene& gpuScene,
+            const std::vector<gpu::PassTime>& passes) {
+    if (counters.rejected > 0)
+        log::warn("{} samples were NaN or infinite and count as black", counters.rejected);
     const double megaRays = static_cast<double>(counters.rays) * 1e-6 / std::max(t.renderSeconds, 1e-9);
     if (!o.json) {
-        log::info("{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", o.samples, o.width, o.height,
-                  t.renderSeconds, megaRays, device.info().name);
+        log::info("{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", o.samples,
+                  o.width, o.height, t.renderSeconds, megaRays, device.info().name);
         return;
     }
     nlohmann::json passTimes = nlohmann::json::object();

@@ -1,12 +1,12 @@
 #include "scene_options.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "scene/builtin.h"
 #include "scene/environment.h"
 #include "scene/load.h"
 #include "scene/prepare.h"
-
-#include <fmt/format.h>
 
 namespace limpid::cli {
 
@@ -20,8 +20,9 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
 
 scene::Scene loadChosenScene(const SceneChoice& choice) {
     constexpr std::string_view prefix = "builtin:";
-    scene::Scene scene = choice.scene.starts_with(prefix) ? scene::builtinScene(choice.scene.substr(prefix.size()))
-                                                          : scene::loadScene(choice.scene);
+    scene::Scene scene = choice.scene.starts_with(prefix)
+                             ? scene::builtinScene(choice.scene.substr(prefix.size()))
+                             : scene::loadScene(choice.scene);
     if (!choice.environment.empty()) scene.environment = scene::loadEnvironment(choice.environment);
     scene::prepare(scene);
     return scene;

@@ -1,11 +1,10 @@
 // SCENE, --env and --camera, the same for every command that loads a scene.
 #pragma once
 
-#include "scene/scene.h"
-
 #include <CLI/CLI.hpp>
-
 #include <string>
+
+#include "scene/scene.h"
 
 namespace limpid::cli {
 

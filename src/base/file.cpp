@@ -1,10 +1,7 @@
 #include "base/file.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +10,8 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace fs = std::filesystem;
@@ -29,7 +28,8 @@ fs::path folderOf(const fs::path& path) {
 /// A name beside `path` that no other process uses; the file exists (empty) on return.
 fs::path createTemporary(const fs::path& path) {
     const fs::path suffix = path.extension();
-    std::string pattern = (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
+    std::string pattern =
+        (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
     const int file = ::mkstemps(pattern.data(), static_cast<int>(suffix.string().size()));
     if (file < 0) throw OutputError(path, "cannot create a file beside it: " + systemMessage(errno));
     // mkstemps makes files private; an output gets what the user's umask grants any new file.
@@ -75,7 +75,8 @@ void checkWritable(const fs::path& path) {
         throw OutputError(path, "is a directory, not a file name");
     }
     const fs::path folder = folderOf(path);
-    if (!fs::is_directory(folder, status)) throw OutputError(path, "the folder " + folder.string() + " does not exist");
+    if (!fs::is_directory(folder, status))
+        throw OutputError(path, "the folder " + folder.string() + " does not exist");
     if (::access(folder.c_str(), W_OK) != 0) {
         throw OutputError(path, "the folder cannot be written: " + systemMessage(errno));
     }

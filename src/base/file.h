@@ -12,10 +12,10 @@ namespace limpid {
 /// The file's bytes. Throws InputError if it is missing, a directory, unreadable, or larger than `maxBytes`.
 std::vector<std::byte> readFile(const std::filesystem::path& path, uint64_t maxBytes = uint64_t{4} << 30);
 
-/// Calls `write` with a temporary name beside `path` (same extension), then renames the temporary onto `path`.
-/// If `write` throws, or the file cannot be flushed to disk, the temporary is removed, `path` is as it was, and
-/// OutputError (or what `write` threw) is thrown. Throws OutputError at once if `path` is a directory or its
-/// folder does not exist.
+/// Calls `write` with a temporary name beside `path` (same extension), then renames the temporary onto
+/// `path`. If `write` throws, or the file cannot be flushed to disk, the temporary is removed, `path` is as
+/// it was, and OutputError (or what `write` threw) is thrown. Throws OutputError at once if `path` is a
+/// directory or its folder does not exist.
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 

@@ -1,12 +1,11 @@
 #include "base/file.h"
 
-#include "base/error.h"
-
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <fstream>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace fs = std::filesystem;
@@ -54,7 +53,8 @@ TEST_F(FileTest, RefusesADirectoryAndAMissingFolderBeforeTheWriterRuns) {
 
 TEST_F(FileTest, FullDiskIsAnErrorAndNotATruncatedFile) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
-    // /dev/full cannot be renamed onto, so test the writer's side: a stream that meets a full disk must throw.
+    // /dev/full cannot be renamed onto, so test the writer's side: a stream that meets a full disk must
+    // throw.
     EXPECT_THROW(writeAtomically(folder / "a.txt",
                                  [](const fs::path&) {
                                      std::ofstream full("/dev/full");

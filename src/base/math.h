@@ -1,9 +1,8 @@
 // The vector types of both sides: these names mean the same in C++ (here) and in GLSL.
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstdint>
+#include <glm/glm.hpp>
 
 namespace limpid {
 

@@ -1,10 +1,10 @@
 #include "base/params.h"
 
-#include "base/error.h"
-
 #include <fmt/format.h>
 
 #include <charconv>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace {
@@ -46,8 +46,8 @@ std::string toString(const ParamValue& value) {
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value) {
     const double number = asDouble(value);
     if (!(number >= info.minimum && number <= info.maximum)) {
-        throw UsageError(fmt::format("{}.{}: {} is outside its range {} to {}", group, info.name, toString(value),
-                                     info.minimum, info.maximum));
+        throw UsageError(fmt::format("{}.{}: {} is outside its range {} to {}", group, info.name,
+                                     toString(value), info.minimum, info.maximum));
     }
 }
 

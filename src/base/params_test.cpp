@@ -1,8 +1,8 @@
 #include "base/params.h"
 
-#include "base/error.h"
-
 #include <gtest/gtest.h>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace {
@@ -33,8 +33,10 @@ TEST(Params, SetsWhatItNamesAndKeepsTheRest) {
 
 TEST(Params, RefusesBadTextAndValuesOutOfRange) {
     Settings s;
-    for (const char* text : {"", "x", "9", "0", "3.5", "4 "}) EXPECT_THROW(table().set(s, "levels", text), UsageError);
-    for (const char* text : {"nan", "inf", "-1", "1,5"}) EXPECT_THROW(table().set(s, "sigma", text), UsageError);
+    for (const char* text : {"", "x", "9", "0", "3.5", "4 "})
+        EXPECT_THROW(table().set(s, "levels", text), UsageError);
+    for (const char* text : {"nan", "inf", "-1", "1,5"})
+        EXPECT_THROW(table().set(s, "sigma", text), UsageError);
     EXPECT_THROW(table().set(s, "clamp", "maybe"), UsageError);
     EXPECT_EQ(s.levels, 5);
 }
@@ -44,7 +46,8 @@ TEST(Params, ParsesAssignments) {
     EXPECT_EQ(a.group, "svgf");
     EXPECT_EQ(a.name, "phi_color");
     EXPECT_EQ(a.value, "1.5");
-    for (const char* text : {"", "a=1", "a.b", ".b=1", "a.=1", "=a.b"}) EXPECT_THROW(parseAssignment(text), UsageError);
+    for (const char* text : {"", "a=1", "a.b", ".b=1", "a.=1", "=a.b"})
+        EXPECT_THROW(parseAssignment(text), UsageError);
 }
 
 }  // namespace

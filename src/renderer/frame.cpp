@@ -22,8 +22,8 @@ vec2 frameJitter(Jitter jitter, uint32_t frame) {
 
 }  // namespace
 
-FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
-                            const FrameInput& input) {
+FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                            const RenderSettings& settings, const FrameInput& input) {
     const PathtraceLaunch launch{.extent = settings.extent,
                                  .camera = input.camera,
                                  .previousCamera = input.previousCamera,

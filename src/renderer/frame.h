@@ -1,11 +1,11 @@
 // The whole frame as one recipe.
 #pragma once
 
+#include <cstdint>
+
 #include "gpu/frame_graph.h"
 #include "renderer/settings.h"
 #include "scene/gpu_scene.h"
-
-#include <cstdint>
 
 namespace limpid {
 
@@ -18,15 +18,16 @@ struct FrameInput {
     uint32_t samples = 1;        ///< per pixel, in this frame
 };
 
-/// Running means after this frame (passes/pathtrace/pathtrace.h says what the components hold). Without layers only
-/// `beauty` and `counters` are set; with layers beauty is the sum of diffuse, specular and emission.
+/// Running means after this frame (passes/pathtrace/pathtrace.h says what the components hold). Without
+/// layers only `beauty` and `counters` are set; with layers beauty is the sum of diffuse, specular and
+/// emission.
 struct FrameImages {
     gpu::ImageHandle beauty, counters;
     gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal, depth, motion, ids;
 };
 
 /// Records one frame of `--pipeline path`.
-FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
-                            const FrameInput& input);
+FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                            const RenderSettings& settings, const FrameInput& input);
 
 }  // namespace limpid

@@ -1,9 +1,9 @@
 #include "renderer/layers.h"
 
-#include "base/error.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace {
@@ -57,8 +57,9 @@ Image idImage(const RenderedLayers& layers) {
 }  // namespace
 
 const std::vector<std::string>& layerNames() {
-    static const std::vector<std::string> names{"beauty", "diffuse", "specular", "emission", "albedo", "albedoSpecular",
-                                                "normal", "depth",   "motion",   "id",       "variance", "samples"};
+    static const std::vector<std::string> names{"beauty",         "diffuse", "specular", "emission", "albedo",
+                                                "albedoSpecular", "normal",  "depth",    "motion",   "id",
+                                                "variance",       "samples"};
     return names;
 }
 
@@ -96,7 +97,9 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     out.height = extent.height;
     out.add("", "RGB", beautyOf(layers), colorStorage);
     out.add("", "A", Image(extent.width, extent.height, 1, 1.0f), colorStorage);
-    const auto wants = [&](std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    const auto wants = [&](std::string_view name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
     const auto addColor = [&](const char* name, const std::vector<float>& texels) {
         if (wants(name)) out.add(name, "RGB", components(texels, extent, 0, 3), colorStorage);
     };
@@ -106,8 +109,10 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     addColor("albedo", layers.albedo);
     addColor("albedoSpecular", layers.albedoSpecular);
     if (wants("normal")) out.add("normal", "XYZ", components(layers.normal, extent, 0, 3), colorStorage);
-    if (wants("depth")) out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
-    if (wants("motion")) out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, 0.0f), Storage::Float);
+    if (wants("depth"))
+        out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
+    if (wants("motion"))
+        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, 0.0f), Storage::Float);
     if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
     if (wants("samples")) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));

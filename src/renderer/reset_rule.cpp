@@ -4,8 +4,8 @@ namespace limpid {
 namespace {
 
 bool sameCamera(const CameraParams& a, const CameraParams& b) {
-    return a.origin == b.origin && a.orthographic == b.orthographic && a.forward == b.forward && a.spread == b.spread &&
-           a.right == b.right && a.up == b.up;
+    return a.origin == b.origin && a.orthographic == b.orthographic && a.forward == b.forward &&
+           a.spread == b.spread && a.right == b.right && a.up == b.up;
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // When a running mean must start anew.
 #pragma once
 
+#include <cstdint>
+
 #include "renderer/settings.h"
 #include "shaders/camera.h"
-
-#include <cstdint>
 
 namespace limpid {
 
@@ -15,8 +15,9 @@ struct AccumulationState {
     uint64_t sceneVersion = 0;  ///< counted up by whoever changes the scene
 };
 
-/// True if samples taken under `before` must not be averaged with samples under `now`: the camera's matrix or field of
-/// view, the size, any setting, or the scene has changed. (Samples per launch alone change no pixel's distribution.)
+/// True if samples taken under `before` must not be averaged with samples under `now`: the camera's matrix or
+/// field of view, the size, any setting, or the scene has changed. (Samples per launch alone change no
+/// pixel's distribution.)
 bool mustReset(const AccumulationState& before, const AccumulationState& now);
 
 }  // namespace limpid

@@ -1,11 +1,11 @@
 #include "renderer/reset_rule.h"
 
-#include "scene/camera.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <vector>
+
+#include "scene/camera.h"
 
 namespace limpid {
 namespace {
@@ -29,8 +29,14 @@ TEST(ResetRule, ResetsOnEveryChange) {
         return scene::cameraParams(scene::lookAt(eye, {0, 0, 0}, {0, 1, 0}, fov), 320, 180);
     };
     const std::vector<std::pair<const char*, std::function<void(AccumulationState&)>>> changes{
-        {"camera moved", [&](auto& s) { s.camera = camera({1, 2, 3.0001f}, 0.8f); }},
-        {"field of view", [&](auto& s) { s.camera = camera({1, 2, 3}, 0.81f); }},
+        {"camera moved",
+         [&](auto& s) {
+             s.camera = camera({1, 2, 3.0001f}, 0.8f);
+         }},
+        {"field of view",
+         [&](auto& s) {
+             s.camera = camera({1, 2, 3}, 0.81f);
+         }},
         {"width", [](auto& s) { s.settings.extent.width = 321; }},
         {"height", [](auto& s) { s.settings.extent.height = 181; }},
         {"seed", [](auto& s) { s.settings.seed = 1; }},

@@ -1,16 +1,17 @@
 // What decides a frame's pixels, besides the scene.
 #pragma once
 
+#include <cstdint>
+
 #include "gpu/frame_graph.h"
 #include "passes/pathtrace/pathtrace.h"
-
-#include <cstdint>
 
 namespace limpid {
 
 /// Where in its pixel a primary ray goes.
 enum class Jitter {
-    Pixel,  ///< anywhere, each pixel by its own random numbers; the first sample of frame 0 through the centre
+    Pixel,  ///< anywhere, each pixel by its own random numbers; the first sample of frame 0 through the
+            ///< centre
     Frame,  ///< one point for all pixels of a frame: Halton sequence in bases 2 and 3
     Off,    ///< the centre
 };

@@ -1,22 +1,28 @@
 #include "renderer/still.h"
 
-#include "base/error.h"
-
 #include <algorithm>
+
+#include "base/error.h"
 
 namespace limpid {
 namespace {
 
 bool isUint(gpu::Format format) {
-    return format == gpu::Format::R32Uint || format == gpu::Format::RG32Uint || format == gpu::Format::RGBA32Uint;
+    return format == gpu::Format::R32Uint || format == gpu::Format::RG32Uint ||
+           format == gpu::Format::RGBA32Uint;
 }
+
+/// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a path in a scene of a million
+/// triangles needs some thousands. More samples would lose light without a word.
+constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 }  // namespace
 
 ProgressiveStill::ProgressiveStill(gpu::Device& device, const scene::GpuScene& scene, uint64_t maxSamples)
     : device_(device), scene_(scene), maxSamples_(maxSamples) {}
 
-void ProgressiveStill::update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion) {
+void ProgressiveStill::update(const CameraParams& camera, const RenderSettings& settings,
+                              uint64_t sceneVersion) {
     const AccumulationState now{camera, settings, sceneVersion};
     if (frame_ > 0 && mustReset(state_, now)) {
         graph_.resetHistories();
@@ -32,7 +38,8 @@ bool ProgressiveStill::launch() {
     input.frame = frame_;
     input.samplesBefore = samples_;
     input.samples =
-        static_cast<uint32_t>(std::min<uint64_t>(state_.settings.samplesPerLaunch, maxSamples_ - samples_));
+        static_cast<uint32_t>(std::min<uint64_t>({state_.settings.samplesPerLaunch, maxSamples_ - samples_,
+                                                  device_.isCpu() ? maxSamplesPerCpuLaunch : UINT32_MAX}));
     graph_.beginFrame();
     images_ = recordPathFrame(graph_, scene_, state_.settings, input);
     graph_.execute(device_);

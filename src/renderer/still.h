@@ -1,14 +1,15 @@
-// A progressive still: frames are launched until the wanted number of samples is in the mean, then nothing costs.
+// A progressive still: frames are launched until the wanted number of samples is in the mean, then nothing
+// costs.
 #pragma once
+
+#include <cstdint>
+#include <vector>
 
 #include "gpu/device.h"
 #include "gpu/frame_graph.h"
 #include "renderer/frame.h"
 #include "renderer/layers.h"
 #include "renderer/reset_rule.h"
-
-#include <cstdint>
-#include <vector>
 
 namespace limpid {
 
@@ -24,7 +25,8 @@ class ProgressiveStill {
 
     /// Takes the camera and the settings from now on; resets the mean if the reset rule says so.
     void update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion = 0);
-    /// Launches one frame, or does nothing and returns false if the maximum is reached. Does not wait for the device.
+    /// Launches one frame, or does nothing and returns false if the maximum is reached. Does not wait for the
+    /// device.
     bool launch();
     void finish() { device_.waitIdle(); }
 
@@ -35,8 +37,8 @@ class ProgressiveStill {
     RenderedLayers download();
     RenderCounters counters();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
-    /// The images that the pass of this name wrote in the last frame, for --dump; throws UsageError listing the passes
-    /// if there is none.
+    /// The images that the pass of this name wrote in the last frame, for --dump; throws UsageError listing
+    /// the passes if there is none.
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass);
 
   private:

@@ -2,10 +2,10 @@
 // M. D. Vose, "A linear algorithm for generating random numbers with a given distribution", 1991.
 #pragma once
 
-#include "scene/scene_data.h"
-
 #include <span>
 #include <vector>
+
+#include "scene/scene_data.h"
 
 namespace limpid::scene {
 

@@ -1,10 +1,10 @@
 #include "scene/builtin.h"
 
+#include <cmath>
+
 #include "base/error.h"
 #include "scene/camera.h"
 #include "scene/mesh_builder.h"
-
-#include <cmath>
 
 namespace limpid::scene {
 namespace {
@@ -55,9 +55,11 @@ Scene emptyCornell(std::string name) {
     Scene scene;
     scene.name = std::move(name);
     scene.materials = {lambertian("white", vec3(0.73f)), lambertian("red", {0.65f, 0.05f, 0.05f}),
-                       lambertian("green", {0.12f, 0.45f, 0.15f}), emitter("light", vec3(0.78f), {18.4f, 15.6f, 8.0f})};
+                       lambertian("green", {0.12f, 0.45f, 0.15f}),
+                       emitter("light", vec3(0.78f), {18.4f, 15.6f, 8.0f})};
     // Lens of 35 mm before a film of 25 mm, 800 mm in front of the box.
-    scene.cameras = {lookAt(fromData(278, 273, -800), fromData(278, 273, 0), vec3(0, 1, 0), 2.0f * std::atan(12.5f / 35.0f))};
+    scene.cameras = {lookAt(fromData(278, 273, -800), fromData(278, 273, 0), vec3(0, 1, 0),
+                            2.0f * std::atan(12.5f / 35.0f))};
     scene.cameras[0].name = "cornell";
     return scene;
 }
@@ -128,15 +130,16 @@ Scene heavyScene() {
     builder.quad({-5, 0.001f, 5}, {5, 0.001f, 5}, {5, 0.001f, -5}, {-5, 0.001f, -5}, 1);
     for (const float x : {-2.5f, 2.5f}) {
         for (const float z : {-2.5f, 2.5f}) {
-            builder.quad({x - 0.6f, 3.99f, z - 0.6f}, {x + 0.6f, 3.99f, z - 0.6f}, {x + 0.6f, 3.99f, z + 0.6f},
-                         {x - 0.6f, 3.99f, z + 0.6f}, 4);
+            builder.quad({x - 0.6f, 3.99f, z - 0.6f}, {x + 0.6f, 3.99f, z - 0.6f},
+                         {x + 0.6f, 3.99f, z + 0.6f}, {x - 0.6f, 3.99f, z + 0.6f}, 4);
         }
     }
     Sequence random;
     for (int row = 0; row < 6; ++row) {
         for (int column = 0; column < 6; ++column) {
             const vec3 center(-4.0f + 1.6f * static_cast<float>(column) + random.next(-0.2f, 0.2f),
-                              random.next(0.55f, 2.2f), -4.0f + 1.5f * static_cast<float>(row) + random.next(-0.2f, 0.2f));
+                              random.next(0.55f, 2.2f),
+                              -4.0f + 1.5f * static_cast<float>(row) + random.next(-0.2f, 0.2f));
             const auto slot = static_cast<uint16_t>((row + column) % 2 == 0 ? 2 : 3);
             builder.torus(center, 0.45f, 0.12f, 64, 32, slot);
             builder.sphere(center, random.next(0.15f, 0.3f), 64, 32, slot);
@@ -177,7 +180,8 @@ Scene builtinScene(std::string_view name) {
     if (name == "furnace") return furnaceScene();
     std::string names;
     for (const BuiltinInfo& info : builtinScenes()) names += " builtin:" + info.name;
-    throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" + names);
+    throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" +
+                     names);
 }
 
 }  // namespace limpid::scene

@@ -1,11 +1,11 @@
 // Scenes made by code: always there, with known properties.
 #pragma once
 
-#include "scene/scene.h"
-
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scene/scene.h"
 
 namespace limpid::scene {
 
@@ -15,18 +15,19 @@ struct BuiltinInfo {
 };
 std::vector<BuiltinInfo> builtinScenes();
 
-/// "cornell", "cornell-spheres", "heavy", "furnace". Throws UsageError listing the names if there is no such scene.
+/// "cornell", "cornell-spheres", "heavy", "furnace". Throws UsageError listing the names if there is no such
+/// scene.
 Scene builtinScene(std::string_view name);
 
-/// The Cornell box with its measured dimensions (www.graphics.cornell.edu/online/box/data.html) in metres, Lambertian,
-/// 36 triangles.
+/// The Cornell box with its measured dimensions (www.graphics.cornell.edu/online/box/data.html) in metres,
+/// Lambertian, 36 triangles.
 Scene cornellScene();
 /// The Cornell box with a glass, a mirror and a glossy sphere in place of the blocks.
 Scene cornellSpheresScene();
 /// About 300,000 triangles of spheres and rings in a closed, lit, Lambertian room.
 Scene heavyScene();
-/// A closed Lambertian room of the given albedo with a box in it; every surface emits 1 on both sides. Paths of depth D
-/// see (1 - albedo^(D+1)) / (1 - albedo) everywhere.
+/// A closed Lambertian room of the given albedo with a box in it; every surface emits 1 on both sides. Paths
+/// of depth D see (1 - albedo^(D+1)) / (1 - albedo) everywhere.
 Scene furnaceScene(float albedo = 0.5f);
 
 }  // namespace limpid::scene

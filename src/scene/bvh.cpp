@@ -1,7 +1,5 @@
 #include "scene/bvh.h"
 
-#include "base/error.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -12,6 +10,8 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+
+#include "base/error.h"
 
 namespace limpid::scene {
 namespace {
@@ -27,7 +27,7 @@ constexpr float intersectionCost = 1.0f;
 struct BinaryNode {
     Aabb bounds;
     uint32_t first = 0;
-    uint32_t count = 0;              ///< 0: an inner node
+    uint32_t count = 0;  ///< 0: an inner node
     std::array<uint32_t, 2> children{};
 };
 
@@ -44,7 +44,8 @@ struct Split {
 
 class BinaryBuilder {
   public:
-    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize) : boxes_(boxes), maxLeafSize_(maxLeafSize) {
+    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize)
+        : boxes_(boxes), maxLeafSize_(maxLeafSize) {
         order_.resize(boxes.size());
         std::iota(order_.begin(), order_.end(), 0u);
         nodes_.resize(2 * boxes.size());
@@ -84,11 +85,13 @@ class BinaryBuilder {
     }
 
     /// Reorders the range and returns the left part's size; 0 makes a leaf.
-    uint32_t partition(const Aabb& bounds, const Aabb& centers, uint32_t first, uint32_t count, uint32_t depth) {
+    uint32_t partition(const Aabb& bounds, const Aabb& centers, uint32_t first, uint32_t count,
+                       uint32_t depth) {
         const Split split = depth < maxSahDepth ? findSplit(centers, first, count) : Split{};
         const float area = bounds.halfArea();
         const float leafCost = intersectionCost * static_cast<float>(count);
-        const bool worthIt = split.axis >= 0 && traversalCost + split.cost / std::max(area, 1e-30f) < leafCost;
+        const bool worthIt =
+            split.axis >= 0 && traversalCost + split.cost / std::max(area, 1e-30f) < leafCost;
         if (count <= maxLeafSize_ && !worthIt) return 0;
         const auto begin = order_.begin() + first;
         if (split.axis >= 0) {
@@ -211,7 +214,8 @@ class WideBuilder {
         for (const uint32_t child : children) bounds.grow(binary_.node(child).bounds);
         BvhNode node;
         node.origin = bounds.lower;
-        for (int axis = 0; axis < 3; ++axis) node.exponents[axis] = gridExponent(bounds.lower[axis], bounds.upper[axis]);
+        for (int axis = 0; axis < 3; ++axis)
+            node.exponents[axis] = gridExponent(bounds.lower[axis], bounds.upper[axis]);
         for (int axis = 0; axis < 3; ++axis) node.lower[axis].fill(255);
         uint32_t deepest = 0;
         for (uint32_t slot = 0; slot < children.size(); ++slot) {
@@ -226,8 +230,10 @@ class WideBuilder {
             out_.nodes.emplace_back();
             deepest = std::max(deepest, emit(childIndex, {child.children[0], child.children[1]}));
         }
+        // Far away an absent child's inverted box can vanish in rounding: its reference must be harmless.
+        for (size_t slot = children.size(); slot < 4; ++slot) node.children[slot] = node.children[0];
         out_.nodes[index] = node;
-        return deepest + static_cast<uint32_t>(children.size()) - 1;
+        return deepest + 3;
     }
 
   private:
@@ -273,12 +279,17 @@ Aabb BvhNode::childBounds(uint32_t child) const {
 
 Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize) {
     if (boxes.size() > BvhRef::maxIndex) {
-        throw Error(fmt::format("{} primitives in one tree exceed the limit of {}", boxes.size(), BvhRef::maxIndex));
+        throw Error(
+            fmt::format("{} primitives in one tree exceed the limit of {}", boxes.size(), BvhRef::maxIndex));
     }
     Bvh bvh;
     bvh.nodes.emplace_back();
     if (boxes.empty()) {
+        // Leaves beyond the end of the triangles: reads there give zeros, which no ray hits.
         for (int axis = 0; axis < 3; ++axis) bvh.nodes[0].lower[axis].fill(255);
+        bvh.nodes[0].exponents.fill(127);
+        bvh.nodes[0].children.fill(BvhRef::leaf(0, 1));
+        bvh.stackSize = 3;
         return bvh;
     }
     BinaryBuilder binary(boxes, maxLeafSize);

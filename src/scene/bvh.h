@@ -1,17 +1,19 @@
-// Bounding volume hierarchies: a binned SAH build on all cores, collapsed to four children a node and quantised.
+// Bounding volume hierarchies: a binned SAH build on all cores, collapsed to four children a node and
+// quantised.
 //
 // Build: I. Wald, "On fast construction of SAH-based bounding volume hierarchies", IEEE RT 2007.
 // Quantised wide nodes: H. Ylitie, T. Karras, S. Laine, "Efficient incoherent ray traversal on GPUs through
-// compressed wide BVHs", HPG 2017 (theirs are 8-wide; four fit the 64 bytes of a cache line without their packing).
+// compressed wide BVHs", HPG 2017 (theirs are 8-wide; four fit the 64 bytes of a cache line without their
+// packing).
 #pragma once
-
-#include "base/math.h"
 
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
+
+#include "base/math.h"
 
 namespace limpid::scene {
 
@@ -41,7 +43,9 @@ struct BvhRef {
     static constexpr uint32_t maxIndex = (1u << countShift) - 1;
 
     static uint32_t node(uint32_t index) { return index; }
-    static uint32_t leaf(uint32_t first, uint32_t count) { return leafBit | (count - 1) << countShift | first; }
+    static uint32_t leaf(uint32_t first, uint32_t count) {
+        return leafBit | (count - 1) << countShift | first;
+    }
     static bool isLeaf(uint32_t ref) { return (ref & leafBit) != 0; }
     static uint32_t first(uint32_t ref) { return ref & maxIndex; }
     static uint32_t count(uint32_t ref) { return (ref >> countShift & 7) + 1; }
@@ -51,7 +55,7 @@ struct BvhRef {
 /// A child that does not exist has lower 255 and upper 0, which no ray meets.
 struct BvhNode {
     vec3 origin{0.0f};
-    std::array<uint8_t, 4> exponents{};                    ///< x, y, z, unused
+    std::array<uint8_t, 4> exponents{};                      ///< x, y, z, unused
     std::array<std::array<uint8_t, 4>, 3> lower{}, upper{};  ///< [axis][child]
     std::array<uint32_t, 2> unused{};
     std::array<uint32_t, 4> children{};  ///< BvhRef
@@ -62,14 +66,15 @@ struct BvhNode {
 static_assert(sizeof(BvhNode) == 64);
 
 struct Bvh {
-    std::vector<BvhNode> nodes;    ///< the root is nodes[0]
-    std::vector<uint32_t> order;   ///< leaves index this; it holds the primitives' original indices
+    std::vector<BvhNode> nodes;   ///< the root is nodes[0]
+    std::vector<uint32_t> order;  ///< leaves index this; it holds the primitives' original indices
     Aabb bounds;
     uint32_t stackSize = 0;  ///< entries that a depth-first traversal needs at most, in any order of children
 };
 
 /// Builds over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize.
-/// Throws Error if there are more primitives than a BvhRef can name. No primitives: one node that no ray meets.
+/// Throws Error if there are more primitives than a BvhRef can name. No primitives: one node that no ray
+/// meets.
 Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize);
 
 }  // namespace limpid::scene

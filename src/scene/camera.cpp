@@ -1,8 +1,7 @@
 #include "scene/camera.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace limpid::scene {
 

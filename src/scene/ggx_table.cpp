@@ -1,12 +1,12 @@
-// Directional albedos of microfacet reflection and refraction, by quasi-random integration over visible normals.
-// The formulas are those of shaders/bsdf.glsl, which reads the tables; visible normals after E. Heitz, "Sampling the
-// GGX distribution of visible normals", JCGT 2018.
-#include "scene/pack.h"
-
+// Directional albedos of microfacet reflection and refraction, by quasi-random integration over visible
+// normals. The formulas are those of shaders/bsdf.glsl, which reads the tables; visible normals after E.
+// Heitz, "Sampling the GGX distribution of visible normals", JCGT 2018.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "scene/pack.h"
 
 namespace limpid::scene {
 namespace {
@@ -17,7 +17,8 @@ constexpr uint32_t sampleCount = 1024;
 vec2 hammersley(uint32_t i, uint32_t count) {
     uint32_t reversed = 0;
     for (uint32_t bit = 0; bit < 32; ++bit) reversed |= (i >> bit & 1u) << (31 - bit);
-    return {(static_cast<float>(i) + 0.5f) / static_cast<float>(count), static_cast<float>(reversed) * 0x1p-32f};
+    return {(static_cast<float>(i) + 0.5f) / static_cast<float>(count),
+            static_cast<float>(reversed) * 0x1p-32f};
 }
 
 vec3 sampleVisibleNormal(const vec3& wo, float alpha, const vec2& u) {
@@ -113,7 +114,8 @@ void fillGgxTable(std::vector<vec4>& table) {
     tbb::parallel_for(0u, size, [&](uint32_t row) {
         vec4* entries = &table[size_t{row} * size];
         for (uint32_t column = 0; column < size; ++column) {
-            entries[column] = vec4(reflectionAlbedo(tableCosine(column, size), tableAlpha(row, size)), 0.0f, 0.0f);
+            entries[column] =
+                vec4(reflectionAlbedo(tableCosine(column, size), tableAlpha(row, size)), 0.0f, 0.0f);
         }
         const vec2 average = cosineAverage(entries, size);
         for (uint32_t column = 0; column < size; ++column) {

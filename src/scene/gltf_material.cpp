@@ -63,9 +63,9 @@ void readSpecular(Document& document, const Object& source, Material& material) 
     const auto specular = source.extension("KHR_materials_specular");
     if (!specular) return;
     material.specular = factor(document, *specular, "specularFactor", 1.0f);
-    const bool isColored = specular->vector("specularColorFactor", vec3(1.0f)) != vec3(1.0f);
-    if (isColored || specular->has("specularTexture") || specular->has("specularColorTexture")) {
-        document.warn("KHR_materials_specular: only specularFactor is used, colour and textures are ignored");
+    material.specularColor = glm::max(specular->vector("specularColorFactor", vec3(1.0f)), vec3(0.0f));
+    if (specular->has("specularTexture") || specular->has("specularColorTexture")) {
+        document.warn("KHR_materials_specular: the factors are used, textures are ignored");
     }
 }
 

@@ -8,7 +8,8 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
     : features_(data.features), params_(data.params), stackSize_(data.stackSize), cpuDevice_(device.isCpu()) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
-        buffers_.push_back({name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
+        buffers_.push_back(
+            {name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
     };
     add("bvhNodes", Format::RGBA32Uint, data.bvhNodes);
     add("bvhTriangles", Format::RGBA32Float, data.bvhTriangles);
@@ -25,7 +26,8 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
     add("environmentAlias", Format::RG32Uint, data.environmentAlias);
     add("ggxTable", Format::RGBA32Float, data.ggxTable);
     add("dielectricTable", Format::R32Float, data.dielectricTable);
-    constexpr std::array<const char*, layout::TEXEL_BUFFERS> names{"texels0", "texels1", "texels2", "texels3"};
+    constexpr std::array<const char*, layout::TEXEL_BUFFERS> names{"texels0", "texels1", "texels2",
+                                                                   "texels3"};
     for (uint32_t i = 0; i < layout::TEXEL_BUFFERS; ++i) {
         add(names[i], Format::R32Uint, data.texels[i]);
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;

@@ -1,12 +1,12 @@
 // A scene on the device: the buffers that shaders/scene_data.glsl declares.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "gpu/device.h"
 #include "gpu/frame_graph.h"
 #include "scene/scene_data.h"
-
-#include <array>
-#include <vector>
 
 namespace limpid::scene {
 

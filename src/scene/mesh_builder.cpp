@@ -39,7 +39,8 @@ MeshBuilder& MeshBuilder::box(const vec3& lower, const vec3& upper, uint16_t slo
     const auto corner = [&](int i) {
         return vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z);
     };
-    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& f : faces) {
         if (inside) {
             quad(corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0]), slot);
@@ -61,12 +62,14 @@ MeshBuilder& MeshBuilder::prism(const vec3& a, const vec3& b, const vec3& c, con
     return quad(d, a, a + up, d + up, slot);
 }
 
-MeshBuilder& MeshBuilder::sphere(const vec3& center, float radius, uint32_t segments, uint32_t rings, uint16_t slot) {
+MeshBuilder& MeshBuilder::sphere(const vec3& center, float radius, uint32_t segments, uint32_t rings,
+                                 uint16_t slot) {
     const auto first = static_cast<uint32_t>(mesh_.positions.size());
     for (uint32_t ring = 0; ring <= rings; ++ring) {
         const float theta = pi * static_cast<float>(ring) / static_cast<float>(rings);
         for (uint32_t segment = 0; segment <= segments; ++segment) {
-            const float phi = 2.0f * pi * static_cast<float>(segment % segments) / static_cast<float>(segments);
+            const float phi =
+                2.0f * pi * static_cast<float>(segment % segments) / static_cast<float>(segments);
             const vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi));
             vertex(center + radius * n, n);
         }
@@ -81,8 +84,8 @@ MeshBuilder& MeshBuilder::sphere(const vec3& center, float radius, uint32_t segm
     return *this;
 }
 
-MeshBuilder& MeshBuilder::torus(const vec3& center, float radius, float tubeRadius, uint32_t segments, uint32_t sides,
-                                uint16_t slot) {
+MeshBuilder& MeshBuilder::torus(const vec3& center, float radius, float tubeRadius, uint32_t segments,
+                                uint32_t sides, uint16_t slot) {
     const auto first = static_cast<uint32_t>(mesh_.positions.size());
     for (uint32_t segment = 0; segment <= segments; ++segment) {
         const float phi = 2.0f * pi * static_cast<float>(segment % segments) / static_cast<float>(segments);

@@ -1,14 +1,14 @@
 // Triangles by code, for the built-in scenes and for tests.
 #pragma once
 
-#include "scene/scene.h"
-
 #include <cstdint>
+
+#include "scene/scene.h"
 
 namespace limpid::scene {
 
-/// Collects faces into one mesh; fronts are counter-clockwise. Flat unless a call says that it adds normals: a mesh
-/// either has normals everywhere or nowhere.
+/// Collects faces into one mesh; fronts are counter-clockwise. Flat unless a call says that it adds normals:
+/// a mesh either has normals everywhere or nowhere.
 class MeshBuilder {
   public:
     explicit MeshBuilder(std::string name, bool withNormals = false) : withNormals_(withNormals) {
@@ -20,9 +20,11 @@ class MeshBuilder {
     /// Axis-aligned, fronts outside, or inside for a room.
     MeshBuilder& box(const vec3& lower, const vec3& upper, uint16_t slot = 0, bool inside = false);
     /// A closed prism over a convex quad (counter-clockwise from above) from y = 0 to `height`.
-    MeshBuilder& prism(const vec3& a, const vec3& b, const vec3& c, const vec3& d, float height, uint16_t slot = 0);
+    MeshBuilder& prism(const vec3& a, const vec3& b, const vec3& c, const vec3& d, float height,
+                       uint16_t slot = 0);
     /// Latitude-longitude sphere of 2 * segments * (rings - 1) triangles.
-    MeshBuilder& sphere(const vec3& center, float radius, uint32_t segments, uint32_t rings, uint16_t slot = 0);
+    MeshBuilder& sphere(const vec3& center, float radius, uint32_t segments, uint32_t rings,
+                        uint16_t slot = 0);
     /// Ring around +Y of 2 * segments * sides triangles.
     MeshBuilder& torus(const vec3& center, float radius, float tubeRadius, uint32_t segments, uint32_t sides,
                        uint16_t slot = 0);

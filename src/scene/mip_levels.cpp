@@ -19,7 +19,9 @@ float decodeSrgb(float x) {
 
 uint32_t encodeByte(float linear, bool srgb) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
-    const float encoded = !srgb ? x : x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
+    const float encoded = !srgb             ? x
+                          : x <= 0.0031308f ? 12.92f * x
+                                            : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
     return static_cast<uint32_t>(encoded * 255.0f + 0.5f);
 }
 
@@ -36,9 +38,11 @@ Level halve(const Level& from) {
     to.texels.resize(size_t{to.width} * to.height);
     for (uint32_t y = 0; y < to.height; ++y) {
         // An odd row or column would be dropped by a plain 2x2 average: let the last cell reach to the edge.
-        const uint32_t y0 = std::min(2 * y, from.height - 1), y1 = y + 1 == to.height ? from.height : 2 * y + 2;
+        const uint32_t y0 = std::min(2 * y, from.height - 1),
+                       y1 = y + 1 == to.height ? from.height : 2 * y + 2;
         for (uint32_t x = 0; x < to.width; ++x) {
-            const uint32_t x0 = std::min(2 * x, from.width - 1), x1 = x + 1 == to.width ? from.width : 2 * x + 2;
+            const uint32_t x0 = std::min(2 * x, from.width - 1),
+                           x1 = x + 1 == to.width ? from.width : 2 * x + 2;
             vec4 sum(0.0f);
             for (uint32_t j = y0; j < y1; ++j) {
                 for (uint32_t i = x0; i < x1; ++i) sum += from.texels[size_t{j} * from.width + i];
@@ -82,7 +86,8 @@ std::vector<uint32_t> withMipLevels(const Texture& texture) {
         for (uint32_t x = 0; x < texture.width; ++x) {
             level.texels.push_back(texelAt(texture, x, y));
             const uint8_t* p = &texture.rgba[(size_t{y} * texture.width + x) * 4];
-            result.push_back(uint32_t{p[0]} | uint32_t{p[1]} << 8 | uint32_t{p[2]} << 16 | uint32_t{p[3]} << 24);
+            result.push_back(uint32_t{p[0]} | uint32_t{p[1]} << 8 | uint32_t{p[2]} << 16 |
+                             uint32_t{p[3]} << 24);
         }
     }
     for (uint32_t i = 1; i < mipLevelCount(texture); ++i) {

@@ -1,18 +1,18 @@
 // Mip levels by a box filter in linear light, and texture look-up on the CPU (for light power).
 #pragma once
 
-#include "scene/scene.h"
-
 #include <cstdint>
 #include <vector>
+
+#include "scene/scene.h"
 
 namespace limpid::scene {
 
 /// Levels down to 1x1: 1 + floor(log2(max(width, height))).
 uint32_t mipLevelCount(const Texture& texture);
 
-/// All levels, largest first, as packed RGBA8 (red in the lowest byte), sRGB-encoded where the texture is. Level k is
-/// max(1, width >> k) by max(1, height >> k) texels.
+/// All levels, largest first, as packed RGBA8 (red in the lowest byte), sRGB-encoded where the texture is.
+/// Level k is max(1, width >> k) by max(1, height >> k) texels.
 std::vector<uint32_t> withMipLevels(const Texture& texture);
 
 /// The linear colour of the texel nearest to (u, v), wrapped as the sampler says.

@@ -1,11 +1,11 @@
 // The steps of buildSceneData(), a file each.
 #pragma once
 
+#include <bit>
+
 #include "scene/bvh.h"
 #include "scene/scene.h"
 #include "scene/scene_data.h"
-
-#include <bit>
 
 namespace limpid::scene {
 

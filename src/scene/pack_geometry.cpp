@@ -1,21 +1,21 @@
-#include "base/error.h"
-#include "scene/pack.h"
-
 #include <fmt/format.h>
-#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 #include <optional>
+
+#include "base/error.h"
+#include "scene/pack.h"
 
 namespace limpid::scene {
 namespace {
 
 /// Triangles per leaf: larger leaves cost more tests but fewer nodes (measured in docs/benchmarks.md).
 constexpr uint32_t maxTrianglesPerLeaf = 4;
-/// A mesh whose copies together have at most this many triangles is copied into the static tree instead of instanced:
-/// one tree is walked faster than a tree over trees.
+/// A mesh whose copies together have at most this many triangles is copied into the static tree instead of
+/// instanced: one tree is walked faster than a tree over trees.
 constexpr size_t mergeLimit = 4096;
 
 vec2 octahedral(const vec3& direction) {
@@ -73,7 +73,8 @@ class GeometryPacker {
             bounds_ = tree.bounds;
         }
         data_.params.sceneCenter = bounds_.empty() ? vec3(0.0f) : bounds_.center();
-        data_.params.sceneRadius = bounds_.empty() ? 1.0f : std::max(0.5f * glm::length(bounds_.size()), 1e-20f);
+        data_.params.sceneRadius =
+            bounds_.empty() ? 1.0f : std::max(0.5f * glm::length(bounds_.size()), 1e-20f);
     }
 
   private:
@@ -111,8 +112,8 @@ class GeometryPacker {
         if (!instanced_[meshIndex]) {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
             for (size_t t = 0; t < mesh.triangleCount(); ++t) {
-                addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t), index,
-                            firstTriangle + static_cast<uint32_t>(t), staticBoxes_, staticTriangles_);
+                addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),
+                            index, firstTriangle + static_cast<uint32_t>(t), staticBoxes_, staticTriangles_);
             }
         } else if (firstTriangle == layout::NONE) {
             firstTriangle = meshFirstTriangle_[meshIndex] = packShading(mesh, Transform(mat4(1.0f)), 0);
@@ -124,7 +125,8 @@ class GeometryPacker {
     }
 
     static void packRows(uvec4* record, const mat4& m) {
-        for (int row = 0; row < 3; ++row) record[row] = bits(vec3(m[0][row], m[1][row], m[2][row]), m[3][row]);
+        for (int row = 0; row < 3; ++row)
+            record[row] = bits(vec3(m[0][row], m[1][row], m[2][row]), m[3][row]);
     }
 
     void addTriangle(const Mesh& mesh, size_t triangle, const Transform& transform, uint32_t primitive,
@@ -150,7 +152,8 @@ class GeometryPacker {
         const uint32_t flags = mesh.normals.empty() ? 0 : layout::TRIANGLE_SMOOTH;
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const uint32_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
-            data_.triangles.emplace_back(firstVertex + mesh.indices[3 * t], firstVertex + mesh.indices[3 * t + 1],
+            data_.triangles.emplace_back(firstVertex + mesh.indices[3 * t],
+                                         firstVertex + mesh.indices[3 * t + 1],
                                          firstVertex + mesh.indices[3 * t + 2], (material + slot) | flags);
         }
         return firstTriangle;
@@ -179,7 +182,8 @@ class GeometryPacker {
             throw Error(fmt::format("the scene has more than {} triangles", BvhRef::maxIndex));
         }
         const uint32_t root = appendNodes(bvh, firstTriangle);
-        data_.bvhTriangles.reserve(data_.bvhTriangles.size() + triangles.size() * layout::BVH_TRIANGLE_TEXELS);
+        data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
+                                   triangles.size() * layout::BVH_TRIANGLE_TEXELS);
         for (const uint32_t index : bvh.order) {
             const LeafTriangle& t = triangles[index];
             data_.bvhTriangles.emplace_back(t.v[0], std::bit_cast<float>(t.primitive));
@@ -212,7 +216,8 @@ class GeometryPacker {
             boxes.push_back(transformed(tree.bounds, toWorld));
             deepest = std::max(deepest, tree.stackSize);
         };
-        if (!staticBoxes_.empty()) addLeaf(appendTree(staticBoxes_, staticTriangles_), mat4(1.0f), layout::NONE);
+        if (!staticBoxes_.empty())
+            addLeaf(appendTree(staticBoxes_, staticTriangles_), mat4(1.0f), layout::NONE);
         std::vector<std::optional<Tree>> trees(scene_.meshes.size());
         for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
@@ -243,8 +248,8 @@ class GeometryPacker {
             for (const Instance& instance : scene_.instances) {
                 if (static_cast<size_t>(instance.mesh) == meshIndex) flag |= alphaFlag(mesh, instance, t);
             }
-            addTriangle(mesh, t, Transform(mat4(1.0f)), t | flag, layout::NONE, meshFirstTriangle_[meshIndex] + t, boxes,
-                        triangles);
+            addTriangle(mesh, t, Transform(mat4(1.0f)), t | flag, layout::NONE,
+                        meshFirstTriangle_[meshIndex] + t, boxes, triangles);
         }
         return appendTree(boxes, triangles);
     }

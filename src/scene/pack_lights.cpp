@@ -1,12 +1,12 @@
-#include "scene/alias_table.h"
-#include "scene/mip_levels.h"
-#include "scene/pack.h"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "scene/alias_table.h"
+#include "scene/mip_levels.h"
+#include "scene/pack.h"
 
 namespace limpid::scene {
 namespace {
@@ -23,14 +23,18 @@ vec2 transformed(const TextureRef& ref, const vec2& uv) {
     return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
 }
 
-/// Mean luminance of the emission texture over a triangle, from points as dense as its texels (16 to 1,024 of them).
-double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b, vec2 c) {
+/// Mean luminance of the emission texture over a triangle, from points as dense as its texels (16 to 1,024 of
+/// them).
+double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
+                            vec2 c) {
     a = transformed(ref, a);
     b = transformed(ref, b);
     c = transformed(ref, c);
-    const vec2 e1 = (b - a) * vec2(texture.width, texture.height), e2 = (c - a) * vec2(texture.width, texture.height);
+    const vec2 e1 = (b - a) * vec2(texture.width, texture.height),
+               e2 = (c - a) * vec2(texture.width, texture.height);
     const double texels = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
-    const int side = static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
+    const int side =
+        static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
     double sum = 0.0;
     int count = 0;
     for (int i = 0; i < side; ++i) {
@@ -103,13 +107,15 @@ class LightPacker {
         if (ref) {
             const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
             const vec2 zero(0.0f);
-            radiance = meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref, material.emission,
-                                            uv.empty() ? zero : uv[index[0]], uv.empty() ? zero : uv[index[1]],
-                                            uv.empty() ? zero : uv[index[2]]);
+            radiance =
+                meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref,
+                                     material.emission, uv.empty() ? zero : uv[index[0]],
+                                     uv.empty() ? zero : uv[index[1]], uv.empty() ? zero : uv[index[2]]);
         }
         const double area = 0.5 * glm::length(glm::cross(v[1] - v[0], v[2] - v[0]));
         const double sides = material.doubleSided ? 2.0 : 1.0;
-        const uint32_t kind = material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE;
+        const uint32_t kind =
+            material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE;
         const uint32_t firstTriangle = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3].z;
         const bool mirrored = glm::determinant(mat3(instance.transform)) < 0.0f;
         data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
@@ -133,7 +139,8 @@ class LightPacker {
         }
         data_.lights.push_back(bits(light.position, kind));
         data_.lights.push_back(bits(light.direction, 0u));
-        data_.lights.push_back(bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
+        data_.lights.push_back(
+            bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
         data_.lights.push_back(bits(light.intensity, 0u));
         addWeight(power);
     }
@@ -150,8 +157,8 @@ class LightPacker {
     std::vector<uint32_t> lightOfPrimitive_;  ///< of every primitive of an emissive instance, or NONE
 };
 
-/// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's solid
-/// angle.
+/// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's
+/// solid angle.
 std::vector<double> environmentWeights(const Environment& env) {
     const auto width = static_cast<int>(env.width), height = static_cast<int>(env.height);
     std::vector<double> weights(size_t{env.width} * env.height);
@@ -163,8 +170,10 @@ std::vector<double> environmentWeights(const Environment& env) {
                 const int row = std::clamp(y + dy, 0, height - 1);
                 for (int dx = -1; dx <= 1; ++dx) {
                     const int column = (x + dx + width) % width;
-                    sum += (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
-                           luminance(env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
+                    sum +=
+                        (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
+                        luminance(
+                            env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
                 }
             }
             weights[static_cast<size_t>(y) * env.width + static_cast<size_t>(x)] = std::max(sum, 0.0) * sine;

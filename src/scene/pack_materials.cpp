@@ -1,11 +1,11 @@
-#include "base/error.h"
-#include "scene/mip_levels.h"
-#include "scene/pack.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
+
+#include "base/error.h"
+#include "scene/mip_levels.h"
+#include "scene/pack.h"
 
 namespace limpid::scene {
 namespace {
@@ -27,8 +27,9 @@ PlacedTexture placeTexture(const Texture& texture, SceneData& data) {
         buffer.insert(buffer.end(), texels.begin(), texels.end());
         return {index << layout::TEXEL_BUFFER_SHIFT | first, mipLevelCount(texture)};
     }
-    throw Error(fmt::format("texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
-                            texture.name, layout::TEXEL_BUFFERS));
+    throw Error(
+        fmt::format("texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
+                    texture.name, layout::TEXEL_BUFFERS));
 }
 
 uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
@@ -45,7 +46,8 @@ uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
 
 class MaterialPacker {
   public:
-    MaterialPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data), placed_(scene.textures.size()) {}
+    MaterialPacker(const Scene& scene, SceneData& data)
+        : scene_(scene), data_(data), placed_(scene.textures.size()) {}
 
     void pack() {
         for (const Material& material : scene_.materials) packMaterial(material);
@@ -90,7 +92,8 @@ class MaterialPacker {
         const uint32_t base = packRef(m.baseColorTexture), rough = packRef(m.metallicRoughnessTexture);
         const uint32_t normal = packRef(m.normalTexture), emission = packRef(m.emissionTexture);
         out.emplace_back(base, rough, normal, emission);
-        out.emplace_back(packRef(m.transmissionTexture), 0, 0, 0);
+        out.emplace_back(packRef(m.transmissionTexture), bits(m.specularColor.r), bits(m.specularColor.g),
+                         bits(m.specularColor.b));
     }
 
     const Scene& scene_;

@@ -1,14 +1,14 @@
-// A scene on the CPU, as loaders and built-ins make it: meshes, instances, materials, textures, lights, cameras.
-// World: right-handed, +Y up, metres; cameras look along -Z (glTF). Colours: linear, Rec. 709.
+// A scene on the CPU, as loaders and built-ins make it: meshes, instances, materials, textures, lights,
+// cameras. World: right-handed, +Y up, metres; cameras look along -Z (glTF). Colours: linear, Rec. 709.
 #pragma once
-
-#include "base/math.h"
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/math.h"
 
 namespace limpid::scene {
 
@@ -18,12 +18,14 @@ inline constexpr int none = -1;
 struct Mesh {
     std::string name;
     std::vector<vec3> positions;
-    std::vector<vec3> normals;   ///< unit; empty: flat shading
-    std::vector<vec4> tangents;  ///< xyz unit, w = +-1 (bitangent = w cross(n, t)); empty if no normal map needs it
+    std::vector<vec3> normals;  ///< unit; empty: flat shading
+    std::vector<vec4>
+        tangents;  ///< xyz unit, w = +-1 (bitangent = w cross(n, t)); empty if no normal map needs it
     std::vector<vec2> uv0, uv1;
-    std::vector<vec4> colors;              ///< linear RGBA
-    std::vector<uint32_t> indices;         ///< three per triangle, all below positions.size()
-    std::vector<uint16_t> materialSlots;   ///< one per triangle, added to the instance's material; empty: all 0
+    std::vector<vec4> colors;       ///< linear RGBA
+    std::vector<uint32_t> indices;  ///< three per triangle, all below positions.size()
+    std::vector<uint16_t>
+        materialSlots;  ///< one per triangle, added to the instance's material; empty: all 0
 
     size_t triangleCount() const { return indices.size() / 3; }
 };
@@ -68,12 +70,14 @@ struct Material {
     float metallic = 1.0f;
     float roughness = 1.0f;  ///< perceptual; GGX alpha = roughness^2
     float specular = 1.0f;   ///< weight of the dielectric's specular lobe; 0: Lambertian
+    vec3 specularColor{1.0f};  ///< factor of its reflectance at normal incidence
     float ior = 1.5f;
     float transmission = 0.0f;
-    bool thin = true;  ///< transmission without refraction (no volume); false: a closed body that refracts
+    bool thin = true;     ///< transmission without refraction (no volume); false: a closed body that refracts
     vec3 emission{0.0f};  ///< radiance, strength included
     float normalScale = 1.0f;
-    float occlusionStrength = 1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
+    float occlusionStrength =
+        1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
@@ -102,7 +106,8 @@ struct PunctualLight {
     std::string name;
 };
 
-/// A lat-long picture around the scene: row 0 is +Y, the centre column looks along -Z... (see scene/environment.h).
+/// A lat-long picture around the scene: row 0 is +Y, the centre column looks along -Z... (see
+/// scene/environment.h).
 struct Environment {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -114,9 +119,9 @@ struct Camera {
     std::string name;
     mat4 toWorld{1.0f};  ///< rigid: no scale
     bool orthographic = false;
-    float verticalFov = 0.8f;   ///< radians, perspective
-    float halfHeight = 1.0f;    ///< world units, orthographic
-    float aspect = 0.0f;        ///< width / height the author meant; 0: the image's
+    float verticalFov = 0.8f;  ///< radians, perspective
+    float halfHeight = 1.0f;   ///< world units, orthographic
+    float aspect = 0.0f;       ///< width / height the author meant; 0: the image's
 };
 
 struct Scene {

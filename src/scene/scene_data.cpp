@@ -1,8 +1,8 @@
 #include "scene/scene_data.h"
 
-#include "scene/pack.h"
-
 #include <algorithm>
+
+#include "scene/pack.h"
 
 namespace limpid::scene {
 namespace {
@@ -22,7 +22,8 @@ uint64_t bytesIn(const std::vector<T>& values) {
 
 size_t Scene::triangleCount() const {
     size_t count = 0;
-    for (const Instance& instance : instances) count += meshes[static_cast<size_t>(instance.mesh)].triangleCount();
+    for (const Instance& instance : instances)
+        count += meshes[static_cast<size_t>(instance.mesh)].triangleCount();
     return count;
 }
 

@@ -1,19 +1,20 @@
 // A scene in the form that shaders read (shaders/scene_layout.h), still on the CPU and testable there.
 #pragma once
 
-#include "scene/scene.h"
-#include "shaders/scene_layout.h"
-
 #include <array>
 #include <cstdint>
 #include <vector>
+
+#include "scene/scene.h"
+#include "shaders/scene_layout.h"
 
 namespace limpid::scene {
 
 /// Which parts of the shaders a scene needs; each member is a specialisation constant in scene_data.glsl.
 struct SceneFeatures {
-    bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false, transmission = false,
-         triangleLights = false, punctualLights = false, environment = false, mirrored = false;
+    bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
+         transmission = false, triangleLights = false, punctualLights = false, environment = false,
+         mirrored = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

@@ -69,9 +69,11 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.smoothSurface = s.roughness < SMOOTH_ROUGHNESS;
     b.eta = s.front ? s.ior : 1.0 / s.ior;
     const float root = (s.ior - 1.0) / (s.ior + 1.0);
-    b.coatF0 = root * root * s.specular;
+    // KHR_materials_specular: the base below gets what the strongest channel of the coat lets through.
+    const vec3 coatF0 = min(root * root * s.specularColor, vec3(1.0)) * s.specular;
+    b.coatF0 = max(coatF0.r, max(coatF0.g, coatF0.b));
     b.coatF90 = s.specular;
-    b.f0 = metal * s.baseColor + vec3((dielectric - refracting) * b.coatF0);
+    b.f0 = metal * s.baseColor + (dielectric - refracting) * coatF0;
     b.f90 = metal + (dielectric - refracting) * b.coatF90;
     b.albedo = ggxAlbedo(b.wo.z, b.roughness);
     b.coatLoss = b.coatF0 * b.albedo.x + b.coatF90 * b.albedo.y;

@@ -7,8 +7,9 @@
 namespace limpid {
 #endif
 
-/// A pixel at (x, y) in [-1, 1]^2 (y up) sees along forward + x right + y up (perspective; right and up are scaled by
-/// the tangents of the half angles), or along forward from origin + x right + y up (orthographic; half extents).
+/// A pixel at (x, y) in [-1, 1]^2 (y up) sees along forward + x right + y up (perspective; right and up are
+/// scaled by the tangents of the half angles), or along forward from origin + x right + y up (orthographic;
+/// half extents).
 struct CameraParams {
     vec3 origin;
     uint orthographic;

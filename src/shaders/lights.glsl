@@ -5,10 +5,12 @@
 
 #include "shaders/environment.glsl"
 #include "shaders/material.glsl"
+#include "shaders/trace.glsl"
 
 struct LightSample {
     vec3 direction;
-    float distance;  // the shadow ray ends here
+    float distance;  // INFINITE_DISTANCE: no target, only a direction
+    vec3 target;     // just before the light: where the shadow ray ends
     vec3 radiance;   // incident, for punctual lights divided by nothing: weight = radiance / pdf
     float pdf;       // per solid angle; for punctual lights the probability of choosing the light
     bool delta;      // only this technique finds the light
@@ -58,9 +60,9 @@ LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 fro
         normal = -normal;
     }
     LightSample light;
-    const vec3 end = offsetRay(point, normal, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)))) - from;
-    light.distance = length(end);
-    light.direction = end / max(light.distance, 1e-37);
+    light.target = offsetRay(point, normal, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2))));
+    light.distance = sqrt(distance2);
+    light.direction = toLight / max(light.distance, 1e-37);
     const bool visible = cosine > 0.0 && doubleArea > 0.0;
     light.pdf = visible ? uintBitsToFloat(r1.w) * 2.0 * distance2 / (doubleArea * cosine) : 0.0;
     const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
@@ -73,6 +75,7 @@ LightSample samplePunctualLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 fro
     const uint kind = r0.w & LIGHT_KIND_MASK;
     const vec3 axis = uintBitsToFloat(r1.xyz);
     LightSample light;
+    light.target = uintBitsToFloat(r0.xyz);
     if (kind == LIGHT_DIRECTIONAL) {
         light.direction = -axis;
         light.distance = INFINITE_DISTANCE;
@@ -88,16 +91,25 @@ LightSample samplePunctualLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 fro
     return light;
 }
 
+/// The ray that must be free for the light to count. It runs from start to target, both moved off their surfaces: along
+/// the unmoved direction the two offsets could cancel and let the light shadow itself.
+Ray shadowRay(vec3 start, LightSample light) {
+    if (light.distance == INFINITE_DISTANCE) return Ray(start, light.direction, INFINITE_DISTANCE);
+    const vec3 path = light.target - start;
+    const float distance = length(path);
+    return Ray(start, path / max(distance, 1e-37), distance);
+}
+
 /// A light as seen from `from`; pdf 0: nothing to be had there.
 LightSample sampleLight(vec3 from, SceneParams scene, inout uint rng) {
     const float choice = random(rng), decision = random(rng);
     const vec2 u = random2(rng);
-    LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), 0.0, false);
+    LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
     const float environmentShare = HAS_ENVIRONMENT ? scene.environmentProbability : 0.0;
     if (HAS_ENVIRONMENT) {
         if (choice < environmentShare) {
             const EnvironmentSample s = sampleEnvironment(vec2(choice / environmentShare, decision), u, scene);
-            light = LightSample(s.direction, INFINITE_DISTANCE, s.radiance, s.pdf * environmentShare, false);
+            light = LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf * environmentShare, false);
         }
     }
     if (HAS_TRIANGLE_LIGHTS || HAS_PUNCTUAL_LIGHTS) {

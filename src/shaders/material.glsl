@@ -16,7 +16,9 @@ struct Surface {
     uint instance, primitive, material;
     vec3 baseColor;
     float metallic, roughness, specular, ior, transmission;
+    vec3 specularColor;  // factor of the dielectric's reflectance at normal incidence
     bool thin, unlit;
+    bool culled;    // the back of a single-sided, not transmitting material
     vec3 emission;  // radiance towards the viewer
     float area;     // of the triangle
 };
@@ -60,21 +62,27 @@ float crossArea(vec2 a, vec2 b, vec2 c) {
 }
 
 VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
-    const vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
-    VertexData data = VertexData(vec3(0.0), vec4(0.0), vec2(0.0), vec2(0.0), vec4(0.0), vec2(0.0));
+    vec3 normals[3];
+    vec4 tangents[3], colors[3];
     vec2 uv0[3], uv1[3];
     for (int i = 0; i < 3; ++i) {
         const int at = int(indices[i] * VERTEX_TEXELS);
         const uvec4 a = imageLoad(vertices, at), b = imageLoad(vertices, at + 1);
-        data.normal += weights[i] * decodeOctahedral(a.x);
-        data.tangent.xyz += weights[i] * decodeOctahedral(a.y);
-        if (i == 0) data.tangent.w = (a.y & 1u) != 0u ? -1.0 : 1.0;
+        normals[i] = decodeOctahedral(a.x);
+        tangents[i] = vec4(decodeOctahedral(a.y), (a.y & 1u) != 0u ? -1.0 : 1.0);
         uv0[i] = uintBitsToFloat(a.zw);
         uv1[i] = uintBitsToFloat(b.xy);
-        data.color += weights[i] * vec4(unpackUnorm2x16(b.z), unpackUnorm2x16(b.w));
+        colors[i] = vec4(unpackUnorm2x16(b.z), unpackUnorm2x16(b.w));
     }
-    data.uv0 = weights.x * uv0[0] + weights.y * uv0[1] + weights.z * uv0[2];
-    data.uv1 = weights.x * uv1[0] + weights.y * uv1[1] + weights.z * uv1[2];
+    const float u = barycentrics.x, v = barycentrics.y;
+    // From the first vertex: exact where all three are equal, as an alpha at its cutoff must be.
+    VertexData data;
+    data.normal = interpolate(normals[0], normals[1], normals[2], barycentrics);
+    data.tangent.xyz = interpolate(tangents[0].xyz, tangents[1].xyz, tangents[2].xyz, barycentrics);
+    data.tangent.w = tangents[0].w;
+    data.uv0 = uv0[0] + u * (uv0[1] - uv0[0]) + v * (uv0[2] - uv0[0]);
+    data.uv1 = uv1[0] + u * (uv1[1] - uv1[0]) + v * (uv1[2] - uv1[0]);
+    data.color = colors[0] + u * (colors[1] - colors[0]) + v * (colors[2] - colors[0]);
     data.uvDensity = vec2(crossArea(uv0[0], uv0[1], uv0[2]), crossArea(uv1[0], uv1[1], uv1[2]));
     return data;
 }
@@ -140,14 +148,21 @@ vec3 objectToWorld(uint instance, vec4 p) {
                 dot(uintBitsToFloat(imageLoad(instances, at + 2)), p));
 }
 
-/// The shading normal on the viewer's side. A mapped or interpolated normal may point away from the viewer at
-/// silhouettes; it is tilted back until it just faces them.
+/// The shading normal on the viewer's side. A mapped or interpolated normal may point away from the viewer, or mirror
+/// them into the surface, which would be black; it is tilted just as far as it takes to face them and to mirror them
+/// along the surface.
 vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
-    const float cosine = dot(normal, toViewer);
     const float least = 0.01;
-    if (cosine >= least) return normal;
-    const vec3 tilted = normal + (least - cosine) * toViewer;
-    return dot(tilted, tilted) > 1e-8 ? normalize(tilted) : geometricNormal;
+    vec3 facing = normal;
+    const float cosine = dot(normal, toViewer);
+    if (cosine < least) {
+        const vec3 tilted = normal + (least - cosine) * toViewer;
+        facing = dot(tilted, tilted) > 1e-8 ? normalize(tilted) : geometricNormal;
+    }
+    const vec3 mirrored = reflect(-toViewer, facing);
+    const float height = dot(mirrored, geometricNormal);
+    const float lowest = min(least, 0.5 * dot(geometricNormal, toViewer));
+    return height >= lowest ? facing : normalize(toViewer + normalize(mirrored + (lowest - height) * geometricNormal));
 }
 
 /// `toViewer`: unit; `coneWidth`: width of the ray's footprint here, for texture levels.
@@ -193,6 +208,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     s.specular = uintBitsToFloat(m2.y);
     s.ior = uintBitsToFloat(m2.z);
     s.transmission = uintBitsToFloat(m2.w);
+    s.specularColor = HAS_SPECULAR ? uintBitsToFloat(imageLoad(materials, material + 5).yzw) : vec3(1.0);
     s.thin = (m0.w & MATERIAL_THIN) != 0u;
     s.unlit = (m0.w & MATERIAL_UNLIT) != 0u;
     if (HAS_VERTEX_DATA) {
@@ -227,8 +243,9 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         }
         s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);
     }
-    const bool emits = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
-    s.emission = s.unlit ? s.baseColor : emits ? s.emission : vec3(0.0);
+    const bool visible = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
+    s.emission = s.unlit ? s.baseColor : visible ? s.emission : vec3(0.0);
+    s.culled = !visible && s.transmission == 0.0;
     s.roughness = clamp(s.roughness, 0.0, 1.0);
     s.metallic = clamp(s.metallic, 0.0, 1.0);
     return s;

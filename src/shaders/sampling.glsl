@@ -43,7 +43,8 @@ float powerHeuristic(float a, float b) {
 
 /// Lat-long map: row 0 is +Y, the centre column is -Z (scene/environment.h).
 vec2 latLongOf(vec3 d) {
-    return vec2(atan(d.x, -d.z) / (2.0 * PI) + 0.5, acos(clamp(d.y, -1.0, 1.0)) / PI);
+    // Not acos(d.y): lavapipe's is off by 5e-5 of the picture's height.
+    return vec2(atan(d.x, -d.z) / (2.0 * PI) + 0.5, atan(length(d.xz), d.y) / PI);
 }
 
 vec3 directionOfLatLong(vec2 uv) {

@@ -1,5 +1,5 @@
-// How the scene lies in storage texel buffers: included by C++ (scene/scene_data.*) and by GLSL (scene_data.glsl).
-// A texel is 16 bytes unless said otherwise; floats are stored by their bits.
+// How the scene lies in storage texel buffers: included by C++ (scene/scene_data.*) and by GLSL
+// (scene_data.glsl). A texel is 16 bytes unless said otherwise; floats are stored by their bits.
 #ifndef LIMPID_SHADERS_SCENE_LAYOUT_H
 #define LIMPID_SHADERS_SCENE_LAYOUT_H
 
@@ -16,8 +16,8 @@ LIMPID_CONST uint NONE = 0xFFFFFFFFu;
 // bvhNodes: scene/bvh.h's BvhNode.
 LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
 
-// bvhTriangles, in leaf order: v0 | primitive; v1 | instance or NONE (then the one being traversed); v2 | shading
-// triangle. Positions are in world space in the static tree, in object space in an instanced one.
+// bvhTriangles, in leaf order: v0 | primitive; v1 | instance or NONE (then the one being traversed); v2 |
+// shading triangle. Positions are in world space in the static tree, in object space in an instanced one.
 LIMPID_CONST uint BVH_TRIANGLE_TEXELS = 3u;
 LIMPID_CONST uint BVH_TRIANGLE_ALPHA = 0x80000000u;  // in the first texel's w: candidates need the alpha test
 
@@ -28,7 +28,8 @@ LIMPID_CONST uint BVH_INSTANCE_TEXELS = 4u;
 LIMPID_CONST uint TRIANGLE_MATERIAL_MASK = 0x00FFFFFFu;
 LIMPID_CONST uint TRIANGLE_SMOOTH = 0x80000000u;  // has vertex normals
 
-// vertices: normal (octahedral 2 x snorm16) | tangent (octahedral, lowest bit: sign) | uv0; uv1 | colour (4 x unorm16).
+// vertices: normal (octahedral 2 x snorm16) | tangent (octahedral, lowest bit: sign) | uv0; uv1 | colour (4 x
+// unorm16).
 LIMPID_CONST uint VERTEX_TEXELS = 2u;
 
 // instances: three rows of object-to-world; material | first entry in lightDensity or NONE | first shading
@@ -39,7 +40,7 @@ LIMPID_CONST uint INSTANCE_MIRRORED = 1u;  // negative determinant: front faces 
 
 // materials: baseColor rgb | flags; emission | roughness; metallic | specular | ior | transmission;
 // alpha | cutoff | normal scale | 0; texture references (base, metallic-roughness, normal, emission);
-// reference of transmission | 0 | 0 | 0.
+// reference of transmission | specular colour.
 LIMPID_CONST uint MATERIAL_TEXELS = 6u;
 LIMPID_CONST uint MATERIAL_MASK = 1u;
 LIMPID_CONST uint MATERIAL_BLEND = 2u;
@@ -61,9 +62,9 @@ LIMPID_CONST uint TEXTURE_MIN_LINEAR = 128u;
 LIMPID_CONST uint TEXTURE_SRGB = 256u;
 LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
-// lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading triangle;
-// emission | material, or NONE if the emission has no texture. Punctual: position | kind; direction | probability;
-// cos inner | cos outer | range | 0; intensity | 0.
+// lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
+// triangle; emission | material, or NONE if the emission has no texture. Punctual: position | kind; direction
+// | probability; cos inner | cos outer | range | 0; intensity | 0.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
@@ -71,17 +72,19 @@ LIMPID_CONST uint LIGHT_POINT = 2u;
 LIMPID_CONST uint LIGHT_SPOT = 3u;
 LIMPID_CONST uint LIGHT_DIRECTIONAL = 4u;
 LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
-LIMPID_CONST uint LIGHT_MIRRORED = 8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
+LIMPID_CONST uint LIGHT_MIRRORED =
+    8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
 
-// lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other entry.
-// environment: radiance | probability of choosing this texel.
+// lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
+// entry. environment: radiance | probability of choosing this texel.
 
-// ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + B), their
-// cosine-weighted averages over the row (A, B).
+// ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + B),
+// their cosine-weighted averages over the row (A, B).
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
-// dielectricTable: energy that single scattering keeps at a rough refracting surface, [eta][roughness][cosine]. The
-// first DIELECTRIC_ETA_NODES are for eta (index behind over index before) below 1, the others for above: total
-// reflection makes two functions of it. Node i has |log eta| = (i / (NODES - 1))^2 log ETA_MAX, dense near 1.
+// dielectricTable: energy that single scattering keeps at a rough refracting surface,
+// [eta][roughness][cosine]. The first DIELECTRIC_ETA_NODES are for eta (index behind over index before) below
+// 1, the others for above: total reflection makes two functions of it. Node i has |log eta| = (i / (NODES -
+// 1))^2 log ETA_MAX, dense near 1.
 LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 16u;
 LIMPID_CONST uint DIELECTRIC_ETA_NODES = 16u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
@@ -93,7 +96,7 @@ LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
 struct SceneParams {
     vec3 sceneCenter;
     float sceneRadius;
-    uint lightCount;             // entries of the alias table
+    uint lightCount;               // entries of the alias table
     float environmentProbability;  // of choosing the environment in next-event estimation
     uint environmentWidth;
     uint environmentHeight;

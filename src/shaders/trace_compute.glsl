@@ -1,9 +1,9 @@
 // Ray traversal of the quantised four-wide trees that scene/bvh.h describes.
 //
 // Two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG
-// 2009): first all lanes descend to a leaf, then all test triangles. Triangle test: signed volumes of the edges as in
-// Embree's robust mode; an edge shared by two triangles gives the same number with opposite sign, so that no ray slips
-// between them.
+// 2009): first all lanes descend to a leaf, then all test triangles. The triangle test is watertight: S. Woop,
+// C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2013, with two vectors across the ray in place of
+// their shear; a vertex projects to the same point whichever triangle it is seen from.
 #ifndef LIMPID_TRACE_COMPUTE_GLSL
 #define LIMPID_TRACE_COMPUTE_GLSL
 
@@ -15,13 +15,16 @@ const uint KEY_MISS = 0xffffffffu;
 
 struct TraversalRay {
     vec3 origin, direction, inverse;
+    vec3 acrossX, acrossY;  // perpendicular to the ray, of any length
 };
 
 TraversalRay traversalRay(vec3 origin, vec3 direction) {
     // A component of 0 would make 0 * infinity; the smallest direction that does not overflow stands for it.
     const vec3 tiny = vec3(1e-18);
     const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
-    return TraversalRay(origin, direction, 1.0 / safe);
+    const vec3 acrossX = abs(direction.x) > abs(direction.z) ? vec3(-direction.y, direction.x, 0.0)
+                                                             : vec3(0.0, -direction.z, direction.y);
+    return TraversalRay(origin, direction, 1.0 / safe, acrossX, cross(direction, acrossX));
 }
 
 vec4 bytesOf(uint word) {
@@ -70,6 +73,13 @@ uvec4 sortKeys(uvec4 k) {
     return uvec4(k.x, min(k.y, k.z), max(k.y, k.z), k.w);
 }
 
+/// Where a point relative to the ray's origin is seen across the ray. `precise`: the same for every triangle.
+vec2 across(TraversalRay ray, vec3 p) {
+    precise const float x = p.x * ray.acrossX.x + p.y * ray.acrossX.y + p.z * ray.acrossX.z;
+    precise const float y = p.x * ray.acrossY.x + p.y * ray.acrossY.y + p.z * ray.acrossY.z;
+    return vec2(x, y);
+}
+
 /// Replaces `hit` if the triangle is nearer.
 void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hit, inout uint rng) {
     const int at = int(index * BVH_TRIANGLE_TEXELS);
@@ -77,19 +87,19 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const vec3 v0 = texel0.xyz - ray.origin;
     const vec3 v1 = imageLoad(bvhTriangles, at + 1).xyz - ray.origin;
     const vec3 v2 = imageLoad(bvhTriangles, at + 2).xyz - ray.origin;
-    const vec3 e0 = v2 - v0, e1 = v0 - v1, e2 = v1 - v2;
-    const float u = dot(cross(e0, v2 + v0), ray.direction);
-    const float v = dot(cross(e1, v0 + v1), ray.direction);
-    const float w = dot(cross(e2, v1 + v2), ray.direction);
-    const bool inside = min(u, min(v, w)) >= 0.0 || max(u, max(v, w)) <= 0.0;
+    const vec2 a = across(ray, v0), b = across(ray, v1), c = across(ray, v2);
+    // Each difference has the right sign or is 0, which counts as inside: no gap between neighbours.
+    precise const float weight0 = c.x * b.y - c.y * b.x;
+    precise const float weight1 = a.x * c.y - a.y * c.x;
+    precise const float weight2 = b.x * a.y - b.y * a.x;
+    const bool inside = min(weight0, min(weight1, weight2)) >= 0.0 || max(weight0, max(weight1, weight2)) <= 0.0;
     if (!inside) return;
-    const vec3 normal = cross(e1, e0);
-    const float denominator = dot(normal, ray.direction);
-    const float t = dot(v0, normal) / denominator;
+    const vec3 normal = cross(v1 - v0, v2 - v0);
+    const float t = dot(v0, normal) / dot(normal, ray.direction);
+    const float area = weight0 + weight1 + weight2;
     // Written so that a NaN from a degenerate triangle is no hit.
-    bool accepted = denominator != 0.0 && t > 0.0 && t < hit.t;
-    const float area = u + v + w;
-    const vec2 barycentrics = vec2(u, v) / area;
+    bool accepted = area != 0.0 && t > 0.0 && t < hit.t;
+    const vec2 barycentrics = vec2(weight1, weight2) / area;
     if (HAS_ALPHA) {
         if (accepted && (floatBitsToUint(texel0.w) & BVH_TRIANGLE_ALPHA) != 0u) {
             accepted = passesAlphaTest(index, instance, barycentrics, rng);

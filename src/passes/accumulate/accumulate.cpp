@@ -8,10 +8,13 @@ namespace {
 
 vec3 varianceWeights(VarianceOf varianceOf) {
     switch (varianceOf) {
-        case VarianceOf::Luminance: return {0.2126f, 0.7152f, 0.0722f};
-        case VarianceOf::FirstComponent: return {1.0f, 0.0f, 0.0f};
+        case VarianceOf::Luminance:
+            return {0.2126f, 0.7152f, 0.0722f};
+        case VarianceOf::FirstComponent:
+            return {1.0f, 0.0f, 0.0f};
         case VarianceOf::MeanOfComponents:
-        case VarianceOf::Nothing: break;
+        case VarianceOf::Nothing:
+            break;
     }
     return vec3(0.0f);
 }

@@ -1,18 +1,18 @@
 // The accumulation pass: the running mean, by count, of an image over frames.
 #pragma once
 
-#include "gpu/frame_graph.h"
-
 #include <string>
+
+#include "gpu/frame_graph.h"
 
 namespace limpid {
 
 /// What the alpha channel's variance is of.
 enum class VarianceOf { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
-/// Adds `added` (mean of `countAdded` samples; alpha: their mean squared deviation) to the history `name`, which holds
-/// the mean of `countBefore` samples, and returns the new mean. countBefore = 0 starts anew. All images are rgba32f;
-/// with VarianceOf::Nothing alpha is averaged like the rest.
+/// Adds `added` (mean of `countAdded` samples; alpha: their mean squared deviation) to the history `name`,
+/// which holds the mean of `countBefore` samples, and returns the new mean. countBefore = 0 starts anew. All
+/// images are rgba32f; with VarianceOf::Nothing alpha is averaged like the rest.
 gpu::ImageHandle accumulate(gpu::FrameGraph& graph, const std::string& name, gpu::ImageHandle added,
                             uint64_t countBefore, uint32_t countAdded, VarianceOf varianceOf);
 

@@ -31,7 +31,8 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
 }
 
 void dispatch(FrameGraph& graph, const gpu::ShaderCode& shader, const scene::GpuScene& scene,
-              const PathtraceSettings& settings, const PathtraceLaunch& launch, const std::vector<Binding>& images) {
+              const PathtraceSettings& settings, const PathtraceLaunch& launch,
+              const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
     std::vector<Binding> bindings = scene.bindings();
     bindings.insert(bindings.end(), images.begin(), images.end());
@@ -53,18 +54,20 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         ParamTable<S> t("pathtrace");
         t.add("max_depth", &S::maxDepth, 0, 1024, "bounces",
               "scattering events of a path; 0 shows emitters only, more adds indirect light and time");
-        t.add("roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
-              "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier");
+        t.add(
+            "roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
+            "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier");
         t.add("firefly_clamp", &S::fireflyClamp, 0, 1e9, "cd/m^2",
               "biased: indirect samples brighter than this are dimmed to it; 0 is off");
-        t.add("sampler_tea", &S::samplerTea, "the seed document's generator (24 low bits of an LCG) instead of PCG");
+        t.add("sampler_tea", &S::samplerTea,
+              "the seed document's generator (24 low bits of an LCG) instead of PCG");
         return t;
     }();
     return table;
 }
 
-PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
-                                const PathtraceLaunch& launch) {
+PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
+                                const PathtraceSettings& settings, const PathtraceLaunch& launch) {
     const ImageHandle beauty = graph.transient("pathtrace/beauty", Format::RGBA32Float, launch.extent);
     const gpu::History counters = graph.history("pathtrace/counters", Format::RG32Uint, launch.extent);
     dispatch(graph, shaders::pathtrace_comp, scene, settings, launch,
@@ -72,8 +75,8 @@ PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
     return {beauty, counters.current};
 }
 
-PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
-                                const PathtraceLaunch& launch) {
+PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,
+                                const PathtraceSettings& settings, const PathtraceLaunch& launch) {
     PathtraceLayers layers;
     const gpu::History counters = graph.history("pathtrace/counters", Format::RG32Uint, launch.extent);
     layers.counters = counters.current;

@@ -9,6 +9,9 @@ layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
 };
 
+/// Backs of single-sided surfaces that a camera ray passes at most.
+const uint MAX_CULLED = 64u;
+
 /// What the camera sees first, for the layers.
 struct FirstHit {
     bool hit;
@@ -88,7 +91,7 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
         const float side = dot(light.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
         const vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
         ++path.rays;
-        if (!traceAny(Ray(start, light.direction, light.distance), params.scene.rootNode, rng)) {
+        if (!traceAny(shadowRay(start, light), params.scene.rootNode, rng)) {
             path.radiance.diffuse += diffuse;
             path.radiance.specular += specular;
         }
@@ -128,6 +131,8 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         spread = 0.0;
     }
     first = FirstHit(false, ray.direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE));
+    float traveled = 0.0;
+    uint culled = 0u;
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
         ++path.rays;
         const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
@@ -139,7 +144,16 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         const vec3 toViewer = -path.ray.direction;
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
         const Bsdf bsdf = makeBsdf(surface, toViewer);
-        if (depth == 0u) first = firstHitOf(surface, bsdf, hit.t);
+        if (depth == 0u) {
+            traveled += hit.t;
+            // glTF: the back of a single-sided material is not seen. It still blocks light.
+            if (surface.culled && ++culled < MAX_CULLED) {
+                path.ray.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+                --depth;
+                continue;
+            }
+            first = firstHitOf(surface, bsdf, traveled);
+        }
         if (surface.emission != vec3(0.0)) {
             const float density =
                 HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;

@@ -25,30 +25,30 @@ struct PathtraceLaunch {
     CameraParams previousCamera;  ///< of the previous frame of a sequence, for motion
     uint32_t frame = 0;           ///< launches since the last reset
     uint32_t seed = 0;
-    uint32_t samples = 1;         ///< per pixel in this launch
+    uint32_t samples = 1;  ///< per pixel in this launch
     bool jitterPerPixel = true;
-    vec2 jitter{0.5f};            ///< the point inside every pixel, otherwise
+    vec2 jitter{0.5f};  ///< the point inside every pixel, otherwise
 };
 
-/// Means over the launch's samples, rgba32f. Alpha holds the mean squared deviation of luminance (diffuse, specular,
-/// albedo, albedoSpecular, emission) or of the components (normal).
+/// Means over the launch's samples, rgba32f. Alpha holds the mean squared deviation of luminance (diffuse,
+/// specular, albedo, albedoSpecular, emission) or of the components (normal).
 struct PathtraceLayers {
     gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal;
-    gpu::ImageHandle depth;   ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
-    gpu::ImageHandle motion;  ///< xyz: motion, invalid as 0; a: share of valid samples
-    gpu::ImageHandle ids;     ///< rg32ui: instance, material of the first sample; layout::NONE at a miss
+    gpu::ImageHandle depth;     ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
+    gpu::ImageHandle motion;    ///< xyz: motion, invalid as 0; a: share of valid samples
+    gpu::ImageHandle ids;       ///< rg32ui: instance, material of the first sample; layout::NONE at a miss
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };
 struct PathtraceBeauty {
-    gpu::ImageHandle beauty;    ///< mean radiance of the launch's samples
+    gpu::ImageHandle beauty;  ///< mean radiance of the launch's samples
     gpu::ImageHandle counters;
 };
 
 /// The beauty alone; the fast path.
-PathtraceBeauty pathtraceBeauty(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
-                                const PathtraceLaunch& launch);
+PathtraceBeauty pathtraceBeauty(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                                const PathtraceSettings& settings, const PathtraceLaunch& launch);
 /// Every layer.
-PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
-                                const PathtraceLaunch& launch);
+PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                                const PathtraceSettings& settings, const PathtraceLaunch& launch);
 
 }  // namespace limpid

@@ -16,7 +16,7 @@ struct PathtraceParams {
     CameraParams previousCamera;
     uint width;
     uint height;
-    uint frame;    // since the last reset
+    uint frame;  // since the last reset
     uint seed;
     uint samples;  // per pixel in this launch
     uint maxDepth;

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs what Limpid needs from Debian's packages; asks apt only for what is missing. As root or through sudo.
+set -euo pipefail
+
+packages=(
+    build-essential cmake ninja-build pkg-config ca-certificates
+    libvulkan-dev libvulkan-volk-dev glslc libspirv-cross-c-shared-dev
+    libglm-dev libfmt-dev libspdlog-dev libtbb-dev nlohmann-json3-dev libcli11-dev
+    libopenexr-dev libstb-dev
+    libgtest-dev libgmock-dev
+    mesa-vulkan-drivers vulkan-validationlayers
+    "$@"
+)
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+root=()
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "install.sh: run as root, or install sudo; missing: ${missing[*]}" >&2; exit 1; }
+    root=(sudo)
+fi
+echo "Installing: ${missing[*]}"
+"${root[@]}" apt-get update -q
+"${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Release, runs all tests.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/install.sh
+scripts/build.sh release -DLIMPID_TESTS=ON "$@"
+[ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
+ctest --preset release
