@@ -50,9 +50,10 @@ inline vec3 viewerAt(float cosine) {
 inline std::string describe(const NamedMaterial& m) {
     const BsdfParams& p = m.params;
     return fmt::format(
-        "{}: baseColor {} {} {} metallic {} roughness {} specular {} ior {} transmission {} thin {} front {} cosine {} seed {}",
-        m.name, p.baseColor.r, p.baseColor.g, p.baseColor.b, p.metallic, p.roughness, p.specular, p.ior, p.transmission,
-        p.thin, p.front, p.toViewer.z, p.seed);
+        "{}: baseColor {} {} {} metallic {} roughness {} specular {} ior {} transmission {} thin {} front {} "
+        "cosine {} seed {}",
+        m.name, p.baseColor.r, p.baseColor.g, p.baseColor.b, p.metallic, p.roughness, p.specular, p.ior,
+        p.transmission, p.thin, p.front, p.toViewer.z, p.seed);
 }
 
 class BsdfTest : public GpuTest {
@@ -64,7 +65,8 @@ class BsdfTest : public GpuTest {
         scene.materials.emplace_back();
         scene.materials[0].metallic = 0.0f;
         scene.materials[0].transmission = 0.5f;
-        scene.meshes.push_back(scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
+        scene.meshes.push_back(
+            scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
         scene.instances.emplace_back();
         data_ = scene::buildSceneData(scene);
         scene_ = std::make_unique<scene::GpuScene>(device(), data_);

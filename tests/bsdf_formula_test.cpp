@@ -1,6 +1,7 @@
 // Values of the scattering function against the published formulas, in double precision:
-// B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007; E. Heitz, "Understanding the
-// masking-shadowing function in microfacet-based BRDFs", JCGT 2014; C. Kulla, A. Conty, SIGGRAPH 2017 course.
+// B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007; E. Heitz,
+// "Understanding the masking-shadowing function in microfacet-based BRDFs", JCGT 2014; C. Kulla, A. Conty,
+// SIGGRAPH 2017 course.
 #include <cmath>
 #include <numbers>
 
@@ -46,8 +47,8 @@ double fresnel(double cosine, double eta) {
     return 0.5 * (s * s + p * p);
 }
 
-/// f cos of refraction (Walter, equation 21), masking separable; times eta^2: the energy form that bsdf.glsl states.
-/// The light comes from behind the surface, where the index is eta times that of the viewer's side.
+/// f cos of refraction (Walter, equation 21), masking separable; times eta^2: the energy form that bsdf.glsl
+/// states. The light comes from behind the surface, where the index is eta times that of the viewer's side.
 double refracted(const dvec3& wo, const dvec3& wi, double alpha, double eta) {
     dvec3 h = -(wo + eta * wi);
     if (h.z < 0.0) h = -h;
@@ -67,13 +68,16 @@ glm::dvec4 ggxTable(const std::vector<vec4>& table, double cosine, double roughn
     const double x = cosine * (size - 1), y = roughness * (size - 1);
     const int i = std::min(static_cast<int>(x), size - 2), j = std::min(static_cast<int>(y), size - 2);
     const auto at = [&](int a, int b) { return glm::dvec4(table[static_cast<size_t>(b * size + a)]); };
-    return glm::mix(glm::mix(at(i, j), at(i + 1, j), x - i), glm::mix(at(i, j + 1), at(i + 1, j + 1), x - i), y - j);
+    return glm::mix(glm::mix(at(i, j), at(i + 1, j), x - i), glm::mix(at(i, j + 1), at(i + 1, j + 1), x - i),
+                    y - j);
 }
 
 /// The same in three dimensions; one half for eta below 1, one for eta from 1 on.
 double dielectricTable(const std::vector<float>& table, double cosine, double roughness, double eta) {
-    const int size = static_cast<int>(layout::DIELECTRIC_TABLE_SIZE), nodes = static_cast<int>(layout::DIELECTRIC_ETA_NODES);
-    const double coordinate = std::sqrt(std::abs(std::log(eta)) / std::log(double{layout::DIELECTRIC_ETA_MAX}));
+    const int size = static_cast<int>(layout::DIELECTRIC_TABLE_SIZE),
+              nodes = static_cast<int>(layout::DIELECTRIC_ETA_NODES);
+    const double coordinate =
+        std::sqrt(std::abs(std::log(eta)) / std::log(double{layout::DIELECTRIC_ETA_MAX}));
     const double p[3] = {cosine * (size - 1), roughness * (size - 1), coordinate * (nodes - 1)};
     const int lengths[3] = {size, size, nodes};
     double sum = 0.0;
@@ -98,13 +102,15 @@ class BsdfFormulaTest : public BsdfTest {
     static std::vector<vec3> someDirections() {
         std::vector<vec3> directions;
         for (int i = 0; i < 2000; ++i) {
-            const double z = 1.0 - 2.0 * (i + 0.5) / 2000, phi = i * 2.399963229728653, r = std::sqrt(1.0 - z * z);
+            const double z = 1.0 - 2.0 * (i + 0.5) / 2000, phi = i * 2.399963229728653,
+                         r = std::sqrt(1.0 - z * z);
             if (std::abs(z) > 0.01) directions.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
         }
         return directions;
     }
 
-    /// Close to total reflection 1 - F is a difference of nearly equal numbers; float32 has fewer digits there.
+    /// Close to total reflection 1 - F is a difference of nearly equal numbers; float32 has fewer digits
+    /// there.
     static double tolerance(const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
         if (p.transmission == 0.0f || wi.z > 0.0) return 1e-4;
         const double eta = p.front ? double{p.ior} : 1.0 / double{p.ior};
@@ -126,8 +132,9 @@ class BsdfFormulaTest : public BsdfTest {
                 for (int k = 0; k < 3; ++k) {
                     const double error = std::abs(found[k] - expected[k]) / (std::abs(expected[k]) + 1e-4);
                     worst = std::max(worst, error);
-                    ASSERT_LT(error, tolerance(material.params, wo, wi)) << describe(material) << "\n  wi " << wi.x << ' ' << wi.y << ' ' << wi.z
-                                           << " channel " << k << ": " << found[k] << ", by the formula " << expected[k];
+                    ASSERT_LT(error, tolerance(material.params, wo, wi))
+                        << describe(material) << "\n  wi " << wi.x << ' ' << wi.y << ' ' << wi.z
+                        << " channel " << k << ": " << found[k] << ", by the formula " << expected[k];
                 }
             }
         }
@@ -148,14 +155,17 @@ TEST_F(BsdfFormulaTest, MetalWithMultipleScattering) {
         compare({"metal", params}, true, [&](const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
             dvec3 value(0.0);
             if (wi.z <= 0.0) return value;
-            const glm::dvec4 out = ggxTable(data().ggxTable, wo.z, roughness), in = ggxTable(data().ggxTable, wi.z, roughness);
+            const glm::dvec4 out = ggxTable(data().ggxTable, wo.z, roughness),
+                             in = ggxTable(data().ggxTable, wi.z, roughness);
             const double eo = out.x + out.y, ei = in.x + in.y, average = out.z + out.w;
             for (int k = 0; k < 3; ++k) {
                 const double f0 = double{p.baseColor[k]}, fAverage = f0 + (1.0 - f0) / 21.0;
-                // Kulla and Conty: f_ms = (1 - Eo)(1 - Ei) / (pi (1 - Eavg)) times Favg^2 Eavg / (1 - Favg (1 - Eavg)).
-                const double multiple = (1.0 - eo) * (1.0 - ei) / (pi64 * (1.0 - average)) * fAverage * fAverage * average /
-                                        (1.0 - fAverage * (1.0 - average));
-                value[k] = reflected(wo, wi, double{roughness} * double{roughness}, f0, 1.0) + multiple * wi.z;
+                // Kulla and Conty: f_ms = (1 - Eo)(1 - Ei) / (pi (1 - Eavg)) times Favg^2 Eavg / (1 - Favg (1
+                // - Eavg)).
+                const double multiple = (1.0 - eo) * (1.0 - ei) / (pi64 * (1.0 - average)) * fAverage *
+                                        fAverage * average / (1.0 - fAverage * (1.0 - average));
+                value[k] =
+                    reflected(wo, wi, double{roughness} * double{roughness}, f0, 1.0) + multiple * wi.z;
             }
             return value;
         });
@@ -165,8 +175,12 @@ TEST_F(BsdfFormulaTest, MetalWithMultipleScattering) {
 TEST_F(BsdfFormulaTest, RefractingBoundary) {
     for (const bool front : {true, false}) {
         for (const float roughness : {0.3f, 0.7f}) {
-            const BsdfParams params{.baseColor = {0.9f, 0.5f, 0.2f}, .roughness = roughness, .ior = 1.5f,
-                                    .transmission = 1.0f, .thin = 0, .front = front};
+            const BsdfParams params{.baseColor = {0.9f, 0.5f, 0.2f},
+                                    .roughness = roughness,
+                                    .ior = 1.5f,
+                                    .transmission = 1.0f,
+                                    .thin = 0,
+                                    .front = front};
             compare({"glass", params}, true, [&](const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
                 const double alpha = double{roughness} * double{roughness};
                 const double eta = front ? double{p.ior} : 1.0 / double{p.ior};
@@ -192,7 +206,8 @@ TEST_F(BsdfFormulaTest, AlbedoTable) {
             for (int i = 0; i < rows; ++i) {
                 for (int j = 0; j < columns; ++j) {
                     const double theta = (i + 0.5) / rows * pi64 / 2.0, phi = (j + 0.5) / columns * pi64;
-                    const dvec3 wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+                    const dvec3 wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                   std::cos(theta));
                     const double area = std::sin(theta) * (pi64 / 2.0 / rows) * (2.0 * pi64 / columns);
                     sum.x += area * reflected(wo, wi, roughness * roughness, 1.0, 0.0);
                     sum.y += area * reflected(wo, wi, roughness * roughness, 0.0, 1.0);

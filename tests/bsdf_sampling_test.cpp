@@ -1,4 +1,5 @@
-// Sampling against density: chi-square tests, normalisation, and albedo by sampling against albedo by quadrature.
+// Sampling against density: chi-square tests, normalisation, and albedo by sampling against albedo by
+// quadrature.
 #include <cmath>
 
 #include "bsdf_fixture.h"
@@ -19,11 +20,21 @@ BsdfParams pane(float roughness) {
     return {.baseColor = vec3(0.8f), .roughness = roughness, .transmission = 1.0f};
 }
 BsdfParams glass(float roughness, float ior, bool front) {
-    return {.baseColor = vec3(0.9f), .roughness = roughness, .ior = ior, .transmission = 1.0f, .thin = 0, .front = front};
+    return {.baseColor = vec3(0.9f),
+            .roughness = roughness,
+            .ior = ior,
+            .transmission = 1.0f,
+            .thin = 0,
+            .front = front};
 }
 BsdfParams mixture(float roughness, bool thin, bool front) {
-    return {.baseColor = {0.8f, 0.5f, 0.2f}, .metallic = 0.3f, .roughness = roughness, .ior = 1.8f,
-            .transmission = 0.6f, .thin = thin, .front = front};
+    return {.baseColor = {0.8f, 0.5f, 0.2f},
+            .metallic = 0.3f,
+            .roughness = roughness,
+            .ior = 1.8f,
+            .transmission = 0.6f,
+            .thin = thin,
+            .front = front};
 }
 
 std::vector<NamedMaterial> materials() {
@@ -84,15 +95,16 @@ class BsdfSamplingTest : public BsdfTest {
         const double lacking = 1.0 - integral;
         const double sigma = std::sqrt(std::max(lacking * integral, 1e-9) / sampleCount);
         const double difference = std::abs(nowhere / sampleCount - lacking);
-        EXPECT_LT(difference, 4.5 * sigma + 5e-4) << "the density adds up to " << integral << ", of the samples "
-                                                  << nowhere / sampleCount << " were invalid or smooth";
+        EXPECT_LT(difference, 4.5 * sigma + 5e-4)
+            << "the density adds up to " << integral << ", of the samples " << nowhere / sampleCount
+            << " were invalid or smooth";
         totals.worstNormalisation = std::max(totals.worstNormalisation, difference);
     }
 
     void checkAlbedo(double integral, double mean, double meanSquare, Totals& totals) {
         const double sigma = std::sqrt(std::max(meanSquare - mean * mean, 0.0) / sampleCount);
-        EXPECT_LT(std::abs(mean - integral), 4.5 * sigma + 1e-3) << "albedo by quadrature " << integral << ", by sampling "
-                                                                  << mean << " +- " << sigma;
+        EXPECT_LT(std::abs(mean - integral), 4.5 * sigma + 1e-3)
+            << "albedo by quadrature " << integral << ", by sampling " << mean << " +- " << sigma;
         EXPECT_LE(integral, 1.005);
         totals.worstAlbedo = std::max(totals.worstAlbedo, std::abs(mean - integral));
     }
@@ -104,8 +116,8 @@ class BsdfSamplingTest : public BsdfTest {
             totals.smallest = describe(material);
         }
         // 1e-3 over all of about sixty tests.
-        EXPECT_GT(result.p, 1e-3 / 60) << "chi-square " << result.statistic << " with " << result.degreesOfFreedom
-                                       << " degrees of freedom; " << result.worst;
+        EXPECT_GT(result.p, 1e-3 / 60) << "chi-square " << result.statistic << " with "
+                                       << result.degreesOfFreedom << " degrees of freedom; " << result.worst;
     }
 };
 
@@ -120,11 +132,13 @@ TEST_F(BsdfSamplingTest, DirectionsFollowTheDensity) {
         }
     }
     RecordProperty("summary", fmt::format("{} tests, smallest p {}", totals.tests, totals.smallestP));
-    fmt::print("chi-square: {} tests, smallest p {:.2g} ({}); normalisation within {:.2g}, albedo within {:.2g}\n",
-               totals.tests, totals.smallestP, totals.smallest, totals.worstNormalisation, totals.worstAlbedo);
+    fmt::print(
+        "chi-square: {} tests, smallest p {:.2g} ({}); normalisation within {:.2g}, albedo within {:.2g}\n",
+        totals.tests, totals.smallestP, totals.smallest, totals.worstNormalisation, totals.worstAlbedo);
 }
 
-/// A shading normal that differs from the true one: directions that would leave on the wrong side are invalid.
+/// A shading normal that differs from the true one: directions that would leave on the wrong side are
+/// invalid.
 TEST_F(BsdfSamplingTest, TiltedShadingNormal) {
     Totals totals;
     for (NamedMaterial material : {NamedMaterial{"tilted plastic", plastic(0.4f)},

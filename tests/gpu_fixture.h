@@ -32,7 +32,8 @@ class GpuTest : public testing::Test {
   protected:
     void SetUp() override {
         if (gpu::enumerateDevices().empty()) {
-            GTEST_SKIP() << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
+            GTEST_SKIP()
+                << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
         }
         const char* variable = std::getenv("LIMPID_TEST_DEVICE");
         const std::string wanted = variable ? variable : "cpu";
@@ -60,7 +61,8 @@ class GpuTest : public testing::Test {
     template <typename Result>
     std::vector<Result> run(const Job& job, size_t resultCount) {
         const gpu::Buffer results = device().createStorageBuffer("results", resultCount * sizeof(Result));
-        gpu::Dispatch dispatch{.pass = "test", .shader = job.shader, .bindings = job.buffers, .params = job.params};
+        gpu::Dispatch dispatch{
+            .pass = "test", .shader = job.shader, .bindings = job.buffers, .params = job.params};
         dispatch.constants = job.constants;
         if (job.scene) {
             for (const gpu::Binding& b : job.scene->bindings()) dispatch.bindings.push_back(b);

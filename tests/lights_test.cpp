@@ -1,6 +1,7 @@
 // Light sampling against densities that are known, or integrated numerically.
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "environment_pdf.comp.h"
 #include "gpu_fixture.h"
@@ -92,9 +93,11 @@ Met meet(const std::vector<Emitter>& emitters, const vec3& from, const vec3& dir
     double nearest = 1e30;
     for (size_t i = 0; i < emitters.size(); ++i) {
         const Emitter& e = emitters[i];
-        const dvec3 e1 = dvec3(e.v[1]) - dvec3(e.v[0]), e2 = dvec3(e.v[2]) - dvec3(e.v[0]), s = dvec3(from) - dvec3(e.v[0]);
+        const dvec3 e1 = dvec3(e.v[1]) - dvec3(e.v[0]), e2 = dvec3(e.v[2]) - dvec3(e.v[0]),
+                    s = dvec3(from) - dvec3(e.v[0]);
         const dvec3 d(direction), p = glm::cross(d, e2), q = glm::cross(s, e1);
-        const double determinant = glm::dot(e1, p), u = glm::dot(s, p) / determinant, v = glm::dot(d, q) / determinant;
+        const double determinant = glm::dot(e1, p), u = glm::dot(s, p) / determinant,
+                     v = glm::dot(d, q) / determinant;
         const double t = glm::dot(e2, q) / determinant;
         // A little beyond the edges, for points that rounding moves there.
         if (u < -1e-3 || v < -1e-3 || u + v > 1.001 || !(t > 0.0) || t > nearest) continue;
@@ -131,10 +134,10 @@ class LightsTest : public GpuTest {
         return run<vec4>(job, count);
     }
 
-    /// Triangles: uniform over each, chosen by power. `share` is the probability that a triangle is asked at all.
-    /// Returns how many samples were of triangles.
-    void checkTriangles(const std::vector<Emitter>& emitters, const std::vector<DrawnLight>& drawn, const vec3& from,
-                        double share) {
+    /// Triangles: uniform over each, chosen by power. `share` is the probability that a triangle is asked at
+    /// all. Returns how many samples were of triangles.
+    void checkTriangles(const std::vector<Emitter>& emitters, const std::vector<DrawnLight>& drawn,
+                        const vec3& from, double share) {
         constexpr size_t side = 8;
         double power = 0.0, visible = 0.0;
         for (const Emitter& e : emitters) power += e.power();
@@ -145,7 +148,8 @@ class LightsTest : public GpuTest {
             const double probability = share * emitters[i].power() / power;
             visible += probability;
             for (size_t bin = 0; bin < side * side; ++bin) {
-                expected[i * side * side + bin] = static_cast<double>(drawn.size()) * probability / (side * side);
+                expected[i * side * side + bin] =
+                    static_cast<double>(drawn.size()) * probability / (side * side);
             }
         }
         double none = 0.0, different = 0.0;
@@ -171,7 +175,8 @@ class LightsTest : public GpuTest {
         const double hidden = std::max(share - visible, 0.0);
         // A ray to a point on the very edge may miss it.
         EXPECT_LE(different, n / 5000.0) << "densities of a hit that differ from the sampled ones";
-        EXPECT_NEAR(none, n * hidden, 4.5 * std::sqrt(n * hidden) + 1e-6) << "samples of lights seen from behind";
+        EXPECT_NEAR(none, n * hidden, 4.5 * std::sqrt(n * hidden) + 1e-6)
+            << "samples of lights seen from behind";
         expectFit(observed, expected);
     }
 
@@ -179,7 +184,8 @@ class LightsTest : public GpuTest {
     static size_t binOf(const Met& met, size_t side) {
         const double sum = std::clamp(met.u + met.v, 1e-9, 1.0);
         const auto clampIndex = [&](double x) {
-            return static_cast<size_t>(std::clamp(x * static_cast<double>(side), 0.0, static_cast<double>(side) - 0.5));
+            return static_cast<size_t>(
+                std::clamp(x * static_cast<double>(side), 0.0, static_cast<double>(side) - 0.5));
         };
         return clampIndex(sum * sum) * side + clampIndex(met.v / sum);
     }
@@ -197,12 +203,14 @@ class LightsTest : public GpuTest {
         EXPECT_FALSE(result.impossible);
         EXPECT_GT(result.p, 1e-4) << "chi-square " << result.statistic << " with " << result.degreesOfFreedom
                                   << " degrees of freedom; " << result.worst;
-        fmt::print("{} bins, chi-square {:.1f}, p {:.3f}\n", result.degreesOfFreedom + 1, result.statistic, result.p);
+        fmt::print("{} bins, chi-square {:.1f}, p {:.3f}\n", result.degreesOfFreedom + 1, result.statistic,
+                   result.p);
     }
 
     /// The environment in bins of half a texel, the density integrated over each.
     void checkEnvironment(const scene::Scene& scene, const std::vector<DrawnLight>& drawn, double share) {
-        const size_t columns = size_t{scene.environment.width} * 2, rows = size_t{scene.environment.height} * 2;
+        const size_t columns = size_t{scene.environment.width} * 2,
+                     rows = size_t{scene.environment.height} * 2;
         constexpr size_t fine = 4;
         std::vector<vec3> directions;
         std::vector<double> areas;
@@ -211,7 +219,8 @@ class LightsTest : public GpuTest {
                 const double u = (static_cast<double>(x) + 0.5) / static_cast<double>(columns * fine);
                 const double v = (static_cast<double>(y) + 0.5) / static_cast<double>(rows * fine);
                 directions.push_back(scene::uvToDirection(vec2(u, v)));
-                areas.push_back(2.0 * pi64 * pi64 * std::sin(pi64 * v) / static_cast<double>(columns * rows * fine * fine));
+                areas.push_back(2.0 * pi64 * pi64 * std::sin(pi64 * v) /
+                                static_cast<double>(columns * rows * fine * fine));
             }
         }
         const std::vector<vec4> values = environmentAt(scene, directions);
@@ -264,19 +273,52 @@ TEST_F(LightsTest, EnvironmentWithASun) {
     checkEnvironmentPdf(drawn);
 }
 
+/// Directions find the place in the picture that environment.h says: pictures that hold their own
+/// coordinates.
+TEST_F(LightsTest, EnvironmentLookUpIsExact) {
+    scene::Scene scene = sceneOf({});
+    scene.environment = {64, 32, {}};
+    for (uint32_t y = 0; y < 32; ++y) {
+        for (uint32_t x = 0; x < 64; ++x) {
+            scene.environment.radiance.emplace_back((static_cast<float>(x) + 0.5f) / 64,
+                                                    (static_cast<float>(y) + 0.5f) / 32, 0);
+        }
+    }
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<vec3> directions;
+    while (directions.size() < 20000) {
+        const dvec3 d(uniform(random), uniform(random), uniform(random));
+        if (glm::length(d) > 0.1) directions.emplace_back(glm::normalize(d));
+    }
+    const std::vector<vec4> values = environmentAt(scene, directions);
+    double worstU = 0.0, worstV = 0.0;
+    for (size_t i = 0; i < directions.size(); ++i) {
+        const dvec3 d = glm::normalize(dvec3(directions[i]));
+        const double u = std::atan2(d.x, -d.z) / (2.0 * pi64) + 0.5, v = std::acos(d.y) / pi64;
+        // Half a texel at the border is constant, or wraps; near a pole u is ill-conditioned.
+        if (u > 0.01 && u < 0.99 && std::abs(d.y) < 0.98)
+            worstU = std::max(worstU, std::abs(double{values[i].x} - u));
+        if (v > 0.02 && v < 0.98) worstV = std::max(worstV, std::abs(double{values[i].y} - v));
+    }
+    fmt::print("look-up is off by {:.2g} of the width, {:.2g} of the height\n", worstU, worstV);
+    // A twentieth of a texel of a picture of 4096 x 2048.
+    EXPECT_LT(worstU, 0.05 / 4096);
+    EXPECT_LT(worstV, 0.05 / 2048);
+}
+
+/// What a sample brings is what a ray in its direction finds.
 TEST_F(LightsTest, EnvironmentRadianceIsTheSampledOne) {
     scene::Scene scene = sceneOf({});
     scene.environment = sunnyEnvironment();
+    for (vec3& radiance : scene.environment.radiance) radiance = glm::min(radiance, vec3(20.0f));
     const std::vector<DrawnLight> drawn = draw(scene, vec3(0.0f), 4096, 4);
     std::vector<vec3> directions;
     for (const DrawnLight& light : drawn) directions.push_back(light.direction);
     const std::vector<vec4> values = environmentAt(scene, directions);
-    double different = 0;
     for (size_t i = 0; i < drawn.size(); ++i) {
-        different += std::abs(values[i].x - drawn[i].radiance.x) > 1e-3f * drawn[i].radiance.x + 2.0f;
+        ASSERT_NEAR(values[i].x, drawn[i].radiance.x, 0.02f) << "sample " << i << " of seed 4";
     }
-    // The sun's edge is steep: 50,000 over one texel, so the fifth digit of the direction counts.
-    EXPECT_EQ(different, 0.0);
 }
 
 TEST_F(LightsTest, MixtureOfEverything) {
@@ -289,7 +331,8 @@ TEST_F(LightsTest, MixtureOfEverything) {
     checkEnvironmentPdf(drawn);
 }
 
-/// Punctual lights beside triangles: each is chosen by its power, and comes with that probability and its radiance.
+/// Punctual lights beside triangles: each is chosen by its power, and comes with that probability and its
+/// radiance.
 TEST_F(LightsTest, PunctualLights) {
     scene::Scene scene = sceneOf(oneTriangle);
     scene::PunctualLight point, spot;
@@ -303,7 +346,8 @@ TEST_F(LightsTest, PunctualLights) {
     spot.outerCone = 0.5f;
     scene.lights = {point, spot};
     const vec3 from(0.0f);
-    const double powers[] = {pi64 * oneTriangle[0].power(), 4.0 * pi64 * 5.0, 2.0 * pi64 * (1.0 - std::cos(0.5)) * 40.0};
+    const double powers[] = {pi64 * oneTriangle[0].power(), 4.0 * pi64 * 5.0,
+                             2.0 * pi64 * (1.0 - std::cos(0.5)) * 40.0};
     const double sum = powers[0] + powers[1] + powers[2];
     std::vector<double> observed(3, 0.0), expected;
     for (const double power : powers) expected.push_back(sampleCount * power / sum);

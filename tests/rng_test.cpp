@@ -54,10 +54,12 @@ class RngTest : public GpuTest {
             const uint32_t* stream = &all[size_t{i} * (numbers + 2)];
             uint32_t state = tea(i, settings.frame ^ settings.seed * 0x9e3779b9u);
             ASSERT_EQ(stream[0], tea(i, settings.frame)) << "stream " << i << " frame " << settings.frame;
-            ASSERT_EQ(stream[1], state) << "stream " << i << " frame " << settings.frame << " seed " << settings.seed;
+            ASSERT_EQ(stream[1], state)
+                << "stream " << i << " frame " << settings.frame << " seed " << settings.seed;
             for (uint32_t n = 0; n < numbers; ++n) {
                 const float expected = samplerTea ? lcg(state) : pcg(state);
-                ASSERT_EQ(stream[2 + n], std::bit_cast<uint32_t>(expected)) << "stream " << i << " number " << n;
+                ASSERT_EQ(stream[2 + n], std::bit_cast<uint32_t>(expected))
+                    << "stream " << i << " number " << n;
             }
         }
     }
@@ -109,7 +111,8 @@ TEST_F(RngTest, IsEvenInOneAndTwoDimensions) {
     }
 }
 
-/// Neighbouring pixels and frames must not be alike: the n-th numbers of the streams are even and uncorrelated too.
+/// Neighbouring pixels and frames must not be alike: the n-th numbers of the streams are even and
+/// uncorrelated too.
 TEST_F(RngTest, StreamsAreIndependent) {
     const std::vector<float> u = values({streams, 9, 0}, false);
     for (uint32_t n = 0; n < 8; ++n) {
@@ -117,12 +120,14 @@ TEST_F(RngTest, StreamsAreIndependent) {
         double correlation = 0.0;
         for (uint32_t i = 0; i < streams; ++i) {
             ++bins[static_cast<size_t>(u[size_t{i} * numbers + n] * 64.0f)];
-            if (i > 0) correlation += (u[size_t{i} * numbers + n] - 0.5) * (u[size_t{i - 1} * numbers + n] - 0.5);
+            if (i > 0)
+                correlation += (u[size_t{i} * numbers + n] - 0.5) * (u[size_t{i - 1} * numbers + n] - 0.5);
         }
         const ChiSquare even = chiSquare(bins, std::vector<double>(64, streams / 64.0));
         EXPECT_GT(even.p, 1e-4) << "number " << n << ", " << even.worst;
         // Each product has variance 1/144.
-        EXPECT_LT(std::abs(correlation * 12.0 / std::sqrt(static_cast<double>(streams))), 4.5) << "number " << n;
+        EXPECT_LT(std::abs(correlation * 12.0 / std::sqrt(static_cast<double>(streams))), 4.5)
+            << "number " << n;
     }
 }
 

@@ -12,8 +12,10 @@ constexpr size_t maxCells = 60000;
 constexpr double maxMass = 1.0 / 256.0;
 
 // Gauss-Legendre with four points on [0, 1].
-constexpr std::array<double, 4> nodes{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
-constexpr std::array<double, 4> weights{0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+constexpr std::array<double, 4> nodes{0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
+                                      0.9305681557970263};
+constexpr std::array<double, 4> weights{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                        0.1739274225687269};
 
 }  // namespace
 
@@ -22,8 +24,10 @@ SphereQuadrature::SphereQuadrature(const Evaluate& evaluate, double tolerance) {
     for (size_t row = 0; row < rootRows; ++row) {
         for (size_t column = 0; column < rootColumns; ++column) {
             cells_.push_back({static_cast<double>(row) * pi64 / rootRows,
-                              static_cast<double>(column) * 2.0 * pi64 / rootColumns, pi64 / rootRows,
-                              2.0 * pi64 / rootColumns, {}});
+                              static_cast<double>(column) * 2.0 * pi64 / rootColumns,
+                              pi64 / rootRows,
+                              2.0 * pi64 / rootColumns,
+                              {}});
         }
     }
     integrate(0, evaluate);
@@ -81,8 +85,10 @@ void SphereQuadrature::integrate(size_t first, const Evaluate& evaluate) {
         for (size_t i = 0; i < 16; ++i) {
             const double theta = cell.theta + nodes[i / 4] * cell.thetaSize;
             const double phi = cell.phi + nodes[i % 4] * cell.phiSize;
-            directions.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-            factors.push_back(weights[i / 4] * weights[i % 4] * cell.thetaSize * cell.phiSize * std::sin(theta));
+            directions.emplace_back(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                    std::cos(theta));
+            factors.push_back(weights[i / 4] * weights[i % 4] * cell.thetaSize * cell.phiSize *
+                              std::sin(theta));
         }
     }
     const std::vector<SphereValue> values = evaluate(directions);

@@ -1,5 +1,5 @@
-// Integrates functions over the sphere of directions by adaptive subdivision, and counts directions in the cells that
-// the subdivision leaves: bins for a chi-square test which are fine where the density is high.
+// Integrates functions over the sphere of directions by adaptive subdivision, and counts directions in the
+// cells that the subdivision leaves: bins for a chi-square test which are fine where the density is high.
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@ class SphereQuadrature {
     /// Values of the function in many directions at once: for a GPU.
     using Evaluate = std::function<std::vector<SphereValue>(const std::vector<vec3>&)>;
 
-    /// Cells are split until their integrals hold to about `tolerance` and no cell has more than 1/256 of the density.
+    /// Cells are split until their integrals hold to about `tolerance` and no cell has more than 1/256 of the
+    /// density.
     explicit SphereQuadrature(const Evaluate& evaluate, double tolerance = 2e-7);
 
     const SphereValue& integral() const { return integral_; }

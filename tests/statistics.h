@@ -21,8 +21,9 @@ struct ChiSquare {
     std::string worst;  ///< the bin that contributes most, for the message of a failure
 };
 
-/// Neighbouring bins are joined until `least` are expected. Expectations must add up to the number of observations
-/// (the caller includes a bin of what fell nowhere).
-ChiSquare chiSquare(const std::vector<double>& observed, const std::vector<double>& expected, double least = 5.0);
+/// Neighbouring bins are joined until `least` are expected. Expectations must add up to the number of
+/// observations (the caller includes a bin of what fell nowhere).
+ChiSquare chiSquare(const std::vector<double>& observed, const std::vector<double>& expected,
+                    double least = 5.0);
 
 }  // namespace limpid::test

@@ -1,5 +1,5 @@
-// Texture look-up against a plain C++ version in double precision, written from OpenGL ES 3.0, section 3.8.10, to which
-// glTF's samplers refer.
+// Texture look-up against a plain C++ version in double precision, written from OpenGL ES 3.0,
+// section 3.8.10, to which glTF's samplers refer.
 #include <cmath>
 #include <random>
 
@@ -28,9 +28,12 @@ double decode(double encoded) {
 
 int64_t wrap(int64_t x, int64_t size, Wrap mode) {
     switch (mode) {
-        case Wrap::Repeat: return ((x % size) + size) % size;
-        case Wrap::ClampToEdge: return std::clamp<int64_t>(x, 0, size - 1);
-        case Wrap::MirroredRepeat: break;
+        case Wrap::Repeat:
+            return ((x % size) + size) % size;
+        case Wrap::ClampToEdge:
+            return std::clamp<int64_t>(x, 0, size - 1);
+        case Wrap::MirroredRepeat:
+            break;
     }
     const int64_t m = ((x % (2 * size)) + 2 * size) % (2 * size);
     return m < size ? m : 2 * size - 1 - m;
@@ -43,7 +46,8 @@ struct Level {
 };
 
 dvec4 texel(const Level& level, const Texture& texture, int64_t x, int64_t y) {
-    const int64_t column = wrap(x, level.width, texture.sampler.wrapU), row = wrap(y, level.height, texture.sampler.wrapV);
+    const int64_t column = wrap(x, level.width, texture.sampler.wrapU),
+                  row = wrap(y, level.height, texture.sampler.wrapV);
     const uint32_t word = level.texels[row * level.width + column];
     dvec4 result;
     for (int i = 0; i < 4; ++i) {
@@ -54,9 +58,11 @@ dvec4 texel(const Level& level, const Texture& texture, int64_t x, int64_t y) {
 }
 
 dvec4 sampleLevel(const Level& level, const Texture& texture, const vec2& uv, bool linear) {
-    const double u = double{uv.x} * static_cast<double>(level.width), v = double{uv.y} * static_cast<double>(level.height);
+    const double u = double{uv.x} * static_cast<double>(level.width),
+                 v = double{uv.y} * static_cast<double>(level.height);
     if (!linear) {
-        return texel(level, texture, static_cast<int64_t>(std::floor(u)), static_cast<int64_t>(std::floor(v)));
+        return texel(level, texture, static_cast<int64_t>(std::floor(u)),
+                     static_cast<int64_t>(std::floor(v)));
     }
     const double i = std::floor(u - 0.5), j = std::floor(v - 0.5), a = u - 0.5 - i, b = v - 0.5 - j;
     const auto at = [&](int di, int dj) {
@@ -73,7 +79,8 @@ dvec4 reference(const std::vector<Level>& levels, const Texture& texture, const 
     const double last = static_cast<double>(levels.size()) - 1.0, level = std::min(lambda, last);
     if (s.mip == MipFilter::None) return sampleLevel(levels[0], texture, query.uv, s.minLinear);
     if (s.mip == MipFilter::Nearest) {
-        return sampleLevel(levels[static_cast<size_t>(std::ceil(level + 0.5) - 1.0)], texture, query.uv, s.minLinear);
+        return sampleLevel(levels[static_cast<size_t>(std::ceil(level + 0.5) - 1.0)], texture, query.uv,
+                           s.minLinear);
     }
     const auto low = static_cast<size_t>(level);
     const double f = level - std::floor(level);
@@ -83,8 +90,9 @@ dvec4 reference(const std::vector<Level>& levels, const Texture& texture, const 
 
 std::string describe(const Texture& t) {
     const Sampler& s = t.sampler;
-    return fmt::format("{}x{} srgb {} wrap {} {} mag {} min {} mip {}", t.width, t.height, t.srgb, static_cast<int>(s.wrapU),
-                       static_cast<int>(s.wrapV), s.magLinear, s.minLinear, static_cast<int>(s.mip));
+    return fmt::format("{}x{} srgb {} wrap {} {} mag {} min {} mip {}", t.width, t.height, t.srgb,
+                       static_cast<int>(s.wrapU), static_cast<int>(s.wrapV), s.magLinear, s.minLinear,
+                       static_cast<int>(s.mip));
 }
 
 /// Textures of noise with every combination of wrap modes and filters, in sizes that are no powers of two.
@@ -126,7 +134,8 @@ class TextureTest : public GpuTest {
             scene_.materials.emplace_back();
             scene_.materials[i].baseColorTexture.texture = static_cast<int>(i);
         }
-        scene_.meshes.push_back(scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
+        scene_.meshes.push_back(
+            scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
         scene_.instances.emplace_back();
         data_ = scene::buildSceneData(scene_);
         gpuScene_ = std::make_unique<scene::GpuScene>(device(), data_);
@@ -158,7 +167,8 @@ class TextureTest : public GpuTest {
         return run<vec4>(job, count);
     }
 
-    /// Where float32 cannot know on which side of an edge between two texels (or levels) a point lies, both count.
+    /// Where float32 cannot know on which side of an edge between two texels (or levels) a point lies, both
+    /// count.
     bool matches(const Query& query, const vec4& found) const {
         const Texture& texture = scene_.textures[query.ref];
         const std::vector<Level> all = levels(query.ref);
@@ -175,7 +185,8 @@ class TextureTest : public GpuTest {
                 const double size = std::max(texture.width, texture.height);
                 const double rounding = 4e-7 * size * double{std::max(std::abs(q.uv.x), std::abs(q.uv.y))};
                 const double tolerance = 1e-3 + rounding;
-                if (std::max({difference.x, difference.y, difference.z, difference.w}) < tolerance) return true;
+                if (std::max({difference.x, difference.y, difference.z, difference.w}) < tolerance)
+                    return true;
             }
         }
         return false;
@@ -190,9 +201,10 @@ class TextureTest : public GpuTest {
             const Query& q = queries[i];
             const Texture& texture = scene_.textures[q.ref];
             const dvec4 expected = reference(levels(q.ref), texture, q);
-            ADD_FAILURE() << describe(texture) << fmt::format(" uv {} {} lod {}: {} {} {} {}, expected {} {} {} {}", q.uv.x,
-                                                              q.uv.y, q.lod, found[i].x, found[i].y, found[i].z, found[i].w,
-                                                              expected.x, expected.y, expected.z, expected.w);
+            ADD_FAILURE() << describe(texture)
+                          << fmt::format(" uv {} {} lod {}: {} {} {} {}, expected {} {} {} {}", q.uv.x,
+                                         q.uv.y, q.lod, found[i].x, found[i].y, found[i].z, found[i].w,
+                                         expected.x, expected.y, expected.z, expected.w);
         }
         // The same bits again.
         const std::vector<vec4> again = look(queries);
@@ -225,11 +237,14 @@ TEST_F(TextureTest, EveryWrapFilterAndLevel) {
 TEST_F(TextureTest, CentresAndWholePeriods) {
     std::vector<Query> queries;
     for (uint32_t i = 0; i < scene().textures.size(); ++i) {
-        const auto width = static_cast<float>(scene().textures[i].width), height = static_cast<float>(scene().textures[i].height);
+        const auto width = static_cast<float>(scene().textures[i].width),
+                   height = static_cast<float>(scene().textures[i].height);
         for (int period = -40; period <= 40; period += 5) {
             for (int n = 0; n < 8; ++n) {
-                const float x = (static_cast<float>(n % 4) + 0.5f) / width, y = (static_cast<float>(n) + 0.5f) / height;
-                queries.push_back({{static_cast<float>(period) + x, static_cast<float>(-period) + y}, -20.0f, i});
+                const float x = (static_cast<float>(n % 4) + 0.5f) / width,
+                            y = (static_cast<float>(n) + 0.5f) / height;
+                queries.push_back(
+                    {{static_cast<float>(period) + x, static_cast<float>(-period) + y}, -20.0f, i});
             }
         }
     }
@@ -244,7 +259,9 @@ TEST_F(TextureTest, FarCoordinates) {
         if (texture.width * texture.height > 40) continue;
         for (int n = 0; n < 40; ++n) {
             // Multiples of 1/64: exact in float32, as is their product with a small size.
-            const auto coordinate = [&] { return static_cast<float>(static_cast<int>(random() % 400000) - 200000) / 64.0f; };
+            const auto coordinate = [&] {
+                return static_cast<float>(static_cast<int>(random() % 400000) - 200000) / 64.0f;
+            };
             queries.push_back({{coordinate() + 1 / 128.0f, coordinate() + 1 / 128.0f}, -20.0f, i});
         }
     }

@@ -64,7 +64,8 @@ inline scene::Mesh triangleSoup(uint32_t count, float size, uint32_t seed) {
 
 class TraceTest : public GpuTest {
   protected:
-    std::vector<TestHit> trace(const scene::Scene& scene, const std::vector<TestRay>& rays, uint32_t seed = 1) {
+    std::vector<TestHit> trace(const scene::Scene& scene, const std::vector<TestRay>& rays,
+                               uint32_t seed = 1) {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
         twoLevel_ = data.features.twoLevel;

@@ -28,26 +28,30 @@ class WatertightTest : public TraceTest {
         return rays;
     }
 
-    void expectNoEscape(const scene::Scene& scene, const std::vector<TestRay>& rays, const std::string& name) {
+    void expectNoEscape(const scene::Scene& scene, const std::vector<TestRay>& rays,
+                        const std::string& name) {
         const std::vector<TestHit> hits = trace(scene, rays);
         uint32_t escaped = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             if (hits[i].t >= 0.0f && hits[i].any != 0) continue;
             const TestRay& r = rays[i];
             if (++escaped > 3) continue;
-            ADD_FAILURE() << fmt::format("{}: ray {} escaped (any {}): origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g}",
-                                         name, i, hits[i].any, r.origin.x, r.origin.y, r.origin.z, r.direction.x,
-                                         r.direction.y, r.direction.z);
+            ADD_FAILURE() << fmt::format(
+                "{}: ray {} escaped (any {}): origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g}",
+                name, i, hits[i].any, r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y,
+                r.direction.z);
         }
         EXPECT_EQ(escaped, 0u) << name << ": of " << rays.size();
         fmt::print("{}: {} of {} rays escaped\n", name, escaped, rays.size());
     }
 
-    void check(const scene::Mesh& mesh, const vec3& lower, const vec3& upper, uint32_t count, const std::string& name) {
+    void check(const scene::Mesh& mesh, const vec3& lower, const vec3& upper, uint32_t count,
+               const std::string& name) {
         const mat4 turned = glm::rotate(mat4(1.0f), 0.6f, glm::normalize(vec3(1, 2, 3)));
         const mat4 far = glm::translate(mat4(1.0f), vec3(1000, -300, 50)) * turned;
         const mat4 tiny = glm::scale(mat4(1.0f), vec3(1e-3f)) * turned;
-        for (const auto& [transform, where] : {std::pair{mat4(1.0f), ""}, {turned, ", turned"}, {far, ", far"}, {tiny, ", tiny"}}) {
+        for (const auto& [transform, where] :
+             {std::pair{mat4(1.0f), ""}, {turned, ", turned"}, {far, ", far"}, {tiny, ", tiny"}}) {
             scene::Scene scene = plainScene();
             scene.meshes.push_back(mesh);
             addInstance(scene, 0, transform);
@@ -56,10 +60,19 @@ class WatertightTest : public TraceTest {
     }
 };
 
-TEST_F(WatertightTest, Sphere) {
+/// The vertices of a pole, which the sine of pi spreads by 1e-7, become one: the mesh itself must be closed.
+scene::Mesh closedSphere() {
     scene::MeshBuilder builder("sphere");
     builder.sphere(vec3(0.0f), 1.0f, 48, 24);
-    check(builder.take(), vec3(-0.5f), vec3(0.5f), 100000, "sphere");
+    scene::Mesh mesh = builder.take();
+    for (vec3& p : mesh.positions) {
+        if (std::abs(p.x) + std::abs(p.z) < 1e-6f) p = vec3(0.0f, p.y > 0.0f ? 1.0f : -1.0f, 0.0f);
+    }
+    return mesh;
+}
+
+TEST_F(WatertightTest, Sphere) {
+    check(closedSphere(), vec3(-0.5f), vec3(0.5f), 100000, "sphere");
 }
 
 TEST_F(WatertightTest, Box) {
@@ -70,15 +83,15 @@ TEST_F(WatertightTest, Box) {
 
 /// Many instances of one closed mesh: rays from inside the first, whose own space is turned and scaled.
 TEST_F(WatertightTest, InstancedSphere) {
-    scene::MeshBuilder builder("sphere");
-    builder.sphere(vec3(0.0f), 1.0f, 48, 24);
     scene::Scene scene = plainScene();
-    scene.meshes.push_back(builder.take());
+    scene.meshes.push_back(closedSphere());
     mat4 first = glm::rotate(mat4(1.0f), 1.1f, glm::normalize(vec3(3, -1, 2)));
     first = glm::scale(first, vec3(2.0f, 0.7f, -1.3f));
     addInstance(scene, 0, first);
-    for (int i = 1; i < 4; ++i) addInstance(scene, 0, glm::translate(mat4(1.0f), vec3(10.0f * static_cast<float>(i), 0, 0)));
-    expectNoEscape(scene, raysAtEdges(scene.meshes[0], first, vec3(-0.5f), vec3(0.5f), 100000), "instanced sphere");
+    for (int i = 1; i < 4; ++i)
+        addInstance(scene, 0, glm::translate(mat4(1.0f), vec3(10.0f * static_cast<float>(i), 0, 0)));
+    expectNoEscape(scene, raysAtEdges(scene.meshes[0], first, vec3(-0.5f), vec3(0.5f), 100000),
+                   "instanced sphere");
     EXPECT_TRUE(twoLevel());
 }
 
@@ -102,12 +115,14 @@ class AlphaTest : public TraceTest {
         std::mt19937 random(3);
         std::vector<TestRay> rays;
         for (uint32_t i = 0; i < count; ++i) {
-            rays.push_back({randomPoint(random, vec3(-0.95f, -0.95f, 0), vec3(0.95f, 0.95f, 0)), {0, 0, -1}, 1e30f});
+            rays.push_back(
+                {randomPoint(random, vec3(-0.95f, -0.95f, 0), vec3(0.95f, 0.95f, 0)), {0, 0, -1}, 1e30f});
         }
         return rays;
     }
 
-    /// Of `count` rays, how many meet the first square; and how many any-hit rays that end before the second do.
+    /// Of `count` rays, how many meet the first square; and how many any-hit rays that end before the second
+    /// do.
     std::pair<double, double> blocked(const scene::Scene& scene, uint32_t count) {
         std::vector<TestRay> rays = forwardRays(count);
         double closest = 0, any = 0;
@@ -124,7 +139,8 @@ class AlphaTest : public TraceTest {
 TEST_F(AlphaTest, MaskComparesWithTheCutoff) {
     scene::Material material;
     material.alphaMode = scene::AlphaMode::Mask;
-    for (const auto& [alpha, cutoff, expected] : {std::tuple{0.4f, 0.5f, 0.0}, {0.5f, 0.5f, 1000.0}, {0.2f, 0.1f, 1000.0}}) {
+    for (const auto& [alpha, cutoff, expected] :
+         {std::tuple{0.4f, 0.5f, 0.0}, {0.5f, 0.5f, 1000.0}, {0.2f, 0.1f, 1000.0}}) {
         material.baseColor.a = alpha;
         material.alphaCutoff = cutoff;
         const auto [closest, any] = blocked(twoSquares(material), 1000);
@@ -166,7 +182,8 @@ TEST_F(AlphaTest, MaskFromTextureAndVertexColours) {
             const vec3 p = rays[i].origin;
             if (std::min(std::abs(p.x), std::abs(p.y)) < 1e-4f) continue;
             const bool opaque = vertexAlpha == 1.0f && (p.x < 0.0f) == (p.y < 0.0f);
-            ASSERT_NEAR(hits[i].t, opaque ? 1.0f : 2.0f, 1e-5f) << "at " << p.x << ' ' << p.y << " vertex alpha " << vertexAlpha;
+            ASSERT_NEAR(hits[i].t, opaque ? 1.0f : 2.0f, 1e-5f)
+                << "at " << p.x << ' ' << p.y << " vertex alpha " << vertexAlpha;
         }
     }
 }

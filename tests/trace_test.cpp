@@ -14,7 +14,8 @@ class TraceReferenceTest : public TraceTest {
     /// Rays from in and around the scene in all directions; axis-parallel ones among them, and short ones.
     static std::vector<TestRay> someRays(const BruteForce& brute, uint32_t count, uint32_t seed) {
         std::mt19937 random(seed);
-        const vec3 center = 0.5f * (brute.lower() + brute.upper()), half = 0.5f * (brute.upper() - brute.lower());
+        const vec3 center = 0.5f * (brute.lower() + brute.upper()),
+                   half = 0.5f * (brute.upper() - brute.lower());
         std::vector<TestRay> rays;
         for (uint32_t i = 0; i < count; ++i) {
             const vec3 origin = center + randomPoint(random, -1.3f * half, 1.3f * half);
@@ -44,12 +45,15 @@ class TraceReferenceTest : public TraceTest {
             doubtful += expected.doubtful;
             if (expected.doubtful) continue;
             const TestHit& hit = hits[i];
-            const bool same = (hit.t >= 0.0f) == (expected.t >= 0.0) && (hit.any != 0) == (expected.t >= 0.0) &&
-                              hit.instance == expected.instance && hit.primitive == expected.primitive;
+            const bool same = (hit.t >= 0.0f) == (expected.t >= 0.0) &&
+                              (hit.any != 0) == (expected.t >= 0.0) && hit.instance == expected.instance &&
+                              hit.primitive == expected.primitive;
             // Besides the relative error, that of the subtraction of coordinates.
             const double rounding = 1e-6 * double{glm::length(rays[i].origin)};
             const double error =
-                expected.t >= 0.0 ? std::max(0.0, std::abs(double{hit.t} - expected.t) - rounding) / expected.t : 0.0;
+                expected.t >= 0.0
+                    ? std::max(0.0, std::abs(double{hit.t} - expected.t) - rounding) / expected.t
+                    : 0.0;
             if (same && error < 1e-4) {
                 worst = std::max(worst, error);
                 continue;
@@ -57,10 +61,12 @@ class TraceReferenceTest : public TraceTest {
             if (++wrong > 3) continue;
             const TestRay& r = rays[i];
             ADD_FAILURE() << fmt::format(
-                "{} seed {} ray {}: origin {} {} {} direction {} {} {} tMax {}: t {} instance {} primitive {} any {}; "
+                "{} seed {} ray {}: origin {} {} {} direction {} {} {} tMax {}: t {} instance {} primitive "
+                "{} any {}; "
                 "expected t {} instance {} primitive {}",
-                scene.name, seed, i, r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.tMax,
-                hit.t, hit.instance, hit.primitive, hit.any, expected.t, expected.instance, expected.primitive);
+                scene.name, seed, i, r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y,
+                r.direction.z, r.tMax, hit.t, hit.instance, hit.primitive, hit.any, expected.t,
+                expected.instance, expected.primitive);
         }
         fmt::print("{}: {} triangles, {} rays, {} hits, {} doubtful, {} wrong, t within {:.1g}\n", scene.name,
                    brute.triangleCount(), rays.size(), found, doubtful, wrong, worst);
@@ -107,12 +113,33 @@ TEST_F(TraceReferenceTest, FarFromTheOrigin) {
     compare(soupScene(20.0f, {10000.0f, -3000.0f, 5000.0f}, 2000, 4), 4096, 13);
 }
 
+/// From where a whole node is smaller than the rounding of coordinates, absent children must not be followed
+/// for ever.
+TEST_F(TraceReferenceTest, TinyThingsFarAwayAndNothingAtAll) {
+    scene::Scene scene = soupScene(1e-3f, vec3(0.0f), 5, 3);
+    std::mt19937 random(4);
+    std::vector<TestRay> rays;
+    for (int i = 0; i < 512; ++i) {
+        const vec3 origin = 1e5f * randomDirection(random);
+        rays.push_back({origin, glm::normalize(-origin)});
+    }
+    for (const TestHit& hit : trace(scene, rays)) {
+        const bool plausible = hit.t < 0.0f || std::abs(hit.t - 1e5f) < 1.0f;
+        EXPECT_TRUE(plausible) << hit.t;
+    }
+    scene.instances.clear();
+    rays.push_back({vec3(0.0f), vec3(0, 0, 1)});
+    for (const TestHit& hit : trace(scene, rays)) EXPECT_LT(hit.t, 0.0f);
+}
+
 TEST_F(TraceReferenceTest, BuiltinScenes) {
-    for (const char* name : {"cornell", "cornell-spheres", "furnace"}) compare(scene::builtinScene(name), 2048, 21);
+    for (const char* name : {"cornell", "cornell-spheres", "furnace"})
+        compare(scene::builtinScene(name), 2048, 21);
     compare(scene::builtinScene("heavy"), 512, 22);
 }
 
-/// Copies of one mesh, enough for a tree over trees, moved in every way, beside a mesh that stays in the static tree.
+/// Copies of one mesh, enough for a tree over trees, moved in every way, beside a mesh that stays in the
+/// static tree.
 TEST_F(TraceReferenceTest, TwoLevels) {
     scene::Scene scene = plainScene();
     scene.name = "instances";

@@ -12,8 +12,8 @@ bool isUint(gpu::Format format) {
            format == gpu::Format::RGBA32Uint;
 }
 
-/// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a path in a scene of a million
-/// triangles needs some thousands. More samples would lose light without a word.
+/// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a path in a scene of
+/// a million triangles needs some thousands. More samples would lose light without a word.
 constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 }  // namespace

@@ -67,10 +67,12 @@ MeshBuilder& MeshBuilder::sphere(const vec3& center, float radius, uint32_t segm
     const auto first = static_cast<uint32_t>(mesh_.positions.size());
     for (uint32_t ring = 0; ring <= rings; ++ring) {
         const float theta = pi * static_cast<float>(ring) / static_cast<float>(rings);
+        // sin(pi) is not 0 in float; the poles' vertices must coincide or the sphere has cracks.
+        const float sine = ring == 0 || ring == rings ? 0.0f : std::sin(theta);
         for (uint32_t segment = 0; segment <= segments; ++segment) {
             const float phi =
                 2.0f * pi * static_cast<float>(segment % segments) / static_cast<float>(segments);
-            const vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi));
+            const vec3 n(sine * std::cos(phi), std::cos(theta), -sine * std::sin(phi));
             vertex(center + radius * n, n);
         }
     }

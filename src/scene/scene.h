@@ -68,8 +68,8 @@ struct Material {
     std::string name;
     vec4 baseColor{1.0f};
     float metallic = 1.0f;
-    float roughness = 1.0f;  ///< perceptual; GGX alpha = roughness^2
-    float specular = 1.0f;   ///< weight of the dielectric's specular lobe; 0: Lambertian
+    float roughness = 1.0f;    ///< perceptual; GGX alpha = roughness^2
+    float specular = 1.0f;     ///< weight of the dielectric's specular lobe; 0: Lambertian
     vec3 specularColor{1.0f};  ///< factor of its reflectance at normal incidence
     float ior = 1.5f;
     float transmission = 0.0f;

@@ -46,16 +46,19 @@ uvec4 intersectChildren(uint node, TraversalRay ray, float tMax, out uvec4 child
     const vec3 scale = ray.inverse * vec3(exponentScale(head.w & 255u), exponentScale((head.w >> 8) & 255u),
                                           exponentScale((head.w >> 16) & 255u));
     const vec3 base = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse;
+    // Rounding of origin and cells in ray space, at most: both sides of a box move outwards by it, so that a flat box or
+    // a hit on an edge of one is not lost (compare T. Ize, "Robust BVH ray traversal", JCGT 2013).
+    const vec3 padding = 5e-7 * (abs(base) + 255.0 * abs(scale));
+    const vec3 baseNear = base - padding, baseFar = base + padding;
     const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
-    const vec4 nearX = bytesOf(flip.x ? boundsA.w : boundsA.x) * scale.x + base.x;
-    const vec4 nearY = bytesOf(flip.y ? boundsB.x : boundsA.y) * scale.y + base.y;
-    const vec4 nearZ = bytesOf(flip.z ? boundsB.y : boundsA.z) * scale.z + base.z;
-    const vec4 farX = bytesOf(flip.x ? boundsA.x : boundsA.w) * scale.x + base.x;
-    const vec4 farY = bytesOf(flip.y ? boundsA.y : boundsB.x) * scale.y + base.y;
-    const vec4 farZ = bytesOf(flip.z ? boundsA.z : boundsB.y) * scale.z + base.z;
+    const vec4 nearX = bytesOf(flip.x ? boundsA.w : boundsA.x) * scale.x + baseNear.x;
+    const vec4 nearY = bytesOf(flip.y ? boundsB.x : boundsA.y) * scale.y + baseNear.y;
+    const vec4 nearZ = bytesOf(flip.z ? boundsB.y : boundsA.z) * scale.z + baseNear.z;
+    const vec4 farX = bytesOf(flip.x ? boundsA.x : boundsA.w) * scale.x + baseFar.x;
+    const vec4 farY = bytesOf(flip.y ? boundsA.y : boundsB.x) * scale.y + baseFar.y;
+    const vec4 farZ = bytesOf(flip.z ? boundsA.z : boundsB.y) * scale.z + baseFar.z;
     const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
-    // The far side is widened by the rounding of the slabs: T. Ize, "Robust BVH ray traversal", JCGT 2013.
-    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax))) * 1.0000005;
+    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax)));
     const uvec4 keys = (floatBitsToUint(tNear) & ~3u) | uvec4(0u, 1u, 2u, 3u);
     return mix(uvec4(KEY_MISS), keys, lessThanEqual(tNear, tFar));
 }

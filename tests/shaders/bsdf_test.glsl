@@ -19,6 +19,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 Bsdf testBsdf() {
     Surface s;
+    s.specularColor = vec3(1.0);
     s.position = vec3(0.0);
     s.geometricNormal = params.geometricNormal;
     s.normal = params.normal;

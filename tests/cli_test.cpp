@@ -1,0 +1,151 @@
+// The command line as its users and scripts meet it: exit codes, messages, and outputs that survive failures.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int code = -1;
+    std::string output;  ///< stdout and stderr
+};
+
+class CliTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("limpid_cli_test." + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    static Result run(const std::string& arguments) {
+        const std::string command = std::string("'") + LIMPID_PROGRAM + "' " + arguments + " 2>&1";
+        Result result;
+        FILE* pipe = ::popen(command.c_str(), "r");
+        std::array<char, 4096> buffer{};
+        while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+            result.output.append(buffer.data(), count);
+        }
+        const int status = ::pclose(pipe);
+        result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        return result;
+    }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void put(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+    std::string get(const std::string& name) const {
+        std::ifstream stream(folder_ / name);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    static void expect(const std::string& arguments, int code, const std::string& part) {
+        const Result result = run(arguments);
+        EXPECT_EQ(result.code, code) << arguments << "\n" << result.output;
+        EXPECT_NE(result.output.find(part), std::string::npos) << arguments << "\n" << result.output;
+    }
+
+    fs::path folder_;
+};
+
+constexpr const char* tiny = " --width 32 --height 18 --spp 1 --device cpu ";
+
+TEST_F(CliTest, WrongUsageIsExitCode2) {
+    expect("", 2, "subcommand");
+    expect("render builtin:cornell", 2, "--output");
+    expect("render builtin:nothing -o " + path("a.png") + tiny, 2, "builtin:cornell");
+    expect("render builtin:cornell -o " + path("a.bmp") + tiny, 2, ".exr or .png");
+    expect("render builtin:cornell -o " + path("a.png") + " --width 0", 2, "--width");
+    expect("render builtin:cornell -o " + path("a.png") + " --width 99999999999", 2, "--width");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=x", 2,
+           "whole number");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=-1", 2,
+           "outside its range");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set no.such=1", 2, "no.such");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--camera 7", 2, "its cameras are");
+    expect("render builtin:cornell -o " + path("a.exr") + tiny + "--aov nonsense", 2, "the layers are");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--exposure nan", 2, "range");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
+}
+
+TEST_F(CliTest, UnreadableInputIsExitCode3AndNamesFileAndFault) {
+    expect("render " + path("none.gltf") + " -o " + path("a.png") + tiny, 3, "none.gltf");
+    put("broken.gltf", "{\"asset\": ");
+    expect("render " + path("broken.gltf") + " -o " + path("a.png") + tiny, 3, "broken.gltf");
+    put("empty.glb", "");
+    expect("render " + path("empty.glb") + " -o " + path("a.png") + tiny, 3, "empty.glb");
+    put("no_triangles.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[]}]}");
+    expect("render " + path("no_triangles.gltf") + " -o " + path("a.png") + tiny, 3, "no_triangles.gltf");
+    put("scene.fbx", "x");
+    expect("render " + path("scene.fbx") + " -o " + path("a.png") + tiny, 3, "scene.fbx");
+    put("bad.hdr", "#?RADIANCE\n");
+    expect("render builtin:cornell --env " + path("bad.hdr") + " -o " + path("a.png") + tiny, 3, "bad.hdr");
+    expect("compare " + path("x.exr") + " " + path("y.exr"), 3, "x.exr");
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(CliTest, AnOutputThatCannotBeWrittenIsExitCode1) {
+    fs::create_directories(folder_ / "folder.png");
+    expect("render builtin:cornell -o " + path("folder.png") + tiny, 1, "is a directory");
+    expect("render builtin:cornell -o " + path("no/such/a.png") + tiny, 1, "does not exist");
+}
+
+TEST_F(CliTest, AFailedRunLeavesTheOldOutputAlone) {
+    put("a.png", "old");
+    expect("render " + path("none.gltf") + " -o " + path("a.png") + tiny, 3, "none.gltf");
+    EXPECT_EQ(get("a.png"), "old");
+}
+
+TEST_F(CliTest, AFileSizeLimitActsLikeAFullDisk) {
+    put("a.exr", "old");
+    // SIGXFSZ ignored, so that the write fails as it does on a full disk.
+    const std::string inner =
+        std::string("trap \"\" XFSZ; ulimit -f 1; exec \"") + LIMPID_PROGRAM +
+        "\" render builtin:cornell --width 256 --height 144 --spp 1 --device cpu --aov all -o " +
+        path("a.exr");
+    const int status = std::system(("bash -c '" + inner + "' >/dev/null 2>&1").c_str());
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 1);
+    EXPECT_EQ(get("a.exr"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+        << "no temporary file stays";
+}
+
+TEST_F(CliTest, RendersComparesAndReports) {
+    const std::string options = " --width 64 --height 36 --spp 4 --device cpu --json";
+    const Result render = run("render builtin:cornell --float --aov all -o " + path("a.exr") + options);
+    ASSERT_EQ(render.code, 0) << render.output;
+    EXPECT_NE(render.output.find("\"rejected_samples\": 0"), std::string::npos) << render.output;
+    ASSERT_EQ(run("render builtin:cornell --float --aov all -o " + path("b.exr") + options).code, 0);
+    EXPECT_EQ(get("a.exr"), get("b.exr")) << "same seed, same device, same options: the same bits";
+    const Result same = run("compare " + path("a.exr") + " " + path("b.exr") + " --json");
+    EXPECT_EQ(same.code, 0);
+    EXPECT_NE(same.output.find("\"flip\":0.0"), std::string::npos) << same.output;
+    ASSERT_EQ(run("render builtin:cornell --seed 1 -o " + path("c.png") + options).code, 0);
+    EXPECT_EQ(run("compare " + path("c.png") + " " + path("a.exr") + " --error-map " + path("e.png")).code,
+              0);
+    EXPECT_TRUE(fs::exists(folder_ / "e.png"));
+}
+
+TEST_F(CliTest, InfoListsWhatThereIs) {
+    const Result info = run("info --json");
+    EXPECT_EQ(info.code, 0);
+    for (const char* part : {"pathtrace.max_depth", "builtin:heavy", "\"devices\"", "\"layers\""}) {
+        EXPECT_NE(info.output.find(part), std::string::npos) << part;
+    }
+    EXPECT_EQ(run("--help").code, 0);
+    for (const char* command : {"render", "compare", "bench", "info"}) {
+        EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
+    }
+}
+
+}  // namespace
+}  // namespace limpid
