@@ -19,6 +19,7 @@ struct BsdfParams {
     float specular = 1.0f;
     vec3 geometricNormal{0, 0, 1};
     float ior = 1.5f;
+    vec3 specularColor{1.0f};
     float transmission = 0.0f;
     uint32_t thin = 1, front = 1;
     uint32_t count = 0, perThread = 8, seed = 1;

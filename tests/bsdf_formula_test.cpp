@@ -172,6 +172,33 @@ TEST_F(BsdfFormulaTest, MetalWithMultipleScattering) {
     }
 }
 
+/// A coat over a diffuse base that gets what the coat's strongest channel lets through, in and out.
+TEST_F(BsdfFormulaTest, PlasticWithSpecularColour) {
+    const BsdfParams params{.baseColor = {0.8f, 0.4f, 0.1f},
+                            .roughness = 0.4f,
+                            .specular = 0.8f,
+                            .specularColor = {0.9f, 0.5f, 0.3f}};
+    const auto coat = [](const BsdfParams& p) {
+        const double f0 = std::pow((double{p.ior} - 1.0) / (double{p.ior} + 1.0), 2.0);
+        return dvec3(p.specularColor) * (f0 * double{p.specular});
+    };
+    compare({"plastic, coat", params}, true, [&](const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
+        dvec3 value(0.0);
+        if (wi.z <= 0.0) return value;
+        const double alpha = double{p.roughness} * double{p.roughness};
+        for (int k = 0; k < 3; ++k) value[k] = reflected(wo, wi, alpha, coat(p)[k], double{p.specular});
+        return value;
+    });
+    compare({"plastic, base", params}, false, [&](const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
+        if (wi.z <= 0.0) return dvec3(0.0);
+        const double f0 = coat(p).r, f90 = double{p.specular};
+        const glm::dvec4 out = ggxTable(data().ggxTable, wo.z, double{p.roughness});
+        const glm::dvec4 in = ggxTable(data().ggxTable, wi.z, double{p.roughness});
+        const double through = (1.0 - f0 * out.x - f90 * out.y) * (1.0 - f0 * in.x - f90 * in.y);
+        return dvec3(p.baseColor) * (through / (1.0 - f0 * out.z - f90 * out.w) / pi64 * wi.z);
+    });
+}
+
 TEST_F(BsdfFormulaTest, RefractingBoundary) {
     for (const bool front : {true, false}) {
         for (const float roughness : {0.3f, 0.7f}) {

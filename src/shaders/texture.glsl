@@ -34,7 +34,9 @@ vec4 decodeTexel(uint texel, bool srgb) {
 int wrapTexel(int x, int size, uint mode) {
     if (mode == 1u) return clamp(x, 0, size - 1);
     const int period = mode == 2u ? 2 * size : size;
-    const int m = x - period * int(floor(float(x) / float(period)));
+    // Integer division: in float, some GPUs put a whole quotient just below itself.
+    const int remainder = x - period * (x / period);
+    const int m = remainder < 0 ? remainder + period : remainder;
     return clamp(mode == 2u && m >= size ? period - 1 - m : m, 0, size - 1);
 }
 

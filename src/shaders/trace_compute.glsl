@@ -78,8 +78,8 @@ uvec4 sortKeys(uvec4 k) {
 
 /// Where a point relative to the ray's origin is seen across the ray. `precise`: the same for every triangle.
 vec2 across(TraversalRay ray, vec3 p) {
-    precise const float x = p.x * ray.acrossX.x + p.y * ray.acrossX.y + p.z * ray.acrossX.z;
-    precise const float y = p.x * ray.acrossY.x + p.y * ray.acrossY.y + p.z * ray.acrossY.z;
+    precise const float x = fma(p.x, ray.acrossX.x, fma(p.y, ray.acrossX.y, p.z * ray.acrossX.z));
+    precise const float y = fma(p.x, ray.acrossY.x, fma(p.y, ray.acrossY.y, p.z * ray.acrossY.z));
     return vec2(x, y);
 }
 

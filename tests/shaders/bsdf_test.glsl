@@ -12,31 +12,25 @@ layout(set = 0, binding = 20, scalar) uniform Params {
     float specular;
     vec3 geometricNormal;
     float ior;
+    vec3 specularColor;
     float transmission;
     uint thin, front;
     uint count, perThread, seed;
 } params;
 
 Bsdf testBsdf() {
-    Surface s;
-    s.specularColor = vec3(1.0);
-    s.position = vec3(0.0);
+    // What is not set below is the scene's default material.
+    Surface s = loadSurface(0u, NONE, vec2(0.25), params.toViewer, 0.0);
     s.geometricNormal = params.geometricNormal;
     s.normal = params.normal;
-    s.magnitude = 1.0;
     s.front = params.front != 0u;
-    s.instance = 0u;
-    s.primitive = 0u;
-    s.material = 0u;
     s.baseColor = params.baseColor;
     s.metallic = params.metallic;
     s.roughness = params.roughness;
     s.specular = params.specular;
+    s.specularColor = params.specularColor;
     s.ior = params.ior;
     s.transmission = params.transmission;
     s.thin = params.thin != 0u;
-    s.unlit = false;
-    s.emission = vec3(0.0);
-    s.area = 1.0;
     return makeBsdf(s, params.toViewer);
 }
