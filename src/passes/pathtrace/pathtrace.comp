@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 // The beauty alone: the fast path of `--pipeline path`.
+const bool SPLIT_LOBES = false;
 #include "passes/pathtrace/pathtrace.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -19,7 +20,7 @@ void main() {
         FirstHit first;
         const vec2 point = vec2(pixel) + subpixel(i, rng);
         const PathRadiance path = tracePath(cameraRay(point), rng, rays, first);
-        const vec3 radiance = path.emission + path.diffuse + path.specular;
+        const vec3 radiance = path.diffuse;
         if (isFinite(radiance)) {
             sum += radiance;
         } else {

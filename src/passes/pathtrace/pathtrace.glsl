@@ -1,5 +1,8 @@
 // A unidirectional path tracer: at each vertex one light is sampled and one direction from the material, combined by
 // multiple importance sampling (E. Veach, 1997). Depth D counts scattering events: D = 0 shows emitters only.
+//
+// The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
+// and a dozen registers are free for traversal.
 #include "passes/pathtrace/pathtrace_params.h"
 #include "shaders/bsdf.glsl"
 #include "shaders/trace.glsl"
@@ -59,14 +62,16 @@ struct Path {
 
 /// Adds what a path finds at vertex `depth`; depth 0 is the emission layer.
 void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
-    if (depth == 0u) {
-        path.radiance.emission += radiance;
-        return;
-    }
     const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
-    const vec3 found = clampFirefly(path.throughput * radiance * weight, depth - 1u);
-    path.radiance.diffuse += found * path.diffuseShare;
-    path.radiance.specular += found * (1.0 - path.diffuseShare);
+    const vec3 found = clampFirefly(path.throughput * radiance * weight, max(depth, 1u) - 1u);
+    if (!SPLIT_LOBES) {
+        path.radiance.diffuse += found;
+    } else if (depth == 0u) {
+        path.radiance.emission += found;
+    } else {
+        path.radiance.diffuse += found * path.diffuseShare;
+        path.radiance.specular += found * (1.0 - path.diffuseShare);
+    }
 }
 
 void addEnvironment(inout Path path, uint depth) {
@@ -82,7 +87,10 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
     const vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
     vec3 diffuse = incident * value.diffuse, specular = incident * value.specular;
-    if (depth > 0u) {
+    if (!SPLIT_LOBES) {
+        diffuse += specular;
+        specular = vec3(0.0);
+    } else if (depth > 0u) {
         const vec3 sum = diffuse + specular;
         diffuse = sum * path.diffuseShare;
         specular = sum - diffuse;
@@ -103,7 +111,7 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
     const BsdfSample next = sampleBsdf(bsdf, rng);
     if (!next.valid) return false;
     const vec3 value = next.value.diffuse + next.value.specular;
-    if (depth == 0u) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
+    if (SPLIT_LOBES && depth == 0u) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
     path.throughput *= value / next.value.pdf;
     path.bsdfPdf = next.value.pdf;
     path.delta = next.delta;

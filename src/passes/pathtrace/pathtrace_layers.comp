@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 // The path tracer with every layer of docs/layers.md, means and variances over this launch's samples.
+const bool SPLIT_LOBES = true;
 #include "passes/pathtrace/pathtrace.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
