@@ -5,4 +5,4 @@ cd "$(dirname "$0")/.."
 scripts/install.sh
 scripts/build.sh release -DLIMPID_TESTS=ON "$@"
 [ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
-ctest --preset release
+ctest --preset release --parallel "$(nproc)"

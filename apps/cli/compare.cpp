@@ -1,5 +1,3 @@
-#include "compare.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "commands.h"
 #include "image/colormap.h"
 #include "image/metrics.h"
 #include "image/picture.h"

@@ -53,7 +53,9 @@ void addOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
     command.add_option("--spp", o.samples, "Samples per pixel (64)")->check(CLI::Range(1, 1 << 24));
-    command.add_option("--samples-per-launch", o.samplesPerLaunch, "Of these, so many in one launch (1)")
+    command
+        .add_option("--samples-per-launch", o.samplesPerLaunch,
+                    "Of these, so many in one launch (1); at most 4 on a CPU")
         ->check(CLI::Range(1, 4096));
     command.add_option("--max-depth", o.maxDepth, "Bounces (8); the same as --set pathtrace.max_depth")
         ->check(CLI::Range(0, 1024));

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "image/color.h"
+
 namespace limpid::scene {
 namespace {
 
@@ -13,15 +15,9 @@ struct Level {
     std::vector<vec4> texels;  ///< linear
 };
 
-float decodeSrgb(float x) {
-    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
-}
-
 uint32_t encodeByte(float linear, bool srgb) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
-    const float encoded = !srgb             ? x
-                          : x <= 0.0031308f ? 12.92f * x
-                                            : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
+    const float encoded = srgb ? image::srgbEncode(x) : x;
     return static_cast<uint32_t>(encoded * 255.0f + 0.5f);
 }
 
@@ -66,7 +62,8 @@ uint32_t wrapped(float coordinate, uint32_t size, Wrap wrap) {
 float srgbToLinear(uint8_t encoded) {
     static const auto table = [] {
         std::array<float, 256> values{};
-        for (size_t i = 0; i < values.size(); ++i) values[i] = decodeSrgb(static_cast<float>(i) / 255.0f);
+        for (size_t i = 0; i < values.size(); ++i)
+            values[i] = image::srgbDecode(static_cast<float>(i) / 255.0f);
         return values;
     }();
     return table[encoded];
