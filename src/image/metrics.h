@@ -1,4 +1,4 @@
-// How far a picture is from its reference. docs: section "Metrics" of the conventions.
+// How far a picture is from its reference. See docs/metrics.md.
 //
 // PSNR, SSIM and FLIP see what a screen would show: radiance * 2^stops, clamped to [0,1], sRGB-encoded,
 // without a filmic curve (displayEncode). relMSE sees linear radiance, unexposed. Images have 3 components
