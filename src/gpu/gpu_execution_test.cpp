@@ -1,29 +1,17 @@
-// Whole frames on a device, with validation and synchronisation validation where the layer is installed.
-// LIMPID_TEST_DEVICE selects the device as --device does; default: cpu (lavapipe).
+// Whole frames on a device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 
 #include <bit>
-#include <cstdlib>
-#include <cstring>
-#include <functional>
-#include <numeric>
+#include <vector>
 
-#include "base/error.h"
-#include "base/log.h"
-#include "gpu/check.h"
 #include "gpu/dispatch_recorder.h"
 #include "gpu/format.h"
 #include "gpu/frame_executor.h"
-#include "gpu/frame_graph.h"
-#include "test_accumulate.comp.h"
-#include "test_buffers.comp.h"
-#include "test_fill.comp.h"
+#include "gpu/gpu_test_fixture.h"
 #include "test_formats.comp.h"
 #include "test_group_size.comp.h"
 #include "test_increment.comp.h"
-#include "test_scale.comp.h"
 #include "test_unused.comp.h"
 
 namespace limpid::gpu {
@@ -32,84 +20,6 @@ namespace {
 using testing::AllOf;
 using testing::Each;
 using testing::HasSubstr;
-
-constexpr Extent odd{21, 13};
-constexpr Format rgba = Format::RGBA32Float;
-
-std::string faultOf(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
-std::string wantedDevice() {
-    const char* variable = std::getenv("LIMPID_TEST_DEVICE");
-    return variable ? variable : "cpu";
-}
-
-struct FillParams {
-    float color[3] = {1, 2, 3};
-    float step = 1;
-    float tail[3] = {};
-};
-
-class GpuTest : public testing::Test {
-  protected:
-    void SetUp() override {
-        if (enumerateDevices().empty()) {
-            GTEST_SKIP()
-                << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
-        }
-        try {
-            device_ = std::make_unique<Device>(DeviceOptions{.select = wantedDevice(), .validation = true});
-            validated_ = true;
-        } catch (const Error& error) {
-            if (std::string(error.what()).find("vulkan-validationlayers") == std::string::npos) throw;
-            log::warn("NOT VALIDATED: {}", error.what());
-            device_ = std::make_unique<Device>(DeviceOptions{.select = wantedDevice()});
-        }
-    }
-    void TearDown() override {
-        if (device_ && expectNoMessages_) {
-            EXPECT_EQ(device().validationMessages(), 0u);
-        }
-    }
-
-    Device& device() { return *device_; }
-    static void fill(FrameGraph& graph, std::string_view pass, ImageHandle image,
-                     const FillParams& params = {}) {
-        graph.dispatch({.pass = pass,
-                        .shader = shaders::test_fill_comp,
-                        .bindings = {{"result", image}},
-                        .params = paramsOf(params),
-                        .extent = graph.extent(image)});
-    }
-    static void scale(FrameGraph& graph, std::string_view pass, ImageHandle source, ImageHandle result,
-                      std::vector<ConstantValue> constants = {}) {
-        graph.dispatch({.pass = pass,
-                        .shader = shaders::test_scale_comp,
-                        .bindings = {{"source", source}, {"result", result}},
-                        .constants = std::move(constants),
-                        .extent = graph.extent(result)});
-    }
-    static History accumulate(FrameGraph& graph, Extent extent) {
-        const History history = graph.history("count", Format::R32Float, extent);
-        const uint32_t valid = history.valid;
-        graph.dispatch({.pass = "accumulate",
-                        .shader = shaders::test_accumulate_comp,
-                        .bindings = {{"previous", history.previous}, {"current", history.current}},
-                        .params = paramsOf(valid),
-                        .extent = extent});
-        return history;
-    }
-
-    std::unique_ptr<Device> device_;
-    bool validated_ = false;
-    bool expectNoMessages_ = true;
-};
 
 TEST_F(GpuTest, ChainsPassesWithParamsAndConstants) {
     FrameGraph graph;
@@ -209,126 +119,6 @@ TEST_F(GpuTest, UnusedImagesAreFreed) {
         executor.execute(frame);
         EXPECT_LE(executor.pooledImages(), 10u);
     }
-}
-
-TEST_F(GpuTest, ReadsAndWritesBuffers) {
-    const uint32_t count = 1000;
-    std::vector<float> texels(4 * count), offsets(count);
-    std::vector<uint32_t> indices(count);
-    std::iota(texels.begin(), texels.end(), 0.0f);
-    for (uint32_t i = 0; i < count; ++i) {
-        indices[i] = count - 1 - i;
-        offsets[i] = 0.5f;
-    }
-    const Buffer texelBuffer = device().createTexelBuffer("texels", rgba, bytesOf(texels));
-    const Buffer indexBuffer = device().createTexelBuffer("indices", Format::R32Uint, bytesOf(indices));
-    const Buffer offsetBuffer = device().createStorageBuffer("offsets", bytesOf(offsets));
-    const Buffer counter = device().createStorageBuffer("counter", sizeof(uint32_t));
-    const Buffer sums = device().createStorageBuffer("sums", count * sizeof(float));
-    EXPECT_EQ(texelBuffer.size(), count * 16);
-    EXPECT_EQ(texelBuffer.texelFormat(), rgba);
-    EXPECT_FALSE(sums.texelFormat());
-    FrameGraph graph;
-    graph.beginFrame();
-    for (int i = 0; i < 2; ++i) {
-        graph.dispatch({.pass = "sum",
-                        .shader = shaders::test_buffers_comp,
-                        .bindings = {{"texels", &texelBuffer},
-                                     {"indices", &indexBuffer},
-                                     {"offsets", &offsetBuffer},
-                                     {"counter", &counter},
-                                     {"Sums", &sums}},
-                        .extent = {count, 1}});
-    }
-    graph.execute(device());
-    uint32_t counted = 0;
-    std::memcpy(&counted, device().download(counter).data(), sizeof counted);
-    EXPECT_EQ(counted, 2 * count);
-    std::vector<float> result(count);
-    const std::vector<std::byte> bytes = device().download(sums);
-    ASSERT_EQ(bytes.size(), count * sizeof(float));
-    std::memcpy(result.data(), bytes.data(), bytes.size());
-    for (uint32_t i = 0; i < count; ++i) {
-        ASSERT_EQ(result[i], 16.0f * static_cast<float>(indices[i]) + 6.5f) << i;
-    }
-    EXPECT_EQ(device().download(texelBuffer),
-              std::vector<std::byte>(bytesOf(texels).begin(), bytesOf(texels).end()));
-}
-
-TEST_F(GpuTest, ABufferMayBeDestroyedWhileItsFrameIsUnderWay) {
-    FrameGraph graph;
-    for (int frame = 0; frame < 4; ++frame) {
-        graph.beginFrame();
-        const Buffer texels = device().createTexelBuffer("texels", rgba, {});
-        const Buffer indices = device().createTexelBuffer("indices", Format::R32Uint, {});
-        const Buffer offsets = device().createStorageBuffer("offsets", 400),
-                     sums = device().createStorageBuffer("sums", 400);
-        const Buffer counter = device().createStorageBuffer("counter", 4);
-        graph.dispatch({.pass = "sum",
-                        .shader = shaders::test_buffers_comp,
-                        .bindings = {{"texels", &texels},
-                                     {"indices", &indices},
-                                     {"offsets", &offsets},
-                                     {"counter", &counter},
-                                     {"Sums", &sums}},
-                        .extent = {100, 1}});
-        if (frame % 2) graph.execute(device());
-    }
-}
-
-TEST_F(GpuTest, EmptyDataGivesOneZeroTexel) {
-    const Buffer buffer = device().createTexelBuffer("none", rgba, {});
-    EXPECT_EQ(device().download(buffer), std::vector<std::byte>(16));
-    EXPECT_THAT(faultOf([&] { device().createTexelBuffer("ragged", rgba, std::vector<std::byte>(15)); }),
-                AllOf(HasSubstr("'ragged'"), HasSubstr("no whole number")));
-}
-
-TEST_F(GpuTest, BuffersBeyondALimitAreRefusedByName) {
-    const uint64_t elements = device().maxTexelBufferElements() + 1;
-    const uint64_t bytes = elements * 4;
-    // Address space only: the refusal must come before the data is read.
-    void* space = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    ASSERT_NE(space, MAP_FAILED);
-    const std::span<const std::byte> data(static_cast<const std::byte*>(space), bytes);
-    EXPECT_THAT(faultOf([&] { device().createTexelBuffer("all texels", Format::R32Uint, data); }),
-                AllOf(HasSubstr("'all texels'"),
-                      HasSubstr("maxTexelBufferElements = " + std::to_string(elements - 1)),
-                      HasSubstr(std::to_string(elements) + " texels")));
-    ::munmap(space, bytes);
-    const uint64_t range = device().impl().context->limits().maxStorageBufferRange;
-    EXPECT_THAT(faultOf([&] { device().createStorageBuffer("heap", range + 1); }),
-                AllOf(HasSubstr("'heap'"), HasSubstr("maxStorageBufferRange = " + std::to_string(range))));
-    EXPECT_THAT(faultOf([&] {
-                    makeBuffer(device().impl().context, "big", BufferUse::Staging,
-                               device().maxBufferBytes() + 1);
-                }),
-                AllOf(HasSubstr("'big'"), HasSubstr(std::to_string(device().maxBufferBytes()))));
-}
-
-TEST_F(GpuTest, LargeUploadsGoThroughBoundedStaging) {
-    std::vector<uint32_t> data((uint64_t{80} << 20) / 4);  // more than one chunk
-    std::iota(data.begin(), data.end(), 7u);
-    const Buffer buffer = device().createTexelBuffer("large", Format::R32Uint, bytesOf(data));
-    const std::vector<std::byte> bytes = device().download(buffer);
-    ASSERT_EQ(bytes.size(), data.size() * 4);
-    EXPECT_EQ(std::memcmp(bytes.data(), data.data(), bytes.size()), 0);
-}
-
-TEST_F(GpuTest, StagedCopiesWorkWhereMemoryCouldBeMapped) {
-    // On lavapipe every buffer is mapped; hide that, so that the path of discrete GPUs runs here too.
-    std::vector<uint32_t> data((uint64_t{65} << 20) / 4);
-    std::iota(data.begin(), data.end(), 1u);
-    auto storage =
-        makeBuffer(device().impl().context, "staged", BufferUse::Texel, data.size() * 4, Format::R32Uint);
-    storage->memory.mapped = nullptr;
-    Transfer& transfer = device().impl().transfer;
-    transfer.upload(*storage, bytesOf(data));
-    std::vector<std::byte> bytes(data.size() * 4);
-    transfer.download(*storage, bytes);
-    EXPECT_EQ(std::memcmp(bytes.data(), data.data(), bytes.size()), 0);
-    transfer.zero(*storage);
-    transfer.download(*storage, bytes);
-    EXPECT_THAT(std::span(bytes).first(1000), Each(std::byte{0}));
 }
 
 TEST_F(GpuTest, DownloadsEveryFormat) {
@@ -493,18 +283,6 @@ TEST_F(GpuTest, MisuseIsAnError) {
                 AllOf(HasSubstr("'wide'"), HasSubstr("maxImageDimension2D")));
 }
 
-TEST_F(GpuTest, NothingOutlivesTheDeviceWrongly) {
-    FrameGraph graph;
-    Buffer buffer;
-    {
-        Device other({.select = wantedDevice(), .validation = validated_});
-        buffer = other.createStorageBuffer("buffer", 4);
-        graph.beginFrame();
-        fill(graph, "fill", graph.transient("a", rgba, odd));
-        graph.execute(other);
-    }
-}
-
 TEST_F(GpuTest, ValidationSeesAMissingBarrier) {
     if (!validated_)
         GTEST_SKIP() << "NOT TESTED: the validation layer is not installed (vulkan-validationlayers).";
@@ -537,74 +315,6 @@ TEST_F(GpuTest, ValidationSeesAMissingBarrier) {
             EXPECT_GT(device().validationMessages(), 0u);
         }
     }
-}
-
-TEST_F(GpuTest, DeviceInfoIsComplete) {
-    const DeviceInfo& info = device().info();
-    EXPECT_TRUE(info.usable);
-    EXPECT_TRUE(info.whyNot.empty());
-    EXPECT_FALSE(info.name.empty());
-    EXPECT_FALSE(info.driver.empty());
-    EXPECT_GT(info.memoryBytes, 0u);
-    const auto has = [&](const char* name) {
-        return std::ranges::any_of(info.features, [&](const auto& f) { return f.first == name; });
-    };
-    for (const char* name : {"synchronization2", "scalarBlockLayout", "shaderFloat16", "shaderInt64",
-                             "VK_KHR_acceleration_structure", "VK_KHR_ray_tracing_pipeline",
-                             "VK_KHR_ray_query", "VK_KHR_cooperative_matrix", "VK_EXT_debug_utils"}) {
-        EXPECT_TRUE(has(name)) << name;
-    }
-    for (const auto& [name, value] : info.limits) EXPECT_GT(value, 0u) << name;
-}
-
-DeviceInfo described(uint32_t index, const char* name, const char* type, bool usable = true) {
-    DeviceInfo info;
-    info.index = index;
-    info.name = name;
-    info.type = type;
-    info.usable = usable;
-    if (!usable) info.whyNot = "scalarBlockLayout";
-    return info;
-}
-
-TEST(DeviceChoice, FollowsTheRules) {
-    const std::vector<DeviceInfo> infos{
-        described(0, "llvmpipe (LLVM 15)", "cpu"), described(1, "Old GPU", "discrete", false),
-        described(2, "Intel UHD", "integrated"), described(3, "NVIDIA H200", "discrete"),
-        described(4, "NVIDIA H200", "discrete")};
-    EXPECT_EQ(chooseIndex(infos, ""), 3u);
-    EXPECT_EQ(chooseIndex(infos, "cpu"), 0u);
-    EXPECT_EQ(chooseIndex(infos, "CPU"), 0u);
-    EXPECT_EQ(chooseIndex(infos, "2"), 2u);
-    EXPECT_EQ(chooseIndex(infos, "h200"), 3u);
-    EXPECT_EQ(chooseIndex(infos, "LLVM"), 0u);
-    EXPECT_THAT(faultOf([&] { chooseIndex(infos, "1"); }),
-                AllOf(HasSubstr("no usable Vulkan device is '1'"),
-                      HasSubstr("unusable: it lacks scalarBlockLayout")));
-    EXPECT_THAT(
-        faultOf([&] { chooseIndex(infos, "radeon"); }),
-        AllOf(HasSubstr("no Vulkan device matches 'radeon'"), HasSubstr("3: NVIDIA H200 (discrete)")));
-    EXPECT_THAT(faultOf([&] { chooseIndex(infos, "7"); }), HasSubstr("no Vulkan device matches '7'"));
-    EXPECT_THAT(faultOf([&] { chooseIndex({infos[1]}, ""); }), HasSubstr("no Vulkan device here is usable"));
-}
-
-TEST(DeviceChoice, WithoutADriverThereAreNoDevicesAndTheErrorHelps) {
-    // The loader reads these at each instance; one test is one process, or the last one.
-    ::setenv("VK_ICD_FILENAMES", "/nonexistent/icd.json", 1);
-    ::setenv("VK_DRIVER_FILES", "/nonexistent/icd.json", 1);
-    EXPECT_TRUE(enumerateDevices().empty());
-    EXPECT_THAT(faultOf([] { Device device; }), HasSubstr("mesa-vulkan-drivers"));
-    ::unsetenv("VK_ICD_FILENAMES");
-    ::unsetenv("VK_DRIVER_FILES");
-}
-
-TEST(Check, NamesTheCallThePlaceAndTheResult) {
-    EXPECT_THAT(faultOf([] { LIMPID_VK(VK_ERROR_DEVICE_LOST); }),
-                AllOf(HasSubstr("the device was lost"), HasSubstr("VK_ERROR_DEVICE_LOST"),
-                      HasSubstr("(src/gpu/gpu_execution_test.cpp:")));
-    EXPECT_THAT(faultOf([] { LIMPID_VK(VK_ERROR_OUT_OF_DEVICE_MEMORY); }), HasSubstr("out of device memory"));
-    EXPECT_THAT(faultOf([] { LIMPID_VK(VK_ERROR_OUT_OF_HOST_MEMORY); }), HasSubstr("out of host memory"));
-    EXPECT_EQ(faultOf([] { LIMPID_VK(VK_SUCCESS); }), "no error");
 }
 
 }  // namespace
