@@ -57,9 +57,9 @@ Image idImage(const RenderedLayers& layers) {
 }  // namespace
 
 const std::vector<std::string>& layerNames() {
-    static const std::vector<std::string> names{"beauty",         "diffuse", "specular", "emission", "albedo",
-                                                "albedoSpecular", "normal",  "depth",    "motion",   "id",
-                                                "variance",       "samples"};
+    static const std::vector<std::string> names{
+        "beauty",     "diffuse", "specular", "emission", "albedo",   "albedoSpecular", "normal",
+        "prevNormal", "depth",   "motion",   "id",       "variance", "samples"};
     return names;
 }
 
@@ -109,6 +109,9 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     addColor("albedo", layers.albedo);
     addColor("albedoSpecular", layers.albedoSpecular);
     if (wants("normal")) out.add("normal", "XYZ", components(layers.normal, extent, 0, 3), colorStorage);
+    if (wants("prevNormal")) {
+        out.add("prevNormal", "XYZ", components(layers.previousNormal, extent, 0, 3), colorStorage);
+    }
     if (wants("depth"))
         out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
     if (wants("motion"))
