@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "image/geometry.h"
 
 namespace limpid {
 namespace {
@@ -115,7 +116,7 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     if (wants("depth"))
         out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
     if (wants("motion"))
-        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, 0.0f), Storage::Float);
+        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, image::invalidMotion), Storage::Float);
     if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
     if (wants("samples")) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));
