@@ -57,6 +57,7 @@ SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
     if (scene.clip == none) throw Error("no clip is chosen");
     for (const MovingLeaf& leaf : motion_.leaves)
         records_.push_back(data.instances[size_t{leaf.instance} * layout::INSTANCE_TEXELS + 3]);
+    for (const gpu::TriangleTree& tree : data.trees) firstTriangles_.push_back(tree.first);
     firstPunctual_ = data.lights.size() - scene.lights.size() * layout::LIGHT_TEXELS;
     punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
     // On the device already, and the largest part.
@@ -153,8 +154,9 @@ void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneF
 
         std::array<uvec4, layout::BVH_INSTANCE_TEXELS> bvh{};
         packRows(bvh.data(), isInvertible(transform) ? glm::inverse(transform) : mat4(1.0f));
-        bvh[3] = {leaf.root, leaf.instance, 0, 0};
+        bvh[3] = {leaf.root, leaf.instance, firstTriangles_[leaf.tree], 0};
         addUpload<uvec4>(frame, "bvhInstances", uint64_t{leaf.record} * sizeof(bvh), bvh);
+        frame.placements.emplace_back(leaf.record, placementOf(leaf.tree, transform));
     }
 }
 
