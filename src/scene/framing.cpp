@@ -168,6 +168,12 @@ Camera frame(const Scene& scene) {
 
 }  // namespace
 
+BoundingSphere boundingSphere(const Scene& scene) {
+    const Box box = looseBox(scene);
+    if (box.empty()) return {};
+    return {box.center(), std::max(0.5f * glm::length(box.size()), 1e-20f)};
+}
+
 Camera frameScene(const Scene& scene) {
     Camera camera = frame(scene);
     camera.name = "framing";

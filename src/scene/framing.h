@@ -14,4 +14,11 @@ namespace limpid::scene {
 /// closed box whose triangles face outward is no room.
 Camera frameScene(const Scene& scene);
 
+struct BoundingSphere {
+    vec3 center{0.0f};
+    float radius = 1.0f;
+};
+/// Around the boxes of all instances at rest.
+BoundingSphere boundingSphere(const Scene& scene);
+
 }  // namespace limpid::scene
