@@ -9,8 +9,10 @@
 #include "image/png.h"
 #include "scene/camera.h"
 #include "scene/load.h"
+#include "scene/movement.h"
 #include "scene/pack.h"
 #include "scene/prepare.h"
+#include "scene/scene_animator.h"
 
 namespace limpid::fuzz {
 namespace fs = std::filesystem;
@@ -49,13 +51,37 @@ const Scratch& scratch() {
     return instance;
 }
 
-void pack(const scene::Scene& scene) {
+scene::SceneData pack(const scene::Scene& scene) {
     scene::SceneData data;
     data.features.vertexData = true;
     scene::packMaterials(scene, data);
     scene::packGeometry(scene, data);
     scene::packLights(scene, data);
+    return data;
 }
+
+namespace {
+
+/// Frames of one clip, as `limpid render --animation` makes them.
+void play(scene::Scene& scene, size_t clip) {
+    scene::chooseClip(scene, std::to_string(clip));
+    const scene::SceneData data = pack(scene);
+    const scene::SceneAnimator animator(scene, data);
+    const double duration = scene.rig.clips[clip].duration();
+    double previous = 0.0;
+    for (const double time : {0.0, 0.3 * duration, 0.8 * duration, duration + 1.0}) {
+        try {
+            animator.frame(time, previous);
+        } catch (const Error&) {
+            // A clip may lead out of the range of numbers; that is noticed in the frame where it happens.
+        }
+        for (const scene::Camera& camera : scene.cameras)
+            scene::cameraParams(scene::cameraAt(scene, camera, time), 16, 9);
+        previous = time;
+    }
+}
+
+}  // namespace
 
 bool reachesDevice(const fs::path& sceneFile) {
     scene::Scene scene;
@@ -64,6 +90,7 @@ bool reachesDevice(const fs::path& sceneFile) {
     scene::prepare(scene);
     for (const scene::Camera& camera : scene.cameras) scene::cameraParams(camera, 16, 9);
     pack(scene);
+    for (size_t clip = 0; clip < std::min(scene.rig.clips.size(), size_t{4}); ++clip) play(scene, clip);
     return true;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "scene/scene_data.h"
 #include "targets.h"
 
 namespace limpid::fuzz {
@@ -30,12 +31,12 @@ class Scratch {
 /// The process's one folder; it has the picture "a.png" of 2x2 pixels.
 const Scratch& scratch();
 
-/// Loads a scene file, prepares it and packs it for the device, as `limpid render` does. False if it was
-/// refused.
+/// Loads a scene file, prepares it and packs it for the device as `limpid render` does, and plays its clips.
+/// False if it was refused.
 bool reachesDevice(const std::filesystem::path& sceneFile);
 
 /// The steps of buildSceneData() that depend on the scene.
-void pack(const scene::Scene& scene);
+scene::SceneData pack(const scene::Scene& scene);
 
 /// Reads what `read` reads; false if it threw InputError.
 template <typename Read>
