@@ -29,21 +29,32 @@ struct Job {
     const gpu::RayShaders* rays = nullptr;  ///< `shader` generates rays
 };
 
+inline std::string wantedDevice() {
+    const char* variable = std::getenv("LIMPID_TEST_DEVICE");
+    return variable ? variable : "cpu";
+}
+
 class GpuTest : public testing::Test {
   protected:
+    /// One device lives as long as the suite: NVIDIA's driver can be unloaded and loaded again only so often.
+    static void SetUpTestSuite() {
+        if (!gpu::enumerateDevices().empty())
+            driver_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
+    }
+    static void TearDownTestSuite() { driver_.reset(); }
+
     void SetUp() override {
         if (gpu::enumerateDevices().empty()) {
             GTEST_SKIP()
                 << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
         }
-        const char* variable = std::getenv("LIMPID_TEST_DEVICE");
-        const std::string wanted = variable ? variable : "cpu";
         try {
-            device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wanted, .validation = true});
+            device_ = std::make_unique<gpu::Device>(
+                gpu::DeviceOptions{.select = wantedDevice(), .validation = true});
         } catch (const Error& error) {
             if (std::string(error.what()).find("vulkan-validationlayers") == std::string::npos) throw;
             log::warn("NOT VALIDATED: {}", error.what());
-            device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wanted});
+            device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
         }
     }
     void TearDown() override {
@@ -82,6 +93,7 @@ class GpuTest : public testing::Test {
     }
 
   private:
+    inline static std::unique_ptr<gpu::Device> driver_;
     std::unique_ptr<gpu::Device> device_;
     gpu::FrameGraph graph_;  ///< one for the whole test: it keeps compiled pipelines
 };

@@ -197,8 +197,7 @@ TEST_P(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, MotionTest,
-                         testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, MotionTest, testing::ValuesIn(allTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

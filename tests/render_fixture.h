@@ -60,7 +60,7 @@ class Renderer {
   public:
     Renderer(gpu::Device& device, const scene::Scene& scene, scene::Tracer tracer = scene::Tracer::Compute)
         : camera_(scene.cameras.at(0)),
-          gpuScene_(device, scene::buildSceneData(scene), tracer),
+          gpuScene_(device, scene::buildSceneData(scene), {tracer, {}}),
           still_(device, gpuScene_, UINT64_MAX) {}
 
     /// `samples` must be a multiple of the samples per launch.

@@ -1,6 +1,7 @@
 // Tracing rays on the device, and scenes for it.
 #pragma once
 
+#include <array>
 #include <random>
 
 #include "brute_force.h"
@@ -64,12 +65,12 @@ inline scene::Mesh triangleSoup(uint32_t count, float size, uint32_t seed) {
     return mesh;
 }
 
-/// Every test of traversal is run with both tracers.
-class TraceTest : public GpuTest, public testing::WithParamInterface<scene::Tracer> {
+/// Every test of traversal is run with both tracers, and both ways of the `compute` tracer.
+class TraceTest : public GpuTest, public testing::WithParamInterface<scene::TraceOptions> {
   protected:
     void SetUp() override {
         GpuTest::SetUp();
-        if (IsSkipped() || GetParam() == scene::Tracer::Compute || device().info().rayTracing) return;
+        if (IsSkipped() || GetParam().tracer == scene::Tracer::Compute || device().info().rayTracing) return;
         GTEST_SKIP() << "NOT TESTED: " << device().info().name
                      << " has no ray-tracing pipelines; scripts/lavapipe25.sh fetches a driver that has.";
     }
@@ -104,8 +105,18 @@ class TraceTest : public GpuTest, public testing::WithParamInterface<scene::Trac
     bool twoLevel_ = false;
 };
 
-inline std::string nameOfTracer(const testing::TestParamInfo<scene::Tracer>& tracer) {
-    return std::string(scene::toString(tracer.param));
+inline std::string nameOf(const scene::TraceOptions& options) {
+    if (!options.gpuTraversal) return std::string(scene::toString(options.tracer));
+    return *options.gpuTraversal ? "compute_as_on_gpus" : "compute_as_on_cpus";
 }
+
+inline std::string nameOfTracer(const testing::TestParamInfo<scene::TraceOptions>& options) {
+    return nameOf(options.param);
+}
+
+inline const std::array<scene::TraceOptions, 2> computeTracers{
+    scene::TraceOptions{scene::Tracer::Compute, true}, scene::TraceOptions{scene::Tracer::Compute, false}};
+inline const std::array<scene::TraceOptions, 3> allTracers{computeTracers[0], computeTracers[1],
+                                                           scene::TraceOptions{scene::Tracer::Pipeline, {}}};
 
 }  // namespace limpid::test

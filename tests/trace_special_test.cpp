@@ -188,10 +188,9 @@ TEST_P(AlphaTest, MaskFromTextureAndVertexColours) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, AlphaTest, testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline),
-                         nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, AlphaTest, testing::ValuesIn(allTracers), nameOfTracer);
 // Only ours: whether a driver's tracer is watertight is for its tests to say (lavapipe 25's is not).
-INSTANTIATE_TEST_SUITE_P(Tracers, WatertightTest, testing::Values(scene::Tracer::Compute), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, WatertightTest, testing::ValuesIn(computeTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

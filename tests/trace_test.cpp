@@ -161,8 +161,7 @@ TEST_P(TraceReferenceTest, TwoLevels) {
     compare(scene, 2048, 32);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tracers, TraceReferenceTest,
-                         testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline), nameOfTracer);
+INSTANTIATE_TEST_SUITE_P(Tracers, TraceReferenceTest, testing::ValuesIn(allTracers), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

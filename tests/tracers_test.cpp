@@ -35,7 +35,7 @@ class TracersTest : public RenderTest {
     RenderedLayers picture(const scene::Scene& scene, scene::Tracer tracer, const RenderSettings& settings,
                            uint64_t frame) {
         const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data, tracer);
+        scene::GpuScene gpuScene(device(), data, {tracer, {}});
         const Sequence sequence(scene, data, scene.cameras.at(0), {}, {.framesPerSecond = 10.0});
         ProgressiveStill still(device(), gpuScene, 1);
         // The frame before as well: what it moved must be moved on.

@@ -51,7 +51,8 @@ LoadedScene load(gpu::Device& device, const DeviceChoice& choice, const std::str
     const Clock::time_point start = Clock::now();
     const scene::SceneData data = scene::buildSceneData(loaded.scene);
     loaded.treeSeconds = since(start);
-    loaded.gpu = std::make_unique<scene::GpuScene>(device, data, chosenTracer(choice, device));
+    loaded.gpu = std::make_unique<scene::GpuScene>(device, data,
+                                                   scene::TraceOptions{chosenTracer(choice, device), {}});
     return loaded;
 }
 

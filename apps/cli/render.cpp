@@ -241,7 +241,7 @@ void render(const RenderOptions& o) {
     start = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(*device, data, chosenTracer(o.device, *device));
+    scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
     data = {};  // it is on the device now, and so are the textures
     scene.textures.clear();

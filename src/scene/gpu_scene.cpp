@@ -3,17 +3,21 @@
 #include <string>
 
 #include "base/error.h"
+#include "scene/expanded_nodes.h"
 
 namespace limpid::scene {
 
-GpuScene::GpuScene(gpu::Device& device, const SceneData& data, Tracer tracer)
-    : features_(data.features), params_(data.params), stackSize_(data.stackSize), cpuDevice_(device.isCpu()) {
+GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options)
+    : features_(data.features),
+      params_(data.params),
+      stackSize_(data.stackSize),
+      gpuTraversal_(options.gpuTraversal.value_or(!device.isCpu())) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
         buffers_.push_back(
             {name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
     };
-    add("bvhNodes", Format::RGBA32Uint, data.bvhNodes);
+    addNodes(device, data);
     add("bvhTriangles", Format::RGBA32Float, data.bvhTriangles);
     add("bvhInstances", Format::RGBA32Uint, data.bvhInstances);
     add("triangles", Format::RGBA32Uint, data.triangles);
@@ -36,9 +40,19 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, Tracer tracer)
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
     }
     if (!data.motion.deforming.empty()) addDeformBuffers(device, data);
-    if (tracer == Tracer::Pipeline) {
+    if (options.tracer == Tracer::Pipeline) {
         structures_.emplace(device, "scene/structures", buffer("bvhTriangles"), data.trees, data.placements);
     }
+}
+
+void GpuScene::addNodes(gpu::Device& device, const SceneData& data) {
+    const auto add = [&](std::vector<NamedBuffer>& list, const char* name, const std::vector<uvec4>& nodes) {
+        list.push_back({name, device.createTexelBuffer(std::string("scene/") + name, gpu::Format::RGBA32Uint,
+                                                       gpu::bytesOf(nodes))});
+    };
+    if (!gpuTraversal_) return add(buffers_, "bvhNodes", data.bvhNodes);
+    add(buffers_, "bvhNodes", expandNodes(data.bvhNodes));
+    if (data.motion.moving) add(deformBuffers_, "quantisedNodes", data.bvhNodes);
 }
 
 void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
@@ -63,6 +77,7 @@ void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
 }
 
 const gpu::Buffer& GpuScene::buffer(std::string_view name) const {
+    if (name == "quantisedNodes" && !gpuTraversal_) name = "bvhNodes";
     for (const auto* list : {&buffers_, &deformBuffers_}) {
         for (const NamedBuffer& named : *list) {
             if (named.name == name) return named.buffer;
@@ -92,7 +107,8 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_MOTION", features_.motion},
             {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
-            {"CPU_DEVICE", cpuDevice_}};
+            {"CPU_LOOPS", !gpuTraversal_},
+            {"EXPANDED_NODES", gpuTraversal_}};
 }
 
 uint64_t GpuScene::byteCount() const {

@@ -17,7 +17,7 @@ class GpuScene {
   public:
     /// Uploads. Throws Error naming the limit if a buffer exceeds what the device allows, or if the device
     /// lacks the tracer.
-    GpuScene(gpu::Device& device, const SceneData& data, Tracer tracer = Tracer::Compute);
+    GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options = {});
 
     Tracer tracer() const { return structures_ ? Tracer::Pipeline : Tracer::Compute; }
 
@@ -27,9 +27,11 @@ class GpuScene {
     const layout::SceneParams& params() const { return params_; }
     /// Of the frame from now on (scene/scene_animator.h).
     void setParams(const layout::SceneParams& params) { params_ = params; }
-    /// One of the buffers of scene_data.glsl, or of passes/deform. Throws Error if there is none of that
-    /// name.
+    /// One of the buffers of scene_data.glsl, or of passes/deform. "quantisedNodes" are bvhNodes, or what
+    /// they are expanded from. Throws Error if there is none of that name.
     const gpu::Buffer& buffer(std::string_view name) const;
+    /// bvhNodes are expanded: what changes in "quantisedNodes" must follow there.
+    bool expandsNodes() const { return gpuTraversal_; }
     /// Of the `pipeline` tracer; null with the other.
     const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
     uint64_t byteCount() const;
@@ -39,6 +41,7 @@ class GpuScene {
         const char* name;
         gpu::Buffer buffer;
     };
+    void addNodes(gpu::Device& device, const SceneData& data);
     void addDeformBuffers(gpu::Device& device, const SceneData& data);
 
     std::vector<NamedBuffer> buffers_;
@@ -48,7 +51,7 @@ class GpuScene {
     layout::SceneParams params_;
     uint32_t stackSize_;
     uint32_t texelBufferCount_ = 1;
-    bool cpuDevice_;
+    bool gpuTraversal_;
 };
 
 }  // namespace limpid::scene

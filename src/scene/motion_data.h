@@ -45,6 +45,10 @@ struct RefitLevel {
     uint32_t first = 0, count = 0;  ///< in MotionData::refitNodes
 };
 
+struct NodeRange {
+    uint32_t first = 0, count = 0;  ///< in bvhNodes
+};
+
 struct MotionData {
     bool moving = false;
     std::vector<MovingLeaf> leaves;

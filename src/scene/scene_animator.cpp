@@ -222,7 +222,10 @@ void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
     children.push_back({BvhRef::node(motion_.stillRoot), still});
     std::vector<BvhNode> nodes{makeBvhNode(children)};
     nodes.insert(nodes.end(), moving.nodes.begin(), moving.nodes.end());
-    addUpload(frame, "bvhNodes", uint64_t{motion_.firstTopNode} * sizeof(BvhNode), nodes);
+    addUpload(frame, "quantisedNodes", uint64_t{motion_.firstTopNode} * sizeof(BvhNode), nodes);
+    frame.changedNodes.push_back({motion_.firstTopNode, static_cast<uint32_t>(nodes.size())});
+    if (motion_.refitNodeCount > 0)
+        frame.changedNodes.push_back({motion_.firstRefitNode, motion_.refitNodeCount});
     if (all.empty()) return;
     frame.params.sceneCenter = all.center();
     frame.params.sceneRadius = std::max(0.5f * glm::length(all.size()), 1e-20f);

@@ -24,6 +24,7 @@ struct SceneFrame {
     std::vector<layout::PoseParams> poses;                            ///< one per deforming instance
     std::span<const RefitLevel> refitLevels;                          ///< of the animator
     uint32_t firstRefitNode = 0;
+    std::vector<NodeRange> changedNodes;  ///< by uploads and by refitting
     layout::SceneParams params{};
 };
 

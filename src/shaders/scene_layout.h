@@ -13,8 +13,11 @@ namespace limpid::layout {
 
 LIMPID_CONST uint NONE = 0xFFFFFFFFu;
 
-// bvhNodes: scene/bvh.h's BvhNode.
+// bvhNodes, quantised (on CPUs): scene/bvh.h's BvhNode.
 LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
+// bvhNodes, expanded (on GPUs): x, y, z of the lower corners of the four children, then of the upper;
+// children. A child that does not exist has its lower corner above its upper.
+LIMPID_CONST uint EXPANDED_NODE_TEXELS = 7u;
 
 // bvhTriangles, in leaf order: v0 | primitive; v1 | instance or NONE (then the one being traversed); v2 |
 // shading triangle. Positions are in world space in the static tree, in object space in an instanced one.

@@ -1,73 +1,20 @@
-// Ray traversal of the quantised four-wide trees that scene/bvh.h describes.
+// Ray traversal of the four-wide trees that scene/bvh.h describes.
 //
-// Two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG
-// 2009): first all lanes descend to a leaf, then all test triangles. The triangle test is watertight: S. Woop,
-// C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2013, with two vectors across the ray in place of
-// their shear; a vertex projects to the same point whichever triangle it is seen from.
+// On a CPU, two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs",
+// HPG 2009): first all lanes descend to a leaf, then all test triangles. On a GPU one loop, where each lane takes one step
+// of its own, a node or a triangle ("if-if" there). The triangle test is watertight: S. Woop, C. Benthin, I. Wald,
+// "Watertight ray/triangle intersection", JCGT 2013, with two vectors across the ray in place of their shear; a vertex
+// projects to the same point whichever triangle it is seen from.
 #ifndef LIMPID_TRACE_COMPUTE_GLSL
 #define LIMPID_TRACE_COMPUTE_GLSL
 
+#include "shaders/bvh_node.glsl"
+
 const uint REF_LEAF = 0x80000000u;
 const uint REF_INDEX = 0x0fffffffu;
+const uint REF_COUNT_SHIFT = 28u;
 const uint REF_DONE = 0xffffffffu;           // an unreachable leaf: traversal ends
 const uint REF_LEAVE_INSTANCE = 0xfffffffeu;  // back to world space
-const uint KEY_MISS = 0xffffffffu;
-
-struct TraversalRay {
-    vec3 origin, direction, inverse;
-    vec3 acrossX, acrossY;  // perpendicular to the ray, of any length
-};
-
-TraversalRay traversalRay(vec3 origin, vec3 direction) {
-    // A component of 0 would make 0 * infinity; the smallest direction that does not overflow stands for it.
-    const vec3 tiny = vec3(1e-18);
-    const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
-    const vec3 acrossX = abs(direction.x) > abs(direction.z) ? vec3(-direction.y, direction.x, 0.0)
-                                                             : vec3(0.0, -direction.z, direction.y);
-    return TraversalRay(origin, direction, 1.0 / safe, acrossX, cross(direction, acrossX));
-}
-
-vec4 bytesOf(uint word) {
-    return vec4(float(word & 255u), float((word >> 8) & 255u), float((word >> 16) & 255u), float(word >> 24));
-}
-
-float exponentScale(uint biased) {
-    return uintBitsToFloat(biased << 23);
-}
-
-/// Entry distances of the four children as sortable keys: distance bits with the child's number in the lowest two;
-/// KEY_MISS where the ray misses.
-uvec4 intersectChildren(uint node, TraversalRay ray, float tMax, out uvec4 children) {
-    const int at = int(node * BVH_NODE_TEXELS);
-    const uvec4 head = imageLoad(bvhNodes, at);
-    const uvec4 boundsA = imageLoad(bvhNodes, at + 1);
-    const uvec4 boundsB = imageLoad(bvhNodes, at + 2);
-    children = imageLoad(bvhNodes, at + 3);
-    const vec3 scale = ray.inverse * vec3(exponentScale(head.w & 255u), exponentScale((head.w >> 8) & 255u),
-                                          exponentScale((head.w >> 16) & 255u));
-    const vec3 base = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse;
-    // Rounding of origin and cells in ray space, at most: both sides of a box move outwards by it, so that a flat box or
-    // a hit on an edge of one is not lost (compare T. Ize, "Robust BVH ray traversal", JCGT 2013).
-    const vec3 padding = 5e-7 * (abs(base) + 255.0 * abs(scale));
-    const vec3 baseNear = base - padding, baseFar = base + padding;
-    const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
-    const vec4 nearX = bytesOf(flip.x ? boundsA.w : boundsA.x) * scale.x + baseNear.x;
-    const vec4 nearY = bytesOf(flip.y ? boundsB.x : boundsA.y) * scale.y + baseNear.y;
-    const vec4 nearZ = bytesOf(flip.z ? boundsB.y : boundsA.z) * scale.z + baseNear.z;
-    const vec4 farX = bytesOf(flip.x ? boundsA.x : boundsA.w) * scale.x + baseFar.x;
-    const vec4 farY = bytesOf(flip.y ? boundsA.y : boundsB.x) * scale.y + baseFar.y;
-    const vec4 farZ = bytesOf(flip.z ? boundsA.z : boundsB.y) * scale.z + baseFar.z;
-    const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
-    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax)));
-    const uvec4 keys = (floatBitsToUint(tNear) & ~3u) | uvec4(0u, 1u, 2u, 3u);
-    return mix(uvec4(KEY_MISS), keys, lessThanEqual(tNear, tFar));
-}
-
-uint childOf(uint key, uvec4 children) {
-    const uint low = (key & 1u) != 0u ? children.y : children.x;
-    const uint high = (key & 1u) != 0u ? children.w : children.z;
-    return (key & 2u) != 0u ? high : low;
-}
 
 /// Ascending, by a network of five comparisons.
 uvec4 sortKeys(uvec4 k) {
@@ -122,28 +69,31 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
     int top = 1;  // entries in use
     uint current = rootNode;
     while (true) {
-        while (current < REF_LEAF) {
+        // Of these two loops a device has one.
+        while (CPU_LOOPS && current < REF_LEAF) {
+            uvec4 children;
+            const uvec4 keys = sortKeys(intersectChildren(current, ray, hit.t, children));
+            // Branches cost both sides here; stores past the top are harmless.
+            stack[top] = childOf(keys.w, children);
+            top += keys.w != KEY_MISS ? 1 : 0;
+            stack[top] = childOf(keys.z, children);
+            top += keys.z != KEY_MISS ? 1 : 0;
+            stack[top] = childOf(keys.y, children);
+            top += keys.y != KEY_MISS ? 1 : 0;
+            top -= keys.x == KEY_MISS ? 1 : 0;
+            current = keys.x == KEY_MISS ? stack[top] : childOf(keys.x, children);
+        }
+        if (!CPU_LOOPS && current < REF_LEAF) {
             uvec4 children;
             uvec4 keys = intersectChildren(current, ray, hit.t, children);
             // Any hit will do for a shadow ray: its order does not matter.
-            if (!anyHit || CPU_DEVICE) keys = sortKeys(keys);
-            if (CPU_DEVICE) {
-                // Branches cost both sides here; stores past the top are harmless.
-                stack[top] = childOf(keys.w, children);
-                top += keys.w != KEY_MISS ? 1 : 0;
-                stack[top] = childOf(keys.z, children);
-                top += keys.z != KEY_MISS ? 1 : 0;
-                stack[top] = childOf(keys.y, children);
-                top += keys.y != KEY_MISS ? 1 : 0;
-                top -= keys.x == KEY_MISS ? 1 : 0;
-                current = keys.x == KEY_MISS ? stack[top] : childOf(keys.x, children);
-            } else {
-                if (keys.w != KEY_MISS) stack[top++] = childOf(keys.w, children);
-                if (keys.z != KEY_MISS) stack[top++] = childOf(keys.z, children);
-                if (keys.y != KEY_MISS) stack[top++] = childOf(keys.y, children);
-                if (keys.x != KEY_MISS) stack[top++] = childOf(keys.x, children);
-                current = stack[--top];
-            }
+            if (!anyHit) keys = sortKeys(keys);
+            if (keys.w != KEY_MISS) stack[top++] = childOf(keys.w, children);
+            if (keys.z != KEY_MISS) stack[top++] = childOf(keys.z, children);
+            if (keys.y != KEY_MISS) stack[top++] = childOf(keys.y, children);
+            if (keys.x != KEY_MISS) stack[top++] = childOf(keys.x, children);
+            current = stack[--top];
+            continue;
         }
         if (current == REF_DONE) break;
         if (TWO_LEVEL && current == REF_LEAVE_INSTANCE) {
@@ -166,10 +116,16 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
             current = record.x;
             continue;
         } else {
-            const uint first = current & REF_INDEX;
-            const uint end = first + ((current >> 28) & 7u) + 1u;
-            for (uint index = first; index < end; ++index) {
-                intersectTriangle(index, ray, instance, hit, rng);
+            const uint first = current & REF_INDEX, more = (current >> REF_COUNT_SHIFT) & 7u;
+            if (CPU_LOOPS) {
+                for (uint index = first; index <= first + more; ++index)
+                    intersectTriangle(index, ray, instance, hit, rng);
+            } else {
+                intersectTriangle(first, ray, instance, hit, rng);
+                if (more != 0u && !(anyHit && hit.triangle != NONE)) {
+                    current = REF_LEAF | (more - 1u) << REF_COUNT_SHIFT | (first + 1u);
+                    continue;
+                }
             }
         }
         current = stack[--top];

@@ -1,5 +1,6 @@
 #include "passes/deform/deform.h"
 
+#include "expand.comp.h"
 #include "passes/deform/deform_params.h"
 #include "pose.comp.h"
 #include "refit.comp.h"
@@ -39,11 +40,23 @@ void refit(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::Sc
         const RefitParams params{level.first, level.count, frame.firstRefitNode};
         graph.dispatch({.pass = "deform/refit",
                         .shader = shaders::refit_comp,
-                        .bindings = bind(scene, {"refitNodes", "nodeBounds", "bvhNodes", "bvhTriangles",
+                        .bindings = bind(scene, {"refitNodes", "nodeBounds", "quantisedNodes", "bvhTriangles",
                                                  "triangles", "posedVertices"}),
                         .params = gpu::paramsOf(params),
                         .constants = {},
                         .extent = {level.count, 1}});
+    }
+}
+
+void expand(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::SceneFrame& frame) {
+    for (const scene::NodeRange& range : frame.changedNodes) {
+        const ExpandParams params{range.first, range.count};
+        graph.dispatch({.pass = "deform/expand",
+                        .shader = shaders::expand_comp,
+                        .bindings = bind(scene, {"quantisedNodes", "bvhNodes"}),
+                        .params = gpu::paramsOf(params),
+                        .constants = {},
+                        .extent = {range.count, 1}});
     }
 }
 
@@ -54,6 +67,7 @@ void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFr
     scene.setParams(frame.params);
     pose(graph, scene, frame);
     if (!frame.poses.empty()) refit(graph, scene, frame);
+    if (scene.expandsNodes()) expand(graph, scene, frame);
     if (scene.structures()) graph.rebuild("deform/structures", *scene.structures());
 }
 

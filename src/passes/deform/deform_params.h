@@ -1,4 +1,4 @@
-// Parameters of the refit shader. Included by C++ and GLSL.
+// Parameters of the refit and expand shaders. Included by C++ and GLSL.
 #ifndef LIMPID_PASSES_DEFORM_PARAMS_H
 #define LIMPID_PASSES_DEFORM_PARAMS_H
 
@@ -11,6 +11,11 @@ struct RefitParams {
     uint first;  // of refitNodes
     uint count;
     uint firstNode;  // of nodeBounds: the node that its first entry belongs to
+};
+
+struct ExpandParams {
+    uint first;  // node
+    uint count;
 };
 
 #ifdef __cplusplus

@@ -12,7 +12,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 layout(set = 0, binding = 1, r32ui) uniform readonly uimageBuffer refitNodes;
 layout(set = 0, binding = 2, rgba32f) uniform imageBuffer nodeBounds;
-layout(set = 0, binding = 3, rgba32ui) uniform uimageBuffer bvhNodes;
+layout(set = 0, binding = 3, rgba32ui) uniform uimageBuffer quantisedNodes;
 layout(set = 0, binding = 4, rgba32f) uniform imageBuffer bvhTriangles;
 layout(set = 0, binding = 5, rgba32ui) uniform readonly uimageBuffer triangles;
 layout(set = 0, binding = 6, rgba32f) uniform readonly imageBuffer posedVertices;
@@ -78,7 +78,7 @@ void main() {
     if (i >= params.count) return;
     const uint node = imageLoad(refitNodes, int(params.first + i)).x;
     const int at = int(node * BVH_NODE_TEXELS);
-    const uvec4 children = imageLoad(bvhNodes, at + 3);
+    const uvec4 children = imageLoad(quantisedNodes, at + 3);
     // A child that does not exist repeats the first one's reference.
     Box boxes[4];
     Box all = Box(vec3(3e38), vec3(-3e38));
@@ -101,9 +101,9 @@ void main() {
             upper[axis] |= high << (8 * c);
         }
     }
-    imageStore(bvhNodes, at, uvec4(floatBitsToUint(all.lower), exponents.x | exponents.y << 8 | exponents.z << 16));
-    imageStore(bvhNodes, at + 1, uvec4(lower, upper.x));
-    imageStore(bvhNodes, at + 2, uvec4(upper.yz, 0u, 0u));
+    imageStore(quantisedNodes, at, uvec4(floatBitsToUint(all.lower), exponents.x | exponents.y << 8 | exponents.z << 16));
+    imageStore(quantisedNodes, at + 1, uvec4(lower, upper.x));
+    imageStore(quantisedNodes, at + 2, uvec4(upper.yz, 0u, 0u));
     const int bounds = int((node - params.firstNode) * NODE_BOUNDS_TEXELS);
     imageStore(nodeBounds, bounds, vec4(all.lower, 0.0));
     imageStore(nodeBounds, bounds + 1, vec4(all.upper, 0.0));
