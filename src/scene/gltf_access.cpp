@@ -236,6 +236,10 @@ uint64_t accessorCount(const Document& document, int accessor) {
     return countOf(document.lists().accessors[static_cast<size_t>(accessor)]);
 }
 
+size_t accessorComponents(const Document& document, int accessor) {
+    return componentsOf(document.lists().accessors[static_cast<size_t>(accessor)]);
+}
+
 std::vector<vec2> readVec2(const Document& document, int accessor) {
     return readRows<vec2>(document, accessor, {2, 2, false}, 0.0f);
 }

@@ -10,6 +10,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "scene/gltf_draco.h"
+#include "scene/gltf_draco_primitives.h"
+#include "scene/gltf_meshopt.h"
 
 namespace limpid::scene::gltf {
 namespace {
@@ -27,6 +30,12 @@ constexpr std::array harmlessExtensions = {"KHR_xmp", "KHR_xmp_json_ld"};
 template <size_t N>
 bool contains(const std::array<const char*, N>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+bool isSupported(const std::string& name) {
+    if (name == meshoptExtension) return canDecodeMeshopt();
+    if (name == dracoExtension) return canDecodeDraco();
+    return contains(supportedExtensions, name) || contains(harmlessExtensions, name);
 }
 
 uint32_t littleEndian(std::span<const std::byte> bytes, size_t at) {
@@ -98,12 +107,14 @@ Document::Lists::Lists(const Object& r)
 
 Document::Document(const std::filesystem::path& file) : files_(file) {
     const std::vector<std::byte> text = takeJson(readSceneFile(file));
-    json_ = std::make_unique<const Json>(parseJson(this->file(), text));
+    json_ = std::make_unique<Json>(parseJson(this->file(), text));
     const Object root(this->file(), *json_, "");
     lists_ = std::make_unique<const Lists>(root);
     checkAsset();
     checkExtensions();
     readBuffers();
+    decodeViews();
+    expandPrimitives();
 }
 
 Document::~Document() = default;
@@ -132,15 +143,13 @@ void Document::checkAsset() const {
 void Document::checkExtensions() {
     std::vector<std::string> missing, ignored;
     for (const std::string& name : root().texts("extensionsRequired")) {
-        if (!contains(supportedExtensions, name) && !contains(harmlessExtensions, name))
-            missing.push_back(name);
+        if (!isSupported(name)) missing.push_back(name);
     }
     if (!missing.empty()) {
         throw InputError(file(), fmt::format("requires what is not supported: {}", fmt::join(missing, ", ")));
     }
     for (const std::string& name : root().texts("extensionsUsed")) {
-        if (!contains(supportedExtensions, name) && !contains(harmlessExtensions, name))
-            ignored.push_back(name);
+        if (!isSupported(name)) ignored.push_back(name);
     }
     if (!ignored.empty()) warn(fmt::format("extensions that are ignored: {}", fmt::join(ignored, ", ")));
 }
@@ -149,6 +158,10 @@ void Document::readBuffers() {
     const std::vector<Object> buffers = root().objects("buffers");
     uint64_t total = 0;
     for (const Object& buffer : buffers) {
+        if (isPlaceholder(buffer)) {
+            buffers_.emplace_back();
+            continue;
+        }
         const uint64_t length = buffer.whole("byteLength");
         std::vector<std::byte> bytes;
         if (const std::string uri = buffer.text("uri"); isDataUri(uri)) {
@@ -165,10 +178,49 @@ void Document::readBuffers() {
         bytes.resize(static_cast<size_t>(length));
         buffers_.push_back(std::move(bytes));
     }
+    decodedBytesLeft_ = std::min(decodedFloor + decodedPerByte * total, maxDecodedBytes);
+}
+
+/// A buffer that stands for what its compressed views decode to: marked as such, or without any data.
+bool Document::isPlaceholder(const Object& buffer) const {
+    if (!canDecodeMeshopt()) return false;
+    const auto extension = buffer.extension(meshoptExtension);
+    if (extension && extension->boolean("fallback", false)) return true;
+    const bool hasData = buffer.has("uri") || (buffers_.empty() && !binaryChunk_.empty());
+    const auto& views = lists_->bufferViews;
+    return !hasData && std::any_of(views.begin(), views.end(), [](const Object& view) {
+        return view.extension(meshoptExtension).has_value();
+    });
+}
+
+void Document::decodeViews() {
+    if (!canDecodeMeshopt()) return;
+    const auto& views = lists_->bufferViews;
+    for (size_t i = 0; i < views.size(); ++i) {
+        const auto extension = views[i].extension(meshoptExtension);
+        if (!extension) continue;
+        if (views[i].whole("byteLength") > decodedBytesLeft_)
+            views[i].fail("the document's compressed buffer views are too large together");
+        const auto& decoded = decodedViews_[static_cast<int>(i)] =
+            decodeMeshopt(views[i], *extension, slice(*extension));
+        decodedBytesLeft_ -= decoded.size();
+    }
+}
+
+void Document::expandPrimitives() {
+    if (!canDecodeDraco()) return;
+    if (!expandDracoPrimitives(*this, *json_, buffers_, decodedBytesLeft_)) return;
+    lists_ = std::make_unique<const Lists>(Object(file(), *json_, ""));
 }
 
 std::span<const std::byte> Document::bytes(int bufferView) const {
-    const Object& view = lists_->bufferViews[static_cast<size_t>(bufferView)];
+    const auto decoded = decodedViews_.find(bufferView);
+    if (decoded != decodedViews_.end()) return decoded->second;
+    return slice(lists_->bufferViews[static_cast<size_t>(bufferView)]);
+}
+
+/// The part of a buffer that a buffer view, or its compressed form, names.
+std::span<const std::byte> Document::slice(const Object& view) const {
     const int buffer = view.index("buffer", buffers_.size());
     if (buffer == none) view.fail("has no buffer");
     const std::vector<std::byte>& content = buffers_[static_cast<size_t>(buffer)];
