@@ -19,11 +19,12 @@ namespace {
 
 constexpr size_t maxWarnings = 16;
 
-/// What this loader understands; KHR_materials_volume only as far as "is this a closed body that refracts".
+/// What this loader understands, beside the compressions that the build may lack.
 constexpr std::array supportedExtensions = {
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_unlit",
-    "KHR_materials_volume",   "KHR_mesh_quantization",           "KHR_texture_transform"};
+    "KHR_lights_punctual",  "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_specular",  "KHR_materials_transmission",
+    "KHR_materials_unlit",  "KHR_materials_volume",    "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 /// Metadata: ignoring it changes no picture, so no warning either.
 constexpr std::array harmlessExtensions = {"KHR_xmp", "KHR_xmp_json_ld"};
 

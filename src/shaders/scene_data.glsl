@@ -17,6 +17,9 @@ layout(constant_id = 8) const bool HAS_ENVIRONMENT = true;
 layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack entries
 layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
 layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
+layout(constant_id = 20) const bool HAS_CLEARCOAT = true;
+layout(constant_id = 21) const bool HAS_VOLUME = true;        // bodies that absorb light
+layout(constant_id = 22) const bool HAS_SPECULAR_TEXTURES = true;
 layout(constant_id = 12) const bool CPU_DEVICE = false;         // runs on a CPU: no branch skips its body
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
