@@ -14,9 +14,10 @@
 #include "image/png.h"
 #include "image/tonemap.h"
 #include "progress.h"
+#include "renderer/sequence.h"
 #include "renderer/still.h"
-#include "scene/camera.h"
 #include "scene_options.h"
+#include "sequence_options.h"
 
 namespace limpid::cli {
 namespace {
@@ -26,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 struct RenderOptions {
     SceneChoice scene;
+    SequenceChoice sequence;
     DeviceChoice device;
     std::string output;
     uint32_t width = 1280, height = 720;
@@ -48,7 +50,10 @@ double since(Clock::time_point start) {
 
 void addOptions(CLI::App& command, RenderOptions& o) {
     addSceneOptions(command, o.scene);
-    command.add_option("-o,--output", o.output, "Output file: .exr (linear, layers) or .png (tone-mapped)")
+    addSequenceOptions(command, o.sequence);
+    command
+        .add_option("-o,--output", o.output,
+                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames")
         ->required();
     command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
@@ -107,7 +112,7 @@ bool isExr(const fs::path& path) {
 }
 
 void checkOutput(const RenderOptions& o) {
-    const fs::path path(o.output);
+    const fs::path path = FramePattern(o.output).format(0);
     if (!isExr(path) && path.extension() != ".png") {
         throw UsageError("'" + o.output + "': an output's name ends in .exr or .png");
     }
@@ -115,8 +120,9 @@ void checkOutput(const RenderOptions& o) {
     checkWritable(path);
 }
 
-void writeOutput(const RenderOptions& o, const RenderedLayers& layers, const gpu::Device& device) {
-    if (isExr(o.output)) {
+void writeOutput(const RenderOptions& o, const fs::path& path, const RenderedLayers& layers,
+                 const gpu::Device& device) {
+    if (isExr(path)) {
         image::LayeredImage exr = toLayeredImage(layers, parseLayers(o.layers),
                                                  o.floatExr ? image::Storage::Float : image::Storage::Half);
         exr.metadata = {{"limpid.version", LIMPID_VERSION},
@@ -125,20 +131,20 @@ void writeOutput(const RenderOptions& o, const RenderedLayers& layers, const gpu
                         {"limpid.seed", std::to_string(o.seed)},
                         {"limpid.device", device.info().name},
                         {"limpid.driver", device.info().driver}};
-        image::writeExr(o.output, exr);
+        image::writeExr(path, exr);
         return;
     }
     const image::Image beauty = beautyOf(layers);
     const float stops = parseExposure(o.exposure).value_or(image::autoExposure(beauty));
-    image::writePng(o.output, image::toBytes(image::tonemap(beauty, stops)));
+    image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
 }
 
-void writeDump(const RenderOptions& o, ProgressiveStill& still) {
+void writeDump(const RenderOptions& o, const fs::path& output, ProgressiveStill& still) {
     if (o.dump.empty()) return;
     for (auto& [name, picture] : still.dump(o.dump)) {
         std::string flat = name;
         std::replace(flat.begin(), flat.end(), '/', '.');
-        fs::path path(o.output);
+        fs::path path(output);
         path.replace_extension("." + flat + ".exr");
         image::LayeredImage exr;
         exr.width = picture.width;
@@ -149,36 +155,71 @@ void writeDump(const RenderOptions& o, ProgressiveStill& still) {
     }
 }
 
-void report(const RenderOptions& o, const gpu::Device& device, const RenderCounters& counters,
-            const Timings& t, const scene::Scene& scene, const scene::GpuScene& gpuScene,
-            const std::vector<gpu::PassTime>& passes) {
-    if (counters.rejected > 0)
-        log::warn("{} samples were NaN or infinite and count as black", counters.rejected);
-    const double megaRays = static_cast<double>(counters.rays) * 1e-6 / std::max(t.renderSeconds, 1e-9);
+/// What was rendered, for the last line or the JSON object.
+struct Summary {
+    int frames = 0;
+    RenderCounters counters;  ///< of all frames
+    Timings timings;
+    std::vector<gpu::PassTime> passes;  ///< of the last launch
+};
+
+void report(const RenderOptions& o, const gpu::Device& device, const Summary& s, const scene::Scene& scene,
+            const scene::GpuScene& gpuScene) {
+    if (s.counters.rejected > 0)
+        log::warn("{} samples were NaN or infinite and count as black", s.counters.rejected);
+    const double megaRays =
+        static_cast<double>(s.counters.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
     if (!o.json) {
-        log::info("{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", o.samples,
-                  o.width, o.height, t.renderSeconds, megaRays, device.info().name);
+        const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.frames) : "";
+        log::info("{}{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", frames,
+                  o.samples, o.width, o.height, s.timings.renderSeconds, megaRays, device.info().name);
         return;
     }
     nlohmann::json passTimes = nlohmann::json::object();
-    for (const gpu::PassTime& pass : passes) passTimes[pass.name] = pass.milliseconds;
+    for (const gpu::PassTime& pass : s.passes) {
+        const double before = passTimes.value(pass.name, 0.0);  // a pass may be dispatched several times
+        passTimes[pass.name] = before + pass.milliseconds;
+    }
     const nlohmann::json object{{"output", o.output},
                                 {"device", device.info().name},
                                 {"width", o.width},
                                 {"height", o.height},
+                                {"frames", s.frames},
                                 {"samples", o.samples},
                                 {"seed", o.seed},
                                 {"triangles", scene.triangleCount()},
                                 {"scene_bytes", gpuScene.byteCount()},
-                                {"load_seconds", t.loadSeconds},
-                                {"upload_seconds", t.uploadSeconds},
-                                {"render_seconds", t.renderSeconds},
-                                {"rays", counters.rays},
+                                {"load_seconds", s.timings.loadSeconds},
+                                {"upload_seconds", s.timings.uploadSeconds},
+                                {"render_seconds", s.timings.renderSeconds},
+                                {"rays", s.counters.rays},
                                 {"million_rays_per_second", megaRays},
-                                {"rejected_samples", counters.rejected},
+                                {"rejected_samples", s.counters.rejected},
                                 {"last_frame_ms", passTimes},
                                 {"validation_messages", device.validationMessages()}};
     fmt::print("{}\n", object.dump(2));
+}
+
+/// All frames, each written as soon as it is done.
+void renderFrames(const RenderOptions& o, const RenderSettings& settings, const Sequence& sequence,
+                  gpu::Device& device, scene::GpuScene& gpuScene, Summary& summary) {
+    const FramePattern output(o.output);
+    ProgressiveStill still(device, gpuScene, o.samples);
+    Progress progress("samples", o.samples * static_cast<uint64_t>(summary.frames));
+    for (int frame = 0; frame < summary.frames; ++frame) {
+        const auto number = static_cast<uint64_t>(frame);
+        const Clock::time_point start = Clock::now();
+        still.update(sequence.moment(number, settings.extent), settings);
+        while (still.launch()) progress.show(number * o.samples + still.samples());
+        still.finish();
+        summary.timings.renderSeconds += since(start);
+        writeOutput(o, output.format(frame), still.download(), device);
+        writeDump(o, output.format(frame), still);
+        const RenderCounters counters = still.counters();
+        summary.counters.rays += counters.rays;
+        summary.counters.rejected += counters.rejected;
+    }
+    summary.passes = still.passTimes();
 }
 
 void render(const RenderOptions& o) {
@@ -186,30 +227,27 @@ void render(const RenderOptions& o) {
     parseExposure(o.exposure);
     parseLayers(o.layers);
     const RenderSettings settings = settingsOf(o);
-    Timings timings;
+    const FramePattern output(o.output);
+    Summary summary;
     Clock::time_point start = Clock::now();
     scene::Scene scene = loadChosenScene(o.scene);
-    const CameraParams camera = scene::cameraParams(chosenCamera(scene, o.scene.camera), o.width, o.height);
-    timings.loadSeconds = since(start);
+    chooseAnimation(o.sequence, output, scene);
+    const scene::Camera camera = chosenCamera(scene, o.scene.camera);
+    const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
+    summary.frames = frameCount(o.sequence, output, scene, path);
+    summary.timings.loadSeconds = since(start);
 
     start = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
-    const scene::GpuScene gpuScene(*device, scene::buildSceneData(scene));
-    scene.textures.clear();  // they are on the device now
-    timings.uploadSeconds = since(start);
+    scene::SceneData data = scene::buildSceneData(scene);
+    scene::GpuScene gpuScene(*device, data);
+    const Sequence sequence(scene, data, camera, path, o.sequence.timing);
+    data = {};  // it is on the device now, and so are the textures
+    scene.textures.clear();
+    summary.timings.uploadSeconds = since(start);
 
-    start = Clock::now();
-    ProgressiveStill still(*device, gpuScene, o.samples);
-    still.update(camera, settings);
-    {
-        Progress progress("samples", o.samples);
-        while (still.launch()) progress.show(still.samples());
-        still.finish();
-    }
-    timings.renderSeconds = since(start);
-    writeOutput(o, still.download(), *device);
-    writeDump(o, still);
-    report(o, *device, still.counters(), timings, scene, gpuScene, still.passTimes());
+    renderFrames(o, settings, sequence, *device, gpuScene, summary);
+    report(o, *device, summary, scene, gpuScene);
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     }

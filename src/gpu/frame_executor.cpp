@@ -24,6 +24,7 @@ void FrameExecutor::execute(const RecordedFrame& frame) {
     const VkCommandBuffer commands = slot.commands();
     prepareImages(frame, commands);
     clearHistories(frame, commands);
+    recordUploads(frame, slot);
     slot.writeTimestamp(0);
     for (size_t i = 0; i < frame.passes.size(); ++i) {
         recordPass(frame, i, slot);
@@ -84,6 +85,18 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
     }
     if (!any) return;
     memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+}
+
+void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
+    if (frame.uploads.empty()) return;
+    const VkBuffer staging = slot.stage(frame.uploadData);
+    for (const RecordedUpload& upload : frame.uploads) {
+        const VkBufferCopy region{upload.at, upload.offset, upload.size};
+        vkCmdCopyBuffer(slot.commands(), staging, upload.buffer->buffer.get(), 1, &region);
+    }
+    memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }

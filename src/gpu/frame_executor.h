@@ -23,6 +23,7 @@ class FrameExecutor {
   private:
     void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
+    void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     VkDescriptorSet writeDescriptors(const RecordedFrame& frame, size_t index, VkDescriptorSetLayout layout,
                                      FrameSlot& slot);

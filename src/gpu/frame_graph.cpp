@@ -160,6 +160,21 @@ void FrameGraph::dispatch(const Dispatch& dispatch) {
     DispatchRecorder(*impl_, dispatch).record();
 }
 
+void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data) {
+    impl_->requireRecording();
+    if (!buffer) throw Error("an upload needs a buffer");
+    const std::shared_ptr<const BufferStorage>& storage = buffer.impl()->storage;
+    if (offset % 4 != 0 || data.size() % 4 != 0 || offset > storage->size ||
+        data.size() > storage->size - offset) {
+        throw Error(fmt::format("an upload of {} bytes at {} does not fit buffer '{}' of {} bytes",
+                                data.size(), offset, storage->name, storage->size));
+    }
+    if (data.empty()) return;
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    impl_->frame.uploads.push_back({storage, offset, all.size(), data.size()});
+    all.insert(all.end(), data.begin(), data.end());
+}
+
 const std::vector<RecordedPass>& FrameGraph::passes() const {
     return impl_->frame.passes;
 }

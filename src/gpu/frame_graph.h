@@ -132,6 +132,11 @@ class FrameGraph {
     /// is filled from params. A recorded Buffer may be destroyed: the frame keeps what it needs.
     void dispatch(const Dispatch& dispatch);
 
+    /// Writes `data` into the buffer, from byte `offset` on, before the first pass of this frame; after all
+    /// passes of earlier frames. Both are multiples of 4 bytes; ranges of one frame must not overlap. Throws
+    /// Error if the data reaches beyond the buffer.
+    void upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data);
+
     /// What has been recorded since beginFrame().
     const std::vector<RecordedPass>& passes() const;
     /// Images that the pass writes, for --dump. Empty if there is no such pass.

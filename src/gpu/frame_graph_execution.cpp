@@ -71,6 +71,10 @@ void FrameGraph::execute(Device& device) {
             }
         }
     }
+    for (const RecordedUpload& upload : impl_->frame.uploads) {
+        if (upload.buffer->context.get() != &executor.context())
+            throw Error(fmt::format("buffer '{}' belongs to another device", upload.buffer->name));
+    }
     executor.execute(impl_->frame);
     impl_->frame.executed = true;
 }

@@ -55,9 +55,18 @@ struct RecordedDispatch {
     std::array<uint32_t, 3> workgroupSize{};
 };
 
+/// Data that reaches a buffer before the first pass.
+struct RecordedUpload {
+    std::shared_ptr<const BufferStorage> buffer;
+    uint64_t offset = 0;      ///< in the buffer
+    size_t at = 0, size = 0;  ///< in RecordedFrame::uploadData
+};
+
 /// Everything that one frame says.
 struct RecordedFrame {
     uint64_t number = 0;
+    std::vector<RecordedUpload> uploads;
+    std::vector<std::byte> uploadData;
     std::vector<RecordedImage> images;
     std::vector<RecordedPass> passes;
     std::vector<RecordedDispatch> dispatches;  ///< one per pass

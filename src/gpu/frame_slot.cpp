@@ -48,6 +48,7 @@ void FrameSlot::submit(const RecordedFrame& frame) {
             if (resource.buffer) buffers_.push_back(resource.buffer);
         }
     }
+    for (const RecordedUpload& upload : frame.uploads) buffers_.push_back(upload.buffer);
     context_->submit(commands_, fence_.get());
     submitted_ = true;
     for (const RecordedPass& pass : frame.passes) passNames_.push_back(pass.name);
@@ -105,6 +106,16 @@ VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) 
     std::memcpy(params_->memory.mapped + offset, params.data(), params.size());
     paramsUsed_ += alignedSize(params.size());
     return {params_->buffer.get(), offset, params.size()};
+}
+
+VkBuffer FrameSlot::stage(std::span<const std::byte> data) {
+    if (!staging_ || staging_->size < data.size()) {
+        staging_.reset();
+        staging_ = makeBuffer(context_, name("uploads"), BufferUse::Staging,
+                              std::max<uint64_t>(64 << 10, 2 * data.size()));
+    }
+    std::memcpy(staging_->memory.mapped, data.data(), data.size());
+    return staging_->buffer.get();
 }
 
 void FrameSlot::reserveTimestamps(uint32_t count) {

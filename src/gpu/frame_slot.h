@@ -19,6 +19,8 @@ class FrameSlot {
     VkDescriptorSet allocateSet(VkDescriptorSetLayout layout, const std::string& name);
     /// Copies a parameter struct into the uniform ring.
     VkDescriptorBufferInfo pushParams(std::span<const std::byte> params);
+    /// Copies a frame's uploads to where the device can copy them from.
+    VkBuffer stage(std::span<const std::byte> data);
     /// After the passes so far, the clock is read: stamp 0 before the first pass, stamp i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
     /// Of the slot's last submitted frame; waits for it.
@@ -44,6 +46,7 @@ class FrameSlot {
 
     std::shared_ptr<BufferStorage> params_;
     uint64_t paramsUsed_ = 0;
+    std::shared_ptr<BufferStorage> staging_;
 
     UniqueQueryPool timestamps_;
     uint32_t timestampCapacity_ = 0;

@@ -82,6 +82,29 @@ TEST_F(GpuTest, ABufferMayBeDestroyedWhileItsFrameIsUnderWay) {
     }
 }
 
+TEST_F(GpuTest, UploadsPrecedeThePassesOfTheirFrameAndFollowThoseBefore) {
+    const std::vector<uint32_t> zeros(64, 0u);
+    const Buffer buffer = device().createStorageBuffer("target", bytesOf(zeros));
+    FrameGraph graph;
+    for (uint32_t frame = 1; frame <= 3; ++frame) {
+        graph.beginFrame();
+        const std::vector<uint32_t> low(2, frame), high(1, 10 * frame);
+        graph.upload(buffer, 0, bytesOf(low));
+        graph.upload(buffer, 252, bytesOf(high));
+        graph.execute(device());
+    }
+    const std::vector<std::byte> bytes = device().download(buffer);
+    std::vector<uint32_t> values(64);
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    EXPECT_EQ(values[0], 3u);
+    EXPECT_EQ(values[1], 3u);
+    EXPECT_EQ(values[2], 0u);
+    EXPECT_EQ(values[63], 30u);
+    graph.beginFrame();
+    EXPECT_THROW(graph.upload(buffer, 252, bytesOf(std::vector<uint32_t>(2))), Error);
+    EXPECT_THROW(graph.upload(buffer, 2, bytesOf(std::vector<uint32_t>(1))), Error);
+}
+
 TEST_F(GpuTest, EmptyDataGivesOneZeroTexel) {
     const Buffer buffer = device().createTexelBuffer("none", rgba, {});
     EXPECT_EQ(device().download(buffer), std::vector<std::byte>(16));

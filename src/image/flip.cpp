@@ -1,6 +1,8 @@
 // FLIP for images of low dynamic range. Equation numbers are those of the paper that image/metrics.h names;
 // what the paper leaves open (repeated borders, filter radii, the colour matrix) is as in NVIDIA's reference
 // program.
+#include "image/flip.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -101,14 +103,24 @@ float redistribute(float distance, float largest) {
 
 using Planes = std::array<Image, 3>;
 
-Planes toYcxcz(const Image& encoded) {
-    Planes planes;
-    planes.fill(Image(encoded.width, encoded.height, 1));
-    const size_t width = encoded.width;
+Image decode(const Image& encoded) {
+    Image linear(encoded.width, encoded.height, encoded.components);
+    const size_t rowValues = size_t{encoded.width} * encoded.components;
     tbb::parallel_for(size_t{0}, size_t{encoded.height}, [&](size_t y) {
+        for (size_t i = y * rowValues; i < (y + 1) * rowValues; ++i)
+            linear.pixels[i] = srgbDecode(encoded.pixels[i]);
+    });
+    return linear;
+}
+
+Planes toYcxcz(const Image& linear) {
+    Planes planes;
+    planes.fill(Image(linear.width, linear.height, 1));
+    const size_t width = linear.width;
+    tbb::parallel_for(size_t{0}, size_t{linear.height}, [&](size_t y) {
         for (size_t i = y * width; i < (y + 1) * width; ++i) {
-            const float* p = &encoded.pixels[3 * i];
-            const vec3 c = linearToYcxcz(vec3(srgbDecode(p[0]), srgbDecode(p[1]), srgbDecode(p[2])));
+            const float* p = &linear.pixels[3 * i];
+            const vec3 c = linearToYcxcz(vec3(p[0], p[1], p[2]));
             for (int k = 0; k < 3; ++k) planes[static_cast<size_t>(k)].pixels[i] = c[k];
         }
     });
@@ -194,6 +206,11 @@ Features detectFeatures(const Image& luminancePlane, double pixelsPerDegree) {
 }  // namespace
 
 Image flip(const Image& test, const Image& reference, double pixelsPerDegree) {
+    checkComparable(test, reference);
+    return flipOfLinear(decode(test), decode(reference), pixelsPerDegree);
+}
+
+Image flipOfLinear(const Image& test, const Image& reference, double pixelsPerDegree) {
     checkComparable(test, reference);
     const Planes testPlanes = toYcxcz(test), referencePlanes = toYcxcz(reference);
     const Features testFeatures = detectFeatures(testPlanes[0], pixelsPerDegree);

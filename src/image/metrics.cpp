@@ -22,14 +22,6 @@ bool invalid(const Image& image, size_t pixel) {
     return !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]);
 }
 
-std::vector<size_t> invalidPixels(const Image& image) {
-    std::vector<size_t> found;
-    for (size_t i = 0; i < size_t{image.width} * image.height; ++i) {
-        if (invalid(image, i)) found.push_back(i);
-    }
-    return found;
-}
-
 /// Mean of term(index of a value) over all values of an image of this size.
 template <typename Term>
 double meanOverValues(const Image& image, const Term& term) {
@@ -43,6 +35,27 @@ double meanOverValues(const Image& image, const Term& term) {
 }
 
 }  // namespace
+
+std::vector<size_t> invalidPixels(const Image& image) {
+    std::vector<size_t> found;
+    for (size_t i = 0; i < size_t{image.width} * image.height; ++i) {
+        if (invalid(image, i)) found.push_back(i);
+    }
+    return found;
+}
+
+void checkReferenceValid(const Image& reference) {
+    if (const size_t count = invalidPixels(reference).size(); count > 0) {
+        throw Error(fmt::format("the reference has {} pixels that are NaN or infinite", count));
+    }
+}
+
+void showAsWorst(const std::vector<size_t>& pixels, const Image& shownReference, Image& shownTest) {
+    for (const size_t pixel : pixels) {
+        for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i)
+            shownTest.pixels[i] = shownReference.pixels[i] < 0.5f ? 1.0f : 0.0f;
+    }
+}
 
 void checkComparable(const Image& test, const Image& reference) {
     if (test.width != reference.width || test.height != reference.height) {
@@ -90,26 +103,20 @@ double relMse(const Image& test, const Image& reference) {
 
 Comparison compare(const Image& test, const Image& reference, float exposureStops) {
     checkComparable(test, reference);
-    if (const size_t count = invalidPixels(reference).size(); count > 0) {
-        throw Error(fmt::format("the reference has {} pixels that are NaN or infinite", count));
-    }
+    checkReferenceValid(reference);
     const std::vector<size_t> bad = invalidPixels(test);
-    const Image shownReference = displayEncode(reference, exposureStops);
     Image linear = test;
-    Image shown = displayEncode(test, exposureStops);
-    for (const size_t pixel : bad) {
-        for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
-            linear.pixels[i] = largestHalf;
-            shown.pixels[i] = shownReference.pixels[i] < 0.5f ? 1.0f : 0.0f;
-        }
-    }
+    for (const size_t pixel : bad) std::fill_n(&linear.pixels[3 * pixel], 3, largestHalf);
     Comparison result;
+    result.shownReference = displayEncode(reference, exposureStops);
+    result.shownTest = displayEncode(test, exposureStops);
+    showAsWorst(bad, result.shownReference, result.shownTest);
     result.exposure = exposureStops;
     result.invalidPixels = bad.size();
-    result.psnr = psnr(shown, shownReference);
-    result.ssim = ssim(shown, shownReference);
+    result.psnr = psnr(result.shownTest, result.shownReference);
+    result.ssim = ssim(result.shownTest, result.shownReference);
     result.relMse = relMse(linear, reference);
-    result.flipMap = flip(shown, shownReference);
+    result.flipMap = flip(result.shownTest, result.shownReference);
     for (const size_t pixel : bad) result.flipMap.pixels[pixel] = 1.0f;
     result.flip = mean(result.flipMap);
     return result;

@@ -22,6 +22,8 @@ struct Comparison {
     float exposure = 0.0f;       ///< stops that were applied
     uint64_t invalidPixels = 0;  ///< pixels of the test image with a NaN or an infinity
     Image flipMap;               ///< FLIP of each pixel, one component in [0,1]
+    Image shownTest;  ///< what PSNR, SSIM and FLIP saw: exposed, encoded, invalid pixels at their worst
+    Image shownReference;
 };
 
 /// All metrics of linear radiance `test` against `reference`.
@@ -51,6 +53,32 @@ double relMse(const Image& test, const Image& reference);
 /// LDR-FLIP of encoded images, one component in [0,1] per pixel (Andersson et al., "FLIP: A Difference
 /// Evaluator for Alternating Images", 2020, with its constants). The picture's value is the map's mean.
 Image flip(const Image& test, const Image& reference, double pixelsPerDegree = flipPixelsPerDegree);
+
+/// The exposures that HDR-FLIP looks at: `count` of them, evenly spaced from `start` to `stop` (stops).
+struct HdrFlipExposures {
+    double start = 0.0;
+    double stop = 0.0;
+    int count = 2;
+};
+
+/// Chosen by the reference's luminances alone (section 2.1 of the paper below): the brightest pixel tone-maps
+/// to 0.85 at `start`, the median one at `stop`; count = max(2, ceil(stop - start)). Negative components
+/// count as 0. Where the paper has no answer: if the median is 0 it is taken over the pixels brighter than 0;
+/// a black reference has start = stop = 0. Throws Error if the reference has invalid pixels.
+HdrFlipExposures hdrFlipExposures(const Image& reference);
+
+struct HdrFlip {
+    HdrFlipExposures exposures;
+    double value = 0.0;  ///< mean of the map: 0 for equal images, at most 1
+    Image map;           ///< the largest LDR-FLIP over all exposures of each pixel, one component in [0,1]
+};
+
+/// HDR-FLIP of linear radiance (Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images",
+/// Eurographics 2021 short papers): LDR-FLIP of both images times 2^c through the filmic curve
+/// (image/tonemap_curve.h, the paper's default, too), for every exposure c. No exposure has to be given, and
+/// scaling both images by one factor changes nothing. Invalid pixels of `test` count as in compare(). Throws
+/// Error as compare() does.
+HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree = flipPixelsPerDegree);
 
 /// Arithmetic mean of all values.
 double mean(const Image& image);

@@ -32,7 +32,7 @@ Image linearFromEncoded(const Image& encoded) {
 
 }  // namespace
 
-Picture readPicture(const std::filesystem::path& path) {
+SequencePicture readSequencePicture(const std::filesystem::path& path) {
     constexpr std::array<uint8_t, 4> exrMagic = {0x76, 0x2f, 0x31, 0x01};
     constexpr std::array<uint8_t, 2> hdrMagic = {'#', '?'};
     const std::vector<std::byte> bytes = readFile(path);
@@ -40,10 +40,14 @@ Picture readPicture(const std::filesystem::path& path) {
         const LayeredImage layers = decodeExr(bytes, path);
         const auto layer = layers.colorLayer();
         if (!layer) throw InputError(path, "has no layer with the channels R, G and B");
-        return {layers.get(*layer, "RGB"), true};
+        return {{layers.get(*layer, "RGB"), true}, geometryOf(layers)};
     }
-    if (startsWith(bytes, hdrMagic)) return {decodeHdr(bytes, path), true};
-    return {linearFromEncoded(decodeImageFloat(bytes, path)), false};
+    if (startsWith(bytes, hdrMagic)) return {{decodeHdr(bytes, path), true}, {}};
+    return {{linearFromEncoded(decodeImageFloat(bytes, path)), false}, {}};
+}
+
+Picture readPicture(const std::filesystem::path& path) {
+    return readSequencePicture(path).picture;
 }
 
 }  // namespace limpid::image

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "image/geometry.h"
 #include "image/image.h"
 
 namespace limpid::image {
@@ -16,5 +17,12 @@ struct Picture {
 /// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PNG or JPEG (decoded from sRGB); the
 /// file's content decides which, not its name. Values come as they are, NaN included. Throws InputError.
 Picture readPicture(const std::filesystem::path& path);
+
+/// The same with the geometry layers that the file has (an EXR file's; others have none).
+struct SequencePicture {
+    Picture picture;
+    Geometry geometry;
+};
+SequencePicture readSequencePicture(const std::filesystem::path& path);
 
 }  // namespace limpid::image

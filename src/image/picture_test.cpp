@@ -40,5 +40,25 @@ TEST(Picture, RefusesWhatIsNoColourPicture) {
     EXPECT_THROW(readPicture(folder / "none"), InputError);
 }
 
+TEST(Picture, OfASequenceBringsItsGeometry) {
+    test::TempFolder folder;
+    LayeredImage layers;
+    layers.add("", "RGB", Image(2, 1, 3, 0.5f), Storage::Half);
+    Image motion(2, 1, 3);
+    motion.pixels = {1, 2, 3, 4, 5, 6};
+    layers.add("motion", "XYZ", motion, Storage::Float);
+    layers.add("depth", "Z", Image(2, 1, 1, 7.0f), Storage::Float);
+    layers.add("normal", "XY", Image(2, 1, 2), Storage::Half);
+    writeExr(folder / "a.exr", layers);
+    const SequencePicture picture = readSequencePicture(folder / "a.exr");
+    EXPECT_EQ(picture.picture.linear.pixels, std::vector<float>(6, 0.5f));
+    EXPECT_EQ(picture.geometry.motion->pixels, (std::vector<float>{1, 2, 4, 5}));
+    EXPECT_EQ(picture.geometry.distanceChange->pixels, (std::vector<float>{3, 6}));
+    EXPECT_EQ(picture.geometry.depth->pixels, (std::vector<float>{7, 7}));
+    EXPECT_FALSE(picture.geometry.normal) << "a normal has three components";
+    writePng(folder / "b.png", ByteImage{1, 1, 4, {0, 128, 255, 7}});
+    EXPECT_FALSE(readSequencePicture(folder / "b.png").geometry.motion);
+}
+
 }  // namespace
 }  // namespace limpid::image

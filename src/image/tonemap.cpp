@@ -31,7 +31,19 @@ float filmicCurve(float radiance) {
     return std::min(y, 1.0f);
 }
 
+double filmicCurveInverse(double display) {
+    // y = x (A x + B) / (x (C x + D) + E) is a x^2 + b x + c = 0; c <= 0 <= a, so one root is not negative.
+    const double a = double{filmicA} - display * double{filmicC};
+    const double b = double{filmicB} - display * double{filmicD};
+    const double c = -display * double{filmicE};
+    return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a) / double{filmicScale};
+}
+
 float autoExposure(const Image& radiance) {
+    return measuredExposure(radiance).value_or(0.0f);
+}
+
+std::optional<float> measuredExposure(const Image& radiance) {
     const size_t count = size_t{radiance.width} * radiance.height;
     double sum = 0.0;
     for (size_t i = 0; i < count; ++i) {
@@ -47,9 +59,19 @@ float autoExposure(const Image& radiance) {
         logSum += std::log2(static_cast<double>(value));
         ++used;
     }
-    if (used == 0) return 0.0f;
+    if (used == 0) return std::nullopt;
     const double stops = std::log2(static_cast<double>(filmicKey)) - logSum / static_cast<double>(used);
     return static_cast<float>(std::clamp(stops, -40.0, 40.0));
+}
+
+float sequenceExposure(std::span<const std::optional<float>> frames) {
+    double sum = 0.0;
+    size_t used = 0;
+    for (const std::optional<float>& stops : frames) {
+        sum += stops.value_or(0.0f);
+        used += stops ? 1 : 0;
+    }
+    return used > 0 ? static_cast<float>(sum / static_cast<double>(used)) : 0.0f;
 }
 
 Image tonemap(const Image& radiance, float stops) {

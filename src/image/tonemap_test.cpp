@@ -76,5 +76,22 @@ TEST(Tonemap, ExposesEncodesAndKeepsAlpha) {
     EXPECT_EQ(tonemap(Image(1, 1, 3, std::nanf("")), 0.0f).pixels, (std::vector<float>(3, 0.0f)));
 }
 
+TEST(Tonemap, FilmicCurveHasAnInverse) {
+    EXPECT_EQ(filmicCurveInverse(0.0), 0.0);
+    for (const double display : {0.001, 0.18, 0.5, 0.85, 0.999})
+        EXPECT_NEAR(filmicCurve(static_cast<float>(filmicCurveInverse(display))), display, 1e-6);
+}
+
+TEST(Tonemap, ASequenceHasOneExposure) {
+    EXPECT_EQ(measuredExposure(Image(2, 2, 3, 0.0f)), std::nullopt);
+    // Averages 0.18 * 2^-3 and 0.18 * 2^1: their geometric mean is one stop under 0.18. Black says nothing.
+    const std::vector<std::optional<float>> frames = {measuredExposure(Image(2, 2, 3, 0.0225f)),
+                                                      measuredExposure(Image(2, 2, 3, 0.36f)),
+                                                      measuredExposure(Image(2, 2, 3, 0.0f))};
+    EXPECT_NEAR(sequenceExposure(frames), 1.0f, 1e-5);
+    EXPECT_EQ(sequenceExposure(std::vector<std::optional<float>>{std::nullopt}), 0.0f);
+    EXPECT_EQ(sequenceExposure({}), 0.0f);
+}
+
 }  // namespace
 }  // namespace limpid::image

@@ -1,6 +1,7 @@
 #include "renderer/frame.h"
 
 #include "passes/accumulate/accumulate.h"
+#include "passes/deform/deform.h"
 
 namespace limpid {
 namespace {
@@ -22,12 +23,15 @@ vec2 frameJitter(Jitter jitter, uint32_t frame) {
 
 }  // namespace
 
-FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene,
-                            const RenderSettings& settings, const FrameInput& input) {
+FrameImages recordPathFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
+                            const FrameInput& input) {
+    if (input.moved) deform(graph, scene, *input.moved);
     const PathtraceLaunch launch{.extent = settings.extent,
                                  .camera = input.camera,
                                  .previousCamera = input.previousCamera,
+                                 .hasPrevious = input.hasPrevious,
                                  .frame = input.frame,
+                                 .stream = static_cast<uint32_t>(input.stream),
                                  .seed = settings.seed,
                                  .samples = input.samples,
                                  .jitterPerPixel = settings.jitter == Jitter::Pixel,
@@ -51,6 +55,7 @@ FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene
     out.albedo = mean("albedo", traced.albedo, VarianceOf::Luminance);
     out.albedoSpecular = mean("albedoSpecular", traced.albedoSpecular, VarianceOf::Luminance);
     out.normal = mean("normal", traced.normal, VarianceOf::MeanOfComponents);
+    out.previousNormal = mean("previousNormal", traced.previousNormal, VarianceOf::Nothing);
     out.depth = mean("depth", traced.depth, VarianceOf::FirstComponent);
     out.motion = mean("motion", traced.motion, VarianceOf::Nothing);
     return out;

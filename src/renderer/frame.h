@@ -6,6 +6,7 @@
 #include "gpu/frame_graph.h"
 #include "renderer/settings.h"
 #include "scene/gpu_scene.h"
+#include "scene/scene_animator.h"
 
 namespace limpid {
 
@@ -13,9 +14,12 @@ namespace limpid {
 struct FrameInput {
     CameraParams camera;
     CameraParams previousCamera;
-    uint32_t frame = 0;          ///< launches since the last reset
-    uint64_t samplesBefore = 0;  ///< per pixel, in the running means
-    uint32_t samples = 1;        ///< per pixel, in this frame
+    bool hasPrevious = false;                  ///< there is a previous frame, from which motion is told
+    const scene::SceneFrame* moved = nullptr;  ///< what moved since the scene was last traced
+    uint32_t frame = 0;                        ///< launches since the last reset
+    uint64_t stream = 0;                       ///< of random numbers: `frame`, or beyond in a sequence
+    uint64_t samplesBefore = 0;                ///< per pixel, in the running means
+    uint32_t samples = 1;                      ///< per pixel, in this frame
 };
 
 /// Running means after this frame (passes/pathtrace/pathtrace.h says what the components hold). Without
@@ -23,11 +27,12 @@ struct FrameInput {
 /// emission.
 struct FrameImages {
     gpu::ImageHandle beauty, counters;
-    gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal, depth, motion, ids;
+    gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal, previousNormal, depth,
+        motion, ids;
 };
 
 /// Records one frame of `--pipeline path`.
-FrameImages recordPathFrame(gpu::FrameGraph& graph, const scene::GpuScene& scene,
-                            const RenderSettings& settings, const FrameInput& input);
+FrameImages recordPathFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
+                            const FrameInput& input);
 
 }  // namespace limpid

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "image/geometry.h"
 
 namespace limpid {
 namespace {
@@ -57,9 +58,9 @@ Image idImage(const RenderedLayers& layers) {
 }  // namespace
 
 const std::vector<std::string>& layerNames() {
-    static const std::vector<std::string> names{"beauty",         "diffuse", "specular", "emission", "albedo",
-                                                "albedoSpecular", "normal",  "depth",    "motion",   "id",
-                                                "variance",       "samples"};
+    static const std::vector<std::string> names{
+        "beauty",     "diffuse", "specular", "emission", "albedo",   "albedoSpecular", "normal",
+        "prevNormal", "depth",   "motion",   "id",       "variance", "samples"};
     return names;
 }
 
@@ -109,10 +110,14 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     addColor("albedo", layers.albedo);
     addColor("albedoSpecular", layers.albedoSpecular);
     if (wants("normal")) out.add("normal", "XYZ", components(layers.normal, extent, 0, 3), colorStorage);
+    if (wants("prevNormal")) {
+        out.add("prevNormal", "XYZ", components(layers.previousNormal, extent, 0, 3), colorStorage);
+    }
     if (wants("depth"))
         out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
     if (wants("motion"))
-        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, 0.0f), Storage::Float);
+        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, image::invalidMotion),
+                Storage::Float);
     if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
     if (wants("samples")) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));

@@ -16,7 +16,8 @@ namespace limpid {
 struct RenderedLayers {
     gpu::Extent extent;
     uint64_t samples = 0;
-    std::vector<float> beauty, diffuse, specular, emission, albedo, albedoSpecular, normal, depth, motion;
+    std::vector<float> beauty, diffuse, specular, emission, albedo, albedoSpecular, normal, previousNormal,
+        depth, motion;
     std::vector<uint32_t> ids;  ///< instance and material, two a pixel
 };
 

@@ -18,7 +18,7 @@ constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 }  // namespace
 
-ProgressiveStill::ProgressiveStill(gpu::Device& device, const scene::GpuScene& scene, uint64_t maxSamples)
+ProgressiveStill::ProgressiveStill(gpu::Device& device, scene::GpuScene& scene, uint64_t maxSamples)
     : device_(device), scene_(scene), maxSamples_(maxSamples) {}
 
 void ProgressiveStill::update(const CameraParams& camera, const RenderSettings& settings,
@@ -32,21 +32,43 @@ void ProgressiveStill::update(const CameraParams& camera, const RenderSettings& 
     state_ = now;
 }
 
+void ProgressiveStill::update(Moment moment, const RenderSettings& settings) {
+    if (frame_ > 0) graph_.resetHistories();
+    samples_ = 0;
+    frame_ = 0;
+    state_ = {moment.camera, settings, state_.sceneVersion};
+    previousCamera_ = moment.previousCamera;
+    moved_ = std::move(moment.scene);
+    number_ = moment.number;
+}
+
 bool ProgressiveStill::launch() {
     if (samples_ >= maxSamples_) return false;
-    FrameInput input{.camera = state_.camera, .previousCamera = state_.camera};
+    FrameInput input{.camera = state_.camera, .previousCamera = previousCamera_.value_or(state_.camera)};
+    input.hasPrevious = previousCamera_.has_value();
+    input.moved = moved_ ? &*moved_ : nullptr;
     input.frame = frame_;
+    input.stream = number_ * launchesOfAFrame() + frame_;
     input.samplesBefore = samples_;
-    input.samples =
-        static_cast<uint32_t>(std::min<uint64_t>({state_.settings.samplesPerLaunch, maxSamples_ - samples_,
-                                                  device_.isCpu() ? maxSamplesPerCpuLaunch : UINT32_MAX}));
+    input.samples = static_cast<uint32_t>(std::min(samplesPerLaunch(), maxSamples_ - samples_));
     graph_.beginFrame();
     images_ = recordPathFrame(graph_, scene_, state_.settings, input);
     graph_.execute(device_);
+    moved_.reset();
     if (frame_ == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
     samples_ += input.samples;
     ++frame_;
     return true;
+}
+
+uint64_t ProgressiveStill::samplesPerLaunch() const {
+    const uint64_t most = device_.isCpu() ? maxSamplesPerCpuLaunch : UINT32_MAX;
+    return std::min<uint64_t>(state_.settings.samplesPerLaunch, most);
+}
+
+/// So that no two frames of a sequence draw the same numbers.
+uint64_t ProgressiveStill::launchesOfAFrame() const {
+    return 1 + (maxSamples_ - 1) / samplesPerLaunch();
 }
 
 RenderCounters ProgressiveStill::counters() {
@@ -77,6 +99,7 @@ RenderedLayers ProgressiveStill::download() {
     layers.normal = get(images_.normal);
     layers.depth = get(images_.depth);
     layers.motion = get(images_.motion);
+    layers.previousNormal = get(images_.previousNormal);
     layers.ids = ids_;
     return layers;
 }

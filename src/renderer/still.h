@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gpu/device.h"
@@ -18,13 +19,23 @@ struct RenderCounters {
     uint64_t rejected = 0;  ///< samples dropped because they were NaN or infinite
 };
 
+/// A frame of a sequence.
+struct Moment {
+    CameraParams camera;
+    std::optional<CameraParams> previousCamera;  ///< empty: the first frame, or a cut; all motion is invalid
+    std::optional<scene::SceneFrame> scene;      ///< empty: nothing moves but the camera
+    uint64_t number = 0;                         ///< of the frame: another one, other noise
+};
+
 class ProgressiveStill {
   public:
     /// `maxSamples` per pixel. The scene must outlive this.
-    ProgressiveStill(gpu::Device& device, const scene::GpuScene& scene, uint64_t maxSamples);
+    ProgressiveStill(gpu::Device& device, scene::GpuScene& scene, uint64_t maxSamples);
 
     /// Takes the camera and the settings from now on; resets the mean if the reset rule says so.
     void update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion = 0);
+    /// Goes to a frame of a sequence and starts a new mean.
+    void update(Moment moment, const RenderSettings& settings);
     /// Launches one frame, or does nothing and returns false if the maximum is reached. Does not wait for the
     /// device.
     bool launch();
@@ -42,11 +53,17 @@ class ProgressiveStill {
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass);
 
   private:
+    uint64_t samplesPerLaunch() const;
+    uint64_t launchesOfAFrame() const;
+
     gpu::Device& device_;
-    const scene::GpuScene& scene_;
+    scene::GpuScene& scene_;
     uint64_t maxSamples_;
     gpu::FrameGraph graph_;
     AccumulationState state_;
+    std::optional<CameraParams> previousCamera_;
+    std::optional<scene::SceneFrame> moved_;  ///< since the last launch
+    uint64_t number_ = 0;                     ///< of the frame of a sequence
     FrameImages images_;
     std::vector<uint32_t> ids_;  ///< of frame 0, whose first sample goes through the pixel's centre
     uint64_t samples_ = 0;

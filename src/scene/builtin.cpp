@@ -119,6 +119,53 @@ Scene cornellSpheresScene() {
     return scene;
 }
 
+Scene cornellMovingScene() {
+    Scene scene = emptyCornell("cornell-moving");
+    MeshBuilder room("room");
+    addCornellRoom(room);
+    const auto p = fromData;
+    room.prism(p(423, 0, 247), p(265, 0, 296), p(314, 0, 456), p(472, 0, 406), 0.330f, White);
+    addMesh(scene, room.take(), 0);
+    MeshBuilder block("block");
+    block.box({-0.08f, 0.0f, -0.08f}, {0.08f, 0.165f, 0.08f}, White);
+    addMesh(scene, block.take(), 0);
+    MeshBuilder lamp("lamp");
+    lamp.box(vec3(-0.025f), vec3(0.025f), Light);
+    addMesh(scene, lamp.take(), 0);
+
+    constexpr int blockNode = 0, lampNode = 1;
+    scene.rig.nodes.resize(2);
+    scene.rig.nodes[blockNode].name = "block";
+    scene.rig.nodes[lampNode].name = "lamp";
+    scene.rig.order = {blockNode, lampNode};
+    scene.instances[1].node = blockNode;
+    scene.instances[2].node = lampNode;
+    const auto spline = [](int node, std::vector<float> positions) {
+        Channel channel{node, AnimatedValue::Translation, Interpolation::CubicSpline, 3, {0, 1, 2, 3, 4}, {}};
+        for (size_t i = 0; i < positions.size(); i += 3) {
+            channel.values.insert(channel.values.end(), 3, 0.0f);
+            channel.values.insert(channel.values.end(), &positions[i], &positions[i] + 3);
+            channel.values.insert(channel.values.end(), 3, 0.0f);
+        }
+        return channel;
+    };
+    Channel turn{blockNode, AnimatedValue::Rotation, Interpolation::Linear, 4, {0, 1, 2, 3, 4}, {}};
+    for (int i = 0; i <= 4; ++i) {
+        const float half = 0.5f * (0.3f + 0.5f * pi * static_cast<float>(i));
+        turn.values.insert(turn.values.end(), {0.0f, std::sin(half), 0.0f, std::cos(half)});
+    }
+    const Channel slide = spline(blockNode, {0.11f, 0.0f, 0.1f, -0.05f, 0.0f, 0.16f, -0.15f, 0.0f, 0.12f,  //
+                                             0.02f, 0.05f, 0.18f, 0.11f, 0.0f, 0.1f});
+    const Channel swing = spline(lampNode, {-0.18f, 0.42f, 0.1f, 0.0f, 0.36f, 0.14f, 0.18f, 0.42f, 0.1f,  //
+                                            0.0f, 0.36f, -0.02f, -0.18f, 0.42f, 0.1f});
+    scene.rig.clips = {{"moving", {slide, turn, swing}}};
+    const RigPose start = evaluate(scene.rig, &scene.rig.clips[0], 0.0);
+    for (Instance& instance : scene.instances) {
+        if (instance.node != none) instance.transform = start.toWorld[static_cast<size_t>(instance.node)];
+    }
+    return scene;
+}
+
 Scene heavyScene() {
     Scene scene;
     scene.name = "heavy";
@@ -169,6 +216,7 @@ Scene furnaceScene(float albedo) {
 std::vector<BuiltinInfo> builtinScenes() {
     return {{"cornell", "the Cornell box, true dimensions, diffuse, 36 triangles"},
             {"cornell-spheres", "the Cornell box with a glass, a mirror and a glossy sphere"},
+            {"cornell-moving", "the Cornell box with a sliding block and a swinging light, 4 s"},
             {"heavy", "about 300,000 triangles in a closed lit room, diffuse"},
             {"furnace", "a closed room where every surface emits 1 and reflects half: known brightness"}};
 }
@@ -176,6 +224,7 @@ std::vector<BuiltinInfo> builtinScenes() {
 Scene builtinScene(std::string_view name) {
     if (name == "cornell") return cornellScene();
     if (name == "cornell-spheres") return cornellSpheresScene();
+    if (name == "cornell-moving") return cornellMovingScene();
     if (name == "heavy") return heavyScene();
     if (name == "furnace") return furnaceScene();
     std::string names;

@@ -15,7 +15,7 @@ struct BuiltinInfo {
 };
 std::vector<BuiltinInfo> builtinScenes();
 
-/// "cornell", "cornell-spheres", "heavy", "furnace". Throws UsageError listing the names if there is no such
+/// By name.  Throws UsageError listing the names if there is no such
 /// scene.
 Scene builtinScene(std::string_view name);
 
@@ -24,6 +24,9 @@ Scene builtinScene(std::string_view name);
 Scene cornellScene();
 /// The Cornell box with a glass, a mirror and a glossy sphere in place of the blocks.
 Scene cornellSpheresScene();
+/// The Cornell box where the short block slides and turns, and a second light swings under the ceiling: one
+/// clip, "moving", of 4 s, that ends as it began.
+Scene cornellMovingScene();
 /// About 300,000 triangles of spheres and rings in a closed, lit, Lambertian room.
 Scene heavyScene();
 /// A closed Lambertian room of the given albedo with a box in it; every surface emits 1 on both sides. Paths

@@ -17,8 +17,6 @@ namespace limpid::scene {
 namespace {
 
 constexpr uint32_t binCount = 16;
-/// Below this depth splits halve the primitives, so that no input makes a tree deeper than 48 + log2(count).
-constexpr uint32_t maxSahDepth = 48;
 constexpr uint32_t parallelThreshold = 4096;
 /// Costs of the surface area heuristic: a visit to a binary node against one triangle test.
 constexpr float traversalCost = 0.7f;
@@ -44,8 +42,8 @@ struct Split {
 
 class BinaryBuilder {
   public:
-    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize)
-        : boxes_(boxes), maxLeafSize_(maxLeafSize) {
+    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth)
+        : boxes_(boxes), maxLeafSize_(maxLeafSize), sahDepth_(sahDepth) {
         order_.resize(boxes.size());
         std::iota(order_.begin(), order_.end(), 0u);
         nodes_.resize(2 * boxes.size());
@@ -87,7 +85,7 @@ class BinaryBuilder {
     /// Reorders the range and returns the left part's size; 0 makes a leaf.
     uint32_t partition(const Aabb& bounds, const Aabb& centers, uint32_t first, uint32_t count,
                        uint32_t depth) {
-        const Split split = depth < maxSahDepth ? findSplit(centers, first, count) : Split{};
+        const Split split = depth < sahDepth_ ? findSplit(centers, first, count) : Split{};
         const float area = bounds.halfArea();
         const float leafCost = intersectionCost * static_cast<float>(count);
         const bool worthIt =
@@ -170,6 +168,7 @@ class BinaryBuilder {
 
     std::span<const Aabb> boxes_;
     uint32_t maxLeafSize_;
+    uint32_t sahDepth_;
     std::vector<uint32_t> order_;
     std::vector<BinaryNode> nodes_;
     std::atomic<uint32_t> used_{0};
@@ -210,29 +209,20 @@ class WideBuilder {
     /// Emits the node for `children` and returns how many stack entries its subtree needs.
     uint32_t emit(uint32_t index, std::vector<uint32_t> children) {
         open(children);
-        Aabb bounds;
-        for (const uint32_t child : children) bounds.grow(binary_.node(child).bounds);
-        BvhNode node;
-        node.origin = bounds.lower;
-        for (int axis = 0; axis < 3; ++axis)
-            node.exponents[axis] = gridExponent(bounds.lower[axis], bounds.upper[axis]);
-        for (int axis = 0; axis < 3; ++axis) node.lower[axis].fill(255);
+        std::vector<BvhChild> wide;
         uint32_t deepest = 0;
-        for (uint32_t slot = 0; slot < children.size(); ++slot) {
-            const BinaryNode& child = binary_.node(children[slot]);
-            quantise(node, slot, child.bounds);
+        for (const uint32_t childIndex : children) {
+            const BinaryNode& child = binary_.node(childIndex);
             if (child.count > 0) {
-                node.children[slot] = BvhRef::leaf(child.first, child.count);
+                wide.push_back({BvhRef::leaf(child.first, child.count), child.bounds});
                 continue;
             }
-            const auto childIndex = static_cast<uint32_t>(out_.nodes.size());
-            node.children[slot] = BvhRef::node(childIndex);
+            const auto wideIndex = static_cast<uint32_t>(out_.nodes.size());
+            wide.push_back({BvhRef::node(wideIndex), child.bounds});
             out_.nodes.emplace_back();
-            deepest = std::max(deepest, emit(childIndex, {child.children[0], child.children[1]}));
+            deepest = std::max(deepest, emit(wideIndex, {child.children[0], child.children[1]}));
         }
-        // Far away an absent child's inverted box can vanish in rounding: its reference must be harmless.
-        for (size_t slot = children.size(); slot < 4; ++slot) node.children[slot] = node.children[0];
-        out_.nodes[index] = node;
+        out_.nodes[index] = makeBvhNode(wide);
         return deepest + 3;
     }
 
@@ -277,7 +267,25 @@ Aabb BvhNode::childBounds(uint32_t child) const {
     return box;
 }
 
-Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize) {
+BvhNode makeBvhNode(std::span<const BvhChild> children) {
+    Aabb bounds;
+    for (const BvhChild& child : children) bounds.grow(child.bounds);
+    BvhNode node;
+    node.origin = bounds.lower;
+    for (int axis = 0; axis < 3; ++axis) {
+        node.exponents[axis] = gridExponent(bounds.lower[axis], bounds.upper[axis]);
+        node.lower[axis].fill(255);
+    }
+    for (uint32_t slot = 0; slot < children.size(); ++slot) {
+        quantise(node, slot, children[slot].bounds);
+        node.children[slot] = children[slot].ref;
+    }
+    // Far away an absent child's inverted box can vanish in rounding: its reference must be harmless.
+    for (size_t slot = children.size(); slot < 4; ++slot) node.children[slot] = node.children[0];
+    return node;
+}
+
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth) {
     if (boxes.size() > BvhRef::maxIndex) {
         throw Error(
             fmt::format("{} primitives in one tree exceed the limit of {}", boxes.size(), BvhRef::maxIndex));
@@ -292,7 +300,7 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize) {
         bvh.stackSize = 3;
         return bvh;
     }
-    BinaryBuilder binary(boxes, maxLeafSize);
+    BinaryBuilder binary(boxes, maxLeafSize, sahDepth);
     bvh.bounds = binary.node(0).bounds;
     bvh.nodes.reserve(boxes.size() / 2 + 1);
     const BinaryNode& root = binary.node(0);

@@ -72,9 +72,20 @@ struct Bvh {
     uint32_t stackSize = 0;  ///< entries that a depth-first traversal needs at most, in any order of children
 };
 
-/// Builds over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize.
-/// Throws Error if there are more primitives than a BvhRef can name. No primitives: one node that no ray
-/// meets.
-Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize);
+/// Below this depth splits halve the primitives, so that no input makes a tree deeper than 48 + log2(count).
+inline constexpr uint32_t maxSahDepth = 48;
+
+/// Builds over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
+/// shallowest tree. Throws Error if there are more primitives than a BvhRef can name. No primitives: one node
+/// that no ray meets.
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
+
+/// A child of a node to be.
+struct BvhChild {
+    uint32_t ref = 0;
+    Aabb bounds;
+};
+/// A node over one to four children.
+BvhNode makeBvhNode(std::span<const BvhChild> children);
 
 }  // namespace limpid::scene

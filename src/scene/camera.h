@@ -12,4 +12,7 @@ CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height)
 /// A camera at `eye` looking at `target`; `up` need not be perpendicular.
 Camera lookAt(const vec3& eye, const vec3& target, const vec3& up, float verticalFov);
 
+/// The same place and view, with axes of unit length at right angles.
+mat4 withoutScale(const mat4& toWorld);
+
 }  // namespace limpid::scene

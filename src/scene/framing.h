@@ -5,7 +5,10 @@
 
 namespace limpid::scene {
 
-/// A perspective camera named "framing" that shows the whole scene in a picture at least as wide as high:
+inline constexpr const char* framingCameraName = "framing";
+
+/// A perspective camera of that name that shows the whole scene, and all that its chosen clip moves, in a
+/// picture at least as wide as high:
 ///  - a room closed on all six sides: from inside, at the +Z wall, towards the opposite wall;
 ///  - a room with one open wall: from outside, straight through the opening;
 ///  - a scene that is flat along Z: straight from +Z;
@@ -13,5 +16,12 @@ namespace limpid::scene {
 /// A side counts as closed if triangles within 5 % of that side of the bounding box cover half of it; a
 /// closed box whose triangles face outward is no room.
 Camera frameScene(const Scene& scene);
+
+struct BoundingSphere {
+    vec3 center{0.0f};
+    float radius = 1.0f;
+};
+/// Around the boxes of all instances at rest.
+BoundingSphere boundingSphere(const Scene& scene);
 
 }  // namespace limpid::scene

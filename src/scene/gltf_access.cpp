@@ -240,6 +240,15 @@ size_t accessorComponents(const Document& document, int accessor) {
     return componentsOf(document.lists().accessors[static_cast<size_t>(accessor)]);
 }
 
+std::vector<float> readNumbers(const Document& document, int accessor, size_t components) {
+    size_t found = 0;
+    return readFlat<float>(document, accessor, {components, components, false}, found);
+}
+
+std::vector<float> readScalars(const Document& document, int accessor) {
+    return readNumbers(document, accessor, 1);
+}
+
 std::vector<vec2> readVec2(const Document& document, int accessor) {
     return readRows<vec2>(document, accessor, {2, 2, false}, 0.0f);
 }

@@ -22,6 +22,10 @@ uint64_t accessorCount(const Document& document, int accessor);
 /// How many numbers one element has: 1 (SCALAR) to 16 (MAT4).
 size_t accessorComponents(const Document& document, int accessor);
 
+/// Numbers of one component each.
+std::vector<float> readScalars(const Document& document, int accessor);
+/// All numbers of all elements, which have `components` components each.
+std::vector<float> readNumbers(const Document& document, int accessor, size_t components);
 std::vector<vec2> readVec2(const Document& document, int accessor);
 std::vector<vec3> readVec3(const Document& document, int accessor);
 std::vector<vec4> readVec4(const Document& document, int accessor);

@@ -3,21 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/mesh_repair.h"
+#include "scene/camera.h"
 
 namespace limpid::scene::gltf {
 namespace {
-
-/// The same place and view, with axes of unit length at right angles.
-mat4 withoutScale(const mat4& m) {
-    vec3 back = safeNormalize(vec3(m[2]));
-    if (back == vec3(0.0f)) back = {0, 0, 1};
-    vec3 up = safeNormalize(vec3(m[1]));
-    up = safeNormalize(up - back * glm::dot(up, back));
-    if (up == vec3(0.0f)) up = anyPerpendicular(back);
-    // From the other two axes: a mirrored transform must not mirror the picture.
-    return {vec4(glm::cross(up, back), 0), vec4(up, 0), vec4(back, 0), vec4(vec3(m[3]), 1)};
-}
 
 float positive(const Object& owner, const char* key) {
     const float value = owner.number(key, 0.0f);

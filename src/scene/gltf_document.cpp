@@ -93,6 +93,7 @@ constexpr int base64Value(char c) {
 Document::Lists::Lists(const Object& r)
     : root(r),
       accessors(r.objects("accessors")),
+      animations(r.objects("animations")),
       bufferViews(r.objects("bufferViews")),
       cameras(r.objects("cameras")),
       images(r.objects("images")),

@@ -39,8 +39,8 @@ class Document {
     struct Lists {
         explicit Lists(const Object& root);
         Object root;
-        std::vector<Object> accessors, bufferViews, cameras, images, lights, materials, meshes, nodes,
-            samplers, scenes, skins, textures;
+        std::vector<Object> accessors, animations, bufferViews, cameras, images, lights, materials, meshes,
+            nodes, samplers, scenes, skins, textures;
     };
     const Lists& lists() const { return *lists_; }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/gltf_access.h"
+#include "scene/gltf_animation.h"
 #include "scene/gltf_camera.h"
 #include "scene/gltf_document.h"
 #include "scene/gltf_material.h"
@@ -27,6 +27,7 @@ class Loader {
         scene_.name = document_.file().stem().string();
         readMaterials();
         tree_ = readNodes(document_);
+        readRig();
         for (size_t i = 0; i < lists_.nodes.size(); ++i) {
             if (tree_.inScene[i]) addNode(i);
         }
@@ -36,12 +37,14 @@ class Loader {
 
   private:
     void readMaterials();
+    void readRig();
     int defaultMaterial();
     void addNode(size_t node);
     void addMesh(size_t node, const Object& mesh);
-    Pose readPose(const Object& node, const Object& mesh);
+    Pose readPose(size_t node, const Object& mesh);
     const std::vector<mat4>& jointMatrices(int skin);
-    void addInstance(const Object& node, int mesh, int material, const mat4& transform);
+    void addInstance(size_t node, int mesh, int material, const Pose& pose);
+    bool isAnimated(size_t node) const;
 
     Document document_;
     const Document::Lists& lists_;
@@ -50,6 +53,7 @@ class Loader {
     TextureLibrary textures_{document_, scene_};
     NodeTree tree_;
     std::map<int, std::vector<mat4>> joints_;  ///< by skin
+    std::vector<bool> animated_;               ///< nodes that some clip moves
     int defaultMaterial_ = none;
 };
 
@@ -58,6 +62,22 @@ void Loader::readMaterials() {
         scene_.materials.push_back(readMaterial(document_, source, textures_));
     }
     textures_.checkUnused();
+}
+
+void Loader::readRig() {
+    scene_.rig.nodes = tree_.nodes;
+    scene_.rig.order = tree_.order;
+    scene_.rig.clips = readAnimations(document_, tree_.nodes);
+    for (const Object& skin : lists_.skins) scene_.rig.skins.push_back(readSkin(document_, skin));
+    for (const Clip& clip : scene_.rig.clips) {
+        std::vector<bool> moved = movedNodes(scene_.rig, clip);
+        animated_.resize(moved.size(), false);
+        for (size_t i = 0; i < moved.size(); ++i) animated_[i] = animated_[i] || moved[i];
+    }
+}
+
+bool Loader::isAnimated(size_t node) const {
+    return node < animated_.size() && animated_[node];
 }
 
 int Loader::defaultMaterial() {
@@ -76,6 +96,7 @@ void Loader::addNode(size_t i) {
     if (const int camera = node.index("camera", lists_.cameras.size()); camera != none) {
         const Object& source = lists_.cameras[static_cast<size_t>(camera)];
         scene_.cameras.push_back(readCamera(source, tree_.toWorld[i], node.text("name")));
+        scene_.cameras.back().node = static_cast<int>(i);
     }
     const auto light = node.extension("KHR_lights_punctual");
     if (!light) return;
@@ -83,11 +104,11 @@ void Loader::addNode(size_t i) {
     if (index == none) light->fail("has no light");
     const Object& source = lists_.lights[static_cast<size_t>(index)];
     scene_.lights.push_back(readLight(document_, source, tree_.toWorld[i], node.text("name")));
+    scene_.lights.back().node = static_cast<int>(i);
 }
 
 void Loader::addMesh(size_t i, const Object& mesh) {
-    const Object& node = lists_.nodes[i];
-    const Pose pose = readPose(node, mesh);
+    const Pose pose = readPose(i, mesh);
     const std::vector<Object> primitives = mesh.objects("primitives");
     const std::string meshName = mesh.text("name", mesh.place());
     for (size_t p = 0; p < primitives.size(); ++p) {
@@ -96,15 +117,15 @@ void Loader::addMesh(size_t i, const Object& mesh) {
         if (index == none) continue;
         int material = primitives[p].index("material", lists_.materials.size());
         if (material == none) material = defaultMaterial();
-        // Skinned vertices are in world space already: the node's own transform does not count
-        // (glTF 3.7.3.3).
-        addInstance(node, index, material, pose.joints ? mat4(1.0f) : tree_.toWorld[i]);
+        addInstance(i, index, material, pose);
     }
 }
 
-Pose Loader::readPose(const Object& node, const Object& mesh) {
+Pose Loader::readPose(size_t nodeIndex, const Object& mesh) {
+    const Object& node = lists_.nodes[nodeIndex];
     Pose pose;
     pose.weights = node.has("weights") ? node.numbers("weights") : mesh.numbers("weights");
+    scene_.rig.nodes[nodeIndex].weights = pose.weights;
     pose.skin = node.index("skin", lists_.skins.size());
     if (pose.skin != none) pose.joints = &jointMatrices(pose.skin);
     return pose;
@@ -113,16 +134,8 @@ Pose Loader::readPose(const Object& node, const Object& mesh) {
 const std::vector<mat4>& Loader::jointMatrices(int skin) {
     const auto [entry, isNew] = joints_.try_emplace(skin);
     if (!isNew) return entry->second;
-    const Object& source = lists_.skins[static_cast<size_t>(skin)];
-    const std::vector<int> nodes = source.indices("joints", lists_.nodes.size());
-    const int accessor = source.index("inverseBindMatrices", lists_.accessors.size());
-    std::vector<mat4> inverseBind(nodes.size(), mat4(1.0f));
-    if (accessor != none) inverseBind = readMat4(document_, accessor);
-    if (inverseBind.size() < nodes.size())
-        source.fail("inverseBindMatrices", "has fewer matrices than there are joints");
-    for (size_t j = 0; j < nodes.size(); ++j) {
-        entry->second.push_back(tree_.toWorld[static_cast<size_t>(nodes[j])] * inverseBind[j]);
-    }
+    entry->second =
+        scene::jointMatrices(scene_.rig.skins[static_cast<size_t>(skin)], RigPose{tree_.toWorld, {}});
     return entry->second;
 }
 
@@ -133,17 +146,21 @@ bool isSingular(const mat4& transform) {
     return !(std::abs(glm::determinant(m)) > 1e-12f * lengths);
 }
 
-void Loader::addInstance(const Object& node, int mesh, int material, const mat4& transform) {
+void Loader::addInstance(size_t nodeIndex, int mesh, int material, const Pose& pose) {
+    const Object& node = lists_.nodes[nodeIndex];
     if (scene_.instances.size() >= maxInstances)
         node.fail(fmt::format("is instance {} of the scene, too many", maxInstances));
-    Instance instance{mesh, material, transform, node.text("name", node.place())};
-    if (isSingular(transform)) {
+    Instance instance{.mesh = mesh, .material = material, .name = node.text("name", node.place())};
+    instance.node = static_cast<int>(nodeIndex);
+    instance.skin = pose.skin;
+    // Skinned vertices are in world space already: the node's own transform does not count (glTF 3.7.3.3).
+    if (!pose.joints) instance.transform = tree_.toWorld[nodeIndex];
+    if (isSingular(instance.transform) && !isAnimated(nodeIndex)) {
+        const mat3 m(instance.transform);
         // A scale of zero in all directions is a way of hiding things.
-        if (vec3(transform[0]) == vec3(0.0f) && vec3(transform[1]) == vec3(0.0f) &&
-            vec3(transform[2]) == vec3(0.0f))
-            return;
+        if (m[0] == vec3(0.0f) && m[1] == vec3(0.0f) && m[2] == vec3(0.0f)) return;
         document_.warn(node.place() + " is flattened by its transform and loses its normals");
-        instance.mesh = meshes_.flatten(node, mesh, transform);
+        instance.mesh = meshes_.flatten(node, mesh, instance.transform);
         instance.transform = mat4(1.0f);
     }
     scene_.instances.push_back(std::move(instance));

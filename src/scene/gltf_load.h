@@ -1,5 +1,5 @@
-// glTF 2.0 files (.gltf, .glb) to a Scene. See gltf_document.h, gltf_mesh.h and gltf_material.h for what is
-// supported; animations are not (the rest pose of skins and morph targets is applied to the vertices).
+// glTF 2.0 files (.gltf, .glb) to a Scene, in the pose of rest. See gltf_document.h, gltf_mesh.h,
+// gltf_material.h and gltf_animation.h for what is supported.
 #pragma once
 
 #include <filesystem>

@@ -166,14 +166,23 @@ int MeshLibrary::build(const Object& primitive, const Source& source, const std:
     requireFinitePositions(primitive, mesh);
     const Repairs repairs = repairAttributes(mesh);
     if (repairs.any()) document_.warn(primitive.place() + ": " + repairs.describe());
-    applyMorphTargets(document_, primitive, pose.weights, mesh);
-    if (pose.joints) applySkin(document_, primitive, *pose.joints, mesh);
-    if (!pose.weights.empty() || pose.joints) {
-        requireFinitePositions(primitive, mesh);
-        repairAttributes(mesh);
-    }
+    if (pose.joints || !primitive.objects("targets").empty()) applyPose(primitive, pose, mesh);
     scene_.meshes.push_back(std::move(mesh));
     return static_cast<int>(scene_.meshes.size() - 1);
+}
+
+void MeshLibrary::applyPose(const Object& primitive, const Pose& pose, Mesh& mesh) {
+    auto deformation = std::make_shared<const Deformation>(readDeformation(document_, primitive, pose, mesh));
+    spend(primitive, mesh.positions.size() * deformation->targets.size(), 0);
+    DeformedVertices posed =
+        deform(*deformation, pose.weights,
+               pose.joints ? std::span<const mat4>(*pose.joints) : std::span<const mat4>());
+    mesh.positions = std::move(posed.positions);
+    mesh.normals = std::move(posed.normals);
+    mesh.tangents = std::move(posed.tangents);
+    requireFinitePositions(primitive, mesh);
+    repairAttributes(mesh);
+    if (!document_.lists().animations.empty()) mesh.deformation = std::move(deformation);
 }
 
 int MeshLibrary::flatten(const Object& node, int mesh, const mat4& transform) {
@@ -182,6 +191,7 @@ int MeshLibrary::flatten(const Object& node, int mesh, const mat4& transform) {
     Mesh flat = source;
     flat.normals.clear();
     flat.tangents.clear();
+    flat.deformation.reset();
     for (vec3& position : flat.positions) position = vec3(transform * vec4(position, 1.0f));
     requireFinitePositions(node, flat);
     scene_.meshes.push_back(std::move(flat));

@@ -35,6 +35,7 @@ class MeshLibrary {
     struct Source;
     Source readSource(const Object& primitive) const;
     int build(const Object& primitive, const Source& source, const std::string& name, const Pose& pose);
+    void applyPose(const Object& primitive, const Pose& pose, Mesh& mesh);
     void setAttributes(const Object& primitive, const Source& source, Mesh& mesh) const;
     void setIndices(const Object& primitive, const Source& source, Mesh& mesh) const;
     void spend(const Object& blamed, uint64_t vertices, uint64_t triangles);

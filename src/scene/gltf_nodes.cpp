@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
-
 #include "scene/mesh_repair.h"
 
 namespace limpid::scene::gltf {
@@ -21,29 +18,35 @@ mat4 affine(const Object& node) {
     return m;
 }
 
-mat4 localTransform(const Object& node) {
-    if (node.has("matrix")) return affine(node);
-    const vec3 translation = node.vector("translation", vec3(0.0f));
-    const vec4 rotation = node.vector("rotation", vec4(0, 0, 0, 1));
-    const vec3 scale = node.vector("scale", vec3(1.0f));
+Node readNode(const Object& source) {
+    Node node;
+    node.name = source.text("name");
+    node.weights = source.numbers("weights");
+    if (source.has("matrix")) {
+        node.matrix = affine(source);
+        return node;
+    }
+    node.translation = source.vector("translation", vec3(0.0f));
+    node.scale = source.vector("scale", vec3(1.0f));
+    const vec4 rotation = source.vector("rotation", vec4(0, 0, 0, 1));
     const float length = glm::length(rotation);
     // A quaternion of zeros turns nothing.
-    const glm::quat turn = length > 1e-20f && length < 1e18f
-                               ? glm::quat(rotation.w, rotation.x, rotation.y, rotation.z) / length
-                               : glm::quat(1, 0, 0, 0);
-    return glm::scale(glm::translate(mat4(1.0f), translation) * glm::mat4_cast(turn), scale);
+    if (length > 1e-20f && length < 1e18f) {
+        node.rotation = glm::quat(rotation.w, rotation.x, rotation.y, rotation.z) / length;
+    }
+    return node;
 }
 
 bool isFinite(const mat4& m) {
     return scene::isFinite(m[0]) && scene::isFinite(m[1]) && scene::isFinite(m[2]) && scene::isFinite(m[3]);
 }
 
-Children readChildren(const std::vector<Object>& nodes, std::vector<int>& parent) {
+Children readChildren(const std::vector<Object>& nodes, std::vector<Node>& read) {
     Children children(nodes.size());
     for (size_t i = 0; i < nodes.size(); ++i) {
         children[i] = nodes[i].indices("children", nodes.size());
         for (const int child : children[i]) {
-            int& known = parent[static_cast<size_t>(child)];
+            int& known = read[static_cast<size_t>(child)].parent;
             if (known != none) {
                 nodes[i].fail("children", fmt::format("node {} already has the parent {}", child, known));
             }
@@ -54,10 +57,10 @@ Children readChildren(const std::vector<Object>& nodes, std::vector<int>& parent
 }
 
 /// Parents before children. Nodes on a cycle have no root above them and are missing.
-std::vector<int> topDown(const std::vector<int>& parent, const Children& children) {
+std::vector<int> topDown(const std::vector<Node>& nodes, const Children& children) {
     std::vector<int> order;
-    for (size_t i = 0; i < parent.size(); ++i) {
-        if (parent[i] == none) order.push_back(static_cast<int>(i));
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].parent == none) order.push_back(static_cast<int>(i));
     }
     for (size_t next = 0; next < order.size(); ++next) {
         const auto& below = children[static_cast<size_t>(order[next])];
@@ -75,9 +78,9 @@ void refuseCycle(const std::vector<Object>& nodes, const std::vector<int>& order
     }
 }
 
-std::vector<bool> markScene(const Document& document, const std::vector<int>& parent,
+std::vector<bool> markScene(const Document& document, const std::vector<Node>& nodes,
                             const std::vector<int>& order) {
-    const size_t count = parent.size();
+    const size_t count = nodes.size();
     const auto& scenes = document.lists().scenes;
     std::vector<bool> inScene(count, scenes.empty());
     if (scenes.empty()) return inScene;
@@ -85,7 +88,7 @@ std::vector<bool> markScene(const Document& document, const std::vector<int>& pa
     const Object& scene = scenes[chosen == none ? 0 : static_cast<size_t>(chosen)];
     for (const int root : scene.indices("nodes", count)) inScene[static_cast<size_t>(root)] = true;
     for (const int i : order) {
-        const int above = parent[static_cast<size_t>(i)];
+        const int above = nodes[static_cast<size_t>(i)].parent;
         if (above != none && inScene[static_cast<size_t>(above)]) inScene[static_cast<size_t>(i)] = true;
     }
     return inScene;
@@ -94,21 +97,21 @@ std::vector<bool> markScene(const Document& document, const std::vector<int>& pa
 }  // namespace
 
 NodeTree readNodes(const Document& document) {
-    const auto& nodes = document.lists().nodes;
+    const auto& sources = document.lists().nodes;
     NodeTree tree;
-    tree.parent.assign(nodes.size(), none);
-    const Children children = readChildren(nodes, tree.parent);
-    const std::vector<int> order = topDown(tree.parent, children);
-    refuseCycle(nodes, order);
-    tree.toWorld.resize(nodes.size());
-    for (const int i : order) {
-        const auto node = static_cast<size_t>(i);
-        const mat4 local = localTransform(nodes[node]);
-        const int above = tree.parent[node];
-        tree.toWorld[node] = above == none ? local : tree.toWorld[static_cast<size_t>(above)] * local;
-        if (!isFinite(tree.toWorld[node])) nodes[node].fail("its place in the world is not finite");
+    for (const Object& source : sources) tree.nodes.push_back(readNode(source));
+    const Children children = readChildren(sources, tree.nodes);
+    tree.order = topDown(tree.nodes, children);
+    refuseCycle(sources, tree.order);
+    tree.toWorld.resize(sources.size());
+    for (const int index : tree.order) {
+        const auto i = static_cast<size_t>(index);
+        const mat4 local = tree.nodes[i].local();
+        const int above = tree.nodes[i].parent;
+        tree.toWorld[i] = above == none ? local : tree.toWorld[static_cast<size_t>(above)] * local;
+        if (!isFinite(tree.toWorld[i])) sources[i].fail("its place in the world is not finite");
     }
-    tree.inScene = markScene(document, tree.parent, order);
+    tree.inScene = markScene(document, tree.nodes, tree.order);
     return tree;
 }
 

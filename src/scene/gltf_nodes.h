@@ -11,8 +11,9 @@
 namespace limpid::scene::gltf {
 
 struct NodeTree {
-    std::vector<int> parent;    ///< of each node; none for a root
-    std::vector<mat4> toWorld;  ///< of each node, whether it is in the scene or not
+    std::vector<Node> nodes;    ///< at rest
+    std::vector<int> order;     ///< of all nodes, parents before their children
+    std::vector<mat4> toWorld;  ///< of each node at rest, whether it is in the scene or not
     std::vector<bool> inScene;  ///< reachable from the default scene's nodes
 };
 

@@ -2,81 +2,108 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "scene/gltf_access.h"
+#include "scene/mesh_repair.h"
 
 namespace limpid::scene::gltf {
 namespace {
 
-/// Adds weight * delta to the first three components of each value.
-template <typename Vector>
-void addDeltas(const Document& document, const Object& target, const char* name, float weight,
-               std::vector<Vector>& values) {
+/// How far from 1 the weights of a vertex may add up to before a warning.
+constexpr float weightTolerance = 1e-2f;
+
+std::vector<vec3> readDeltas(const Document& document, const Object& target, const char* name,
+                             size_t vertices) {
     const int accessor = target.index(name, document.lists().accessors.size());
-    if (accessor == none || values.empty()) return;
-    const std::vector<vec3> deltas = readVec3(document, accessor);
-    if (deltas.size() != values.size()) {
-        target.fail(
-            name, fmt::format("has {} elements, but the mesh has {} vertices", deltas.size(), values.size()));
+    if (accessor == none || vertices == 0) return {};
+    std::vector<vec3> deltas = readVec3(document, accessor);
+    if (deltas.size() != vertices) {
+        target.fail(name,
+                    fmt::format("has {} elements, but the mesh has {} vertices", deltas.size(), vertices));
     }
-    for (size_t i = 0; i < values.size(); ++i) {
-        for (int c = 0; c < 3; ++c) values[i][c] += weight * deltas[i][c];
+    if (!std::all_of(deltas.begin(), deltas.end(), [](const vec3& d) { return isFinite(d); }))
+        target.fail(name, "has a value that is not finite");
+    return deltas;
+}
+
+/// Every vertex' weights, brought to a sum of 1.
+void normaliseWeights(Document& document, const Object& primitive, std::vector<vec4>& weights) {
+    size_t odd = 0;
+    for (vec4& weight : weights) {
+        const float sum = weight.x + weight.y + weight.z + weight.w;
+        const bool usable = isFinite(weight) && sum > 1e-20f && std::isfinite(sum);
+        if (!usable || std::abs(sum - 1.0f) > weightTolerance) ++odd;
+        // Dividing by the sum also covers files that spread weights over WEIGHTS_1.
+        weight = usable ? weight / sum : vec4(0.0f);
     }
-}
-
-/// The inverse transpose up to a positive or negative factor; defined for singular matrices too.
-mat3 cofactors(const mat3& m) {
-    return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
-mat4 blend(const std::vector<mat4>& joints, const uvec4& joint, const vec4& weight, float sum) {
-    // Weights should sum to 1; dividing by the sum also covers files that spread them over JOINTS_1.
-    mat4 blended(0.0f);
-    for (int c = 0; c < 4; ++c) blended += joints[joint[c]] * (weight[c] / sum);
-    return blended;
-}
-
-}  // namespace
-
-void applyMorphTargets(const Document& document, const Object& primitive, const std::vector<float>& weights,
-                       Mesh& mesh) {
-    const std::vector<Object> targets = primitive.objects("targets");
-    for (size_t t = 0; t < targets.size() && t < weights.size(); ++t) {
-        if (weights[t] == 0.0f) continue;
-        addDeltas(document, targets[t], "POSITION", weights[t], mesh.positions);
-        addDeltas(document, targets[t], "NORMAL", weights[t], mesh.normals);
-        addDeltas(document, targets[t], "TANGENT", weights[t], mesh.tangents);
+    if (odd > 0) {
+        document.warn(fmt::format("{}: the weights of {} vertices do not sum to 1 and were scaled",
+                                  primitive.place(), odd));
     }
 }
 
-void applySkin(const Document& document, const Object& primitive, const std::vector<mat4>& joints,
-               Mesh& mesh) {
+void readInfluences(Document& document, const Object& primitive, const Pose& pose, Deformation& deformation) {
     const auto attributes = primitive.object("attributes");
     const size_t accessors = document.lists().accessors.size();
     const int jointAccessor = attributes->index("JOINTS_0", accessors);
     const int weightAccessor = attributes->index("WEIGHTS_0", accessors);
     if (jointAccessor == none || weightAccessor == none)
         attributes->fail("a skinned mesh needs JOINTS_0 and WEIGHTS_0");
-    const std::vector<uvec4> jointOf = readJoints(document, jointAccessor);
-    const std::vector<vec4> weightOf = readVec4(document, weightAccessor);
-    if (jointOf.size() != mesh.positions.size() || weightOf.size() != mesh.positions.size()) {
+    const std::vector<uvec4> joints = readJoints(document, jointAccessor);
+    deformation.weights = readVec4(document, weightAccessor);
+    const size_t vertices = deformation.positions.size();
+    if (joints.size() != vertices || deformation.weights.size() != vertices)
         attributes->fail("JOINTS_0 and WEIGHTS_0 do not have one element per vertex");
-    }
-    for (size_t i = 0; i < mesh.positions.size(); ++i) {
-        const float sum = weightOf[i].x + weightOf[i].y + weightOf[i].z + weightOf[i].w;
+    deformation.joints.resize(vertices);
+    for (size_t i = 0; i < vertices; ++i) {
         for (int c = 0; c < 4; ++c) {
-            if (jointOf[i][c] >= joints.size()) {
+            if (joints[i][c] >= pose.joints->size()) {
                 attributes->fail("JOINTS_0",
-                                 fmt::format("names joint {} of {}", jointOf[i][c], joints.size()));
+                                 fmt::format("names joint {} of {}", joints[i][c], pose.joints->size()));
             }
-        }
-        if (!(sum > 0.0f)) continue;  // a vertex that no joint moves stays where it is
-        const mat4 toWorld = blend(joints, jointOf[i], weightOf[i], sum);
-        mesh.positions[i] = vec3(toWorld * vec4(mesh.positions[i], 1.0f));
-        if (!mesh.normals.empty()) mesh.normals[i] = cofactors(mat3(toWorld)) * mesh.normals[i];
-        if (!mesh.tangents.empty()) {
-            mesh.tangents[i] = vec4(mat3(toWorld) * vec3(mesh.tangents[i]), mesh.tangents[i].w);
+            deformation.joints[i][static_cast<size_t>(c)] = static_cast<uint16_t>(joints[i][c]);
         }
     }
+    if (attributes->has("JOINTS_1"))
+        document.warn(primitive.place() + ": more than four joints a vertex; the first four are used");
+    normaliseWeights(document, primitive, deformation.weights);
+}
+
+}  // namespace
+
+Skin readSkin(const Document& document, const Object& source) {
+    constexpr size_t maxJoints = 65536;
+    Skin skin;
+    skin.joints = source.indices("joints", document.lists().nodes.size());
+    if (skin.joints.empty()) source.fail("joints", "is empty");
+    if (skin.joints.size() > maxJoints) source.fail("joints", "has too many");
+    const int accessor = source.index("inverseBindMatrices", document.lists().accessors.size());
+    skin.inverseBind.assign(skin.joints.size(), mat4(1.0f));
+    if (accessor != none) skin.inverseBind = readMat4(document, accessor);
+    if (skin.inverseBind.size() < skin.joints.size()) {
+        source.fail("inverseBindMatrices", fmt::format("has {} matrices for {} joints",
+                                                       skin.inverseBind.size(), skin.joints.size()));
+    }
+    skin.inverseBind.resize(skin.joints.size());
+    for (const mat4& m : skin.inverseBind) {
+        if (!isFinite(m[0]) || !isFinite(m[1]) || !isFinite(m[2]) || !isFinite(m[3]))
+            source.fail("inverseBindMatrices", "has a value that is not finite");
+    }
+    return skin;
+}
+
+Deformation readDeformation(Document& document, const Object& primitive, const Pose& pose, const Mesh& mesh) {
+    Deformation deformation{mesh.positions, mesh.normals, mesh.tangents, {}, {}, {}};
+    for (const Object& source : primitive.objects("targets")) {
+        MorphTarget& target = deformation.targets.emplace_back();
+        target.positions = readDeltas(document, source, "POSITION", mesh.positions.size());
+        target.normals = readDeltas(document, source, "NORMAL", mesh.normals.size());
+        target.tangents = readDeltas(document, source, "TANGENT", mesh.tangents.size());
+    }
+    if (pose.joints) readInfluences(document, primitive, pose, deformation);
+    return deformation;
 }
 
 }  // namespace limpid::scene::gltf

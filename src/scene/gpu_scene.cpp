@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "base/error.h"
+
 namespace limpid::scene {
 
 GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
@@ -17,6 +19,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
     add("triangles", Format::RGBA32Uint, data.triangles);
     add("vertices", Format::RGBA32Uint, data.vertices);
     add("instances", Format::RGBA32Uint, data.instances);
+    add("previousGeometry", Format::RGBA32Uint, data.previousGeometry);
     add("materials", Format::RGBA32Uint, data.materials);
     add("textureRefs", Format::RGBA32Uint, data.textureRefs);
     add("lights", Format::RGBA32Uint, data.lights);
@@ -32,6 +35,37 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
         add(names[i], Format::R32Uint, data.texels[i]);
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
     }
+    if (!data.motion.deforming.empty()) addDeformBuffers(device, data);
+}
+
+void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
+    using gpu::Format;
+    const auto add = [&](const char* name, Format format, const auto& values) {
+        deformBuffers_.push_back(
+            {name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
+    };
+    uint64_t vertices = 0, matrices = 0;
+    for (const DeformingInstance& d : data.motion.deforming) {
+        vertices += d.vertexCount;
+        // This frame's and the previous one's.
+        matrices += 2 * (uint64_t{d.jointCount} * layout::POSE_MATRIX_TEXELS + (d.targetCount + 3) / 4);
+    }
+    add("restVertices", Format::RGBA32Uint, data.motion.restVertices);
+    add("morphDeltas", Format::RGBA32Float, data.motion.morphDeltas);
+    add("poseMatrices", Format::RGBA32Float, std::vector<vec4>(matrices));
+    add("posedVertices", Format::RGBA32Float, std::vector<vec4>(vertices));
+    add("refitNodes", Format::R32Uint, data.motion.refitNodes);
+    add("nodeBounds", Format::RGBA32Float,
+        std::vector<vec4>(uint64_t{data.motion.refitNodeCount} * layout::NODE_BOUNDS_TEXELS));
+}
+
+const gpu::Buffer& GpuScene::buffer(std::string_view name) const {
+    for (const auto* list : {&buffers_, &deformBuffers_}) {
+        for (const NamedBuffer& named : *list) {
+            if (named.name == name) return named.buffer;
+        }
+    }
+    throw Error("the scene has no buffer '" + std::string(name) + "'");
 }
 
 std::vector<gpu::Binding> GpuScene::bindings() const {
@@ -51,6 +85,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_PUNCTUAL_LIGHTS", features_.punctualLights},
             {"HAS_ENVIRONMENT", features_.environment},
             {"HAS_MIRRORED", features_.mirrored},
+            {"HAS_MOTION", features_.motion},
             {"HAS_CLEARCOAT", features_.clearcoat},
             {"HAS_VOLUME", features_.volume},
             {"HAS_SPECULAR_TEXTURES", features_.specularTextures},
@@ -62,6 +97,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
 uint64_t GpuScene::byteCount() const {
     uint64_t sum = 0;
     for (const NamedBuffer& named : buffers_) sum += named.buffer.size();
+    for (const NamedBuffer& named : deformBuffers_) sum += named.buffer.size();
     return sum;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include "gpu/device.h"
@@ -19,6 +20,11 @@ class GpuScene {
     std::vector<gpu::Binding> bindings() const;
     std::vector<gpu::ConstantValue> constants() const;
     const layout::SceneParams& params() const { return params_; }
+    /// Of the frame from now on (scene/scene_animator.h).
+    void setParams(const layout::SceneParams& params) { params_ = params; }
+    /// One of the buffers of scene_data.glsl, or of passes/deform. Throws Error if there is none of that
+    /// name.
+    const gpu::Buffer& buffer(std::string_view name) const;
     uint64_t byteCount() const;
 
   private:
@@ -26,7 +32,10 @@ class GpuScene {
         const char* name;
         gpu::Buffer buffer;
     };
+    void addDeformBuffers(gpu::Device& device, const SceneData& data);
+
     std::vector<NamedBuffer> buffers_;
+    std::vector<NamedBuffer> deformBuffers_;  ///< of passes/deform alone
     SceneFeatures features_;
     layout::SceneParams params_;
     uint32_t stackSize_;

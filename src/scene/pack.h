@@ -11,6 +11,12 @@ namespace limpid::scene {
 
 /// Trees, shading triangles, vertices and instances; needs features.vertexData.
 void packGeometry(const Scene& scene, SceneData& data);
+/// What poses the vertices of a deforming instance: appends to the motion data's rest vertices and morph
+/// deltas.
+DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_t firstVertex,
+                                  MotionData& motion);
+/// In which order the nodes of the deforming trees are refitted.
+void findRefitLevels(SceneData& data);
 /// Materials, texture references and mip levels; sets the features that follow from materials.
 void packMaterials(const Scene& scene, SceneData& data);
 /// Light list, its alias table, and the environment; needs the geometry's instances.
@@ -19,6 +25,10 @@ void packLights(const Scene& scene, SceneData& data);
 void fillGgxTable(std::vector<vec4>& table);
 /// Energy that single scattering keeps at a rough dielectric boundary.
 void fillDielectricTable(std::vector<float>& table);
+
+/// Two snorm16 (Z. H. Cigolle et al., "A survey of efficient representations for independent unit vectors",
+/// JCGT 2014).
+uint32_t packDirection(const vec3& direction);
 
 inline uint32_t bits(float value) {
     return std::bit_cast<uint32_t>(value);

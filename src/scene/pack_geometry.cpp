@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
-#include <limits>
 #include <optional>
 
 #include "base/error.h"
 #include "scene/pack.h"
+#include "scene/top_tree.h"
 
 namespace limpid::scene {
 namespace {
@@ -17,17 +17,6 @@ constexpr uint32_t maxTrianglesPerLeaf = 4;
 /// A mesh whose copies together have at most this many triangles is copied into the static tree instead of
 /// instanced: one tree is walked faster than a tree over trees.
 constexpr size_t mergeLimit = 4096;
-
-vec2 octahedral(const vec3& direction) {
-    const vec3 n = direction / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
-    if (n.z >= 0.0f) return {n.x, n.y};
-    const vec2 folded = 1.0f - glm::abs(vec2(n.y, n.x));
-    return {n.x >= 0.0f ? folded.x : -folded.x, n.y >= 0.0f ? folded.y : -folded.y};
-}
-
-uint32_t packDirection(const vec3& direction) {
-    return glm::packSnorm2x16(octahedral(direction));
-}
 
 /// A direction that stays usable when the transform or the input degenerates.
 vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
@@ -62,9 +51,14 @@ class GeometryPacker {
         findInstancedMeshes();
         data_.instances.resize(scene_.instances.size() * layout::INSTANCE_TEXELS);
         meshFirstTriangle_.assign(scene_.meshes.size(), layout::NONE);
-        for (uint32_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
-        data_.features.twoLevel = std::find(instanced_.begin(), instanced_.end(), true) != instanced_.end();
-        if (data_.features.twoLevel) {
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            if (scene_.instances[i].movement == Movement::Deforming) packInstance(i);
+        }
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            if (scene_.instances[i].movement != Movement::Deforming) packInstance(i);
+        }
+        if (isTwoLevel()) {
+            data_.features.twoLevel = true;
             packTwoLevels();
         } else {
             const Tree tree = appendTree(staticBoxes_, staticTriangles_);
@@ -89,11 +83,22 @@ class GeometryPacker {
 
     void findInstancedMeshes() {
         std::vector<size_t> uses(scene_.meshes.size(), 0);
-        for (const Instance& instance : scene_.instances) ++uses[static_cast<size_t>(instance.mesh)];
         instanced_.resize(scene_.meshes.size());
-        for (size_t i = 0; i < uses.size(); ++i) {
-            instanced_[i] = uses[i] > 1 && uses[i] * scene_.meshes[i].triangleCount() > mergeLimit;
+        for (const Instance& instance : scene_.instances) {
+            const auto mesh = static_cast<size_t>(instance.mesh);
+            if (instance.movement == Movement::Rigid) instanced_[mesh] = true;
+            if (instance.movement != Movement::Deforming) ++uses[mesh];
+            data_.motion.moving |= instance.movement != Movement::Still;
         }
+        data_.features.motion = data_.motion.moving;
+        for (size_t i = 0; i < uses.size(); ++i) {
+            if (uses[i] > 1 && uses[i] * scene_.meshes[i].triangleCount() > mergeLimit) instanced_[i] = true;
+        }
+    }
+
+    bool isTwoLevel() const {
+        return data_.motion.moving ||
+               std::find(instanced_.begin(), instanced_.end(), true) != instanced_.end();
     }
 
     uint32_t alphaFlag(const Mesh& mesh, const Instance& instance, size_t triangle) const {
@@ -107,9 +112,14 @@ class GeometryPacker {
         const auto meshIndex = static_cast<size_t>(instance.mesh);
         const Mesh& mesh = scene_.meshes[meshIndex];
         const Transform transform(instance.transform);
-        data_.features.mirrored |= transform.mirrored;
+        // What moves may turn inside out on its way.
+        data_.features.mirrored |= transform.mirrored || instance.movement == Movement::Rigid;
         uint32_t firstTriangle = meshFirstTriangle_[meshIndex];
-        if (!instanced_[meshIndex]) {
+        uint32_t flags = transform.mirrored ? layout::INSTANCE_MIRRORED : 0u;
+        if (instance.movement == Movement::Deforming) {
+            firstTriangle = packDeforming(index, mesh);
+            flags |= layout::INSTANCE_DEFORMING;
+        } else if (!instanced_[meshIndex]) {
             firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
             for (size_t t = 0; t < mesh.triangleCount(); ++t) {
                 addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),
@@ -120,13 +130,15 @@ class GeometryPacker {
         }
         uvec4* record = &data_.instances[size_t{index} * layout::INSTANCE_TEXELS];
         packRows(record, instance.transform);
-        record[3] = {static_cast<uint32_t>(instance.material), layout::NONE, firstTriangle,
-                     transform.mirrored ? layout::INSTANCE_MIRRORED : 0u};
+        record[3] = {static_cast<uint32_t>(instance.material), layout::NONE, firstTriangle, flags};
     }
 
-    static void packRows(uvec4* record, const mat4& m) {
-        for (int row = 0; row < 3; ++row)
-            record[row] = bits(vec3(m[0][row], m[1][row], m[2][row]), m[3][row]);
+    /// Vertices and triangles of its own, and what poses them.
+    uint32_t packDeforming(uint32_t index, const Mesh& mesh) {
+        const uint32_t firstVertex = vertexCount_;
+        const uint32_t firstTriangle = packShading(mesh, Transform(mat4(1.0f)), 0);
+        data_.motion.deforming.push_back(packDeformation(scene_, index, firstVertex, data_.motion));
+        return firstTriangle;
     }
 
     void addTriangle(const Mesh& mesh, size_t triangle, const Transform& transform, uint32_t primitive,
@@ -144,7 +156,8 @@ class GeometryPacker {
 
     /// Appends vertices and shading triangles, transformed; returns the first triangle's index.
     uint32_t packShading(const Mesh& mesh, const Transform& transform, uint32_t material) {
-        const auto firstVertex = static_cast<uint32_t>(data_.vertices.size() / layout::VERTEX_TEXELS);
+        const uint32_t firstVertex = vertexCount_;
+        vertexCount_ += static_cast<uint32_t>(mesh.positions.size());
         const auto firstTriangle = static_cast<uint32_t>(data_.triangles.size());
         if (data_.features.vertexData) {
             for (size_t v = 0; v < mesh.positions.size(); ++v) packVertex(mesh, v, transform);
@@ -181,7 +194,9 @@ class GeometryPacker {
         if (firstTriangle + triangles.size() > BvhRef::maxIndex) {
             throw Error(fmt::format("the scene has more than {} triangles", BvhRef::maxIndex));
         }
-        const uint32_t root = appendNodes(bvh, firstTriangle);
+        const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
+            return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
+        });
         data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
                                    triangles.size() * layout::BVH_TRIANGLE_TEXELS);
         for (const uint32_t index : bvh.order) {
@@ -193,50 +208,112 @@ class GeometryPacker {
         return {root, bvh.stackSize, bvh.bounds};
     }
 
-    uint32_t appendNodes(const Bvh& bvh, uint32_t firstLeaf) {
-        const auto root = static_cast<uint32_t>(data_.bvhNodes.size() / layout::BVH_NODE_TEXELS);
-        data_.bvhNodes.reserve(data_.bvhNodes.size() + bvh.nodes.size() * layout::BVH_NODE_TEXELS);
-        for (BvhNode node : bvh.nodes) {
-            for (uint32_t& child : node.children) child += BvhRef::isLeaf(child) ? firstLeaf : root;
+    template <typename Rebase>
+    uint32_t appendNodes(const std::vector<BvhNode>& nodes, const Rebase& rebase) {
+        const uint32_t root = nodeCount();
+        data_.bvhNodes.reserve(data_.bvhNodes.size() + nodes.size() * layout::BVH_NODE_TEXELS);
+        for (BvhNode node : nodes) {
+            for (uint32_t& child : node.children) child = rebase(child, root);
             const auto texels = std::bit_cast<std::array<uvec4, layout::BVH_NODE_TEXELS>>(node);
             data_.bvhNodes.insert(data_.bvhNodes.end(), texels.begin(), texels.end());
         }
         return root;
     }
 
-    /// A tree over the static tree and every instance of the instanced meshes.
+    uint32_t nodeCount() const {
+        return static_cast<uint32_t>(data_.bvhNodes.size() / layout::BVH_NODE_TEXELS);
+    }
+
+    /// Trees over the static tree and over every instance of the instanced meshes.
     void packTwoLevels() {
-        std::vector<Aabb> boxes;
-        uint32_t deepest = 0;
-        const auto addLeaf = [&](const Tree& tree, const mat4& toWorld, uint32_t instance) {
-            const size_t at = data_.bvhInstances.size();
-            data_.bvhInstances.resize(at + layout::BVH_INSTANCE_TEXELS);
-            packRows(&data_.bvhInstances[at], glm::inverse(toWorld));
-            data_.bvhInstances[at + 3] = {tree.root, instance, 0, 0};
-            boxes.push_back(transformed(tree.bounds, toWorld));
-            deepest = std::max(deepest, tree.stackSize);
-        };
-        if (!staticBoxes_.empty())
-            addLeaf(appendTree(staticBoxes_, staticTriangles_), mat4(1.0f), layout::NONE);
+        packPreviousInstances();
+        if (!staticBoxes_.empty()) {
+            const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+            still_.push_back({addRecord(tree, mat4(1.0f), layout::NONE), tree.bounds});
+        }
+        packMeshInstances();
+        packDeformingTrees();
+        const TopTree top = buildTopTree(still_, nodeCount());
+        const auto keep = [](uint32_t child, uint32_t) { return child; };
+        data_.motion.stillRoot = data_.params.rootNode = appendNodes(top.nodes, keep);
+        data_.motion.stillBounds = bounds_ = top.bounds;
+        data_.stackSize = top.stackSize + deepest_ + 3;
+        if (data_.motion.moving) reserveMovingTree(top.stackSize);
+    }
+
+    uint32_t addRecord(const Tree& tree, const mat4& toWorld, uint32_t instance) {
+        const size_t at = data_.bvhInstances.size();
+        data_.bvhInstances.resize(at + layout::BVH_INSTANCE_TEXELS);
+        packRows(&data_.bvhInstances[at], isInvertible(toWorld) ? glm::inverse(toWorld) : mat4(1.0f));
+        data_.bvhInstances[at + 3] = {tree.root, instance, 0, 0};
+        deepest_ = std::max(deepest_, tree.stackSize);
+        return static_cast<uint32_t>(at / layout::BVH_INSTANCE_TEXELS);
+    }
+
+    void packMeshInstances() {
         std::vector<std::optional<Tree>> trees(scene_.meshes.size());
         for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             const auto mesh = static_cast<size_t>(instance.mesh);
-            if (!instanced_[mesh] || !isInvertible(instance.transform)) continue;
+            if (instance.movement == Movement::Deforming || !instanced_[mesh]) continue;
+            const bool moves = instance.movement == Movement::Rigid;
+            if (!moves && !isInvertible(instance.transform)) continue;
             if (!trees[mesh]) trees[mesh] = appendMeshTree(mesh);
-            addLeaf(*trees[mesh], instance.transform, i);
+            const uint32_t record = addRecord(*trees[mesh], instance.transform, i);
+            if (moves) {
+                data_.motion.leaves.push_back({i, record, trees[mesh]->root, trees[mesh]->bounds});
+            } else {
+                still_.push_back({record, transformed(trees[mesh]->bounds, instance.transform)});
+            }
         }
-        const Bvh top = buildBvh(boxes, 1);
-        reorder(top.order);
-        data_.params.rootNode = appendNodes(top, 0);
-        data_.stackSize = top.stackSize + deepest + 3;
-        bounds_ = top.bounds;
     }
 
-    /// An instance squeezed to a plane or a line shows nothing that a ray could meet robustly.
-    static bool isInvertible(const mat4& m) {
-        const float determinant = std::abs(glm::determinant(mat3(m)));
-        return determinant > std::numeric_limits<float>::min() && std::isfinite(1.0f / determinant);
+    void packDeformingTrees() {
+        MotionData& motion = data_.motion;
+        motion.firstRefitNode = nodeCount();
+        for (DeformingInstance& deforming : motion.deforming) {
+            const Instance& instance = scene_.instances[deforming.instance];
+            const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+            const uint32_t firstTriangle =
+                data_.instances[size_t{deforming.instance} * layout::INSTANCE_TEXELS + 3].z;
+            std::vector<Aabb> boxes;
+            std::vector<LeafTriangle> triangles;
+            for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+                addTriangle(mesh, t, Transform(mat4(1.0f)), t | alphaFlag(mesh, instance, t), layout::NONE,
+                            firstTriangle + t, boxes, triangles);
+            }
+            const Tree tree = appendTree(boxes, triangles);
+            deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
+            const uint32_t record = addRecord(tree, instance.transform, deforming.instance);
+            motion.leaves.push_back({deforming.instance, record, tree.root, tree.bounds});
+        }
+        motion.refitNodeCount = nodeCount() - motion.firstRefitNode;
+        findRefitLevels(data_);
+    }
+
+    /// Room for the nodes that every frame writes.
+    void reserveMovingTree(uint32_t stillStack) {
+        MotionData& motion = data_.motion;
+        motion.firstTopNode = data_.params.rootNode = nodeCount();
+        motion.topStack = topStackLimit(motion.leaves.size());
+        const size_t nodes = 1 + std::max<size_t>(motion.leaves.size(), 1);
+        data_.bvhNodes.resize(data_.bvhNodes.size() + nodes * layout::BVH_NODE_TEXELS);
+        data_.stackSize = std::max(stillStack, motion.topStack) + deepest_ + 6;
+        for (const MovingLeaf& leaf : motion.leaves)
+            bounds_.grow(transformed(leaf.bounds, scene_.instances[leaf.instance].transform));
+    }
+
+    void packPreviousInstances() {
+        if (!data_.motion.moving) return;
+        const size_t count = scene_.instances.size();
+        data_.previousGeometry.resize(count * layout::PREVIOUS_INSTANCE_TEXELS);
+        for (size_t i = 0; i < count; ++i) {
+            packRows(&data_.previousGeometry[i * layout::PREVIOUS_INSTANCE_TEXELS],
+                     scene_.instances[i].transform);
+        }
+        data_.params.previousVertexBase = static_cast<uint32_t>(data_.previousGeometry.size());
+        for (const DeformingInstance& deforming : data_.motion.deforming)
+            data_.previousGeometry.resize(data_.previousGeometry.size() + deforming.vertexCount);
     }
 
     Tree appendMeshTree(size_t meshIndex) {
@@ -254,34 +331,12 @@ class GeometryPacker {
         return appendTree(boxes, triangles);
     }
 
-    static Aabb transformed(const Aabb& box, const mat4& m) {
-        Aabb result;
-        for (int corner = 0; corner < 8; ++corner) {
-            const vec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                         corner & 4 ? box.upper.z : box.lower.z);
-            result.grow(vec3(m * vec4(p, 1.0f)));
-        }
-        // Rays meet the instance in its own space; their rounding there must not exceed its box here.
-        const vec3 margin = 1e-5f * (glm::abs(result.lower) + glm::abs(result.upper) + result.size());
-        result.lower -= margin;
-        result.upper += margin;
-        return result;
-    }
-
-    /// Leaves of the top tree name their instance directly, so the records take the tree's order.
-    void reorder(const std::vector<uint32_t>& order) {
-        std::vector<uvec4> sorted;
-        sorted.reserve(data_.bvhInstances.size());
-        for (const uint32_t index : order) {
-            const auto record = data_.bvhInstances.begin() + size_t{index} * layout::BVH_INSTANCE_TEXELS;
-            sorted.insert(sorted.end(), record, record + layout::BVH_INSTANCE_TEXELS);
-        }
-        data_.bvhInstances = std::move(sorted);
-    }
-
     const Scene& scene_;
     SceneData& data_;
-    std::vector<bool> instanced_;
+    std::vector<bool> instanced_;  ///< meshes
+    std::vector<TopLeaf> still_;
+    uint32_t vertexCount_ = 0;
+    uint32_t deepest_ = 0;  ///< stack entries of the deepest tree below the top
     std::vector<uint32_t> meshFirstTriangle_;
     std::vector<Aabb> staticBoxes_;
     std::vector<LeafTriangle> staticTriangles_;

@@ -62,6 +62,10 @@ class LightPacker {
         for (size_t i = 0; i < weights_.size(); ++i) {
             data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
         }
+        for (MovingLights& moving : data_.motion.lights) {
+            for (size_t i = 0; i < moving.triangles.size(); ++i)
+                moving.probabilities.push_back(table.probabilities[moving.firstLight + i]);
+        }
         data_.lightDensity.resize(lightOfPrimitive_.size(), 0.0f);
         for (size_t i = 0; i < lightOfPrimitive_.size(); ++i) {
             const uint32_t light = lightOfPrimitive_[i];
@@ -77,22 +81,28 @@ class LightPacker {
         const Instance& instance = scene_.instances[index];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
         const size_t tableStart = lightOfPrimitive_.size();
-        bool any = false;
+        MovingLights moving{static_cast<uint32_t>(index),
+                            static_cast<uint32_t>(weights_.size()),
+                            static_cast<uint32_t>(tableStart),
+                            {},
+                            {}};
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
             const auto material = static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
             uint32_t light = layout::NONE;
             if (scene_.materials[material].emission != vec3(0.0f)) {
                 light = packTriangle(index, instance, mesh, t, material);
-                any = true;
+                moving.triangles.push_back(static_cast<uint32_t>(t));
             }
             lightOfPrimitive_.push_back(light);
         }
-        if (any) {
+        if (!moving.triangles.empty()) {
             data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
         } else {
             lightOfPrimitive_.resize(tableStart);
+            return;
         }
+        if (instance.movement != Movement::Still) data_.motion.lights.push_back(std::move(moving));
     }
 
     uint32_t packTriangle(size_t instanceIndex, const Instance& instance, const Mesh& mesh, size_t t,

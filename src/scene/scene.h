@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "base/math.h"
+#include "scene/animation.h"
+#include "scene/deformation.h"
 
 namespace limpid::scene {
 
@@ -26,6 +28,8 @@ struct Mesh {
     std::vector<uint32_t> indices;  ///< three per triangle, all below positions.size()
     std::vector<uint16_t>
         materialSlots;  ///< one per triangle, added to the instance's material; empty: all 0
+    /// Set if a clip may move the vertices; positions, normals and tangents above are then those at rest.
+    std::shared_ptr<const Deformation> deformation;
 
     size_t triangleCount() const { return indices.size() / 3; }
 };
@@ -93,12 +97,18 @@ struct Material {
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 
+/// How an instance may differ from frame to frame. Follows from the chosen clip (scene/movement.h).
+enum class Movement : uint8_t { Still, Rigid, Deforming };
+
 /// A mesh placed in the world. Meshes that share geometry are one Mesh with several instances.
 struct Instance {
     int mesh = 0;
-    int material = 0;  ///< of slot 0
-    mat4 transform{1.0f};
+    int material = 0;      ///< of slot 0
+    mat4 transform{1.0f};  ///< at rest; of a skinned mesh, whose vertices are in world space, the identity
     std::string name;
+    int node = none;  ///< of the rig: what moves it, and where its morph weights are
+    int skin = none;  ///< of the rig
+    Movement movement = Movement::Still;
 };
 
 /// KHR_lights_punctual: point and spot intensity in candela, directional in lux (radiance unit: cd/m^2).
@@ -111,6 +121,7 @@ struct PunctualLight {
     float innerCone = 0.0f;             ///< radians, half angles
     float outerCone = pi / 4;
     std::string name;
+    int node = none;  ///< of the rig
 };
 
 /// A lat-long picture around the scene: row 0 is +Y, the centre column looks along -Z... (see
@@ -129,6 +140,7 @@ struct Camera {
     float verticalFov = 0.8f;  ///< radians, perspective
     float halfHeight = 1.0f;   ///< world units, orthographic
     float aspect = 0.0f;       ///< width / height the author meant; 0: the image's
+    int node = none;           ///< of the rig
 };
 
 struct Scene {
@@ -140,6 +152,8 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras;  ///< never empty once prepared (see scene/prepare.h)
     Environment environment;
+    Rig rig;
+    int clip = none;  ///< of rig.clips: the one that plays
 
     size_t triangleCount() const;  ///< with every instance counted
 };

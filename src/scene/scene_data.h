@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/motion_data.h"
 #include "scene/scene.h"
 #include "shaders/scene_layout.h"
 
@@ -14,7 +15,7 @@ namespace limpid::scene {
 struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
-         mirrored = false, clearcoat = false, volume = false, specularTextures = false;
+         mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 
@@ -25,7 +26,8 @@ struct AliasEntry {
 };
 
 struct SceneData {
-    std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, materials, textureRefs, lights;
+    std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
+        textureRefs, lights;
     std::vector<vec4> bvhTriangles, environment, ggxTable;
     std::vector<AliasEntry> lightAlias, environmentAlias;
     std::vector<float> lightDensity, dielectricTable;
@@ -33,6 +35,7 @@ struct SceneData {
     SceneFeatures features;
     layout::SceneParams params{};
     uint32_t stackSize = 0;
+    MotionData motion;
 
     uint64_t byteCount() const;
 };

@@ -17,10 +17,11 @@ layout(constant_id = 8) const bool HAS_ENVIRONMENT = true;
 layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack entries
 layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
 layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
-layout(constant_id = 20) const bool HAS_CLEARCOAT = true;
-layout(constant_id = 21) const bool HAS_VOLUME = true;        // bodies that absorb light
-layout(constant_id = 22) const bool HAS_SPECULAR_TEXTURES = true;
 layout(constant_id = 12) const bool CPU_DEVICE = false;         // runs on a CPU: no branch skips its body
+layout(constant_id = 13) const bool HAS_MOTION = false;         // something moves from frame to frame
+layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
+layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
+layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
 layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;
@@ -41,6 +42,7 @@ layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer texels0;
 layout(set = 0, binding = 16, r32ui) uniform readonly uimageBuffer texels1;
 layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;
 layout(set = 0, binding = 18, r32ui) uniform readonly uimageBuffer texels3;
+layout(set = 0, binding = 19, rgba32ui) uniform readonly uimageBuffer previousGeometry;
 // Binding 20 and up belong to the pass that includes this file.
 
 #endif

@@ -36,7 +36,23 @@ LIMPID_CONST uint VERTEX_TEXELS = 2u;
 // triangle | flags. lightDensity: one float for each primitive of an emissive instance, the probability that
 // next-event estimation chooses it over its area.
 LIMPID_CONST uint INSTANCE_TEXELS = 4u;
-LIMPID_CONST uint INSTANCE_MIRRORED = 1u;  // negative determinant: front faces turn clockwise
+LIMPID_CONST uint INSTANCE_MIRRORED = 1u;   // negative determinant: front faces turn clockwise
+LIMPID_CONST uint INSTANCE_DEFORMING = 2u;  // its vertices have previous positions of their own
+
+// previousGeometry, of scenes that move: for each instance three rows of object-to-world in the previous
+// frame; then for each vertex of deforming instances its position in that instance's space | normal
+// (octahedral).
+LIMPID_CONST uint PREVIOUS_INSTANCE_TEXELS = 3u;
+
+// restVertices, before morphing and skinning: position | normal (octahedral); tangent (octahedral, lowest
+// bit: sign) | joints 0, 1 | joints 2, 3 | 0; weights.
+LIMPID_CONST uint REST_VERTEX_TEXELS = 3u;
+// morphDeltas: of position, normal, tangent; all vertices of a target, then the next target.
+LIMPID_CONST uint MORPH_DELTA_TEXELS = 3u;
+// poseMatrices: three rows per joint; then morph weights, four per texel.
+LIMPID_CONST uint POSE_MATRIX_TEXELS = 3u;
+// nodeBounds of deforming trees: lower corner; upper corner.
+LIMPID_CONST uint NODE_BOUNDS_TEXELS = 2u;
 
 // materials: baseColor rgb | flags; emission | roughness; metallic | specular | ior | transmission;
 // alpha | cutoff | normal scale | 0; texture references (base, metallic-roughness, normal, emission);
@@ -103,7 +119,23 @@ struct SceneParams {
     float environmentProbability;  // of choosing the environment in next-event estimation
     uint environmentWidth;
     uint environmentHeight;
-    uint rootNode;  // of the tree that rays enter
+    uint rootNode;            // of the tree that rays enter
+    uint previousVertexBase;  // texel of previousGeometry where vertices begin
+};
+
+/// How the pose pass moves the vertices of one deforming instance. Texels count from the start of their
+/// buffer; NONE: no skin, or no weights.
+struct PoseParams {
+    uint firstVertex;
+    uint vertexCount;
+    uint morphFirst;  // of morphDeltas
+    uint targetCount;
+    uint matricesNow;  // of poseMatrices
+    uint matricesBefore;
+    uint weightsNow;
+    uint weightsBefore;
+    uint previousBase;   // of previousGeometry: where vertices begin
+    uint hasVertexData;  // whether there are normals and tangents to write
 };
 
 #undef LIMPID_CONST

@@ -13,7 +13,7 @@ layout(set = 0, binding = 23, rg32ui) uniform writeonly uimage2D counters;  // r
 void main() {
     const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
-    uint rng = startStream(pixel.y * params.width + pixel.x, params.frame, params.seed);
+    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
     uint rays = 0u, rejected = 0u;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < params.samples; ++i) {

@@ -20,6 +20,7 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     params.width = launch.extent.width;
     params.height = launch.extent.height;
     params.frame = launch.frame;
+    params.stream = launch.stream;
     params.seed = launch.seed;
     params.samples = launch.samples;
     params.maxDepth = static_cast<uint>(settings.maxDepth);
@@ -27,6 +28,7 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     params.fireflyClamp = settings.fireflyClamp;
     params.jitterPerPixel = launch.jitterPerPixel ? 1u : 0u;
     params.jitter = launch.jitter;
+    params.hasPrevious = launch.hasPrevious ? 1u : 0u;
     return params;
 }
 
@@ -95,6 +97,7 @@ PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,
     image("normal", layers.normal);
     image("depth", layers.depth);
     image("motion", layers.motion);
+    image("previousNormal", layers.previousNormal);
     dispatch(graph, shaders::pathtrace_layers_comp, scene, settings, launch, images);
     return layers;
 }

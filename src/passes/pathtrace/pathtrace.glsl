@@ -7,6 +7,7 @@
 #include "shaders/bsdf.glsl"
 #include "shaders/trace.glsl"
 #include "shaders/lights.glsl"
+#include "shaders/motion.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
@@ -21,7 +22,8 @@ struct FirstHit {
     vec3 position;  // of a miss: the direction
     vec3 normal, albedo, albedoSpecular;
     float depth;
-    uvec2 ids;  // instance, material
+    uvec2 ids;                // instance, material
+    PreviousPoint previous;  // the same point in the previous frame
 };
 
 struct PathRadiance {
@@ -146,9 +148,11 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
     return path.throughput != vec3(0.0);
 }
 
-FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth) {
+FirstHit firstHitOf(Hit hit, Surface surface, Bsdf bsdf, float depth) {
+    PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
+    if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
     return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
-                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material));
+                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous);
 }
 
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
@@ -159,7 +163,8 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         path.coneWidth = spread;
         spread = 0.0;
     }
-    first = FirstHit(false, ray.direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE));
+    first = FirstHit(false, ray.direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE),
+                     PreviousPoint(ray.direction, vec3(0.0)));
     float traveled = 0.0;
     uint culled = 0u;
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
@@ -183,7 +188,7 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
                 --depth;
                 continue;
             }
-            first = firstHitOf(surface, bsdf, traveled);
+            first = firstHitOf(hit, surface, bsdf, traveled);
         }
         if (surface.emission != vec3(0.0)) {
             const float density =

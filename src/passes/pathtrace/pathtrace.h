@@ -23,7 +23,9 @@ struct PathtraceLaunch {
     gpu::Extent extent;
     CameraParams camera;
     CameraParams previousCamera;  ///< of the previous frame of a sequence, for motion
+    bool hasPrevious = false;     ///< false: no previous frame, all motion is invalid
     uint32_t frame = 0;           ///< launches since the last reset
+    uint32_t stream = 0;          ///< of random numbers; in a still the same as `frame`
     uint32_t seed = 0;
     uint32_t samples = 1;  ///< per pixel in this launch
     bool jitterPerPixel = true;
@@ -34,8 +36,9 @@ struct PathtraceLaunch {
 /// specular, albedo, albedoSpecular, emission) or of the components (normal).
 struct PathtraceLayers {
     gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal;
-    gpu::ImageHandle depth;     ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
-    gpu::ImageHandle motion;    ///< xyz: motion, invalid as 0; a: share of valid samples
+    gpu::ImageHandle depth;   ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
+    gpu::ImageHandle motion;  ///< xyz: motion, invalid as 0; a: share of valid samples
+    gpu::ImageHandle previousNormal;  ///< xyz: of the same points in the previous frame
     gpu::ImageHandle ids;       ///< rg32ui: instance, material of the first sample; layout::NONE at a miss
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };

@@ -15,6 +15,7 @@ layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D albedoSpecular;
 layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D normal;
 layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 of misses | hits | 0
 layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their number, by samples
+layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
 layout(set = 0, binding = 30, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
@@ -49,8 +50,8 @@ vec4 project(CameraParams camera, vec3 point, bool isDirection) {
 
 vec4 motionOf(FirstHit first) {
     const vec4 now = project(params.camera, first.position, !first.hit);
-    const vec4 before = project(params.previousCamera, first.position, !first.hit);
-    if (now.w * before.w == 0.0) return vec4(0.0);
+    const vec4 before = project(params.previousCamera, first.previous.position, !first.hit);
+    if (params.hasPrevious == 0u || now.w * before.w == 0.0) return vec4(0.0);
     return vec4(before.xy - now.xy, first.hit ? before.z - now.z : 0.0, 1.0);
 }
 
@@ -58,11 +59,12 @@ void main() {
     const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    uint rng = startStream(pixel.y * params.width + pixel.x, params.frame, params.seed);
+    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
     uint rays = 0u, rejected = 0u;
     vec4 diffuseMoments = vec4(0.0), specularMoments = vec4(0.0), emissionMoments = vec4(0.0);
     vec4 albedoMoments = vec4(0.0), albedoSpecularMoments = vec4(0.0), normalMoments = vec4(0.0);
     vec4 depthMoments = vec4(0.0), motionSum = vec4(0.0);
+    vec3 previousNormalSum = vec3(0.0);
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
         const vec2 point = vec2(pixel) + subpixel(i, rng);
@@ -80,6 +82,7 @@ void main() {
         accumulateVector(normalMoments, first.normal, count);
         accumulate(depthMoments, vec3(first.depth, first.hit ? 1.0 : 0.0, 0.0), vec3(1.0, 0.0, 0.0), count);
         motionSum += motionOf(first);
+        previousNormalSum += first.previous.normal;
         if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     }
     const vec4 perSample = vec4(1.0, 1.0, 1.0, 1.0 / float(params.samples));
@@ -91,5 +94,6 @@ void main() {
     imageStore(normal, at, normalMoments * perSample);
     imageStore(depth, at, depthMoments * perSample);
     imageStore(motion, at, motionSum / float(params.samples));
+    imageStore(previousNormal, at, vec4(previousNormalSum / float(params.samples), 0.0));
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));
 }

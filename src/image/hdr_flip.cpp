@@ -1,0 +1,94 @@
+// HDR-FLIP. Section and formulas are those of the paper that image/metrics.h names.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/color.h"
+#include "image/flip.h"
+#include "image/metrics.h"
+#include "image/metrics_check.h"
+#include "image/tonemap.h"
+
+namespace limpid::image {
+namespace {
+
+/// Where the brightest pixel lands at the first exposure and the median one at the last.
+constexpr double displayTarget = 0.85;
+
+/// Mean of the two middle values where their number is even. `values` is not empty and is reordered.
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2 == 1) return *middle;
+    return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+std::vector<double> luminances(const Image& radiance) {
+    std::vector<double> values(size_t{radiance.width} * radiance.height);
+    for (size_t i = 0; i < values.size(); ++i) {
+        const float* p = &radiance.pixels[3 * i];
+        const auto positive = [](float v) { return std::max(static_cast<double>(v), 0.0); };
+        values[i] = 0.2126 * positive(p[0]) + 0.7152 * positive(p[1]) + 0.0722 * positive(p[2]);
+    }
+    return values;
+}
+
+/// Linear display values in [0,1].
+Image toneMapped(const Image& radiance, double stops) {
+    Image mapped(radiance.width, radiance.height, 3);
+    const double scale = std::exp2(stops);
+    const size_t rowValues = size_t{radiance.width} * 3;
+    tbb::parallel_for(size_t{0}, size_t{radiance.height}, [&](size_t y) {
+        for (size_t i = y * rowValues; i < (y + 1) * rowValues; ++i) {
+            // The curve is 1 long before the bound, which keeps the product a float.
+            const double exposed = std::min(scale * static_cast<double>(radiance.pixels[i]), 1e30);
+            mapped.pixels[i] = filmicCurve(static_cast<float>(exposed));
+        }
+    });
+    return mapped;
+}
+
+}  // namespace
+
+HdrFlipExposures hdrFlipExposures(const Image& reference) {
+    checkComparable(reference, reference);
+    checkReferenceValid(reference);
+    std::vector<double> values = luminances(reference);
+    const double brightest = *std::max_element(values.begin(), values.end());
+    if (brightest == 0.0) return {};
+    double typical = median(values);
+    if (typical == 0.0) {
+        std::erase(values, 0.0);
+        typical = median(values);
+    }
+    const double target = filmicCurveInverse(displayTarget);
+    HdrFlipExposures exposures;
+    exposures.start = std::log2(target / brightest);
+    exposures.stop = std::log2(target / typical);
+    exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop - exposures.start)));
+    return exposures;
+}
+
+HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree) {
+    checkComparable(test, reference);
+    const std::vector<size_t> bad = invalidPixels(test);
+    HdrFlip result;
+    result.exposures = hdrFlipExposures(reference);
+    result.map = Image(test.width, test.height, 1, 0.0f);
+    const double step = (result.exposures.stop - result.exposures.start) / (result.exposures.count - 1);
+    for (int k = 0; k < result.exposures.count; ++k) {
+        const double stops = result.exposures.start + k * step;
+        const Image shownReference = toneMapped(reference, stops);
+        Image shownTest = toneMapped(test, stops);
+        showAsWorst(bad, shownReference, shownTest);
+        const Image map = flipOfLinear(shownTest, shownReference, pixelsPerDegree);
+        for (size_t i = 0; i < map.pixels.size(); ++i)
+            result.map.pixels[i] = std::max(result.map.pixels[i], map.pixels[i]);
+    }
+    for (const size_t pixel : bad) result.map.pixels[pixel] = 1.0f;
+    result.value = mean(result.map);
+    return result;
+}
+
+}  // namespace limpid::image

@@ -1,0 +1,14 @@
+// Bringing the scene to a moment: uploads what moved, poses vertices on the device, refits their trees.
+#pragma once
+
+#include "gpu/frame_graph.h"
+#include "scene/gpu_scene.h"
+#include "scene/scene_animator.h"
+
+namespace limpid {
+
+/// Records the passes "deform/pose" and "deform/refit". Later passes of this graph see the scene as `frame`
+/// says; so do later frames.
+void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame);
+
+}  // namespace limpid

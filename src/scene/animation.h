@@ -1,0 +1,79 @@
+// What moves a scene: a hierarchy of nodes, skins and clips, and the pose they give at a time.
+//
+// Specification: glTF 2.0, sections 3.7.3 (skins) and 3.11 (animations) and appendix C (interpolation),
+// https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#animations
+#pragma once
+
+#include <cstdint>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+
+namespace limpid::scene {
+
+struct Node {
+    std::string name;
+    int parent = -1;  ///< -1: a root
+    vec3 translation{0.0f};
+    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< unit
+    vec3 scale{1.0f};
+    std::optional<mat4> matrix;  ///< affine; instead of the three above. Such a node is not animated
+    std::vector<float> weights;  ///< of its mesh's morph targets, at rest
+
+    mat4 local() const;
+};
+
+struct Skin {
+    std::vector<int> joints;        ///< nodes
+    std::vector<mat4> inverseBind;  ///< one per joint
+};
+
+enum class Interpolation : uint8_t { Step, Linear, CubicSpline };
+enum class AnimatedValue : uint8_t { Translation, Rotation, Scale, Weights };
+
+/// One value of one node over time. Before the first key it is the first key's value, after the last the
+/// last's.
+struct Channel {
+    int node = -1;
+    AnimatedValue value = AnimatedValue::Translation;
+    Interpolation interpolation = Interpolation::Linear;
+    uint32_t components = 3;    ///< 3; 4 of rotations (x, y, z, w); the number of weights
+    std::vector<float> times;   ///< seconds, finite, not negative, strictly increasing; at least one
+    std::vector<float> values;  ///< `components` per time; CubicSpline: in-tangent, value, out-tangent
+
+    void evaluate(double time, std::vector<float>& result) const;  ///< rotations: unit
+};
+
+struct Clip {
+    std::string name;
+    std::vector<Channel> channels;
+
+    float duration() const;  ///< seconds, to the last key
+};
+
+struct Rig {
+    std::vector<Node> nodes;
+    std::vector<int> order;  ///< all nodes, parents before their children
+    std::vector<Skin> skins;
+    std::vector<Clip> clips;
+};
+
+/// Where everything stands at one moment.
+struct RigPose {
+    std::vector<mat4> toWorld;                ///< of each node
+    std::vector<std::vector<float>> weights;  ///< of each node
+};
+
+/// `clip` may be null: the pose at rest.
+RigPose evaluate(const Rig& rig, const Clip* clip, double time);
+
+/// Rest position -> world, of each joint of the skin.
+std::vector<mat4> jointMatrices(const Skin& skin, const RigPose& pose);
+
+/// Which nodes the clip moves, directly or through a parent.
+std::vector<bool> movedNodes(const Rig& rig, const Clip& clip);
+
+}  // namespace limpid::scene
