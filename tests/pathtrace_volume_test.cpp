@@ -8,6 +8,10 @@ namespace {
 
 constexpr double pi64 = std::numbers::pi;
 const vec3 absorption(0.3f, 1.0f, 2.5f);
+/// offsetRay() begins a ray 2^-17 of the largest coordinate (1 here) behind the surface, and that part of the
+/// way absorbs nothing: at most two such beginnings, times the strongest absorption, and float's own
+/// rounding.
+const double offsetTolerance = 2.0 * 0x1p-17 * 2.5 + 2e-6;
 
 scene::Material bodyMaterial(float ior, const vec3& sigma) {
     scene::Material material;
@@ -71,7 +75,7 @@ TEST_F(VolumeTest, BodyOfIndexOne) {
     addWhiteSky(scene);
     scene.cameras = {parallelCamera()};
     ASSERT_TRUE(scene::buildSceneData(scene).features.volume);
-    expectEverywhere(render(scene, settings(4), 1), glm::exp(-1.3 * dvec3(absorption)), 1e-5,
+    expectEverywhere(render(scene, settings(4), 1), glm::exp(-1.3 * dvec3(absorption)), offsetTolerance,
                      "1.3 m at right angles");
     // From aside: the way through the body is longer by the cosine.
     scene.cameras = {scene::lookAt({0.5f, 0.3f, 5}, {0, 0, 0.25f}, {0, 1, 0}, 0.05f)};
@@ -106,6 +110,77 @@ TEST_F(VolumeTest, SlabOfGlass) {
     }
 }
 
+/// A ray that passes the centre of a sphere of radius 1 at distance b crosses 2 sqrt(1 - b^2) of it; with an
+/// index n, 2 sqrt(1 - (b / n)^2), and again after each reflection inside, at the same angle. Each meeting
+/// reflects the same R: with a = exp(-sigma way), the ball shows R + (1 - R)^2 a / (1 - R a) of a uniform
+/// sky.
+class BallTest : public VolumeTest {
+  protected:
+    static dvec3 expectedOf(double b, double ior) {
+        const double cosOut = std::sqrt(1.0 - b * b), cosIn = std::sqrt(1.0 - b * b / (ior * ior));
+        const double s = (cosOut - ior * cosIn) / (cosOut + ior * cosIn);
+        const double p = (ior * cosOut - cosIn) / (ior * cosOut + cosIn);
+        const double r = 0.5 * (s * s + p * p);
+        const dvec3 a = glm::exp(-2.0 * cosIn * dvec3(absorption));
+        return r + (1.0 - r) * (1.0 - r) * a / (1.0 - r * a);
+    }
+
+    /// Distance from the axis of the ray through a pixel's centre.
+    static double distanceOf(size_t i, double halfHeight) {
+        const double x = 2.0 * (static_cast<double>(i % 16) + 0.5) / 16 - 1.0;
+        const double y = 2.0 * (static_cast<double>(i / 16) + 0.5) / 16 - 1.0;
+        return halfHeight * std::hypot(x, y);
+    }
+
+    Rendered ball(float ior, const RenderSettings& options, uint64_t samples) {
+        scene::Scene scene;
+        addMesh(scene, scene::MeshBuilder("ball", true).sphere(vec3(0.0f), 1.0f, 512, 256).take(),
+                bodyMaterial(ior, absorption));
+        addWhiteSky(scene);
+        scene.cameras = {scene::lookAt({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.5f)};
+        scene.cameras[0].orthographic = true;
+        scene.cameras[0].halfHeight = halfHeight;
+        return render(scene, options, samples);
+    }
+
+    static constexpr float halfHeight = 0.85f;
+};
+
+TEST_F(BallTest, OfIndexOne) {
+    const Rendered picture = ball(1.0f, settings(4), 1);
+    int inside = 0;
+    double worst = 0.0;
+    for (size_t i = 0; i < 256; ++i) {
+        const double b = distanceOf(i, double{halfHeight});
+        if (b > 0.95 && b < 1.01) continue;  // there the facets' edges show
+        const dvec3 expected = b < 1.0 ? expectedOf(b, 1.0) : dvec3(1.0);
+        for (int c = 0; c < 3; ++c) {
+            worst = std::max(worst, std::abs(picture.beauty(i)[c] / expected[c] - 1.0));
+            ASSERT_NEAR(picture.beauty(i)[c] / expected[c], 1.0, 1e-3) << i << " at " << b;
+        }
+        inside += b < 1.0 ? 1 : 0;
+    }
+    EXPECT_GT(inside, 150);
+    fmt::print("ball of index 1: {} rays within {:.2g}\n", inside, worst);
+}
+
+TEST_F(BallTest, OfGlass) {
+    const Rendered picture = ball(1.5f, settings(40, 64), 2048);
+    dvec3 sum(0.0), expectedSum(0.0);
+    for (size_t i = 0; i < 256; ++i) {
+        const double b = distanceOf(i, double{halfHeight});
+        if (b > 0.95) continue;
+        const dvec3 expected = expectedOf(b, 1.5);
+        // Of 2048 samples each one is between 0 and 1: their mean is within 5 / (2 sqrt(2048)).
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(picture.beauty(i)[c], expected[c], 0.055) << i << " at " << b;
+        sum += dvec3(picture.beauty(i));
+        expectedSum += expected;
+    }
+    fmt::print("ball of glass: {:.4f} {:.4f} {:.4f}, exactly {:.4f} {:.4f} {:.4f}\n", sum.x, sum.y, sum.z,
+               expectedSum.x, expectedSum.y, expectedSum.z);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / expectedSum[c], 1.0, 5e-3);
+}
+
 TEST_F(VolumeTest, ThinWallsAbsorbNothing) {
     scene::Scene scene;
     scene::Material wall = bodyMaterial(1.5f, absorption);
@@ -130,8 +205,8 @@ TEST_F(VolumeTest, EmitterInABody) {
                 .take(),
             emitting(5.0f));
     scene.cameras = {parallelCamera()};
-    expectEverywhere(render(scene, settings(3), 1), 5.0 * glm::exp(-0.75 * dvec3(absorption)), 1e-5,
-                     "emitter in a body");
+    expectEverywhere(render(scene, settings(3), 1), 5.0 * glm::exp(-0.75 * dvec3(absorption)),
+                     offsetTolerance, "emitter in a body");
 }
 
 /// A clear body in an absorbing one, as a bubble in glass: its part of the way does not count, what is behind
@@ -142,7 +217,8 @@ TEST_F(VolumeTest, BodyInABody) {
     addBox(scene, {-0.8f, -0.8f, -0.1f}, {0.8f, 0.8f, 0.4f}, bodyMaterial(1.0f, vec3(0.0f)));
     addWhiteSky(scene);
     scene.cameras = {parallelCamera()};
-    expectEverywhere(render(scene, settings(6), 1), glm::exp(-1.5 * dvec3(absorption)), 1e-5, "bubble");
+    expectEverywhere(render(scene, settings(6), 1), glm::exp(-1.5 * dvec3(absorption)), offsetTolerance,
+                     "bubble");
 }
 
 /// Both ways of finding a light within a body: the floor's light by quadrature.

@@ -11,10 +11,6 @@
 namespace limpid::scene::test {
 namespace {
 
-template <typename T>
-constexpr int componentType = sizeof(T) == 1 ? (std::is_signed_v<T> ? 5120 : 5121)
-                                             : (std::is_signed_v<T> ? 5122 : 5123);
-
 /// The integers' ends, zero, and some in between.
 template <typename T>
 std::vector<T> samples(size_t count) {
@@ -30,26 +26,21 @@ float expected(T value, bool normalized) {
     return std::is_signed_v<T> ? std::max(whole, -1.0f) : whole;
 }
 
-/// An accessor of `values`, each element padded to a multiple of four bytes by other values than zero.
-template <typename T>
-int addPadded(GltfFile& file, const std::vector<T>& values, const char* type, size_t components,
-              bool normalized) {
-    const size_t stride = (components * sizeof(T) + 3) / 4 * 4;
-    std::string bytes(values.size() / components * stride, '\x5a');
-    for (size_t i = 0; i < values.size(); i += components)
-        std::memcpy(bytes.data() + i / components * stride, &values[i], components * sizeof(T));
-    const int view = file.addView(bytes.data(), bytes.size());
-    file.document["bufferViews"].back()["byteStride"] = stride;
-    return file.add("accessors", {{"bufferView", view},
-                                  {"componentType", componentType<T>},
-                                  {"count", values.size() / components},
-                                  {"type", type},
-                                  {"normalized", normalized}});
-}
-
 GltfFile quantizedFile() {
     GltfFile file = triangle();
     file.document["extensionsUsed"] = file.document["extensionsRequired"] = {"KHR_mesh_quantization"};
+    return file;
+}
+
+/// A clip that moves the triangle's node: with it the loader keeps what deforms.
+GltfFile animatedFile() {
+    GltfFile file = quantizedFile();
+    const int input = file.addFloats({0, 1}, "SCALAR", 1),
+              output = file.addFloats({0, 0, 0, 1, 0, 0}, "VEC3", 3);
+    file.document["animations"] = json::array(
+        {{{"samplers", json::array({{{"input", input}, {"output", output}}})},
+          {"channels",
+           json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}})}}});
     return file;
 }
 
@@ -120,6 +111,60 @@ TYPED_TEST(SignedQuantizationTest, MorphTargets) {
             EXPECT_EQ(moved[i / 3][c], rest[i / 3][c] + 0.5f * expected(deltas[i], normalized));
         }
     }
+}
+
+TYPED_TEST(SignedQuantizationTest, MorphedNormals) {
+    const auto deltas = samples<TypeParam>(9);
+    GltfFile file = animatedFile();
+    json& attributes = file.primitive()["attributes"];
+    attributes["NORMAL"] = file.addFloats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    attributes["TANGENT"] = file.addFloats({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4", 4);
+    const int accessor = addPadded(file, deltas, "VEC3", 3, true);
+    file.primitive()["targets"] = json::array({{{"NORMAL", accessor}, {"TANGENT", accessor}}});
+    const Scene scene = loadScene(file.save(this->folder));
+    const MorphTarget& target = scene.meshes.at(0).deformation->targets.at(0);
+    for (size_t i = 0; i < 9; ++i) {
+        const int c = static_cast<int>(i % 3);
+        EXPECT_EQ(target.normals[i / 3][c], expected(deltas[i], true));
+        EXPECT_EQ(target.tangents[i / 3][c], expected(deltas[i], true));
+    }
+}
+
+template <typename T>
+class UnsignedQuantizationTest : public FolderTest {};
+using UnsignedTypes = testing::Types<uint8_t, uint16_t>;
+TYPED_TEST_SUITE(UnsignedQuantizationTest, UnsignedTypes);
+
+TYPED_TEST(UnsignedQuantizationTest, JointsAndWeights) {
+    constexpr auto one = std::numeric_limits<TypeParam>::max();
+    const std::vector<TypeParam> weights{one, 0,           0, 0,       one / 5,     one / 5,
+                                         0,   one / 5 * 3, 0, one / 3, one / 3 * 2, 0};
+    const std::vector<TypeParam> joints{0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0};
+    GltfFile file = animatedFile();
+    json& attributes = file.primitive()["attributes"];
+    attributes["JOINTS_0"] = addPadded(file, joints, "VEC4", 4, false);
+    attributes["WEIGHTS_0"] = addPadded(file, weights, "VEC4", 4, true);
+    file.document["nodes"] = json::parse(R"([{"mesh": 0, "skin": 0}, {}])");
+    file.document["skins"] = json::parse(R"([{"joints": [0, 1]}])");
+    const Scene scene = loadScene(file.save(this->folder));
+    const Deformation& deformation = *scene.meshes.at(0).deformation;
+    for (size_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(deformation.joints.at(i / 4)[i % 4], joints[i]);
+        // The loader divides by the sum, which is 1 to the last bit or two.
+        EXPECT_NEAR(deformation.weights.at(i / 4)[static_cast<int>(i % 4)], expected(weights[i], true),
+                    1e-6f);
+    }
+}
+
+/// glTF 2.0, section 3.11: rotations and weights may be normalised integers.
+TYPED_TEST(QuantizationTest, AnimatedRotations) {
+    const auto values = samples<TypeParam>(8);
+    GltfFile file = animatedFile();
+    file.document["animations"][0]["samplers"][0]["output"] = addPadded(file, values, "VEC4", 4, true);
+    file.document["animations"][0]["channels"][0]["target"]["path"] = "rotation";
+    const Channel channel = loadScene(file.save(this->folder)).rig.clips.at(0).channels.at(0);
+    ASSERT_EQ(channel.values.size(), 8u);
+    for (size_t i = 0; i < 8; ++i) EXPECT_EQ(channel.values[i], expected(values[i], true));
 }
 
 }  // namespace

@@ -80,8 +80,8 @@ LIMPID_CONST uint TEXTURE_SRGB = 256u;
 LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
 // lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
-// triangle; emission | material, or NONE if the emission has no texture. Punctual: position | kind; direction
-// | probability; cos inner | cos outer | range | 0; intensity | 0.
+// triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
+// | kind; direction | probability; cos inner | cos outer | range | 0; intensity | 0.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
