@@ -15,6 +15,14 @@ if(LIMPID_SANITIZE)
                                                   -fno-omit-frame-pointer)
   target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(LIMPID_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "LIMPID_FUZZ needs clang, which has libFuzzer: use the preset 'fuzz'")
+  endif()
+  target_compile_options(limpid_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+                                                  -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
+endif()
 
 # limpid_optional(NAME PACKAGE DEBIAN LOSS): sets LIMPID_HAVE_NAME to whether CMake finds PACKAGE; if not, says what is
 # lost without it and which Debian package brings it.

@@ -182,6 +182,7 @@ void report(const RenderOptions& o, const gpu::Device& device, const Summary& s,
     }
     const nlohmann::json object{{"output", o.output},
                                 {"device", device.info().name},
+                                {"tracer", scene::toString(gpuScene.tracer())},
                                 {"width", o.width},
                                 {"height", o.height},
                                 {"frames", s.frames},
@@ -240,7 +241,7 @@ void render(const RenderOptions& o) {
     start = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(*device, data);
+    scene::GpuScene gpuScene(*device, data, chosenTracer(o.device, *device));
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
     data = {};  // it is on the device now, and so are the textures
     scene.textures.clear();

@@ -44,6 +44,9 @@ class Document {
     };
     const Lists& lists() const { return *lists_; }
 
+    /// The bytes of the file and of all buffers: what the document cost whoever made it.
+    uint64_t byteCount() const { return byteCount_; }
+
     /// The bytes of a buffer view (index in range), decoded if it is compressed. Throws InputError if they
     /// are not inside its buffer.
     std::span<const std::byte> bytes(int bufferView) const;
@@ -79,6 +82,7 @@ class Document {
     std::vector<std::vector<std::byte>> buffers_;
     std::map<int, std::vector<std::byte>> decodedViews_;  ///< those that are compressed
     uint64_t decodedBytesLeft_ = 0;
+    uint64_t byteCount_ = 0;
     std::set<std::string> warnings_;
 };
 
