@@ -24,6 +24,16 @@ if(LIMPID_FUZZ)
   target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# limpid_optional(NAME PACKAGE DEBIAN LOSS): sets LIMPID_HAVE_NAME to whether CMake finds PACKAGE; if not, says what is
+# lost without it and which Debian package brings it.
+function(limpid_optional NAME PACKAGE DEBIAN LOSS)
+  find_package(${PACKAGE} QUIET GLOBAL)
+  if(NOT ${PACKAGE}_FOUND)
+    message(STATUS "Without ${DEBIAN}: ${LOSS}.")
+  endif()
+  set(LIMPID_HAVE_${NAME} ${${PACKAGE}_FOUND} PARENT_SCOPE)
+endfunction()
+
 # limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ...): the static library limpid_NAME, alias limpid::NAME.
 function(limpid_library NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})

@@ -11,7 +11,8 @@ class BsdfEnergyTest : public BsdfTest {
     /// Smooth lobes by sampling, which has no noise to speak of there; rough ones by quadrature, which has
     /// none.
     double albedo(const BsdfParams& params) {
-        if (params.roughness >= 0.05f) return integrate(params).integral().f;
+        const bool smoothCoat = params.clearcoat > 0.0f && params.clearcoatRoughness < 0.05f;
+        if (params.roughness >= 0.05f && !smoothCoat) return integrate(params).integral().f;
         constexpr uint32_t count = 1u << 16;
         double sum = 0.0;
         for (const SampledDirection& s : sample(params, count)) {
@@ -75,6 +76,22 @@ TEST_F(BsdfEnergyTest, WhiteSolidGlassOfOtherIndices) {
 TEST_F(BsdfEnergyTest, WhiteMixture) {
     expectWhite({"white mixture", {.metallic = 0.5f, .transmission = 0.5f}}, 0.01);
     expectWhite({"white solid mixture", {.metallic = 0.2f, .transmission = 0.5f, .thin = 0}}, 0.01);
+}
+
+/// A clear coat takes from what is below just what it reflects: white stays white.
+TEST_F(BsdfEnergyTest, WhiteBelowAClearCoat) {
+    for (const NamedMaterial& base :
+         {NamedMaterial{"plastic", {}}, NamedMaterial{"metal", {.metallic = 1.0f}},
+          NamedMaterial{"pane", {.transmission = 1.0f}},
+          NamedMaterial{"glass", {.transmission = 1.0f, .thin = 0}}}) {
+        for (const float roughness : {0.0f, 0.2f, 0.9f}) {
+            NamedMaterial coated = base;
+            coated.name = fmt::format("white {} below a coat of roughness {}", base.name, roughness);
+            coated.params.clearcoat = roughness == 0.2f ? 0.5f : 1.0f;
+            coated.params.clearcoatRoughness = roughness;
+            expectWhite(coated, 0.01, {0.0f, 0.3f});
+        }
+    }
 }
 
 }  // namespace

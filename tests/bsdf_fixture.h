@@ -21,6 +21,8 @@ struct BsdfParams {
     float ior = 1.5f;
     vec3 specularColor{1.0f};
     float transmission = 0.0f;
+    float clearcoat = 0.0f, clearcoatRoughness = 0.0f;
+    vec3 clearcoatNormal{0, 0, 1};
     uint32_t thin = 1, front = 1;
     uint32_t count = 0, perThread = 8, seed = 1;
 };
@@ -52,9 +54,9 @@ inline std::string describe(const NamedMaterial& m) {
     const BsdfParams& p = m.params;
     return fmt::format(
         "{}: baseColor {} {} {} metallic {} roughness {} specular {} ior {} transmission {} thin {} front {} "
-        "cosine {} seed {}",
+        "clear coat {} of roughness {} cosine {} seed {}",
         m.name, p.baseColor.r, p.baseColor.g, p.baseColor.b, p.metallic, p.roughness, p.specular, p.ior,
-        p.transmission, p.thin, p.front, p.toViewer.z, p.seed);
+        p.transmission, p.thin, p.front, p.clearcoat, p.clearcoatRoughness, p.toViewer.z, p.seed);
 }
 
 class BsdfTest : public GpuTest {
@@ -70,13 +72,15 @@ class BsdfTest : public GpuTest {
             scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
         scene.instances.emplace_back();
         data_ = scene::buildSceneData(scene);
-        scene_ = std::make_unique<scene::GpuScene>(device(), data_);
+        plain_ = std::make_unique<scene::GpuScene>(device(), data_);
+        scene.materials[0].clearcoat = 1.0f;
+        coated_ = std::make_unique<scene::GpuScene>(device(), scene::buildSceneData(scene));
     }
 
     std::vector<SampledDirection> sample(BsdfParams params, uint32_t count) {
         params.count = count;
         const Job job{.shader = shaders::bsdf_sample_comp,
-                      .scene = scene_.get(),
+                      .scene = sceneFor(params),
                       .params = gpu::paramsOf(params),
                       .count = count / params.perThread};
         return run<SampledDirection>(job, count);
@@ -86,7 +90,7 @@ class BsdfTest : public GpuTest {
         params.count = static_cast<uint32_t>(directions.size());
         const gpu::Buffer buffer = upload("directions", directions);
         const Job job{.shader = shaders::bsdf_evaluate_comp,
-                      .scene = scene_.get(),
+                      .scene = sceneFor(params),
                       .buffers = {{"directions", &buffer}},
                       .params = gpu::paramsOf(params),
                       .count = params.count};
@@ -107,8 +111,13 @@ class BsdfTest : public GpuTest {
     const scene::SceneData& data() const { return data_; }
 
   private:
+    /// Without a coat as scenes without any run it: the shader is another one.
+    const scene::GpuScene* sceneFor(const BsdfParams& params) const {
+        return params.clearcoat > 0.0f ? coated_.get() : plain_.get();
+    }
+
     scene::SceneData data_;
-    std::unique_ptr<scene::GpuScene> scene_;
+    std::unique_ptr<scene::GpuScene> plain_, coated_;
 };
 
 }  // namespace limpid::test

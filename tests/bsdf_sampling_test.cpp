@@ -37,6 +37,12 @@ BsdfParams mixture(float roughness, bool thin, bool front) {
             .front = front};
 }
 
+BsdfParams coated(BsdfParams base, float roughness, float weight = 1.0f) {
+    base.clearcoat = weight;
+    base.clearcoatRoughness = roughness;
+    return base;
+}
+
 std::vector<NamedMaterial> materials() {
     return {{"Lambertian", {.baseColor = vec3(0.6f), .specular = 0.0f}},
             {"plastic, sharp", plastic(0.05f)},
@@ -55,7 +61,14 @@ std::vector<NamedMaterial> materials() {
             {"glass from inside, rough, dense", glass(0.9f, 2.2f, false)},
             {"thin mixture", mixture(0.5f, true, true)},
             {"solid mixture from outside", mixture(0.35f, false, true)},
-            {"solid mixture from inside", mixture(0.7f, false, false)}};
+            {"solid mixture from inside", mixture(0.7f, false, false)},
+            {"smooth coat on plastic", coated(plastic(0.4f), 0.0f)},
+            {"sharp coat on metal", coated(metal(0.6f), 0.1f)},
+            {"rough coat on Lambertian", coated({.baseColor = vec3(0.6f), .specular = 0.0f}, 0.5f, 0.7f)},
+            {"rough coat on a mirror", coated(metal(0.0f), 0.4f)},
+            {"coat on black", coated({.baseColor = vec3(0.0f), .specular = 0.0f}, 0.3f, 0.4f)},
+            {"coat on glass", coated(glass(0.4f, 1.5f, true), 0.2f, 0.8f)},
+            {"coat on glass from inside", coated(glass(0.4f, 1.5f, false), 0.2f)}};
 }
 
 struct Totals {
@@ -115,8 +128,8 @@ class BsdfSamplingTest : public BsdfTest {
             totals.smallestP = result.p;
             totals.smallest = describe(material);
         }
-        // 1e-3 over all of about sixty tests.
-        EXPECT_GT(result.p, 1e-3 / 60) << "chi-square " << result.statistic << " with "
+        // 1e-3 over all of about eighty tests.
+        EXPECT_GT(result.p, 1e-3 / 80) << "chi-square " << result.statistic << " with "
                                        << result.degreesOfFreedom << " degrees of freedom; " << result.worst;
     }
 };
@@ -147,6 +160,21 @@ TEST_F(BsdfSamplingTest, TiltedShadingNormal) {
         material.params.toViewer = viewerAt(0.6f);
         material.params.seed = 77;
         check(material, totals);
+    }
+}
+
+/// The coat's own normal, with the base's upright and tilted another way.
+TEST_F(BsdfSamplingTest, TiltedClearcoatNormal) {
+    Totals totals;
+    for (const vec3& normal : {vec3(0, 0, 1), glm::normalize(vec3(-0.2f, 0.3f, 0.9f))}) {
+        for (const float cosine : {0.6f, 0.25f}) {
+            NamedMaterial material{"tilted coat", coated(plastic(0.4f), 0.3f)};
+            material.params.normal = normal;
+            material.params.clearcoatNormal = glm::normalize(vec3(0.3f, 0.2f, 0.9f));
+            material.params.toViewer = viewerAt(cosine);
+            material.params.seed = 78;
+            check(material, totals);
+        }
     }
 }
 

@@ -182,6 +182,20 @@ TEST_F(TracersTest, SameSeedBuiltInScenes) {
     expectSamePaths(scene::heavyScene());
 }
 
+/// The spheres below clear coats, those of glass absorbing.
+TEST_F(TracersTest, SameSeedCoatsAndAbsorption) {
+    scene::Scene scene = scene::cornellSpheresScene();
+    scene.name = "coated spheres";
+    for (scene::Material& material : scene.materials) {
+        material.clearcoat = 0.8f;
+        material.clearcoatRoughness = 0.2f;
+        if (!material.thin) material.absorption = vec3(2.0f, 8.0f, 20.0f);
+    }
+    const scene::SceneFeatures features = scene::buildSceneData(scene).features;
+    ASSERT_TRUE(features.clearcoat && features.volume);
+    expectSamePaths(scene);
+}
+
 TEST_F(TracersTest, SameSeedWithAlpha) {
     expectSamePaths(veiledBox());
 }

@@ -232,6 +232,11 @@ void Reflector::readConstants(ShaderReflection& reflection) const {
         if (!isBool && spvc_type_get_bit_width(type) != 32) {
             fail(fmt::format("constant '{}' has no 32 bits", name));
         }
+        const auto sameId = [&](const ShaderConstant& other) { return other.id == constant.constant_id; };
+        if (const auto other = std::ranges::find_if(reflection.constants, sameId);
+            other != reflection.constants.end()) {
+            fail(fmt::format("constants '{}' and '{}' share id {}", other->name, name, other->id));
+        }
         reflection.constants.push_back({name, constant.constant_id});
     }
 }

@@ -283,8 +283,8 @@ TEST_F(BadInput, WrongTypes) {
     expectFault(rich, "neither perspective",
                 [](GltfFile& f) { f.document["cameras"][0]["type"] = "fisheye"; });
     expectFault(rich, "wrapS", [](GltfFile& f) { f.document["samplers"][0]["wrapS"] = 1; });
-    expectFault(rich, "requires what is not supported: KHR_draco_mesh_compression, X", [](GltfFile& f) {
-        f.document["extensionsRequired"] = {"KHR_draco_mesh_compression", "X"};
+    expectFault(rich, "requires what is not supported: KHR_texture_basisu, X", [](GltfFile& f) {
+        f.document["extensionsRequired"] = {"KHR_texture_basisu", "X"};
     });
     std::string text = richFile(folder).document.dump();
     expectRefused(write("scene.gltf", text.insert(1, R"("extras": 1e999, )")), "not valid JSON");

@@ -240,6 +240,10 @@ uint64_t accessorCount(const Document& document, int accessor) {
     return countOf(document.lists().accessors[static_cast<size_t>(accessor)]);
 }
 
+size_t accessorComponents(const Document& document, int accessor) {
+    return componentsOf(document.lists().accessors[static_cast<size_t>(accessor)]);
+}
+
 std::vector<float> readNumbers(const Document& document, int accessor, size_t components) {
     size_t found = 0;
     return readFlat<float>(document, accessor, {components, components, false}, found);

@@ -20,6 +20,8 @@ inline constexpr uint64_t maxElements = uint64_t{1} << 28;
 
 /// How many elements it states; nothing but the limit is checked.
 uint64_t accessorCount(const Document& document, int accessor);
+/// How many numbers one element has: 1 (SCALAR) to 16 (MAT4).
+size_t accessorComponents(const Document& document, int accessor);
 
 /// Numbers of one component each.
 std::vector<float> readScalars(const Document& document, int accessor);

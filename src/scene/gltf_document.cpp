@@ -10,23 +10,33 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "scene/gltf_draco.h"
+#include "scene/gltf_draco_primitives.h"
+#include "scene/gltf_meshopt.h"
 
 namespace limpid::scene::gltf {
 namespace {
 
 constexpr size_t maxWarnings = 16;
 
-/// What this loader understands; KHR_materials_volume only as far as "is this a closed body that refracts".
+/// What this loader understands, beside the compressions that the build may lack.
 constexpr std::array supportedExtensions = {
-    "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_unlit",
-    "KHR_materials_volume",   "KHR_mesh_quantization",           "KHR_texture_transform"};
+    "KHR_lights_punctual",  "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_specular",  "KHR_materials_transmission",
+    "KHR_materials_unlit",  "KHR_materials_volume",    "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 /// Metadata: ignoring it changes no picture, so no warning either.
 constexpr std::array harmlessExtensions = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 template <size_t N>
 bool contains(const std::array<const char*, N>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+bool isSupported(const std::string& name) {
+    if (name == meshoptExtension) return canDecodeMeshopt();
+    if (name == dracoExtension) return canDecodeDraco();
+    return contains(supportedExtensions, name) || contains(harmlessExtensions, name);
 }
 
 uint32_t littleEndian(std::span<const std::byte> bytes, size_t at) {
@@ -101,12 +111,14 @@ Document::Document(const std::filesystem::path& file) : files_(file) {
     std::vector<std::byte> content = readSceneFile(file);
     byteCount_ = content.size();
     const std::vector<std::byte> text = takeJson(std::move(content));
-    json_ = std::make_unique<const Json>(parseJson(this->file(), text));
+    json_ = std::make_unique<Json>(parseJson(this->file(), text));
     const Object root(this->file(), *json_, "");
     lists_ = std::make_unique<const Lists>(root);
     checkAsset();
     checkExtensions();
     readBuffers();
+    decodeViews();
+    expandPrimitives();
 }
 
 Document::~Document() = default;
@@ -135,15 +147,13 @@ void Document::checkAsset() const {
 void Document::checkExtensions() {
     std::vector<std::string> missing, ignored;
     for (const std::string& name : root().texts("extensionsRequired")) {
-        if (!contains(supportedExtensions, name) && !contains(harmlessExtensions, name))
-            missing.push_back(name);
+        if (!isSupported(name)) missing.push_back(name);
     }
     if (!missing.empty()) {
         throw InputError(file(), fmt::format("requires what is not supported: {}", fmt::join(missing, ", ")));
     }
     for (const std::string& name : root().texts("extensionsUsed")) {
-        if (!contains(supportedExtensions, name) && !contains(harmlessExtensions, name))
-            ignored.push_back(name);
+        if (!isSupported(name)) ignored.push_back(name);
     }
     if (!ignored.empty()) warn(fmt::format("extensions that are ignored: {}", fmt::join(ignored, ", ")));
 }
@@ -152,6 +162,10 @@ void Document::readBuffers() {
     const std::vector<Object> buffers = root().objects("buffers");
     uint64_t total = 0;
     for (const Object& buffer : buffers) {
+        if (isPlaceholder(buffer)) {
+            buffers_.emplace_back();
+            continue;
+        }
         const uint64_t length = buffer.whole("byteLength");
         std::vector<std::byte> bytes;
         if (const std::string uri = buffer.text("uri"); isDataUri(uri)) {
@@ -169,10 +183,49 @@ void Document::readBuffers() {
         byteCount_ += length;
         buffers_.push_back(std::move(bytes));
     }
+    decodedBytesLeft_ = std::min(decodedFloor + decodedPerByte * total, maxDecodedBytes);
+}
+
+/// A buffer that stands for what its compressed views decode to: marked as such, or without any data.
+bool Document::isPlaceholder(const Object& buffer) const {
+    if (!canDecodeMeshopt()) return false;
+    const auto extension = buffer.extension(meshoptExtension);
+    if (extension && extension->boolean("fallback", false)) return true;
+    const bool hasData = buffer.has("uri") || (buffers_.empty() && !binaryChunk_.empty());
+    const auto& views = lists_->bufferViews;
+    return !hasData && std::any_of(views.begin(), views.end(), [](const Object& view) {
+        return view.extension(meshoptExtension).has_value();
+    });
+}
+
+void Document::decodeViews() {
+    if (!canDecodeMeshopt()) return;
+    const auto& views = lists_->bufferViews;
+    for (size_t i = 0; i < views.size(); ++i) {
+        const auto extension = views[i].extension(meshoptExtension);
+        if (!extension) continue;
+        if (views[i].whole("byteLength") > decodedBytesLeft_)
+            views[i].fail("the document's compressed buffer views are too large together");
+        const auto& decoded = decodedViews_[static_cast<int>(i)] =
+            decodeMeshopt(views[i], *extension, slice(*extension));
+        decodedBytesLeft_ -= decoded.size();
+    }
+}
+
+void Document::expandPrimitives() {
+    if (!canDecodeDraco()) return;
+    if (!expandDracoPrimitives(*this, *json_, buffers_, decodedBytesLeft_)) return;
+    lists_ = std::make_unique<const Lists>(Object(file(), *json_, ""));
 }
 
 std::span<const std::byte> Document::bytes(int bufferView) const {
-    const Object& view = lists_->bufferViews[static_cast<size_t>(bufferView)];
+    const auto decoded = decodedViews_.find(bufferView);
+    if (decoded != decodedViews_.end()) return decoded->second;
+    return slice(lists_->bufferViews[static_cast<size_t>(bufferView)]);
+}
+
+/// The part of a buffer that a buffer view, or its compressed form, names.
+std::span<const std::byte> Document::slice(const Object& view) const {
     const int buffer = view.index("buffer", buffers_.size());
     if (buffer == none) view.fail("has no buffer");
     const std::vector<std::byte>& content = buffers_[static_cast<size_t>(buffer)];

@@ -1,6 +1,7 @@
 #include "scene/gltf_material.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace limpid::scene::gltf {
 namespace {
@@ -53,7 +54,7 @@ void readAlpha(Document& document, const Object& source, Material& material) {
     material.alphaCutoff = factor(document, source, "alphaCutoff", 0.5f, 1e6f);
 }
 
-void readSpecular(Document& document, const Object& source, Material& material) {
+void readSpecular(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
     if (const auto ior = source.extension("KHR_materials_ior")) {
         const float value = ior->number("ior", 1.5f);
         // The extension uses 0 for "Fresnel reflectance 1".
@@ -64,9 +65,24 @@ void readSpecular(Document& document, const Object& source, Material& material) 
     if (!specular) return;
     material.specular = factor(document, *specular, "specularFactor", 1.0f);
     material.specularColor = glm::max(specular->vector("specularColorFactor", vec3(1.0f)), vec3(0.0f));
-    if (specular->has("specularTexture") || specular->has("specularColorTexture")) {
-        document.warn("KHR_materials_specular: the factors are used, textures are ignored");
-    }
+    // What a zero factor switches off need not be loaded.
+    if (material.specular == 0.0f) return;
+    material.specularTexture = textures.add(*specular, "specularTexture", false);
+    if (material.specularColor == vec3(0.0f)) return;
+    material.specularColorTexture = textures.add(*specular, "specularColorTexture", true);
+}
+
+void readClearcoat(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
+    const auto clearcoat = source.extension("KHR_materials_clearcoat");
+    if (!clearcoat) return;
+    material.clearcoat = factor(document, *clearcoat, "clearcoatFactor", 0.0f);
+    material.clearcoatRoughness = factor(document, *clearcoat, "clearcoatRoughnessFactor", 0.0f);
+    if (material.clearcoat == 0.0f) return;
+    material.clearcoatTexture = textures.add(*clearcoat, "clearcoatTexture", false);
+    material.clearcoatRoughnessTexture = textures.add(*clearcoat, "clearcoatRoughnessTexture", false);
+    material.clearcoatNormalTexture = textures.add(*clearcoat, "clearcoatNormalTexture", false);
+    if (!material.clearcoatNormalTexture) return;
+    material.clearcoatNormalScale = clearcoat->object("clearcoatNormalTexture")->number("scale", 1.0f);
 }
 
 void readTransmission(Document& document, const Object& source, TextureLibrary& textures,
@@ -77,9 +93,25 @@ void readTransmission(Document& document, const Object& source, TextureLibrary& 
             material.transmissionTexture = textures.add(*transmission, "transmissionTexture", false);
         }
     }
-    if (const auto volume = source.extension("KHR_materials_volume")) {
-        material.thin = !(volume->number("thicknessFactor", 0.0f) > 0.0f);
-        if (volume->has("attenuationDistance")) document.warn("KHR_materials_volume: attenuation is ignored");
+}
+
+/// The thickness only says whether there is a body at all: how much of it a ray crosses is traced.
+void readVolume(Document& document, const Object& source, Material& material) {
+    const auto volume = source.extension("KHR_materials_volume");
+    if (!volume) return;
+    material.thin = !(volume->number("thicknessFactor", 0.0f) > 0.0f);
+    const float distance = volume->number("attenuationDistance", 0.0f);
+    const vec3 color = volume->vector("attenuationColor", vec3(1.0f));
+    if (color != glm::clamp(color, 0.0f, 1.0f))
+        document.warn(volume->place() + ".attenuationColor is out of range and clamped");
+    if (!volume->has("attenuationDistance")) return;  // infinite
+    if (!(distance > 0.0f)) {
+        document.warn(volume->place() + ".attenuationDistance is not positive and ignored");
+        return;
+    }
+    // KHR_materials_volume, "Attenuation"; black would be infinitely dense.
+    for (int c = 0; c < 3; ++c) {
+        material.absorption[c] = std::min(-std::log(std::clamp(color[c], 1e-30f, 1.0f)) / distance, 1e30f);
     }
 }
 
@@ -99,8 +131,10 @@ Material readMaterial(Document& document, const Object& source, TextureLibrary& 
     }
     readEmission(document, source, textures, material);
     readAlpha(document, source, material);
-    readSpecular(document, source, material);
+    readSpecular(document, source, textures, material);
     readTransmission(document, source, textures, material);
+    readVolume(document, source, material);
+    readClearcoat(document, source, textures, material);
     material.doubleSided = source.boolean("doubleSided", false);
     material.unlit = source.extension("KHR_materials_unlit").has_value();
     return material;

@@ -105,6 +105,9 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_ENVIRONMENT", features_.environment},
             {"HAS_MIRRORED", features_.mirrored},
             {"HAS_MOTION", features_.motion},
+            {"HAS_CLEARCOAT", features_.clearcoat},
+            {"HAS_VOLUME", features_.volume},
+            {"HAS_SPECULAR_TEXTURES", features_.specularTextures},
             {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "base/error.h"
@@ -113,6 +114,27 @@ struct GltfFile {
                word(bytes.size()) + std::string("BIN\0", 4) + bytes;
     }
 };
+
+template <typename T>
+inline constexpr int componentType = sizeof(T) == 1 ? (std::is_signed_v<T> ? 5120 : 5121)
+                                                    : (std::is_signed_v<T> ? 5122 : 5123);
+
+/// An accessor of `values`, each element padded to a multiple of four bytes by other values than zero.
+template <typename T>
+int addPadded(GltfFile& file, const std::vector<T>& values, const char* type, size_t components,
+              bool normalized) {
+    const size_t stride = (components * sizeof(T) + 3) / 4 * 4;
+    std::string bytes(values.size() / components * stride, '\x5a');
+    for (size_t i = 0; i < values.size(); i += components)
+        std::memcpy(bytes.data() + i / components * stride, &values[i], components * sizeof(T));
+    const int view = file.addView(bytes.data(), bytes.size());
+    file.document["bufferViews"].back()["byteStride"] = stride;
+    return file.add("accessors", {{"bufferView", view},
+                                  {"componentType", componentType<T>},
+                                  {"count", values.size() / components},
+                                  {"type", type},
+                                  {"normalized", normalized}});
+}
 
 /// One triangle, counter-clockwise in the XY plane, not indexed.
 inline GltfFile triangle() {

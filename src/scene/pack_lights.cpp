@@ -131,7 +131,8 @@ class LightPacker {
         data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
         data_.lights.push_back(bits(v[1], 0u));
         data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
-        data_.lights.push_back(bits(material.emission, ref ? materialIndex : layout::NONE));
+        const bool changes = ref || material.clearcoat > 0.0f;  // from point to point, or with direction
+        data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
         return addWeight(std::numbers::pi * area * sides * radiance);
     }

@@ -80,9 +80,14 @@ class MaterialPacker {
 
     void packMaterial(const Material& m) {
         SceneFeatures& features = data_.features;
-        const bool lambertian = m.metallic == 0.0f && m.specular == 0.0f && m.transmission == 0.0f;
+        const float clearcoat = m.unlit ? 0.0f : m.clearcoat;
+        const bool lambertian =
+            m.metallic == 0.0f && m.specular == 0.0f && m.transmission == 0.0f && clearcoat == 0.0f;
         features.specular |= !lambertian && !m.unlit;
         features.transmission |= m.transmission > 0.0f && !m.unlit;
+        features.clearcoat |= clearcoat > 0.0f;
+        features.volume |= m.transmission > 0.0f && !m.thin && m.absorption != vec3(0.0f);
+        features.specularTextures |= m.specularTexture || m.specularColorTexture;
         features.alpha |= m.alphaMode != AlphaMode::Opaque;
         auto& out = data_.materials;
         out.push_back(bits(vec3(m.baseColor), flagBits(m)));
@@ -94,6 +99,12 @@ class MaterialPacker {
         out.emplace_back(base, rough, normal, emission);
         out.emplace_back(packRef(m.transmissionTexture), bits(m.specularColor.r), bits(m.specularColor.g),
                          bits(m.specularColor.b));
+        const uint32_t specular = packRef(m.specularTexture), color = packRef(m.specularColorTexture);
+        const uint32_t coat = packRef(m.clearcoatTexture), coatRough = packRef(m.clearcoatRoughnessTexture);
+        out.emplace_back(specular, color, coat, coatRough);
+        out.emplace_back(packRef(m.clearcoatNormalTexture), bits(clearcoat), bits(m.clearcoatRoughness),
+                         bits(m.clearcoatNormalScale));
+        out.push_back(bits(m.absorption, 0u));
     }
 
     const Scene& scene_;

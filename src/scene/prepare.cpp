@@ -40,7 +40,9 @@ void forEachMaterialUse(const Scene& scene, const Use& use) {
 void addTangents(Scene& scene) {
     std::vector<int> uvSet(scene.meshes.size(), none);
     forEachMaterialUse(scene, [&](size_t mesh, const Material& material) {
-        if (material.normalTexture) uvSet[mesh] = material.normalTexture.uvSet;
+        for (const TextureRef& ref : {material.clearcoatNormalTexture, material.normalTexture}) {
+            if (ref) uvSet[mesh] = ref.uvSet;
+        }
     });
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         if (uvSet[i] != none && scene.meshes[i].tangents.empty()) generateTangents(scene.meshes[i], uvSet[i]);

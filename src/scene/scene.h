@@ -77,7 +77,11 @@ struct Material {
     vec3 specularColor{1.0f};  ///< factor of its reflectance at normal incidence
     float ior = 1.5f;
     float transmission = 0.0f;
-    bool thin = true;     ///< transmission without refraction (no volume); false: a closed body that refracts
+    bool thin = true;  ///< transmission without refraction (no volume); false: a closed body that refracts
+    vec3 absorption{0.0f};   ///< of a closed body's inside, per metre of the world (Beer's law)
+    float clearcoat = 0.0f;  ///< weight of a dielectric of index 1.5 over everything else, emission too
+    float clearcoatRoughness = 0.0f;  ///< perceptual
+    float clearcoatNormalScale = 1.0f;
     vec3 emission{0.0f};  ///< radiance, strength included
     float normalScale = 1.0f;
     float occlusionStrength =
@@ -88,6 +92,9 @@ struct Material {
     bool unlit = false;  ///< baseColor is emitted as it is, nothing is reflected
     TextureRef baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture, emissionTexture,
         transmissionTexture;
+    TextureRef specularTexture;       ///< alpha: factor of `specular`
+    TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
+    TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 
 /// How an instance may differ from frame to frame. Follows from the chosen clip (scene/movement.h).

@@ -16,7 +16,7 @@ namespace limpid::scene {
 struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
-         mirrored = false, motion = false;
+         mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

@@ -78,15 +78,20 @@ Fault checkMaterial(const Material& m, size_t textures) {
     const auto unit = [](float v) { return v >= 0.0f && v <= 1.0f; };
     if (!isFinite(m.baseColor) || !isRadiance(vec3(m.baseColor)) || !unit(m.baseColor.a))
         return "has a bad base colour";
-    if (!unit(m.metallic) || !unit(m.roughness) || !unit(m.specular) || !unit(m.transmission)) {
+    if (!unit(m.metallic) || !unit(m.roughness) || !unit(m.specular) || !unit(m.transmission) ||
+        !unit(m.clearcoat) || !unit(m.clearcoatRoughness)) {
         return "has a factor that is not between 0 and 1";
     }
     if (!(m.ior >= 1.0f && std::isfinite(m.ior))) return "has an index of refraction below 1";
+    if (!isRadiance(m.absorption)) return "has an absorption that is negative or not finite";
     if (!isRadiance(m.emission)) return "has an emission that is negative or not finite";
-    if (!std::isfinite(m.normalScale) || !std::isfinite(m.alphaCutoff))
+    if (!std::isfinite(m.normalScale) || !std::isfinite(m.clearcoatNormalScale) ||
+        !std::isfinite(m.alphaCutoff))
         return "has a value that is not finite";
-    for (const TextureRef* ref : {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,
-                                  &m.occlusionTexture, &m.emissionTexture, &m.transmissionTexture}) {
+    for (const TextureRef* ref :
+         {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture,
+          &m.emissionTexture, &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture,
+          &m.clearcoatTexture, &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture}) {
         if (!*ref) continue;
         if (!inRange(ref->texture, textures)) return "uses a texture that does not exist";
         if (ref->uvSet != 0 && ref->uvSet != 1) return "uses a texture coordinate set that does not exist";

@@ -1,4 +1,4 @@
-// The material's scattering function: glTF 2.0 metallic-roughness with transmission.
+// The material's scattering function: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
 //
 //   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
@@ -13,6 +13,7 @@
 #ifndef LIMPID_BSDF_GLSL
 #define LIMPID_BSDF_GLSL
 
+#include "shaders/clearcoat.glsl"
 #include "shaders/material.glsl"
 #include "shaders/microfacet.glsl"
 
@@ -34,6 +35,7 @@ struct Bsdf {
     float coatLoss;  // energy that the coat keeps from the base at wo
     float glassAlbedo;
     vec4 probability;  // of choosing diffuse, reflecting, thin transmitting, refracting lobe
+    Clearcoat clearcoat;
 };
 
 struct BsdfValue {
@@ -94,7 +96,9 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + luminance(b.multiple) * missing,
                               luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y,
                               luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight);
-    b.probability = weights / max(dot(weights, vec4(1.0)), 1e-20);
+    const float sum = dot(weights, vec4(1.0));
+    b.probability = weights / max(sum, 1e-20);
+    if (HAS_CLEARCOAT) b.clearcoat = makeClearcoat(s, toViewer, sum);
     return b;
 }
 
@@ -175,6 +179,12 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
     const vec3 wi = direction * b.frame;
     BsdfValue value = evaluateLocal(b, wi);
     if (!sidesAgree(b, wi)) value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (HAS_CLEARCOAT) {
+        const vec2 coat = evaluateClearcoat(b.clearcoat, b.geometricNormal, direction);
+        value.diffuse *= 1.0 - b.clearcoat.albedo;
+        value.specular = value.specular * (1.0 - b.clearcoat.albedo) + coat.x;
+        value.pdf = mix(value.pdf, coat.y, b.clearcoat.probability);
+    }
     return value;
 }
 
@@ -195,8 +205,19 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
         wi = transmits ? vec3(-b.wo.xy / b.eta, -cosine) : reflected;
         result.value.specular = (transmits ? b.glass : vec3(1.0)) * (b.glassWeight / b.probability.w);
     }
+    if (HAS_CLEARCOAT) result.value.specular *= (1.0 - b.clearcoat.albedo) / (1.0 - b.clearcoat.probability);
     result.direction = b.frame * wi;
     result.valid = sidesAgree(b, wi);
+    return result;
+}
+
+/// The coat's direction in place of the base's; only a smooth coat's value is set.
+BsdfSample sampleCoat(Bsdf b, vec2 u) {
+    BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), b.clearcoat.smoothSurface, true);
+    result.direction = sampleClearcoat(b.clearcoat, u);
+    const float fresnel = clearcoatFresnel(b.clearcoat.wo.z);
+    result.value.specular = vec3(b.clearcoat.weight * fresnel / max(b.clearcoat.probability, 1e-20));
+    result.valid = dot(result.direction, b.geometricNormal) > 0.0 && dot(result.direction, b.clearcoat.frame[2]) > 0.0;
     return result;
 }
 
@@ -216,6 +237,13 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
 /// Draws a direction; value.diffuse + value.specular over value.pdf is the throughput.
 BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
     const vec2 u = random2(rng);
+    if (HAS_CLEARCOAT) {
+        if (random(rng) < b.clearcoat.probability) {
+            BsdfSample coat = sampleCoat(b, u);
+            if (!coat.delta) coat.value = evaluateBsdf(b, coat.direction);
+            return coat;
+        }
+    }
     vec3 wi = sampleCosineHemisphere(u);
     uint lobe = 0u;
     float choice = 0.0;
@@ -228,8 +256,9 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
         if (lobe != 0u && b.smoothSurface) return sampleSmooth(b, lobe, choice);
         if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
     }
-    const BsdfValue value = evaluateLocal(b, wi);
-    return BsdfSample(b.frame * wi, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
+    const vec3 direction = b.frame * wi;
+    const BsdfValue value = HAS_CLEARCOAT ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);
+    return BsdfSample(direction, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
 }
 
 /// What the specular lobes reflect and transmit of uniform light: the albedoSpecular layer.
@@ -237,8 +266,9 @@ vec3 specularAlbedo(Bsdf b) {
     if (!HAS_SPECULAR) return vec3(0.0);
     const float missing = 1.0 - b.albedo.x - b.albedo.y;
     const float reflectance = fresnelDielectric(b.wo.z, b.eta);
-    return b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
-           b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
+    const vec3 base = b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
+                      b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
+    return HAS_CLEARCOAT ? base * (1.0 - b.clearcoat.albedo) + b.clearcoat.albedo : base;
 }
 
 #endif

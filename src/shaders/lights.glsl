@@ -33,13 +33,19 @@ float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, 
     return attenuation;
 }
 
-/// Barycentrics are of the mesh, not of the light.
-vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics) {
+/// Barycentrics are of the mesh, not of the light; `cosine` is of the direction in which the light leaves.
+vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float cosine) {
     vec3 emission = uintBitsToFloat(record3.xyz);
-    if (HAS_TEXTURES) {
+    if (HAS_TEXTURES || HAS_CLEARCOAT) {
         if (record3.w != NONE) {
-            const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
-            emission *= materialTexture(imageLoad(materials, int(record3.w * MATERIAL_TEXELS) + 4).w, data, 0.0).rgb;
+            const int material = int(record3.w * MATERIAL_TEXELS);
+            float coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).y) : 0.0;
+            if (HAS_TEXTURES) {
+                const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
+                emission *= materialTexture(imageLoad(materials, material + 4).w, data, 0.0).rgb;
+                if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data, 0.0).r;
+            }
+            if (HAS_CLEARCOAT) emission *= emissionThroughClearcoat(coat, cosine);
         }
     }
     return emission;
@@ -66,7 +72,7 @@ LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 fro
     const bool visible = cosine > 0.0 && doubleArea > 0.0;
     light.pdf = visible ? uintBitsToFloat(r1.w) * 2.0 * distance2 / (doubleArea * cosine) : 0.0;
     const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
-    light.radiance = visible ? lightEmission(r3, r2.w, order) : vec3(0.0);
+    light.radiance = visible ? lightEmission(r3, r2.w, order, cosine) : vec3(0.0);
     light.delta = false;
     return light;
 }

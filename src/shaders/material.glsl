@@ -3,6 +3,7 @@
 #ifndef LIMPID_MATERIAL_GLSL
 #define LIMPID_MATERIAL_GLSL
 
+#include "shaders/microfacet.glsl"
 #include "shaders/sampling.glsl"
 #include "shaders/rng.glsl"
 #include "shaders/texture.glsl"
@@ -18,10 +19,18 @@ struct Surface {
     float metallic, roughness, specular, ior, transmission;
     vec3 specularColor;  // factor of the dielectric's reflectance at normal incidence
     bool thin, unlit;
+    float clearcoat, clearcoatRoughness;
+    vec3 clearcoatNormal;  // unit, on the viewer's side
+    vec3 absorption;       // of the body whose boundary this is, per unit of length; 0 if it is none
     bool culled;    // the back of a single-sided, not transmitting material
     vec3 emission;  // radiance towards the viewer
     float area;     // of the triangle
 };
+
+/// Whether another medium begins behind the surface: a body that lets light in, not a thin wall.
+bool isBoundary(Surface s) {
+    return !s.thin && s.transmission > 0.0;
+}
 
 /// What a triangle in bvhTriangles says of itself.
 struct TriangleIds {
@@ -134,6 +143,12 @@ vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
     return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : normal;
 }
 
+/// What a clear coat lets through of light emitted below it. By the geometric normal, so that light sampling, which knows
+/// no other, agrees with rays that find the light.
+float emissionThroughClearcoat(float weight, float cosine) {
+    return 1.0 - weight * mix(CLEARCOAT_F0, 1.0, schlickWeight(cosine));
+}
+
 vec3 objectToWorldNormal(uint instance, vec3 n) {
     const int at = int(instance * INSTANCE_TEXELS);
     const vec3 r0 = uintBitsToFloat(imageLoad(instances, at).xyz);
@@ -165,6 +180,25 @@ vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
     const float height = dot(mirrored, geometricNormal);
     const float lowest = min(least, 0.5 * dot(geometricNormal, toViewer));
     return height >= lowest ? facing : normalize(toViewer + normalize(mirrored + (lowest - height) * geometricNormal));
+}
+
+void applySpecularTextures(inout Surface s, int material, VertexData data, float footprint) {
+    const uvec4 refs = imageLoad(materials, material + 6);
+    s.specular *= materialTexture(refs.x, data, footprint).a;
+    s.specularColor *= materialTexture(refs.y, data, footprint).rgb;
+}
+
+void applyClearcoatTextures(inout Surface s, int material, VertexData data, float footprint) {
+    const uvec4 refs = imageLoad(materials, material + 6);
+    s.clearcoat *= materialTexture(refs.z, data, footprint).r;
+    s.clearcoatRoughness *= materialTexture(refs.w, data, footprint).g;
+}
+
+/// The coat has a normal map of its own or none: the base's does not change it.
+vec3 clearcoatNormal(int material, VertexData data, float footprint, vec3 normal, vec4 tangent) {
+    const uvec4 coat = imageLoad(materials, material + 7);
+    if (coat.x == NONE) return normal;
+    return mappedNormal(normal, tangent, materialTexture(coat.x, data, footprint).rgb, uintBitsToFloat(coat.w));
 }
 
 /// `toViewer`: unit; `coneWidth`: width of the ray's footprint here, for texture levels.
@@ -213,6 +247,10 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     s.specularColor = HAS_SPECULAR ? uintBitsToFloat(imageLoad(materials, material + 5).yzw) : vec3(1.0);
     s.thin = (m0.w & MATERIAL_THIN) != 0u;
     s.unlit = (m0.w & MATERIAL_UNLIT) != 0u;
+    const vec2 coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).yz) : vec2(0.0);
+    s.clearcoat = coat.x;
+    s.clearcoatRoughness = coat.y;
+    s.clearcoatNormal = s.geometricNormal;
     if (HAS_VERTEX_DATA) {
         const VertexData data = loadVertexData(shading.xyz, barycentrics);
         vec3 normal = data.normal;
@@ -225,6 +263,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             }
         }
         normal = smoothShaded && dot(normal, normal) > 1e-12 ? normalize(normal) : windingNormal;
+        vec3 coatNormal = normal;
         s.baseColor *= data.color.rgb;
         if (HAS_TEXTURES) {
             const uvec4 refs = imageLoad(materials, material + 4);
@@ -234,20 +273,33 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);
             s.roughness *= metallicRoughness.g;
             s.metallic *= metallicRoughness.b;
+            const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
             if (refs.z != NONE) {
                 const float scale = uintBitsToFloat(imageLoad(materials, material + 3).z);
-                const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
                 normal = mappedNormal(normal, vec4(tangent, handedness), materialTexture(refs.z, data, footprint).rgb, scale);
             }
+            if (HAS_CLEARCOAT) {
+                applyClearcoatTextures(s, material, data, footprint);
+                coatNormal = clearcoatNormal(material, data, footprint, coatNormal, vec4(tangent, handedness));
+            }
+            if (HAS_SPECULAR_TEXTURES) applySpecularTextures(s, material, data, footprint);
             if (HAS_TRANSMISSION) {
                 s.transmission *= materialTexture(imageLoad(materials, material + 5).x, data, footprint).r;
             }
         }
         s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);
+        if (HAS_CLEARCOAT) {
+            s.clearcoatNormal = facingNormal(s.front ? coatNormal : -coatNormal, s.geometricNormal, toViewer);
+        }
     }
     const bool visible = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
     s.emission = s.unlit ? s.baseColor : visible ? s.emission : vec3(0.0);
+    if (HAS_CLEARCOAT) s.emission *= emissionThroughClearcoat(s.clearcoat, dot(s.geometricNormal, toViewer));
     s.culled = !visible && s.transmission == 0.0;
+    s.absorption = vec3(0.0);
+    if (HAS_VOLUME) {
+        if (isBoundary(s)) s.absorption = uintBitsToFloat(imageLoad(materials, material + 8).xyz);
+    }
     s.roughness = clamp(s.roughness, 0.0, 1.0);
     s.metallic = clamp(s.metallic, 0.0, 1.0);
     return s;

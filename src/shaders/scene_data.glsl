@@ -18,8 +18,11 @@ layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack 
 layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
 layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
 layout(constant_id = 12) const bool CPU_LOOPS = false;          // for CPUs, where no branch skips its body
-layout(constant_id = 14) const bool EXPANDED_NODES = false;     // the format of bvhNodes
+layout(constant_id = 17) const bool EXPANDED_NODES = false;     // the format of bvhNodes
 layout(constant_id = 13) const bool HAS_MOTION = false;         // something moves from frame to frame
+layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
+layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
+layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
 layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;

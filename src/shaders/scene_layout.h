@@ -60,8 +60,9 @@ LIMPID_CONST uint NODE_BOUNDS_TEXELS = 2u;
 
 // materials: baseColor rgb | flags; emission | roughness; metallic | specular | ior | transmission;
 // alpha | cutoff | normal scale | 0; texture references (base, metallic-roughness, normal, emission);
-// reference of transmission | specular colour.
-LIMPID_CONST uint MATERIAL_TEXELS = 6u;
+// reference of transmission | specular colour; references (specular, specular colour, clear coat, its
+// roughness); reference of its normal | clear coat | its roughness | its normal scale; absorption | 0.
+LIMPID_CONST uint MATERIAL_TEXELS = 9u;
 LIMPID_CONST uint MATERIAL_MASK = 1u;
 LIMPID_CONST uint MATERIAL_BLEND = 2u;
 LIMPID_CONST uint MATERIAL_DOUBLE_SIDED = 4u;
@@ -83,8 +84,8 @@ LIMPID_CONST uint TEXTURE_SRGB = 256u;
 LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
 // lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
-// triangle; emission | material, or NONE if the emission has no texture. Punctual: position | kind; direction
-// | probability; cos inner | cos outer | range | 0; intensity | 0.
+// triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
+// | kind; direction | probability; cos inner | cos outer | range | 0; intensity | 0.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
@@ -111,6 +112,8 @@ LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
 
 // Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.
 LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
+// Reflectance of a clear coat at normal incidence: index 1.5 (KHR_materials_clearcoat).
+LIMPID_CONST float CLEARCOAT_F0 = 0.04;
 
 /// What shaders must know of the scene besides its buffers.
 struct SceneParams {

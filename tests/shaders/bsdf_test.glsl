@@ -14,6 +14,8 @@ layout(set = 0, binding = 20, scalar) uniform Params {
     float ior;
     vec3 specularColor;
     float transmission;
+    float clearcoat, clearcoatRoughness;
+    vec3 clearcoatNormal;
     uint thin, front;
     uint count, perThread, seed;
 } params;
@@ -32,5 +34,8 @@ Bsdf testBsdf() {
     s.ior = params.ior;
     s.transmission = params.transmission;
     s.thin = params.thin != 0u;
+    s.clearcoat = params.clearcoat;
+    s.clearcoatRoughness = params.clearcoatRoughness;
+    s.clearcoatNormal = params.clearcoatNormal;
     return makeBsdf(s, params.toViewer);
 }

@@ -58,6 +58,7 @@ struct Path {
     float bsdfPdf;      // of the direction being followed
     bool delta;         // that direction can only be found by following it
     float coneWidth;
+    vec3 medium;  // absorption of the body that the path is in, per unit of length
     PathRadiance radiance;
     uint rays;
 };
@@ -83,11 +84,29 @@ void addEnvironment(inout Path path, uint depth) {
     addEmission(path, environmentRadiance(uv, params.scene), density, depth);
 }
 
+/// Absorption on the viewer's side of a surface. The surface knows it where it is met from within, and for bodies in
+/// bodies better than the path: that forgets the outer one.
+vec3 mediumBefore(Path path, Surface surface) {
+    return isBoundary(surface) && !surface.front ? surface.absorption : path.medium;
+}
+
+/// Absorption where `direction` leads to from the surface.
+vec3 mediumTowards(Path path, Surface surface, vec3 direction) {
+    const bool crosses = dot(direction, surface.geometricNormal) < 0.0 && isBoundary(surface);
+    if (!crosses) return mediumBefore(path, surface);
+    return surface.front ? surface.absorption : vec3(0.0);
+}
+
 void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const LightSample light = sampleLight(surface.position, params.scene, rng);
     const BsdfValue value = evaluateBsdf(bsdf, light.direction);
     const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
-    const vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
+    vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
+    if (HAS_VOLUME) {
+        if (light.distance < INFINITE_DISTANCE) {
+            incident *= exp(-light.distance * mediumTowards(path, surface, light.direction));
+        }
+    }
     vec3 diffuse = incident * value.diffuse, specular = incident * value.specular;
     if (!SPLIT_LOBES) {
         diffuse += specular;
@@ -122,6 +141,7 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
     }
+    if (HAS_VOLUME) path.medium = mediumTowards(path, surface, next.direction);
     const float side = dot(next.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
     path.ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), next.direction,
                    INFINITE_DISTANCE);
@@ -136,7 +156,8 @@ FirstHit firstHitOf(Hit hit, Surface surface, Bsdf bsdf, float depth) {
 }
 
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
-    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, 0.0, PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
+    Path path =
+        Path(ray, vec3(1.0), vec3(1.0), 0.0, true, 0.0, vec3(0.0), PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
     float spread = params.camera.spread;
     if (params.camera.orthographic != 0u) {
         path.coneWidth = spread;
@@ -156,6 +177,8 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         path.coneWidth += spread * hit.t;
         const vec3 toViewer = -path.ray.direction;
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
+        // Nothing is absorbed on the way to the sky: a body that is never left was none.
+        if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
         if (depth == 0u) {
             traveled += hit.t;
