@@ -116,7 +116,8 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     if (wants("depth"))
         out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
     if (wants("motion"))
-        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, image::invalidMotion), Storage::Float);
+        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, image::invalidMotion),
+                Storage::Float);
     if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
     if (wants("samples")) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));

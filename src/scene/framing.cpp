@@ -71,6 +71,36 @@ Box exactBox(const Scene& scene) {
     return box;
 }
 
+/// Of what moves, at so many moments of the clip.
+constexpr int clipMoments = 16;
+
+void growByInstance(const Scene& scene, const RigPose& pose, const Instance& instance, Box& box) {
+    const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
+    const mat4& toWorld = pose.toWorld[static_cast<size_t>(instance.node)];
+    if (instance.movement == Movement::Rigid) {
+        for (const vec3& position : mesh.positions) box.grow(transformed(toWorld, position));
+        return;
+    }
+    std::vector<mat4> joints;
+    if (instance.skin != none)
+        joints = jointMatrices(scene.rig.skins[static_cast<size_t>(instance.skin)], pose);
+    const std::vector<float>& weights = pose.weights[static_cast<size_t>(instance.node)];
+    for (const vec3& position : deform(*mesh.deformation, weights, joints).positions)
+        box.grow(joints.empty() ? transformed(toWorld, position) : position);
+}
+
+/// Where the chosen clip takes things.
+void growByClip(const Scene& scene, Box& box) {
+    if (scene.clip == none) return;
+    const Clip& clip = scene.rig.clips[static_cast<size_t>(scene.clip)];
+    for (int i = 0; i <= clipMoments; ++i) {
+        const RigPose pose = evaluate(scene.rig, &clip, double{clip.duration()} * i / clipMoments);
+        for (const Instance& instance : scene.instances) {
+            if (instance.movement != Movement::Still) growByInstance(scene, pose, instance, box);
+        }
+    }
+}
+
 /// How much of each side of the box triangles cover, as fractions: -X, +X, -Y, +Y, -Z, +Z.
 struct Walls {
     std::array<float, 6> covered{};
@@ -152,7 +182,7 @@ std::optional<vec3> openSide(const Walls& walls) {
 
 Camera frame(const Scene& scene) {
     const bool isExact = scene.triangleCount() <= maxExactTriangles;
-    const Box box = isExact ? exactBox(scene) : looseBox(scene);
+    Box box = isExact ? exactBox(scene) : looseBox(scene);
     if (box.empty()) return {};
     if (isExact) {
         const Walls walls = findWalls(scene, box);
@@ -160,6 +190,7 @@ Camera frame(const Scene& scene) {
         if (walls.closed() && walls.facingInward > -0.5f) return fromInside(box);
         if (const auto side = openSide(walls)) return fromOutside(box, *side);
     }
+    growByClip(scene, box);
     const vec3 size = box.size();
     if (size.z < 0.1f * std::max(size.x, size.y) && size.y > 0.1f * size.x)
         return fromOutside(box, {0, 0, 1});
@@ -176,7 +207,7 @@ BoundingSphere boundingSphere(const Scene& scene) {
 
 Camera frameScene(const Scene& scene) {
     Camera camera = frame(scene);
-    camera.name = "framing";
+    camera.name = framingCameraName;
     return camera;
 }
 

@@ -5,7 +5,10 @@
 
 namespace limpid::scene {
 
-/// A perspective camera named "framing" that shows the whole scene in a picture at least as wide as high:
+inline constexpr const char* framingCameraName = "framing";
+
+/// A perspective camera of that name that shows the whole scene, and all that its chosen clip moves, in a
+/// picture at least as wide as high:
 ///  - a room closed on all six sides: from inside, at the +Z wall, towards the opposite wall;
 ///  - a room with one open wall: from outside, straight through the opening;
 ///  - a scene that is flat along Z: straight from +Z;

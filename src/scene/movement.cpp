@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scene/framing.h"
 
 namespace limpid::scene {
 namespace {
@@ -45,6 +46,9 @@ void chooseClip(Scene& scene, std::string_view choice) {
             }
         }
         instance.movement = deforming ? Movement::Deforming : rigid ? Movement::Rigid : Movement::Still;
+    }
+    for (Camera& camera : scene.cameras) {
+        if (camera.name == framingCameraName && camera.node == none) camera = frameScene(scene);
     }
 }
 
