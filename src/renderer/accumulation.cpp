@@ -74,7 +74,8 @@ uint64_t addPixel(const LayerSums& layer, const float* means, double samples, In
     }
     if (!layer.squares) return changed;
     const double deviation = clamped(std::max(double{means[3]}, 0.0), squareLimit, changed);
-    const double square = clamped(squareOf(layer.kind->varianceOf, mean[0], mean[1], mean[2]), squareLimit, changed);
+    const double square =
+        clamped(squareOf(layer.kind->varianceOf, mean[0], mean[1], mean[2]), squareLimit, changed);
     Int128& sum = sums[layer.kind->components];
     sum = addFixed(sum, toFixed(deviation * samples, squareFraction));
     sum = addFixed(sum, toFixed(square * samples, squareFraction));
@@ -85,8 +86,8 @@ using Range = tbb::blocked_range<size_t>;
 
 uint64_t addLayer(LayerSums& layer, const std::vector<float>& means, uint64_t pixels, uint32_t samples) {
     if (means.size() != pixels * 4)
-        throw Error(fmt::format("the layer {} has {} values for {} pixels", layer.kind->name, means.size(),
-                                pixels));
+        throw Error(
+            fmt::format("the layer {} has {} values for {} pixels", layer.kind->name, means.size(), pixels));
     const uint32_t planes = layer.planes();
     layer.values.resize(pixels * planes);
     const auto addRange = [&](const Range& range, uint64_t changed) {
@@ -140,7 +141,8 @@ uint64_t FrameSums::samples() const {
 
 void FrameSums::add(uint32_t samples, const MeansOf& meansOf) {
     if (partSamples > 0) throw Error("nothing can be added to sums that end in a part of a block");
-    for (LayerSums& layer : layers) counts.clamped += addLayer(layer, meansOf(*layer.kind), pixels(), samples);
+    for (LayerSums& layer : layers)
+        counts.clamped += addLayer(layer, meansOf(*layer.kind), pixels(), samples);
 }
 
 void FrameSums::addBlock(uint32_t block, const MeansOf& meansOf) {

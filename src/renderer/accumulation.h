@@ -58,13 +58,14 @@ struct FrameSums {
     gpu::Extent extent;
     BlockPlan plan;
     std::vector<LayerSums> layers;
-    std::vector<bool> blocks;    ///< by number: whether it is in the sums
-    uint64_t partSamples = 0;    ///< of a block that was not finished: for a picture, not for a file
+    std::vector<bool> blocks;  ///< by number: whether it is in the sums
+    uint64_t partSamples = 0;  ///< of a block that was not finished: for a picture, not for a file
     bool wantsIds = false;
     std::vector<uint32_t> ids;  ///< instance and material, two a pixel; empty until block 0 is in
     SampleCounts counts;
 
-    /// Sums that are zero and take no memory yet, of what the layers named (layers.h; none: beauty alone) are made of.
+    /// Sums that are zero and take no memory yet, of what the layers named (layers.h; none: beauty alone) are
+    /// made of.
     FrameSums(gpu::Extent extent, const BlockPlan& plan, const std::vector<std::string>& layerNames);
 
     uint64_t samples() const;  ///< per pixel, in the sums

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <bit>
+#include <cstring>
 #include <fstream>
+#include <functional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -27,7 +29,8 @@ class Writer {
 
     void write(std::span<const std::byte> bytes) {
         hash_.add(bytes);
-        stream_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        stream_.write(reinterpret_cast<const char*>(bytes.data()),
+                      static_cast<std::streamsize>(bytes.size()));
     }
     template <typename T>
     void value(const T& v) {
@@ -44,19 +47,20 @@ class Writer {
     Hash64 hash_;
 };
 
+/// Fills the bytes with what comes next; false if it cannot.
+using Source = std::function<bool(std::span<std::byte>)>;
+
 class Reader {
   public:
-    Reader(std::istream& stream, uint64_t bytes, const fs::path& name)
-        : stream_(stream), left_(bytes), name_(name) {}
+    Reader(Source source, uint64_t bytes, const fs::path& name)
+        : source_(std::move(source)), left_(bytes), name_(name) {}
 
     uint64_t left() const { return left_; }
     [[noreturn]] void fail(const std::string& fault) const { throw InputError(name_, fault); }
 
     void read(std::span<std::byte> bytes) {
         if (bytes.size() > left_) fail("ends too early");
-        const auto size = static_cast<std::streamsize>(bytes.size());
-        stream_.read(reinterpret_cast<char*>(bytes.data()), size);
-        if (stream_.gcount() != size) fail("cannot be read to its end");
+        if (!source_(bytes)) fail("cannot be read to its end");
         left_ -= bytes.size();
         hash_.add(bytes);
     }
@@ -76,7 +80,7 @@ class Reader {
     }
 
   private:
-    std::istream& stream_;
+    Source source_;
     uint64_t left_;
     const fs::path& name_;
     Hash64 hash_;
@@ -116,10 +120,12 @@ AccumulationHeader readHeader(Reader& reader, const fs::path& name) {
     if (reader.value<std::array<char, 8>>() != magic) reader.fail("is no file of sums");
     const auto fileVersion = reader.value<uint32_t>();
     if (fileVersion != version) {
-        reader.fail(fmt::format("has format version {}; this program reads version {}", fileVersion, version));
+        reader.fail(
+            fmt::format("has format version {}; this program reads version {}", fileVersion, version));
     }
     const auto bytes = reader.value<uint32_t>();
-    if (bytes > maxHeaderBytes || bytes > reader.left()) reader.fail("has a damaged header");
+    if (bytes > reader.left()) reader.fail("ends too early");
+    if (bytes > maxHeaderBytes) reader.fail("has a damaged header");
     std::string text(bytes, '\0');
     reader.read(std::as_writable_bytes(std::span(text)));
     return headerFromJson(text, name);
@@ -131,6 +137,34 @@ SampleCounts readCounts(Reader& reader) {
     counts.rejected = reader.value<uint64_t>();
     counts.clamped = reader.value<uint64_t>();
     return counts;
+}
+
+/// What follows the blocks, all but the checksum.
+void readSums(Reader& reader, FrameSums& sums) {
+    const bool ids = sums.wantsIds && sums.blocks[0];
+    // Only now is memory asked for: as much as there are bytes to fill it.
+    if (reader.left() != bytesAfterBlocks(sums, ids)) reader.fail("has another length than its header says");
+    if (sums.blockCount() == 0) return;
+    for (LayerSums& layer : sums.layers) {
+        layer.values.resize(sums.pixels() * layer.planes());
+        reader.values(layer.values);
+    }
+    if (!ids) return;
+    sums.ids.resize(sums.pixels() * 2);
+    reader.values(sums.ids);
+}
+
+Accumulation readFrom(Reader reader, const fs::path& name) {
+    AccumulationHeader header = readHeader(reader, name);
+    FrameSums sums(header.extent, header.plan, header.layers);
+    sums.counts = readCounts(reader);
+    readBlocks(reader, sums.blocks);
+    for (uint32_t block = 0; header.frames == 1 && block < sums.blocks.size(); ++block) {
+        if (sums.blocks[block] && !header.shard.has(block)) reader.fail("has a block that its shard lacks");
+    }
+    readSums(reader, sums);
+    reader.end();
+    return {std::move(header), std::move(sums)};
 }
 
 void writeTo(std::ostream& stream, const AccumulationHeader& header, const FrameSums& sums) {
@@ -172,29 +206,6 @@ void writeAccumulation(const fs::path& path, const AccumulationHeader& header, c
     });
 }
 
-Accumulation readAccumulation(std::istream& stream, uint64_t bytes, const fs::path& name) {
-    Reader reader(stream, bytes, name);
-    AccumulationHeader header = readHeader(reader, name);
-    FrameSums sums(header.extent, header.plan, header.layers);
-    sums.counts = readCounts(reader);
-    readBlocks(reader, sums.blocks);
-    const bool ids = sums.wantsIds && sums.blocks[0];
-    // Only now is memory asked for: as much as there are bytes to fill it.
-    if (reader.left() != bytesAfterBlocks(sums, ids)) reader.fail("has another length than its header says");
-    if (sums.blockCount() > 0) {
-        for (LayerSums& layer : sums.layers) {
-            layer.values.resize(sums.pixels() * layer.planes());
-            reader.values(layer.values);
-        }
-        if (ids) {
-            sums.ids.resize(sums.pixels() * 2);
-            reader.values(sums.ids);
-        }
-    }
-    reader.end();
-    return {std::move(header), std::move(sums)};
-}
-
 Accumulation readAccumulation(const fs::path& path) {
     std::error_code status;
     if (fs::exists(path, status) && !fs::is_regular_file(path, status))
@@ -204,7 +215,22 @@ Accumulation readAccumulation(const fs::path& path) {
     const std::streamoff size = stream.tellg();
     stream.seekg(0);
     if (size < 0 || !stream) throw InputError(path, "cannot be read");
-    return readAccumulation(stream, static_cast<uint64_t>(size), path);
+    const Source source = [&](std::span<std::byte> bytes) {
+        stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return static_cast<size_t>(stream.gcount()) == bytes.size();
+    };
+    return readFrom(Reader(source, static_cast<uint64_t>(size), path), path);
+}
+
+Accumulation decodeAccumulation(std::span<const std::byte> bytes, const fs::path& name) {
+    std::span<const std::byte> rest = bytes;
+    const Source source = [&](std::span<std::byte> out) {
+        if (out.size() > rest.size()) return false;
+        if (!out.empty()) std::memcpy(out.data(), rest.data(), out.size());
+        rest = rest.subspan(out.size());
+        return true;
+    };
+    return readFrom(Reader(source, bytes.size(), name), name);
 }
 
 }  // namespace limpid

@@ -7,8 +7,9 @@
 // material of each pixel (uint32). Last the Hash64 of all before it (uint64).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
-#include <istream>
+#include <span>
 
 #include "renderer/accumulation.h"
 #include "renderer/accumulation_header.h"
@@ -30,7 +31,7 @@ void writeAccumulation(const std::filesystem::path& path, const AccumulationHead
 /// much as the file is long.
 Accumulation readAccumulation(const std::filesystem::path& path);
 
-/// The same from a stream of `bytes` bytes; `name` stands for the file in messages.
-Accumulation readAccumulation(std::istream& stream, uint64_t bytes, const std::filesystem::path& name);
+/// The same from memory; `name` stands for the file in messages.
+Accumulation decodeAccumulation(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 }  // namespace limpid

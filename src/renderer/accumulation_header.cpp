@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/hash.h"
+#include "base/log.h"
 #include "image/limits.h"
 #include "renderer/layers.h"
 
@@ -70,7 +72,8 @@ std::vector<std::string> layersOf(const HeaderReader& reader) {
     for (const Json& json : reader.array("layers")) {
         const std::string name = reader.text("layers", json);
         next = std::find(next, layerNames().end(), name);
-        if (next == layerNames().end()) reader.fail(fmt::format("the layer '{}' is unknown or misplaced", name));
+        if (next == layerNames().end())
+            reader.fail(fmt::format("the layer '{}' is unknown or misplaced", name));
         layers.push_back(*next++);
     }
     return layers;
@@ -99,6 +102,22 @@ gpu::Extent extentOf(const HeaderReader& reader) {
     return extent;
 }
 
+std::vector<std::pair<uint64_t, uint64_t>> finishedOf(const HeaderReader& reader, uint64_t frames) {
+    std::vector<std::pair<uint64_t, uint64_t>> ranges;
+    if (reader.array("finished").size() > maxFinishedRanges)
+        reader.fail("has too long a list of finished frames");
+    uint64_t least = 0;
+    for (const Json& json : reader.array("finished")) {
+        const Json& range = reader.pair("finished", json);
+        const uint64_t first = reader.number("finished", range[0], least, frames);
+        const uint64_t last = reader.number("finished", range[1], first, frames);
+        if (last == frames) reader.fail("has a finished frame that its shard lacks");
+        ranges.emplace_back(first, last);
+        least = last + 1;
+    }
+    return ranges;
+}
+
 template <typename T>
 std::optional<std::string> difference(std::string_view name, const T& theirs, const T& ours) {
     if (theirs == ours) return std::nullopt;
@@ -112,8 +131,8 @@ std::string listOf(const std::vector<std::string>& layers) {
 }  // namespace
 
 std::string_view AccumulationHeader::value(std::string_view name) const {
-    const auto found =
-        std::find_if(identity.begin(), identity.end(), [&](const auto& entry) { return entry.first == name; });
+    const auto found = std::find_if(identity.begin(), identity.end(),
+                                    [&](const auto& entry) { return entry.first == name; });
     return found == identity.end() ? std::string_view() : std::string_view(found->second);
 }
 
@@ -121,7 +140,8 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
     for (const auto& [name, value] : ours.identity) {
         if (const auto d = difference(name, theirs.value(name), std::string_view(value))) return d;
     }
-    if (theirs.identity.size() != ours.identity.size()) return "it has settings that this version does not know";
+    if (theirs.identity.size() != ours.identity.size())
+        return "it has settings that this version does not know";
     const std::optional<std::string> differences[] = {
         difference("width", theirs.extent.width, ours.extent.width),
         difference("height", theirs.extent.height, ours.extent.height),
@@ -135,6 +155,26 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
         if (d) return d;
     }
     return std::nullopt;
+}
+
+void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
+                       const AccumulationHeader& ours) {
+    if (theirs.device == ours.device && theirs.driver == ours.driver) return;
+    log::warn(
+        "{}: comes from {} ({}), the rest from {} ({}): right, but not bit for bit what one device gives",
+        file.string(), theirs.device, theirs.driver, ours.device, ours.driver);
+}
+
+uint64_t renderHash(const AccumulationHeader& header) {
+    AccumulationHeader shared = header;
+    shared.shard = {};
+    shared.frame = 0;
+    shared.finished.clear();
+    shared.device.clear();
+    shared.driver.clear();
+    Hash64 hash;
+    hash.add(toJson(shared));
+    return hash.value();
 }
 
 std::string toJson(const AccumulationHeader& header) {
@@ -155,6 +195,8 @@ std::string toJson(const AccumulationHeader& header) {
                     {"shards", header.shard.count},
                     {"frame", header.frame},
                     {"finished", finished},
+                    {"device", header.device},
+                    {"driver", header.driver},
                     {"float", header.floatColors},
                     {"exposure", header.exposure}};
     return json.dump();
@@ -173,11 +215,11 @@ AccumulationHeader headerFromJson(std::string_view text, const std::filesystem::
     header.frames = reader.number("frames", 1, maxFrames);
     header.shard = shardOf(reader);
     header.frame = reader.number("frame", 0, header.frames - 1);
-    for (const Json& json : reader.array("finished")) {
-        const Json& range = reader.pair("finished", json);
-        const uint64_t first = reader.number("finished", range[0], 0, header.frames - 1);
-        header.finished.emplace_back(first, reader.number("finished", range[1], first, header.frames - 1));
-    }
+    if (header.frames > 1 && !header.shard.has(header.frame))
+        reader.fail("is of a frame that its shard lacks");
+    header.finished = finishedOf(reader, header.shard.countOf(header.frames));
+    header.device = reader.text("device", reader.at("device"));
+    header.driver = reader.text("driver", reader.at("driver"));
     header.floatColors = reader.flag("float");
     header.exposure = reader.text("exposure", reader.at("exposure"));
     return header;

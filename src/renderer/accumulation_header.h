@@ -21,6 +21,9 @@ struct Shard {
     uint32_t count = 1;
 
     bool has(uint64_t number) const { return number % count == index - 1; }
+    /// How many of the numbers below `total` it has, and which the k-th is.
+    uint64_t countOf(uint64_t total) const { return (total + count - index) / count; }
+    uint64_t at(uint64_t k) const { return k * count + index - 1; }
     bool operator==(const Shard&) const = default;
 };
 
@@ -34,9 +37,12 @@ struct AccumulationHeader {
     uint64_t frames = 1;              ///< of the sequence; 1: a still
     Shard shard;
 
-    uint64_t frame = 0;  ///< whose sums these are
-    /// Frames of this shard whose pictures are written, counted within the shard, first to last.
+    uint64_t frame = 0;  ///< whose sums these are; one of the shard's
+    /// Frames of this shard whose pictures are written, counted within the shard, first to last, ascending.
     std::vector<std::pair<uint64_t, uint64_t>> finished;
+
+    /// What rendered it, for messages: samples of two devices are equally right, but differ in the last bits.
+    std::string device, driver;
 
     // How the picture is to be written.
     bool floatColors = false;
@@ -47,8 +53,16 @@ struct AccumulationHeader {
 };
 
 /// What makes two renders different ones, for a message: "seed is 1, not 0" (`theirs`, not `ours`). Empty if
-/// the samples of both may be mixed. Shard and frame are not compared.
+/// the samples of both may be mixed. Shard, frame and device are not compared.
 std::optional<std::string> firstDifference(const AccumulationHeader& theirs, const AccumulationHeader& ours);
+
+/// Logs a warning if the file's samples come from another device or driver.
+void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
+                       const AccumulationHeader& ours);
+
+/// Of all that two runs must share for their pictures to be of one render: identity, size, plan, layers,
+/// frames and how pictures are written.
+uint64_t renderHash(const AccumulationHeader& header);
 
 /// JSON. More than 4096 ranges of finished frames are cut off: what is forgotten is rendered again.
 std::string toJson(const AccumulationHeader& header);

@@ -8,9 +8,11 @@ namespace limpid {
 
 /// Samples per pixel in a block: what is summed on the device in float32 before it goes into the exact sums
 /// (renderer/accumulation.h), what a killed render loses at most, and the least that a shard gets. Fetching a
-/// block costs a GPU as much as some samples, hence the larger blocks there.
-inline constexpr uint32_t cpuBlockSamples = 64;
-inline constexpr uint32_t gpuBlockSamples = 256;
+/// block costs a fast GPU as much as some samples, hence larger blocks where there are many of them. Depends
+/// on nothing else, so that any two devices divide a render alike.
+inline constexpr uint32_t blockSamplesFor(uint64_t samples) {
+    return samples < 4096 ? 64 : 256;
+}
 
 inline constexpr uint64_t maxSamplesPerPixel = uint64_t{1} << 24;
 inline constexpr uint32_t maxBlockSamples = 1u << 16;
@@ -19,9 +21,9 @@ inline constexpr uint32_t maxBlockSamples = 1u << 16;
 /// last launch of each, may be short. Random numbers depend on the launch's number in the frame, so the plan
 /// is part of what decides the pixels.
 struct BlockPlan {
-    uint64_t samples = 1;                     ///< per pixel: 1 to maxSamplesPerPixel
-    uint32_t blockSamples = cpuBlockSamples;  ///< 1 to maxBlockSamples
-    uint32_t launchSamples = 1;               ///< 1 to blockSamples
+    uint64_t samples = 1;        ///< per pixel: 1 to maxSamplesPerPixel
+    uint32_t blockSamples = 64;  ///< 1 to maxBlockSamples
+    uint32_t launchSamples = 1;  ///< 1 to blockSamples
 
     uint32_t blocks() const { return static_cast<uint32_t>((samples - 1) / blockSamples + 1); }
     uint32_t samplesOf(uint32_t block) const {

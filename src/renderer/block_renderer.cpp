@@ -9,7 +9,7 @@ namespace limpid {
 BlockPlan planBlocks(const gpu::Device& device, const RenderSettings& settings, uint64_t samples) {
     BlockPlan plan;
     plan.samples = samples;
-    plan.blockSamples = device.isCpu() ? cpuBlockSamples : gpuBlockSamples;
+    plan.blockSamples = blockSamplesFor(samples);
     plan.launchSamples = std::min(samplesPerLaunch(device, settings), plan.blockSamples);
     return plan;
 }

@@ -11,7 +11,7 @@
 
 namespace limpid {
 
-/// The plan for a device; the samples per launch are those of the settings where block and device allow.
+/// The plan of a frame; the samples per launch are those of the settings where block and device allow.
 BlockPlan planBlocks(const gpu::Device& device, const RenderSettings& settings, uint64_t samples);
 
 class BlockRenderer {

@@ -21,7 +21,8 @@ void checkBelongs(const fs::path& file, const Accumulation& added, const fs::pat
     if (const auto difference = firstDifference(added.header, sum.header))
         throw InputError(file, fmt::format("does not belong to {}: {}", first.string(), *difference));
     if (added.header.floatColors != sum.header.floatColors || added.header.exposure != sum.header.exposure)
-        throw InputError(file, fmt::format("does not belong to {}: --float or --exposure differ", first.string()));
+        throw InputError(file,
+                         fmt::format("does not belong to {}: --float or --exposure differ", first.string()));
     for (uint32_t block = 0; block < added.sums.blocks.size(); ++block) {
         if (added.sums.blocks[block] && sum.sums.blocks[block])
             throw InputError(file, fmt::format("has block {}, which is in an earlier file too", block));
@@ -59,6 +60,7 @@ Accumulation mergeAccumulations(std::span<const fs::path> files) {
         const Accumulation added = readAccumulation(file);
         checkStill(file, added.header);
         checkBelongs(file, added, files.front(), sum);
+        warnOfOtherDevice(file, added.header, sum.header);
         sum.sums.merge(added.sums);
         shardCounts.insert(added.header.shard.count);
     }

@@ -33,17 +33,10 @@ void addClip(Hash64& hash, const scene::Clip& clip) {
 }
 
 void addFeatures(Hash64& hash, const scene::SceneFeatures& f) {
-    for (const bool feature :
-         {f.twoLevel, f.vertexData, f.textures, f.alpha, f.specular, f.transmission, f.triangleLights,
-          f.punctualLights, f.environment, f.mirrored, f.motion}) {
+    for (const bool feature : {f.twoLevel, f.vertexData, f.textures, f.alpha, f.specular, f.transmission,
+                               f.triangleLights, f.punctualLights, f.environment, f.mirrored, f.motion}) {
         hash.addValue(feature);
     }
-}
-
-/// JSON holds UTF-8 only; a file's name may be anything.
-std::string validUtf8(const std::string& text) {
-    using nlohmann::json;
-    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
 const char* nameOf(Jitter jitter) {
@@ -52,14 +45,20 @@ const char* nameOf(Jitter jitter) {
 
 }  // namespace
 
+std::string validUtf8(const std::string& text) {
+    using nlohmann::json;
+    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
 uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
     Hash64 hash;
-    for (const auto* records :
-         {&data.bvhNodes, &data.bvhInstances, &data.triangles, &data.vertices, &data.instances,
-          &data.previousGeometry, &data.materials, &data.textureRefs, &data.lights, &data.motion.restVertices}) {
+    for (const auto* records : {&data.bvhNodes, &data.bvhInstances, &data.triangles, &data.vertices,
+                                &data.instances, &data.previousGeometry, &data.materials, &data.textureRefs,
+                                &data.lights, &data.motion.restVertices}) {
         hash.addValues(*records);
     }
-    for (const auto* records : {&data.bvhTriangles, &data.environment, &data.ggxTable, &data.motion.morphDeltas})
+    for (const auto* records :
+         {&data.bvhTriangles, &data.environment, &data.ggxTable, &data.motion.morphDeltas})
         hash.addValues(*records);
     for (const auto* records : {&data.lightAlias, &data.environmentAlias}) hash.addValues(*records);
     for (const auto* records : {&data.lightDensity, &data.dielectricTable}) hash.addValues(*records);
@@ -87,26 +86,23 @@ uint64_t cameraHash(const Sequence& sequence, uint64_t frames, gpu::Extent exten
 }
 
 std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity& identity,
-                                                            const gpu::DeviceInfo& device,
                                                             const RenderSettings& settings,
                                                             const SequenceTiming& timing) {
     std::vector<std::pair<std::string, std::string>> entries{
-        {"the scene", validUtf8(identity.sceneName)},
+        {sceneEntry, validUtf8(identity.sceneName)},
         {"the scene's content", hashText(identity.scene)},
         {"the camera", hashText(identity.cameras)},
         {"frames per second", fmt::format("{}", timing.framesPerSecond)},
         {"the first frame's time", fmt::format("{}", timing.start)},
-        {"seed", fmt::format("{}", settings.seed)},
+        {seedEntry, fmt::format("{}", settings.seed)},
         {"jitter", nameOf(settings.jitter)},
     };
     const ParamTable<PathtraceSettings>& table = pathtraceParams();
     for (size_t i = 0; i < table.infos().size(); ++i)
         entries.emplace_back(table.group() + "." + table.infos()[i].name,
                              toString(table.get(settings.pathtrace, i)));
-    entries.insert(entries.end(), {{"the tracer", identity.tracer},
-                                   {"the device", validUtf8(device.name)},
-                                   {"the driver", validUtf8(device.driver)},
-                                   {"the version of Limpid", validUtf8(identity.version)}});
+    entries.emplace_back("the tracer", identity.tracer);
+    entries.emplace_back(versionEntry, validUtf8(identity.version));
     return entries;
 }
 

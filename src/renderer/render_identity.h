@@ -25,11 +25,18 @@ struct RenderIdentity {
     std::string tracer = "compute";
 };
 
-/// For AccumulationHeader::identity: version, device, driver, scene, camera, timing and settings. What has a
-/// member of its own there (size, samples, layers) is not in it.
+/// Entries of AccumulationHeader::identity that are asked for by name.
+inline constexpr const char* sceneEntry = "the scene";
+inline constexpr const char* seedEntry = "seed";
+inline constexpr const char* versionEntry = "the version of Limpid";
+
+/// For AccumulationHeader::identity: scene, camera, timing, settings, tracer and version. What has a member
+/// of its own there (size, samples, layers) is not in it, and neither is the device.
 std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity& identity,
-                                                            const gpu::DeviceInfo& device,
                                                             const RenderSettings& settings,
                                                             const SequenceTiming& timing);
+
+/// JSON holds UTF-8 only; a file's or a device's name may be anything.
+std::string validUtf8(const std::string& text);
 
 }  // namespace limpid

@@ -79,8 +79,8 @@ bool ProgressiveStill::launch() {
     input.frame = frame_;
     input.stream = number_ * launchesOfAFrame() + frame_;
     input.samplesBefore = samples_;
-    input.samples =
-        static_cast<uint32_t>(std::min<uint64_t>(samplesPerLaunch(device_, state_.settings), maxSamples_ - samples_));
+    input.samples = static_cast<uint32_t>(
+        std::min<uint64_t>(samplesPerLaunch(device_, state_.settings), maxSamples_ - samples_));
     graph_.beginFrame();
     images_ = recordPathFrame(graph_, scene_, state_.settings, input);
     graph_.execute(device_);
