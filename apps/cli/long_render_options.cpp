@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace limpid::cli {
 namespace {
@@ -53,6 +54,7 @@ void checkLongRender(const LongRenderChoice& choice) {
         throw UsageError("'" + choice.checkpoint +
                          "' exists: --resume goes on from it; remove it to begin anew");
     }
+    if (!choice.checkpoint.empty()) checkWritable(choice.checkpoint);
 }
 
 }  // namespace limpid::cli

@@ -20,7 +20,8 @@ void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice);
 /// 1/1 if none is chosen. Throws UsageError if it makes no sense.
 Shard chosenShard(const LongRenderChoice& choice);
 
-/// Throws UsageError if --resume has no --checkpoint, or a checkpoint is there that would be overwritten.
+/// Throws UsageError if --resume has no --checkpoint, or a checkpoint is there that would be overwritten;
+/// OutputError if the checkpoint cannot be written.
 void checkLongRender(const LongRenderChoice& choice);
 
 }  // namespace limpid::cli

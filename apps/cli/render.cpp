@@ -152,7 +152,8 @@ struct Summary {
     int frames = 0;
     uint64_t framesFinished = 0;  ///< with those of earlier runs
     uint64_t framesToDo = 0;      ///< of the shard
-    uint64_t samples = 0;         ///< of the last picture or file of sums, per pixel
+    uint64_t blocksFinished = 0;
+    uint64_t samples = 0;  ///< of the last picture or file of sums, per pixel
     bool complete = false;
     SampleCounts counts;  ///< of this run
     Timings timings;
@@ -174,10 +175,17 @@ void warnOfRest(const RenderOptions& o, const Summary& s) {
     }
 }
 
+void warnOfNoProgress(const RenderOptions& o, const Summary& s) {
+    if (s.complete || s.blocksFinished > 0 || (o.longRender.checkpoint.empty() && !writesSums(o))) return;
+    log::warn("not one block of {} samples was finished in that time, and only whole blocks are kept",
+              std::min<uint64_t>(o.samples, blockSamplesFor(o.samples)));
+}
+
 void report(const RenderOptions& o, const gpu::Device& device, const Summary& s, const scene::Scene& scene,
             const scene::GpuScene& gpuScene) {
     warnOfLosses(s.counts);
     warnOfRest(o, s);
+    warnOfNoProgress(o, s);
     const double megaRays =
         static_cast<double>(s.counts.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
     if (!o.json) {
@@ -252,6 +260,7 @@ void renderFrames(const RenderOptions& o, const RenderSettings& settings, const 
     const auto file = [&](uint64_t frame) { return output.format(static_cast<int>(frame)); };
     const auto finish = [&](uint64_t frame, const FrameSums& sums) {
         summary.samples = sums.samples();
+        if (o.longRender.resume) removeStaleTemporaries(file(frame));
         if (writesSums(o)) {
             writeAccumulation(file(frame), job.header(), sums);
         } else {
@@ -262,6 +271,7 @@ void renderFrames(const RenderOptions& o, const RenderSettings& settings, const 
     summary.complete = job.run({.progress = [&](uint64_t samples) { progress.show(samples); },
                                 .finish = finish,
                                 .isThere = [&](uint64_t frame) { return fs::exists(file(frame)); }});
+    summary.blocksFinished = job.blocksFinished();
     summary.framesFinished = job.framesFinished();
     summary.framesToDo = job.framesToDo();
     summary.timings.renderSeconds = job.renderSeconds();

@@ -137,11 +137,6 @@ std::string_view AccumulationHeader::value(std::string_view name) const {
 }
 
 std::optional<std::string> firstDifference(const AccumulationHeader& theirs, const AccumulationHeader& ours) {
-    for (const auto& [name, value] : ours.identity) {
-        if (const auto d = difference(name, theirs.value(name), std::string_view(value))) return d;
-    }
-    if (theirs.identity.size() != ours.identity.size())
-        return "it has settings that this version does not know";
     const std::optional<std::string> differences[] = {
         difference("width", theirs.extent.width, ours.extent.width),
         difference("height", theirs.extent.height, ours.extent.height),
@@ -154,6 +149,12 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
     for (const auto& d : differences) {
         if (d) return d;
     }
+    // After the size and the number of frames, on which the camera's hash depends.
+    for (const auto& [name, value] : ours.identity) {
+        if (const auto d = difference(name, theirs.value(name), std::string_view(value))) return d;
+    }
+    if (theirs.identity.size() != ours.identity.size())
+        return "it has settings that this version does not know";
     return std::nullopt;
 }
 

@@ -128,6 +128,7 @@ bool LongRender::renderBlocks(FrameSums& sums, const LongRenderEvents& events) {
             if (made > 0 && isStill() && !isStillShard()) renderer_.addTo(sums);
         } else {
             renderer_.addTo(sums);
+            ++blocks_;
             saveState(sums, false);
         }
     }

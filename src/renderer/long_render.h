@@ -42,7 +42,8 @@ class LongRender {
     /// Renders what is to be done. False if time ran out first.
     bool run(const LongRenderEvents& events);
 
-    uint64_t framesFinished() const;  ///< of this shard, by this run and those before
+    uint64_t blocksFinished() const { return blocks_; }  ///< by this run
+    uint64_t framesFinished() const;                     ///< of this shard, by this run and those before
     uint64_t framesToDo() const { return finished_.size(); }
     double renderSeconds() const { return seconds_; }
     const AccumulationHeader& header() const { return header_; }
@@ -67,6 +68,7 @@ class LongRender {
     std::optional<FrameSums> resumed_;  ///< of header_.frame
     std::vector<bool> finished_;        ///< by number within the shard; a still is one frame
     uint64_t launched_ = 0;             ///< samples per pixel
+    uint64_t blocks_ = 0;
     double seconds_ = 0.0;
 };
 
