@@ -15,6 +15,14 @@ if(LIMPID_SANITIZE)
                                                   -fno-omit-frame-pointer)
   target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(LIMPID_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "LIMPID_FUZZ needs clang, which has libFuzzer: use the preset 'fuzz'")
+  endif()
+  target_compile_options(limpid_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+                                                  -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
+endif()
 
 # limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ...): the static library limpid_NAME, alias limpid::NAME.
 function(limpid_library NAME)

@@ -6,3 +6,10 @@ scripts/install.sh
 scripts/build.sh release -DLIMPID_TESTS=ON "$@"
 [ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
 ctest --preset release --parallel "$(nproc)"
+
+echo "== the pipeline tracer, on a software driver that has ray-tracing pipelines"
+if icd=$(scripts/lavapipe25.sh); then
+    VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -R '/pipeline$|^TracersTest'
+else
+    echo "NOTE: NOT TESTED here: the pipeline tracer."
+fi

@@ -26,6 +26,7 @@ struct Job {
     std::vector<gpu::ConstantValue> constants;
     std::span<const std::byte> params;
     uint32_t count = 0;
+    const gpu::RayShaders* rays = nullptr;  ///< `shader` generates rays
 };
 
 class GpuTest : public testing::Test {
@@ -70,6 +71,7 @@ class GpuTest : public testing::Test {
         }
         dispatch.bindings.push_back({"results", &results});
         dispatch.extent = {job.count, 1};
+        dispatch.rays = job.rays;
         graph_.beginFrame();
         graph_.dispatch(dispatch);
         graph_.execute(device());

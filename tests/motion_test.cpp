@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "double_pose.h"
+#include "moving_scenes.h"
 #include "renderer/sequence.h"
 #include "scene/builtin.h"
 #include "scene/load.h"
@@ -51,7 +52,7 @@ class MotionTest : public TraceTest {
     void check(scene::Scene scene, const std::string& path, double time, double pathSeconds = 2.0) {
         if (scene.clip == scene::none) scene::chooseClip(scene, "");
         const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data);
+        scene::GpuScene gpuScene(device(), data, GetParam());
         const scene::Camera camera = scene.cameras.at(0);
         const Sequence sequence(scene, data, camera,
                                 scene::builtinCameraPath(path, scene, camera, pathSeconds),
@@ -89,15 +90,7 @@ class MotionTest : public TraceTest {
         for (uint32_t y = 0; y < extent.height; ++y) {
             for (uint32_t x = 0; x < extent.width; ++x) rays.push_back(centreRay(camera, x, y));
         }
-        const auto count = static_cast<uint32_t>(rays.size());
-        const uint32_t params[] = {gpuScene.params().rootNode, count, 1};
-        const gpu::Buffer buffer = upload("rays", rays);
-        return run<TestHit>({.shader = shaders::trace_test_comp,
-                             .scene = &gpuScene,
-                             .buffers = {{"rays", &buffer}},
-                             .params = gpu::paramsOf(params),
-                             .count = count},
-                            count);
+        return traceThrough(gpuScene, rays);
     }
 
     static Counts compare(const DoublePose& now, const DoublePose& before, const Moment& moment,
@@ -156,93 +149,34 @@ class MotionTest : public TraceTest {
     }
 };
 
-/// A tube of two bones with a bulge as morph target, under a turning node: skin and morph at once.
-scene::Scene tubeScene() {
-    scene::Scene scene = plainScene();
-    scene.name = "tube";
-    scene::Mesh mesh;
-    scene::Deformation d;
-    d.targets.resize(1);
-    constexpr uint32_t rings = 24, sides = 32;
-    for (uint32_t r = 0; r <= rings; ++r) {
-        const float y = 2.0f * static_cast<float>(r) / rings;
-        for (uint32_t s = 0; s < sides; ++s) {
-            const float a = 2.0f * pi * static_cast<float>(s) / sides;
-            const vec3 n(std::cos(a), 0.0f, std::sin(a));
-            d.positions.push_back(0.4f * n + vec3(0, y, 0));
-            d.normals.push_back(n);
-            d.targets[0].positions.push_back(0.3f * std::sin(0.5f * pi * y) * n);
-            d.targets[0].normals.push_back({0.1f, 0.0f, 0.0f});
-            const float upper = std::clamp(y - 0.5f, 0.0f, 1.0f);
-            d.joints.push_back({0, 1, 0, 0});
-            d.weights.push_back({1.0f - upper, upper, 0.0f, 0.0f});
-            if (r == rings) continue;
-            const uint32_t i = r * sides + s, j = r * sides + (s + 1) % sides;
-            mesh.indices.insert(mesh.indices.end(), {i, i + sides, j, j, i + sides, j + sides});
-        }
-    }
-    mesh.positions = d.positions;
-    mesh.normals = d.normals;
-    mesh.deformation = std::make_shared<const scene::Deformation>(d);
-    scene.meshes.push_back(mesh);
-    using scene::AnimatedValue, scene::Interpolation;
-    scene.rig.nodes.resize(4);  // root, lower bone, upper bone, the mesh's own
-    scene.rig.nodes[1].parent = 0;
-    scene.rig.nodes[2].parent = 1;
-    scene.rig.nodes[2].translation = {0, 1, 0};
-    scene.rig.nodes[3].weights = {0.0f};
-    scene.rig.order = {0, 1, 2, 3};
-    scene::Skin skin{{1, 2}, {mat4(1.0f), mat4(1.0f)}};
-    skin.inverseBind[1][3] = vec4(0, -1, 0, 1);
-    scene.rig.skins = {skin};
-    const float h = std::sqrt(0.5f);
-    scene.rig.clips = {
-        {"bend",
-         {{0, AnimatedValue::Rotation, Interpolation::Linear, 4, {0, 1}, {0, 0, 0, 1, 0, h, 0, h}},
-          {2, AnimatedValue::Rotation, Interpolation::Linear, 4, {0, 1}, {0, 0, 0, 1, 0, 0, h, h}},
-          {2, AnimatedValue::Scale, Interpolation::Linear, 3, {0, 1}, {1, 1, 1, 1, 1.2f, 0.8f}},
-          {3, AnimatedValue::Weights, Interpolation::Step, 1, {0, 0.45f}, {0.2f, 0.9f}},
-          {0,
-           AnimatedValue::Translation,
-           Interpolation::CubicSpline,
-           3,
-           {0, 1},
-           {0, 0, 0, 0, 0, 0, 0.5f, 0, 0, 0.5f, 0, 0, 0.3f, 0.2f, 0, 0, 0, 0}}}}};
-    addInstance(scene, 0);
-    scene.instances[0].node = 3;
-    scene.instances[0].skin = 0;
-    scene::prepare(scene);
-    return scene;
-}
-
-TEST_F(MotionTest, CornellMoving) {
+TEST_P(MotionTest, CornellMoving) {
     scene::Scene scene = scene::cornellMovingScene();
     check(scene, "shake", 0.6);
     check(scene, "dolly", 1.2);
 }
 
-TEST_F(MotionTest, SkinAndMorphTogether) {
+TEST_P(MotionTest, SkinAndMorphTogether) {
     check(tubeScene(), "orbit", 0.3);
     check(tubeScene(), "dolly", 0.46);  // across a step of the morph weight
 }
 
-TEST_F(MotionTest, BoxAnimated) {
+TEST_P(MotionTest, BoxAnimated) {
     checkFile("box_animated", "BoxAnimated.gltf", "orbit", 0.5);
 }
 
-TEST_F(MotionTest, CesiumMan) {
+TEST_P(MotionTest, CesiumMan) {
     checkFile("cesium_man", "CesiumMan.gltf", "orbit", 0.7);
 }
 
-TEST_F(MotionTest, MorphCube) {
+TEST_P(MotionTest, MorphCube) {
     checkFile("morph_cube", "AnimatedMorphCube.gltf", "dolly", 1.3);
 }
 
-TEST_F(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
+TEST_P(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
     scene::Scene scene = scene::cornellMovingScene();
     scene::chooseClip(scene, "");
     const scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(device(), data);
+    scene::GpuScene gpuScene(device(), data, GetParam());
     scene::CameraKey a{0.0, {0, 0.3f, 1.0f}, {0, 0.3f, 0}}, b = a;
     b.time = 0.5;
     b.eye.x = 0.2f;
@@ -262,6 +196,9 @@ TEST_F(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
             ASSERT_EQ(layers.motion[4 * p + 3], valid ? 1.0f : 0.0f) << frame;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tracers, MotionTest,
+                         testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

@@ -58,9 +58,9 @@ inline dvec3 floorPoint(const CameraParams& camera, gpu::Extent extent, uint32_t
 /// Renders one scene any number of times: the pipelines are compiled once.
 class Renderer {
   public:
-    Renderer(gpu::Device& device, const scene::Scene& scene)
+    Renderer(gpu::Device& device, const scene::Scene& scene, scene::Tracer tracer = scene::Tracer::Compute)
         : camera_(scene.cameras.at(0)),
-          gpuScene_(device, scene::buildSceneData(scene)),
+          gpuScene_(device, scene::buildSceneData(scene), tracer),
           still_(device, gpuScene_, UINT64_MAX) {}
 
     /// `samples` must be a multiple of the samples per launch.

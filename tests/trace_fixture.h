@@ -5,7 +5,9 @@
 
 #include "brute_force.h"
 #include "gpu_fixture.h"
+#include "shaders/ray_shaders.h"
 #include "trace_test.comp.h"
+#include "trace_test.rgen.h"
 
 namespace limpid::test {
 
@@ -62,21 +64,37 @@ inline scene::Mesh triangleSoup(uint32_t count, float size, uint32_t seed) {
     return mesh;
 }
 
-class TraceTest : public GpuTest {
+/// Every test of traversal is run with both tracers.
+class TraceTest : public GpuTest, public testing::WithParamInterface<scene::Tracer> {
   protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        if (IsSkipped() || GetParam() == scene::Tracer::Compute || device().info().rayTracing) return;
+        GTEST_SKIP() << "NOT TESTED: " << device().info().name
+                     << " has no ray-tracing pipelines; scripts/lavapipe25.sh fetches a driver that has.";
+    }
+
     std::vector<TestHit> trace(const scene::Scene& scene, const std::vector<TestRay>& rays,
                                uint32_t seed = 1) {
         const scene::SceneData data = scene::buildSceneData(scene);
-        const scene::GpuScene gpuScene(device(), data);
+        const scene::GpuScene gpuScene(device(), data, GetParam());
         twoLevel_ = data.features.twoLevel;
+        return traceThrough(gpuScene, rays, seed);
+    }
+
+    /// As the scene stands on the device.
+    std::vector<TestHit> traceThrough(const scene::GpuScene& scene, const std::vector<TestRay>& rays,
+                                      uint32_t seed = 1) {
         const auto count = static_cast<uint32_t>(rays.size());
-        const uint32_t params[] = {data.params.rootNode, count, seed};
+        const uint32_t params[] = {scene.params().rootNode, count, seed};
         const gpu::Buffer buffer = upload("rays", rays);
-        const Job job{.shader = shaders::trace_test_comp,
-                      .scene = &gpuScene,
+        const bool pipeline = scene.tracer() == scene::Tracer::Pipeline;
+        const Job job{.shader = pipeline ? shaders::trace_test_rgen : shaders::trace_test_comp,
+                      .scene = &scene,
                       .buffers = {{"rays", &buffer}},
                       .params = gpu::paramsOf(params),
-                      .count = count};
+                      .count = count,
+                      .rays = pipeline ? &rayShaders() : nullptr};
         return run<TestHit>(job, count);
     }
 
@@ -85,5 +103,9 @@ class TraceTest : public GpuTest {
   private:
     bool twoLevel_ = false;
 };
+
+inline std::string nameOfTracer(const testing::TestParamInfo<scene::Tracer>& tracer) {
+    return std::string(scene::toString(tracer.param));
+}
 
 }  // namespace limpid::test

@@ -71,18 +71,18 @@ scene::Mesh closedSphere() {
     return mesh;
 }
 
-TEST_F(WatertightTest, Sphere) {
+TEST_P(WatertightTest, Sphere) {
     check(closedSphere(), vec3(-0.5f), vec3(0.5f), 100000, "sphere");
 }
 
-TEST_F(WatertightTest, Box) {
+TEST_P(WatertightTest, Box) {
     scene::MeshBuilder builder("box");
     builder.box(vec3(-1, -2, -0.5f), vec3(1, 1, 3));
     check(builder.take(), vec3(-0.99f, -1.9f, -0.4f), vec3(0.99f, 0.9f, 2.9f), 100000, "box");
 }
 
 /// Many instances of one closed mesh: rays from inside the first, whose own space is turned and scaled.
-TEST_F(WatertightTest, InstancedSphere) {
+TEST_P(WatertightTest, InstancedSphere) {
     scene::Scene scene = plainScene();
     scene.meshes.push_back(closedSphere());
     mat4 first = glm::rotate(mat4(1.0f), 1.1f, glm::normalize(vec3(3, -1, 2)));
@@ -136,7 +136,7 @@ class AlphaTest : public TraceTest {
     }
 };
 
-TEST_F(AlphaTest, MaskComparesWithTheCutoff) {
+TEST_P(AlphaTest, MaskComparesWithTheCutoff) {
     scene::Material material;
     material.alphaMode = scene::AlphaMode::Mask;
     for (const auto& [alpha, cutoff, expected] :
@@ -149,7 +149,7 @@ TEST_F(AlphaTest, MaskComparesWithTheCutoff) {
     }
 }
 
-TEST_F(AlphaTest, BlendPassesItsShare) {
+TEST_P(AlphaTest, BlendPassesItsShare) {
     scene::Material material;
     material.alphaMode = scene::AlphaMode::Blend;
     constexpr uint32_t count = 20000;
@@ -163,7 +163,7 @@ TEST_F(AlphaTest, BlendPassesItsShare) {
 }
 
 /// A texture's alpha decides texel by texel; vertex colours multiply it.
-TEST_F(AlphaTest, MaskFromTextureAndVertexColours) {
+TEST_P(AlphaTest, MaskFromTextureAndVertexColours) {
     scene::Material material;
     material.alphaMode = scene::AlphaMode::Mask;
     material.baseColorTexture.texture = 0;
@@ -187,6 +187,11 @@ TEST_F(AlphaTest, MaskFromTextureAndVertexColours) {
         }
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Tracers, AlphaTest, testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline),
+                         nameOfTracer);
+// Only ours: whether a driver's tracer is watertight is for its tests to say (lavapipe 25's is not).
+INSTANTIATE_TEST_SUITE_P(Tracers, WatertightTest, testing::Values(scene::Tracer::Compute), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

@@ -86,7 +86,7 @@ class TraceReferenceTest : public TraceTest {
     }
 };
 
-TEST_F(TraceReferenceTest, TriangleSoups) {
+TEST_P(TraceReferenceTest, TriangleSoups) {
     for (const uint32_t count : {1u, 3u, 20u, 2000u}) {
         const scene::Scene scene = soupScene(1.0f, vec3(0.0f), count, count);
         if (count >= 20) {
@@ -105,17 +105,17 @@ TEST_F(TraceReferenceTest, TriangleSoups) {
     }
 }
 
-TEST_F(TraceReferenceTest, TinyScale) {
+TEST_P(TraceReferenceTest, TinyScale) {
     compare(soupScene(1e-3f, vec3(0.0f), 2000, 3), 4096, 12);
 }
 
-TEST_F(TraceReferenceTest, FarFromTheOrigin) {
+TEST_P(TraceReferenceTest, FarFromTheOrigin) {
     compare(soupScene(20.0f, {10000.0f, -3000.0f, 5000.0f}, 2000, 4), 4096, 13);
 }
 
 /// From where a whole node is smaller than the rounding of coordinates, absent children must not be followed
 /// for ever.
-TEST_F(TraceReferenceTest, TinyThingsFarAwayAndNothingAtAll) {
+TEST_P(TraceReferenceTest, TinyThingsFarAwayAndNothingAtAll) {
     scene::Scene scene = soupScene(1e-3f, vec3(0.0f), 5, 3);
     std::mt19937 random(4);
     std::vector<TestRay> rays;
@@ -132,7 +132,7 @@ TEST_F(TraceReferenceTest, TinyThingsFarAwayAndNothingAtAll) {
     for (const TestHit& hit : trace(scene, rays)) EXPECT_LT(hit.t, 0.0f);
 }
 
-TEST_F(TraceReferenceTest, BuiltinScenes) {
+TEST_P(TraceReferenceTest, BuiltinScenes) {
     for (const char* name : {"cornell", "cornell-spheres", "furnace"})
         compare(scene::builtinScene(name), 2048, 21);
     compare(scene::builtinScene("heavy"), 512, 22);
@@ -140,7 +140,7 @@ TEST_F(TraceReferenceTest, BuiltinScenes) {
 
 /// Copies of one mesh, enough for a tree over trees, moved in every way, beside a mesh that stays in the
 /// static tree.
-TEST_F(TraceReferenceTest, TwoLevels) {
+TEST_P(TraceReferenceTest, TwoLevels) {
     scene::Scene scene = plainScene();
     scene.name = "instances";
     scene.meshes.push_back(triangleSoup(700, 1.0f, 5));
@@ -160,6 +160,9 @@ TEST_F(TraceReferenceTest, TwoLevels) {
     scene.name = "instances only";
     compare(scene, 2048, 32);
 }
+
+INSTANTIATE_TEST_SUITE_P(Tracers, TraceReferenceTest,
+                         testing::Values(scene::Tracer::Compute, scene::Tracer::Pipeline), nameOfTracer);
 
 }  // namespace
 }  // namespace limpid::test

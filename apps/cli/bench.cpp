@@ -45,13 +45,13 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-LoadedScene load(gpu::Device& device, const std::string& name) {
+LoadedScene load(gpu::Device& device, const DeviceChoice& choice, const std::string& name) {
     LoadedScene loaded;
     loaded.scene = loadChosenScene({name, "", ""});
     const Clock::time_point start = Clock::now();
     const scene::SceneData data = scene::buildSceneData(loaded.scene);
     loaded.treeSeconds = since(start);
-    loaded.gpu = std::make_unique<scene::GpuScene>(device, data);
+    loaded.gpu = std::make_unique<scene::GpuScene>(device, data, chosenTracer(choice, device));
     return loaded;
 }
 
@@ -70,7 +70,7 @@ double median(std::vector<double> values) {
 
 /// One sample per launch; device time of the path-tracing pass alone.
 json traceBench(gpu::Device& device, const BenchOptions& o, const std::string& name) {
-    const LoadedScene loaded = load(device, name);
+    const LoadedScene loaded = load(device, o.device, name);
     ProgressiveStill still(device, *loaded.gpu, uint64_t{o.frames} + o.warmup);
     still.update(scene::cameraParams(loaded.scene.cameras.front(), o.width, o.height), settingsOf(o));
     for (uint32_t i = 0; i < o.warmup; ++i) still.launch();
@@ -86,6 +86,7 @@ json traceBench(gpu::Device& device, const BenchOptions& o, const std::string& n
     const double rays = static_cast<double>(still.counters().rays - raysBefore) / o.frames;
     const double ms = median(times);
     return {{"scene", name},
+            {"tracer", scene::toString(loaded.gpu->tracer())},
             {"triangles", loaded.scene.triangleCount()},
             {"tree_seconds", loaded.treeSeconds},
             {"scene_bytes", loaded.gpu->byteCount()},
@@ -100,8 +101,9 @@ void runTrace(const BenchOptions& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     json results = json::array();
     if (!o.json) {
-        fmt::print("{}, {}x{}, depth {}\n{:<24}{:>12}{:>14}{:>14}{:>14}\n", device->info().name, o.width,
-                   o.height, o.maxDepth, "scene", "triangles", "ms a sample", "Mrays/s", "tree s");
+        fmt::print("{}, tracer {}, {}x{}, depth {}\n{:<24}{:>12}{:>14}{:>14}{:>14}\n", device->info().name,
+                   scene::toString(chosenTracer(o.device, *device)), o.width, o.height, o.maxDepth, "scene",
+                   "triangles", "ms a sample", "Mrays/s", "tree s");
     }
     for (const std::string& name : o.scenes) {
         const json r = traceBench(*device, o, name);
@@ -161,7 +163,7 @@ void writePicture(const BenchOptions& o, const std::string& stem, const Picture&
 }
 
 json convergence(gpu::Device& device, const BenchOptions& o, const std::string& name) {
-    const LoadedScene loaded = load(device, name);
+    const LoadedScene loaded = load(device, o.device, name);
     const CameraParams camera = scene::cameraParams(loaded.scene.cameras.front(), o.width, o.height);
     RenderSettings settings = settingsOf(o);
     settings.pathtrace.maxDepth = 8;

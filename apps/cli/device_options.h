@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gpu/device.h"
+#include "scene/tracer.h"
 
 namespace limpid::cli {
 
@@ -15,7 +16,8 @@ struct DeviceChoice {
 
 void addDeviceOptions(CLI::App& command, DeviceChoice& choice);
 
-/// Opens the device and settles the tracer. Throws UsageError if the tracer is not to be had there.
 std::unique_ptr<gpu::Device> openDevice(const DeviceChoice& choice);
+/// Throws UsageError if the tracer that was asked for is not to be had on the device.
+scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device);
 
 }  // namespace limpid::cli

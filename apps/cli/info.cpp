@@ -9,6 +9,7 @@
 #include "passes/pathtrace/pathtrace.h"
 #include "renderer/layers.h"
 #include "scene/builtin.h"
+#include "scene/tracer.h"
 
 namespace limpid::cli {
 namespace {
@@ -29,6 +30,7 @@ json devicesJson(const std::vector<gpu::DeviceInfo>& devices) {
                         {"memory_bytes", device.memoryBytes},
                         {"usable", device.usable},
                         {"why_not", device.whyNot},
+                        {"tracer", scene::toString(scene::automaticTracer(device))},
                         {"features", features},
                         {"limits", limits}});
     }
@@ -62,6 +64,7 @@ void printDevice(const gpu::DeviceInfo& device) {
                device.driver, device.apiVersion,
                static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
     if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);
+    fmt::print("   {:<40} {}\n", "--tracer auto", scene::toString(scene::automaticTracer(device)));
     for (const auto& [name, present] : device.features)
         fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
     for (const auto& [name, value] : device.limits) fmt::print("   {:<40} {}\n", name, value);
@@ -73,9 +76,10 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
         fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
     for (const gpu::DeviceInfo& device : devices) printDevice(device);
     fmt::print(
-        "\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\ncompute   our own "
-        "tree in a "
-        "compute shader; every device\n\nBuilt-in scenes\n");
+        "\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\n"
+        "compute   our own tree in a compute shader; every device\n"
+        "pipeline  the driver's ray-tracing pipeline; devices with VK_KHR_ray_tracing_pipeline\n\nBuilt-in "
+        "scenes\n");
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         fmt::print("{:<28} {}\n", "builtin:" + info.name, info.help);
     }
@@ -100,7 +104,7 @@ void addInfoCommand(CLI::App& app) {
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
         if (!*asJson) return printText(devices);
         const json object{{"version", LIMPID_VERSION},     {"devices", devicesJson(devices)},
-                          {"pipelines", {"path"}},         {"tracers", {"compute"}},
+                          {"pipelines", {"path"}},         {"tracers", {"compute", "pipeline"}},
                           {"scenes", scenesJson()},        {"layers", layerNames()},
                           {"parameters", parametersJson()}};
         fmt::print("{}\n", object.dump(2));

@@ -201,6 +201,7 @@ void report(const RenderOptions& o, const gpu::Device& device, const Summary& s,
     }
     const nlohmann::json object{{"output", o.output},
                                 {"device", device.info().name},
+                                {"tracer", scene::toString(gpuScene.tracer())},
                                 {"width", o.width},
                                 {"height", o.height},
                                 {"frames", s.frames},
@@ -304,7 +305,7 @@ void render(const RenderOptions& o) {
     const Clock::time_point uploadStart = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(*device, data);
+    scene::GpuScene gpuScene(*device, data, chosenTracer(o.device, *device));
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
     const AccumulationHeader header = headerOf(o, settings, sequence, static_cast<uint64_t>(summary.frames),
                                                sceneHash(scene, data), *device);

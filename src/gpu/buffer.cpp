@@ -11,11 +11,15 @@
 namespace limpid::gpu {
 namespace {
 
-VkBufferUsageFlags usageOf(BufferUse use) {
+VkBufferUsageFlags usageOf(const Context& context, BufferUse use) {
+    constexpr VkBufferUsageFlags address = VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    constexpr VkBufferUsageFlags input =
+        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR | address;
     constexpr VkBufferUsageFlags copies = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     switch (use) {
         case BufferUse::Texel:
-            return VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | copies;
+            // Triangles lie in one, for whoever builds over them.
+            return VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | copies | (context.hasRayTracing() ? input : 0);
         case BufferUse::Storage:
             return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | copies;
         case BufferUse::Uniform:
@@ -23,13 +27,29 @@ VkBufferUsageFlags usageOf(BufferUse use) {
         case BufferUse::Staging:
         case BufferUse::Readback:
             return copies;
+        case BufferUse::Structure:
+            return VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR | address;
+        case BufferUse::Scratch:
+            return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | address;
+        case BufferUse::Instances:
+            return input | copies;
+        case BufferUse::ShaderTable:
+            return VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR | address;
     }
     return copies;
 }
 
 MemoryUse memoryOf(BufferUse use) {
-    if (use == BufferUse::Texel || use == BufferUse::Storage) return MemoryUse::Device;
-    return use == BufferUse::Readback ? MemoryUse::Download : MemoryUse::Upload;
+    switch (use) {
+        case BufferUse::Readback:
+            return MemoryUse::Download;
+        case BufferUse::Uniform:
+        case BufferUse::Staging:
+        case BufferUse::ShaderTable:
+            return MemoryUse::Upload;
+        default:
+            return MemoryUse::Device;
+    }
 }
 
 void checkLimit(const Context& context, const std::string& name, std::string_view limit, uint64_t maximum,
@@ -79,18 +99,25 @@ std::shared_ptr<BufferStorage> makeBuffer(std::shared_ptr<const Context> context
 
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = storage->allocated;
-    info.usage = usageOf(use);
+    info.usage = usageOf(*context, use);
     VkBuffer handle = VK_NULL_HANDLE;
     LIMPID_VK(vkCreateBuffer(context->device(), &info, nullptr, &handle));
     storage->buffer = UniqueBuffer(context->device(), handle);
     context->setName(handle, name);
     VkMemoryRequirements requirements{};
     vkGetBufferMemoryRequirements(context->device(), handle, &requirements);
-    storage->memory = allocate(*context, requirements, memoryOf(use), name);
+    const bool addressed = (info.usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
+    storage->memory = allocate(*context, requirements, memoryOf(use), name, addressed);
     LIMPID_VK(vkBindBufferMemory(context->device(), handle, storage->memory.handle.get(), 0));
     if (format) storage->view = makeView(*context, *storage);
     storage->context = std::move(context);
     return storage;
+}
+
+VkDeviceAddress deviceAddress(const BufferStorage& buffer) {
+    VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+    info.buffer = buffer.buffer.get();
+    return vkGetBufferDeviceAddress(buffer.context->device(), &info);
 }
 
 Buffer::Buffer() = default;

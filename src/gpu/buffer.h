@@ -24,8 +24,22 @@ struct Buffer::Impl {
     std::shared_ptr<const BufferStorage> storage;
 };
 
-/// Usage of the three kinds; each can be copied from and to.
-enum class BufferUse { Texel, Storage, Uniform, Staging, Readback };
+/// The last four need ray tracing: what acceleration structures lie in, what their builds need, instances of
+/// a top level, shader-binding tables.
+enum class BufferUse {
+    Texel,
+    Storage,
+    Uniform,
+    Staging,
+    Readback,
+    Structure,
+    Scratch,
+    Instances,
+    ShaderTable
+};
+
+/// Needs ray tracing.
+VkDeviceAddress deviceAddress(const BufferStorage& buffer);
 
 /// Throws Error naming the limit that `bytes` exceeds. The content is undefined.
 std::shared_ptr<BufferStorage> makeBuffer(std::shared_ptr<const Context> context, const std::string& name,

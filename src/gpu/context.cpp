@@ -25,7 +25,8 @@ Context::Context(const DeviceOptions& options) : instance_(Instance::create(vali
 
 void Context::createDevice() {
     FeatureChain features;
-    enableFeatures(physical_.handle, features);
+    enableFeatures(physical_, features);
+    const std::vector<const char*> extensions = wantedExtensions(physical_);
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = physical_.queueFamily;
@@ -35,6 +36,8 @@ void Context::createDevice() {
     info.pNext = &features.core;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     VkDevice device = VK_NULL_HANDLE;
     LIMPID_VK(vkCreateDevice(physical_.handle, &info, nullptr, &device));
     device_.reset(device);
@@ -112,6 +115,20 @@ UniqueFence makeFence(const Context& context, const std::string& name) {
 void waitAndReset(const Context& context, VkFence fence) {
     LIMPID_VK(vkWaitForFences(context.device(), 1, &fence, VK_TRUE, UINT64_MAX));
     LIMPID_VK(vkResetFences(context.device(), 1, &fence));
+}
+
+void passBarrier(const Context& context, VkCommandBuffer commands) {
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    VkAccessFlags2 writes = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    VkAccessFlags2 reads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    if (context.hasRayTracing()) {
+        stages |= VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
+                  VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+        writes |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
+        // Builds read vertices and instances as shaders read.
+        reads |= VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_SHADER_READ_BIT;
+    }
+    memoryBarrier(commands, stages, writes, stages, reads | writes);
 }
 
 void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 from,

@@ -20,6 +20,8 @@ class Context {
     const DeviceInfo& info() const { return physical_.info; }
     const VkPhysicalDeviceLimits& limits() const { return physical_.limits; }
     uint64_t maxAllocation() const { return physical_.maxAllocation; }
+    bool hasRayTracing() const { return physical_.info.rayTracing; }
+    const RayTracingLimits& rayTracing() const { return physical_.rayTracing; }
     uint64_t maxBufferBytes() const;
     const VkPhysicalDeviceMemoryProperties& memoryProperties() const { return memory_; }
     uint64_t validationMessages() const { return instance_->validationMessages(); }
@@ -53,6 +55,9 @@ void beginCommands(VkCommandBuffer commands);
 UniqueFence makeFence(const Context& context, const std::string& name);
 void waitAndReset(const Context& context, VkFence fence);
 
+/// What earlier passes wrote, later passes may use and overwrite: shaders, and builds of acceleration
+/// structures.
+void passBarrier(const Context& context, VkCommandBuffer commands);
 /// A global memory barrier; images stay in GENERAL layout, so nothing finer is ever needed.
 void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 from,
                    VkPipelineStageFlags2 toStage, VkAccessFlags2 to);

@@ -24,6 +24,9 @@ struct DeviceInfo {
     std::string apiVersion;
     uint64_t memoryBytes = 0;  ///< the largest device-local heap
     bool usable = false;
+    bool rayTracing = false;  ///< has ray-tracing pipelines and acceleration structures
+    /// ... and, as far as can be told, hardware for them: some drivers emulate them on shader cores.
+    bool rayTracingCores = false;
     std::string whyNot;                                    ///< the missing features, if it is not usable
     std::vector<std::pair<std::string, bool>> features;    ///< required and optional ones, by Vulkan name
     std::vector<std::pair<std::string, uint64_t>> limits;  ///< those that Limpid heeds, by Vulkan name

@@ -19,6 +19,8 @@ std::string_view kindName(BindingKind kind) {
             return "storage buffer";
         case BindingKind::UniformBuffer:
             return "uniform block";
+        case BindingKind::AccelerationStructure:
+            return "acceleration structure";
     }
     return "";
 }
@@ -26,7 +28,7 @@ std::string_view kindName(BindingKind kind) {
 }  // namespace
 
 DispatchRecorder::DispatchRecorder(FrameGraph::Impl& graph, const Dispatch& dispatch)
-    : graph_(graph), dispatch_(dispatch), shader_(graph.shaderOf(dispatch.shader)) {}
+    : graph_(graph), dispatch_(dispatch), shader_(graph.shaderOf(dispatch.shader, dispatch.rays)) {}
 
 void DispatchRecorder::fail(const std::string& fault) const {
     throw Error(fmt::format("pass '{}' ({}): {}", dispatch_.pass, shader_->name, fault));
@@ -46,8 +48,15 @@ void DispatchRecorder::record() {
     computeGroups();
     pass_.name = dispatch_.pass;
     pass_.shader = shader_->name;
-    findHazards();
-    noteUses();
+    std::vector<Access> accesses;
+    for (const Bound& bound : bound_) {
+        accesses.push_back({.buffer = bound.resource.buffer.get(),
+                            .image = bound.resource.image,
+                            .name = bound.name,
+                            .reads = bound.variable->readable,
+                            .writes = bound.variable->writable});
+    }
+    graph_.noteAccesses(pass_, accesses);
 
     result_.shader = shader_;
     for (Bound& bound : bound_) result_.resources.push_back(std::move(bound.resource));
@@ -74,6 +83,8 @@ DispatchRecorder::Bound DispatchRecorder::bind(const Binding& binding) const {
     }
     if (const ImageHandle* handle = std::get_if<ImageHandle>(&binding.resource)) {
         bindImage(bound, *handle);
+    } else if (const auto* structures = std::get_if<const AccelerationStructures*>(&binding.resource)) {
+        bindStructures(bound, *structures);
     } else {
         bindBuffer(bound, std::get<const Buffer*>(binding.resource));
     }
@@ -114,6 +125,8 @@ void DispatchRecorder::bindBuffer(Bound& bound, const Buffer* buffer) const {
     const ShaderBinding& variable = *bound.variable;
     if (variable.kind == BindingKind::StorageImage)
         fail(variable.name, "is an image in the shader, but a buffer is bound");
+    if (variable.kind == BindingKind::AccelerationStructure)
+        fail(variable.name, "is an acceleration structure in the shader, but a buffer is bound");
     if (!buffer || !*buffer) fail(variable.name, "the buffer is empty");
     bound.resource.buffer = buffer->impl()->storage;
     bound.name = bound.resource.buffer->name;
@@ -127,6 +140,17 @@ void DispatchRecorder::bindBuffer(Bound& bound, const Buffer* buffer) const {
         fail(variable.name, fmt::format("is {} in the shader, but texel buffer '{}' is {}",
                                         toString(variable.format), bound.name, toString(*format)));
     }
+}
+
+void DispatchRecorder::bindStructures(Bound& bound, const AccelerationStructures* structures) const {
+    const ShaderBinding& variable = *bound.variable;
+    if (variable.kind != BindingKind::AccelerationStructure) {
+        fail(variable.name, fmt::format("is a {} in the shader, but an acceleration structure is bound",
+                                        kindName(variable.kind)));
+    }
+    bound.resource.structures = structures->storage();
+    bound.resource.buffer = bound.resource.structures->topBuffer;
+    bound.name = bound.resource.buffer->name;
 }
 
 void DispatchRecorder::checkComplete() const {
@@ -193,61 +217,20 @@ void DispatchRecorder::computeGroups() {
         fail(fmt::format("the extent is empty: {} x {} threads", dispatch_.extent.width,
                          dispatch_.extent.height));
     }
+    const std::array<uint32_t, 3> threads{dispatch_.extent.width, dispatch_.extent.height, 1};
     std::array<uint32_t, 3> size = shader_->reflection.workgroupSize;
+    if (shader_->tracesRays()) size = {1, 1, 1};
     for (const auto& [id, value] : result_.constants) {
         for (size_t axis = 0; axis < 3; ++axis) {
             if (shader_->reflection.workgroupSizeIds[axis] == id) size[axis] = value;
         }
     }
     if (std::ranges::find(size, 0u) != size.end()) fail("a constant makes the workgroup empty");
-    const std::array<uint32_t, 3> threads{dispatch_.extent.width, dispatch_.extent.height, 1};
     for (size_t axis = 0; axis < 3; ++axis) {
         result_.groups[axis] = threads[axis] / size[axis] + (threads[axis] % size[axis] != 0 ? 1 : 0);
     }
     result_.workgroupSize = size;
     pass_.groups = result_.groups;
-}
-
-ResourceUse& DispatchRecorder::useOf(const Bound& bound) {
-    if (bound.resource.buffer) return graph_.bufferUses[bound.resource.buffer.get()];
-    return graph_.imageUses[bound.resource.image];
-}
-
-/// A barrier stands before pass `lastBarrier` and orders all before it with all after: only what ran since
-/// counts.
-void DispatchRecorder::findHazards() {
-    const auto pending = [&](size_t pass) { return pass != ResourceUse::none && pass >= graph_.lastBarrier; };
-    const auto add = [&](Hazard::Kind kind, const Bound& bound, size_t earlier) {
-        pass_.hazards.push_back({kind, bound.name, graph_.frame.passes[earlier].name});
-    };
-    for (const Bound& bound : bound_) {
-        const ResourceUse& use = useOf(bound);
-        if (bound.variable->readable && pending(use.lastWriter)) {
-            add(Hazard::Kind::ReadAfterWrite, bound, use.lastWriter);
-        }
-        if (!bound.variable->writable) continue;
-        if (pending(use.lastWriter)) add(Hazard::Kind::WriteAfterWrite, bound, use.lastWriter);
-        for (const size_t reader : use.readers) {
-            if (pending(reader)) add(Hazard::Kind::WriteAfterRead, bound, reader);
-        }
-    }
-}
-
-void DispatchRecorder::noteUses() {
-    const size_t pass = graph_.frame.passes.size();
-    if (!pass_.hazards.empty()) graph_.lastBarrier = pass;
-    for (const Bound& bound : bound_) {
-        ResourceUse& use = useOf(bound);
-        if (bound.variable->writable) {
-            use.lastWriter = pass;
-            use.readers.clear();
-            if (!bound.resource.buffer) graph_.frame.images[bound.resource.image].written = true;
-            pass_.writes.push_back(bound.name);
-        } else if (use.readers.empty() || use.readers.back() != pass) {
-            use.readers.push_back(pass);
-        }
-        if (bound.variable->readable) pass_.reads.push_back(bound.name);
-    }
 }
 
 }  // namespace limpid::gpu

@@ -1,4 +1,4 @@
-// Recording one dispatch: checks against reflection, hazards against earlier passes.
+// Recording one dispatch: checks against reflection.
 #pragma once
 
 #include "gpu/frame_graph_impl.h"
@@ -24,14 +24,12 @@ class DispatchRecorder {
     Bound bind(const Binding& binding) const;
     void bindImage(Bound& bound, ImageHandle handle) const;
     void bindBuffer(Bound& bound, const Buffer* buffer) const;
+    void bindStructures(Bound& bound, const AccelerationStructures* structures) const;
     void checkComplete() const;
     void checkAliases() const;
     void checkParams();
     void readConstants();
     void computeGroups();
-    ResourceUse& useOf(const Bound& bound);
-    void findHazards();
-    void noteUses();
 
     FrameGraph::Impl& graph_;
     const Dispatch& dispatch_;

@@ -31,7 +31,7 @@ void FrameExecutor::execute(const RecordedFrame& frame) {
         slot.writeTimestamp(static_cast<uint32_t>(i) + 1);
     }
     // Downloads read by copies, or through mapped memory.
-    memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT);
     slot.submit(frame);
@@ -85,8 +85,8 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
     }
     if (!any) return;
     memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
@@ -97,11 +97,19 @@ void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
         vkCmdCopyBuffer(slot.commands(), staging, upload.buffer->buffer.get(), 1, &region);
     }
     memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 void FrameExecutor::checkGroups(const RecordedFrame& frame, size_t index) const {
+    if (frame.dispatches[index].shader->tracesRays()) {
+        const auto& groups = frame.dispatches[index].groups;
+        const uint64_t rays = uint64_t{groups[0]} * groups[1];
+        if (rays <= context_->rayTracing().maxInvocations) return;
+        throw Error(fmt::format(
+            "pass '{}' starts {} rays, more than maxRayDispatchInvocationCount = {} of {}",
+            frame.passes[index].name, rays, context_->rayTracing().maxInvocations, context_->info().name));
+    }
     for (size_t axis = 0; axis < 3; ++axis) {
         const uint32_t asked = frame.dispatches[index].groups[axis];
         const uint32_t maximum = context_->limits().maxComputeWorkGroupCount[axis];
@@ -118,20 +126,35 @@ void FrameExecutor::recordPass(const RecordedFrame& frame, size_t index, FrameSl
     const RecordedPass& pass = frame.passes[index];
     const RecordedDispatch& dispatch = frame.dispatches[index];
     const VkCommandBuffer commands = slot.commands();
-    checkGroups(frame, index);
     beginLabel(commands, pass.name);
-    if (!pass.hazards.empty()) {
-        memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+    if (!pass.hazards.empty()) passBarrier(*context_, commands);
+    if (dispatch.shader) {
+        recordDispatch(frame, index, slot);
+    } else {
+        dispatch.resources.front().structures->recordRebuild(commands);
     }
+    endLabel(commands);
+}
+
+void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
+    checkGroups(frame, index);
+    const RecordedDispatch& dispatch = frame.dispatches[index];
+    const VkCommandBuffer commands = slot.commands();
     const PipelineCache::Pipeline pipeline = pipelines_.get(dispatch);
     const VkDescriptorSet set = writeDescriptors(frame, index, pipeline.setLayout, slot);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0,
-                            nullptr);
-    vkCmdDispatch(commands, dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
-    endLabel(commands);
+    const ShaderTable* table = pipeline.table;
+    const VkPipelineBindPoint point =
+        table ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
+    vkCmdBindPipeline(commands, point, pipeline.pipeline);
+    vkCmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
+    const auto& groups = dispatch.groups;
+    if (table) {
+        const VkStridedDeviceAddressRegionKHR callable{};
+        vkCmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable, groups[0],
+                          groups[1], groups[2]);
+    } else {
+        vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+    }
 }
 
 VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size_t index,
@@ -142,11 +165,12 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
     std::vector<VkDescriptorImageInfo> images;
     std::vector<VkDescriptorBufferInfo> buffers;
     std::vector<VkBufferView> views;
-    const size_t count =
-        dispatch.resources.size() + 1;  // the writes point into the three: they must not grow
+    std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structures;
+    const size_t count = dispatch.resources.size() + 1;  // the writes point into the four: they must not grow
     images.reserve(count);
     buffers.reserve(count);
     views.reserve(count);
+    structures.reserve(count);
     const auto add = [&](uint32_t binding, BindingKind kind) -> VkWriteDescriptorSet& {
         VkWriteDescriptorSet& write = writes.emplace_back();
         write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -165,6 +189,12 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
         } else if (resource.kind == BindingKind::StorageTexelBuffer) {
             views.push_back(resource.buffer->view.get());
             write.pTexelBufferView = &views.back();
+        } else if (resource.kind == BindingKind::AccelerationStructure) {
+            VkWriteDescriptorSetAccelerationStructureKHR& info = structures.emplace_back();
+            info.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
+            info.accelerationStructureCount = 1;
+            info.pAccelerationStructures = &resource.structures->topHandle;
+            write.pNext = &info;
         } else {
             buffers.push_back({resource.buffer->buffer.get(), 0, resource.buffer->allocated});
             write.pBufferInfo = &buffers.back();

@@ -29,6 +29,35 @@ bool sameWords(const std::vector<uint32_t>& a, std::span<const uint32_t> b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
 }
 
+bool sameCode(const Shader& shader, const std::vector<const ShaderCode*>& codes) {
+    return std::ranges::equal(shader.stages, codes, [](const Shader::Stage& stage, const ShaderCode* code) {
+        return sameWords(stage.words, code->words);
+    });
+}
+
+constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, ShaderStage::Miss,
+                                               ShaderStage::ClosestHit, ShaderStage::AnyHit};
+
+/// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
+Shader makeShader(const std::vector<const ShaderCode*>& codes) {
+    Shader shader;
+    shader.name = codes[0]->name;
+    for (size_t i = 0; i < codes.size(); ++i) {
+        const ShaderCode& code = *codes[i];
+        ShaderReflection reflection = reflect(code);
+        const ShaderStage wanted = codes.size() == 1 ? ShaderStage::Compute : rayStages[i];
+        if (reflection.stage != wanted)
+            throw Error(fmt::format("shader '{}' is of another stage than its use", code.name));
+        shader.stages.push_back({reflection.stage, {code.words.begin(), code.words.end()}});
+        if (i == 0) {
+            shader.reflection = std::move(reflection);
+        } else {
+            merge(shader.reflection, reflection, code.name);
+        }
+    }
+    return shader;
+}
+
 }  // namespace
 
 FrameGraph::Impl::Impl() = default;
@@ -86,11 +115,12 @@ uint32_t FrameGraph::Impl::indexOf(ImageHandle handle) const {
 }
 
 /// Compares the code itself: the viewer may load changed code under the same name, even at the same address.
-std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code) {
+std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code, const RayShaders* rays) {
+    std::vector<const ShaderCode*> codes{&code};
+    if (rays) codes.insert(codes.end(), {&rays->miss, &rays->closestHit, &rays->anyHit});
     const auto found = shaders.find(code.name);
-    if (found != shaders.end() && sameWords(found->second->words, code.words)) return found->second;
-    auto shader = std::make_shared<const Shader>(Shader{
-        std::string(code.name), std::vector<uint32_t>(code.words.begin(), code.words.end()), reflect(code)});
+    if (found != shaders.end() && sameCode(*found->second, codes)) return found->second;
+    const auto shader = std::make_shared<const Shader>(makeShader(codes));
     shaders.insert_or_assign(std::string(code.name), shader);
     return shader;
 }
@@ -173,6 +203,34 @@ void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const s
     std::vector<std::byte>& all = impl_->frame.uploadData;
     impl_->frame.uploads.push_back({storage, offset, all.size(), data.size()});
     all.insert(all.end(), data.begin(), data.end());
+}
+
+void FrameGraph::place(const AccelerationStructures& structures, uint32_t placement,
+                       const TreePlacement& where) {
+    impl_->requireRecording();
+    const auto& storage = structures.storage();
+    const auto record = storage->instanceRecord(placement, where);
+    const auto bytes = std::as_bytes(std::span(&record, 1));
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    impl_->frame.uploads.push_back(
+        {storage->instances, uint64_t{placement} * sizeof(record), all.size(), bytes.size()});
+    all.insert(all.end(), bytes.begin(), bytes.end());
+}
+
+void FrameGraph::rebuild(std::string_view pass, const AccelerationStructures& structures) {
+    impl_->requireRecording();
+    const std::shared_ptr<const AccelerationStorage>& storage = structures.storage();
+    RecordedPass recorded;
+    recorded.name = pass;
+    const std::array<Access, 2> accesses{
+        Access{.buffer = storage->triangles.get(), .name = storage->triangles->name, .reads = true},
+        Access{.buffer = storage->topBuffer.get(), .name = storage->topBuffer->name, .writes = true}};
+    impl_->noteAccesses(recorded, accesses);
+    RecordedDispatch dispatch;
+    dispatch.resources.push_back(
+        {.kind = BindingKind::AccelerationStructure, .buffer = storage->topBuffer, .structures = storage});
+    impl_->frame.passes.push_back(std::move(recorded));
+    impl_->frame.dispatches.push_back(std::move(dispatch));
 }
 
 const std::vector<RecordedPass>& FrameGraph::passes() const {

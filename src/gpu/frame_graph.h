@@ -27,6 +27,7 @@
 #include <variant>
 #include <vector>
 
+#include "gpu/acceleration_structures.h"
 #include "gpu/device.h"
 #include "gpu/shader.h"
 
@@ -55,7 +56,7 @@ struct History {
 
 struct Binding {
     std::string_view name;  ///< the GLSL variable's (for a buffer block: the instance's) name
-    std::variant<ImageHandle, const Buffer*> resource;
+    std::variant<ImageHandle, const Buffer*, const AccelerationStructures*> resource;
 };
 
 /// The parameter struct of a dispatch, by value; it must have exactly the size of the shader's uniform block.
@@ -71,13 +72,22 @@ struct ConstantValue {
     uint32_t value = 0;
 };
 
+/// What the rays of a ray-generation shader run. Several may share code; all see the same bindings and
+/// constants.
+struct RayShaders {
+    const ShaderCode& miss;
+    const ShaderCode& closestHit;
+    const ShaderCode& anyHit;
+};
+
 struct Dispatch {
-    std::string_view pass;  ///< "technique/step": shown by the profiler and named on the command line
-    const ShaderCode& shader;
+    std::string_view pass;     ///< "technique/step": shown by the profiler and named on the command line
+    const ShaderCode& shader;  ///< compute; ray generation if `rays` is set
     std::vector<Binding> bindings;
     std::span<const std::byte> params;  ///< copied at once
     std::vector<ConstantValue> constants;
     Extent extent;  ///< threads; the group count follows from the shader's workgroup size
+    const RayShaders* rays = nullptr;
 };
 
 /// Why a pass waits: for tests, and for whoever reads a frame.
@@ -136,6 +146,11 @@ class FrameGraph {
     /// passes of earlier frames. Both are multiples of 4 bytes; ranges of one frame must not overlap. Throws
     /// Error if the data reaches beyond the buffer.
     void upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data);
+
+    /// Puts a tree elsewhere, for the next rebuild(); as an upload().
+    void place(const AccelerationStructures& structures, uint32_t placement, const TreePlacement& where);
+    /// A pass that fits the trees that move to their triangles and builds the top level anew.
+    void rebuild(std::string_view pass, const AccelerationStructures& structures);
 
     /// What has been recorded since beginFrame().
     const std::vector<RecordedPass>& passes() const;

@@ -4,18 +4,25 @@
 #include <map>
 #include <set>
 
-#include "gpu/buffer.h"
+#include "gpu/acceleration_storage.h"
 #include "gpu/frame_graph.h"
 
 namespace limpid::gpu {
 
 class FrameExecutor;
 
-/// A shader and its reflection, kept as long as a frame or a pipeline uses it.
+/// A compute shader, or the shaders of a ray-tracing pipeline with ray generation first, and what they
+/// declare together; kept as long as a frame or a pipeline uses it.
 struct Shader {
-    std::string name;
-    std::vector<uint32_t> words;
+    struct Stage {
+        ShaderStage stage{};
+        std::vector<uint32_t> words;
+    };
+    std::string name;  ///< of the first stage
+    std::vector<Stage> stages;
     ShaderReflection reflection;
+
+    bool tracesRays() const { return reflection.stage == ShaderStage::RayGeneration; }
 };
 
 /// Which device image a recorded image is. `half` tells the two of a history pair apart.
@@ -41,12 +48,15 @@ struct RecordedImage {
 struct BoundResource {
     uint32_t binding = 0;
     BindingKind kind{};
-    uint32_t image = 0;                           ///< index of images
-    std::shared_ptr<const BufferStorage> buffer;  ///< of buffers
+    uint32_t image = 0;  ///< index of images
+    std::shared_ptr<const BufferStorage>
+        buffer;  ///< of buffers; of acceleration structures where the top level lies
+    std::shared_ptr<const AccelerationStorage> structures;
 };
 
 struct RecordedDispatch {
-    std::shared_ptr<const Shader> shader;
+    std::shared_ptr<const Shader>
+        shader;  ///< none: rebuilds the acceleration structures of its only resource
     std::vector<BoundResource> resources;
     uint32_t paramsBinding = 0;
     size_t paramsOffset = 0, paramsSize = 0;  ///< in RecordedFrame::params; size 0: no uniform block
@@ -81,6 +91,14 @@ struct ResourceUse {
     std::vector<size_t> readers;  ///< since the last write
 };
 
+/// One resource of a pass.
+struct Access {
+    const BufferStorage* buffer = nullptr;  ///< of buffers
+    uint32_t image = 0;                     ///< index of images
+    std::string name;
+    bool reads = false, writes = false;
+};
+
 /// A history between frames.
 struct HistoryState {
     Format format{};
@@ -105,12 +123,15 @@ struct FrameGraph::Impl {
     ~Impl();
 
     void requireRecording() const;
+    ResourceUse& useOf(const Access& access);
     void commitHistories();
     ImageHandle addImage(RecordedImage image);
     void claimName(const std::string& name);
     /// Index of a handle of this frame; throws Error if it is empty or of another frame.
     uint32_t indexOf(ImageHandle handle) const;
-    std::shared_ptr<const Shader> shaderOf(const ShaderCode& code);
+    std::shared_ptr<const Shader> shaderOf(const ShaderCode& code, const RayShaders* rays);
+    /// Finds what the pass, which comes next, has to wait for; then notes what it touches.
+    void noteAccesses(RecordedPass& pass, std::span<const Access> accesses);
     FrameExecutor& executorFor(Device& device);
     /// For downloads and times: throws Error unless a frame was executed on `device`.
     FrameExecutor& executed(Device& device) const;

@@ -32,6 +32,7 @@ void FrameSlot::begin(const RecordedFrame& frame) {
     const VkFence fence = fence_.get();
     if (std::exchange(submitted_, false)) LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
     buffers_.clear();
+    structures_.clear();
     passNames_.clear();
     reserveDescriptors(frame);
     reserveParams(frame);
@@ -46,6 +47,7 @@ void FrameSlot::submit(const RecordedFrame& frame) {
     for (const RecordedDispatch& dispatch : frame.dispatches) {
         for (const BoundResource& resource : dispatch.resources) {
             if (resource.buffer) buffers_.push_back(resource.buffer);
+            if (resource.structures) structures_.push_back(resource.structures);
         }
     }
     for (const RecordedUpload& upload : frame.uploads) buffers_.push_back(upload.buffer);
@@ -56,9 +58,10 @@ void FrameSlot::submit(const RecordedFrame& frame) {
 
 /// Resets the pool, or replaces it by one that is twice as large as the frame needs.
 void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
-    std::array<uint32_t, 4> needed{};
+    std::array<uint32_t, bindingKindCount> needed{};
     const uint32_t sets = static_cast<uint32_t>(frame.dispatches.size());
     for (const RecordedDispatch& dispatch : frame.dispatches) {
+        if (!dispatch.shader) continue;
         for (const ShaderBinding& binding : dispatch.shader->reflection.bindings) {
             ++needed[static_cast<size_t>(binding.kind)];
         }
@@ -71,8 +74,10 @@ void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
     }
     std::vector<VkDescriptorPoolSize> sizes;
     for (size_t i = 0; i < needed.size(); ++i) {
+        const auto kind = static_cast<BindingKind>(i);
+        if (kind == BindingKind::AccelerationStructure && !context_->hasRayTracing()) continue;
         descriptorCapacity_[i] = std::max(16u, 2 * needed[i]);
-        sizes.push_back({descriptorType(static_cast<BindingKind>(i)), descriptorCapacity_[i]});
+        sizes.push_back({descriptorType(kind), descriptorCapacity_[i]});
     }
     setCapacity_ = std::max(16u, 2 * sets);
     VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};

@@ -41,7 +41,7 @@ class FrameSlot {
     bool submitted_ = false;  ///< the fence will be signalled
 
     UniqueDescriptorPool descriptors_;
-    std::array<uint32_t, 4> descriptorCapacity_{};  ///< by BindingKind
+    std::array<uint32_t, bindingKindCount> descriptorCapacity_{};  ///< by BindingKind
     uint32_t setCapacity_ = 0;
 
     std::shared_ptr<BufferStorage> params_;
@@ -54,6 +54,7 @@ class FrameSlot {
 
     std::vector<std::shared_ptr<const BufferStorage>>
         buffers_;  ///< that the frame uses, kept until it is done
+    std::vector<std::shared_ptr<const AccelerationStorage>> structures_;  ///< the same
 };
 
 }  // namespace limpid::gpu

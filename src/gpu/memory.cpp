@@ -51,7 +51,7 @@ std::string bytesText(uint64_t bytes) {
 }
 
 Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
-                const std::string& name) {
+                const std::string& name, bool addressed) {
     if (requirements.size > context.maxAllocation()) {
         throw Error(fmt::format("'{}' needs {} bytes, more than maxMemoryAllocationSize = {} of {}", name,
                                 requirements.size, context.maxAllocation(), context.info().name));
@@ -59,6 +59,9 @@ Memory allocate(const Context& context, const VkMemoryRequirements& requirements
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = requirements.size;
     info.memoryTypeIndex = chooseType(context, requirements.memoryTypeBits, use);
+    VkMemoryAllocateFlagsInfo flagsInfo{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+    flagsInfo.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    if (addressed) info.pNext = &flagsInfo;
     VkDeviceMemory handle = VK_NULL_HANDLE;
     const VkResult result = vkAllocateMemory(context.device(), &info, nullptr, &handle);
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {

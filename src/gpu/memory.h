@@ -18,9 +18,10 @@ enum class MemoryUse {
     Download,  ///< read by the host: cached if possible
 };
 
-/// Throws Error naming `name` and the size if it exceeds the device's limit or memory runs out.
+/// `addressed`: shaders or builds may use its address. Throws Error naming `name` and the size if it exceeds
+/// the device's limit or memory runs out.
 Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
-                const std::string& name);
+                const std::string& name, bool addressed = false);
 
 /// "12.5 MiB": for messages.
 std::string bytesText(uint64_t bytes);

@@ -58,6 +58,13 @@ constexpr const char* listedExtensions[] = {
     VK_KHR_SWAPCHAIN_EXTENSION_NAME,
 };
 
+/// What the `pipeline` tracer needs; the last is only there because the first demands it.
+constexpr const char* rayTracingExtensions[] = {
+    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+    VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+};
+
 struct Properties {
     VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     VkPhysicalDeviceMaintenance3Properties maintenance3{
@@ -169,6 +176,39 @@ void checkFormats(VkPhysicalDevice handle, std::vector<std::string>& missing) {
     }
 }
 
+void inspectRayTracing(PhysicalDevice& device, const std::set<std::string>& extensions) {
+    for (const char* name : rayTracingExtensions) {
+        if (!extensions.contains(name)) return;
+    }
+    FeatureChain available;
+    available.linkRayTracing();
+    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    device.info.rayTracing = available.v12.bufferDeviceAddress &&
+                             available.accelerationStructure.accelerationStructure &&
+                             available.rayTracingPipeline.rayTracingPipeline;
+    // Drivers that emulate ray tracing on shader cores: NVIDIA's on data-centre GPUs offers no ray queries,
+    // and on GeForce 10 and 16 it does.
+    const std::string& name = device.info.name;
+    device.info.rayTracingCores = device.info.rayTracing && device.info.type != "cpu" &&
+                                  extensions.contains(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
+                                  name.find("GTX") == std::string::npos;
+    VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR structure{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR};
+    VkPhysicalDeviceRayTracingPipelinePropertiesKHR pipeline{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR};
+    core.pNext = &structure;
+    structure.pNext = &pipeline;
+    vkGetPhysicalDeviceProperties2(device.handle, &core);
+    device.rayTracing = {.handleSize = pipeline.shaderGroupHandleSize,
+                         .handleAlignment = pipeline.shaderGroupHandleAlignment,
+                         .baseAlignment = pipeline.shaderGroupBaseAlignment,
+                         .scratchAlignment = structure.minAccelerationStructureScratchOffsetAlignment,
+                         .maxInvocations = pipeline.maxRayDispatchInvocationCount,
+                         .maxInstances = structure.maxInstanceCount,
+                         .maxPrimitives = structure.maxPrimitiveCount};
+}
+
 /// The properties that a driver of this version knows, linked for one query.
 void readProperties(PhysicalDevice& device, uint32_t version) {
     Properties properties;
@@ -185,6 +225,11 @@ void readProperties(PhysicalDevice& device, uint32_t version) {
 }
 
 }  // namespace
+
+void FeatureChain::linkRayTracing() {
+    v13.pNext = &accelerationStructure;
+    accelerationStructure.pNext = &rayTracingPipeline;
+}
 
 FeatureChain::FeatureChain() {
     core.pNext = &v11;
@@ -216,6 +261,7 @@ PhysicalDevice inspect(VkPhysicalDevice handle, uint32_t index) {
     }
     const std::set<std::string> extensions = extensionsOf(handle);
     for (const char* name : listedExtensions) info.features.emplace_back(name, extensions.contains(name));
+    if (basics.apiVersion >= VK_API_VERSION_1_3) inspectRayTracing(device, extensions);
     listLimits(device);
     info.usable = missing.empty();
     info.whyNot = fmt::format("{}", fmt::join(missing, ", "));
@@ -232,12 +278,22 @@ std::vector<PhysicalDevice> inspectAll(const Instance& instance) {
     return devices;
 }
 
-void enableFeatures(VkPhysicalDevice handle, FeatureChain& wanted) {
+void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted) {
     FeatureChain available;
-    vkGetPhysicalDeviceFeatures2(handle, &available.core);
+    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
     for (const Feature& feature : features) {
         if (feature.need != Need::Listed) feature.flag(wanted) = feature.flag(available);
     }
+    if (!device.info.rayTracing) return;
+    wanted.linkRayTracing();
+    wanted.v12.bufferDeviceAddress = VK_TRUE;
+    wanted.accelerationStructure.accelerationStructure = VK_TRUE;
+    wanted.rayTracingPipeline.rayTracingPipeline = VK_TRUE;
+}
+
+std::vector<const char*> wantedExtensions(const PhysicalDevice& device) {
+    if (!device.info.rayTracing) return {};
+    return {std::begin(rayTracingExtensions), std::end(rayTracingExtensions)};
 }
 
 }  // namespace limpid::gpu

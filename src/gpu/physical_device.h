@@ -20,6 +20,20 @@ struct FeatureChain {
     VkPhysicalDeviceVulkan11Features v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
     VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    /// Linked by linkRayTracing(): only where the driver knows their extensions.
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR};
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayTracingPipeline{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR};
+    void linkRayTracing();
+};
+
+/// What ray-tracing pipelines need to know of the device.
+struct RayTracingLimits {
+    uint32_t handleSize = 0, handleAlignment = 0, baseAlignment = 0;  ///< of shader-binding tables
+    uint32_t scratchAlignment = 0;
+    uint32_t maxInvocations = 0;
+    uint64_t maxInstances = 0, maxPrimitives = 0;
 };
 
 struct PhysicalDevice {
@@ -30,6 +44,7 @@ struct PhysicalDevice {
     uint64_t maxBufferSize = 0;
     uint32_t queueFamily = 0;  ///< computes, and has timestamps
     uint32_t timestampValidBits = 0;
+    RayTracingLimits rayTracing;  ///< if info.rayTracing
 };
 
 /// Reads everything; info.whyNot says what is missing.
@@ -42,7 +57,9 @@ PhysicalDevice choose(std::vector<PhysicalDevice> devices, const std::string& se
 /// The index that choose() takes, of devices described only by their infos.
 size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select);
 
-/// Switches on in `wanted` what Limpid requires, and what it can use if `handle` has it.
-void enableFeatures(VkPhysicalDevice handle, FeatureChain& wanted);
+/// Switches on in `wanted` what Limpid requires, and what it can use if the device has it.
+void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted);
+/// The extensions to switch on.
+std::vector<const char*> wantedExtensions(const PhysicalDevice& device);
 
 }  // namespace limpid::gpu

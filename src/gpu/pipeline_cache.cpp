@@ -67,8 +67,26 @@ VkDescriptorType descriptorType(BindingKind kind) {
             return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         case BindingKind::UniformBuffer:
             return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+        case BindingKind::AccelerationStructure:
+            return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
     }
     return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+}
+
+VkShaderStageFlagBits stageFlag(ShaderStage stage) {
+    switch (stage) {
+        case ShaderStage::Compute:
+            return VK_SHADER_STAGE_COMPUTE_BIT;
+        case ShaderStage::RayGeneration:
+            return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
+        case ShaderStage::Miss:
+            return VK_SHADER_STAGE_MISS_BIT_KHR;
+        case ShaderStage::ClosestHit:
+            return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
+        case ShaderStage::AnyHit:
+            return VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
+    }
+    return VK_SHADER_STAGE_ALL;
 }
 
 PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
@@ -76,7 +94,9 @@ PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
     const auto key = std::make_pair(dispatch.shader, dispatch.constants);
     auto found = pipelines_.find(key);
     if (found == pipelines_.end()) found = pipelines_.emplace(key, makePipeline(dispatch, layouts)).first;
-    return {found->second.get(), layouts.pipeline.get(), layouts.set.get()};
+    const Made& made = found->second;
+    return {made.pipeline.get(), layouts.pipeline.get(), layouts.set.get(),
+            made.table ? &*made.table : nullptr};
 }
 
 const PipelineCache::Layouts& PipelineCache::layoutsOf(const std::shared_ptr<const Shader>& shader) {
@@ -90,15 +110,16 @@ PipelineCache::Layouts PipelineCache::makeLayouts(const Shader& shader) const {
     Layouts layouts;
     layouts.set = makeSetLayout(shader);
     layouts.pipeline = makePipelineLayout(shader, layouts.set.get());
-    layouts.module = makeModule(shader);
+    for (const Shader::Stage& stage : shader.stages) layouts.modules.push_back(makeModule(shader, stage));
     return layouts;
 }
 
 UniqueSetLayout PipelineCache::makeSetLayout(const Shader& shader) const {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
+    VkShaderStageFlags stages = 0;
+    for (const Shader::Stage& stage : shader.stages) stages |= stageFlag(stage.stage);
     for (const ShaderBinding& binding : shader.reflection.bindings) {
-        bindings.push_back(
-            {binding.binding, descriptorType(binding.kind), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        bindings.push_back({binding.binding, descriptorType(binding.kind), 1, stages, nullptr});
     }
     VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     info.bindingCount = static_cast<uint32_t>(bindings.size());
@@ -122,10 +143,10 @@ UniquePipelineLayout PipelineCache::makePipelineLayout(const Shader& shader,
     return owned;
 }
 
-UniqueShaderModule PipelineCache::makeModule(const Shader& shader) const {
+UniqueShaderModule PipelineCache::makeModule(const Shader& shader, const Shader::Stage& stage) const {
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    info.codeSize = shader.words.size() * sizeof(uint32_t);
-    info.pCode = shader.words.data();
+    info.codeSize = stage.words.size() * sizeof(uint32_t);
+    info.pCode = stage.words.data();
     VkShaderModule module = VK_NULL_HANDLE;
     LIMPID_VK(vkCreateShaderModule(context_->device(), &info, nullptr, &module));
     UniqueShaderModule owned(context_->device(), module);
@@ -133,8 +154,19 @@ UniqueShaderModule PipelineCache::makeModule(const Shader& shader) const {
     return owned;
 }
 
-UniquePipeline PipelineCache::makePipeline(const RecordedDispatch& dispatch, const Layouts& layouts) const {
-    checkWorkgroup(*context_, dispatch);
+UniquePipeline PipelineCache::makeComputePipeline(const VkPipelineShaderStageCreateInfo& stage,
+                                                  VkPipelineLayout layout) const {
+    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    info.stage = stage;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+    return {context_->device(), pipeline};
+}
+
+PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch,
+                                                const Layouts& layouts) const {
+    const Shader& shader = *dispatch.shader;
     std::vector<VkSpecializationMapEntry> entries;
     std::vector<uint32_t> values;
     for (const auto& [id, value] : dispatch.constants) {
@@ -146,18 +178,25 @@ UniquePipeline PipelineCache::makePipeline(const RecordedDispatch& dispatch, con
     specialisation.pMapEntries = entries.data();
     specialisation.dataSize = values.size() * sizeof(uint32_t);
     specialisation.pData = values.data();
-    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = layouts.module.get();
-    info.stage.pName = "main";
-    info.stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;
-    info.layout = layouts.pipeline.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-    UniquePipeline owned(context_->device(), pipeline);
-    context_->setName(pipeline, pipelineName(dispatch));
-    return owned;
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    for (size_t i = 0; i < shader.stages.size(); ++i) {
+        VkPipelineShaderStageCreateInfo& stage = stages.emplace_back();
+        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stage.stage = stageFlag(shader.stages[i].stage);
+        stage.module = layouts.modules[i].get();
+        stage.pName = "main";
+        stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;
+    }
+    Made made;
+    if (shader.tracesRays()) {
+        made.pipeline = makeRayPipeline(*context_, stages, layouts.pipeline.get());
+        made.table.emplace(makeShaderTable(context_, made.pipeline.get(), shader.name));
+    } else {
+        checkWorkgroup(*context_, dispatch);
+        made.pipeline = makeComputePipeline(stages.front(), layouts.pipeline.get());
+    }
+    context_->setName(made.pipeline.get(), pipelineName(dispatch));
+    return made;
 }
 
 }  // namespace limpid::gpu

@@ -63,7 +63,11 @@ class Reflector {
     void readConstants(ShaderReflection& reflection) const;
     void readWorkgroupSize(ShaderReflection& reflection) const;
 
+    ShaderStage stageOf(SpvExecutionModel model) const;
+    ShaderBinding accelerationStructure(const spvc_reflected_resource& resource) const;
+
     const ShaderCode& code_;
+    ShaderStage stage_{};
     std::unique_ptr<spvc_context_s, ContextDeleter> context_;
     spvc_compiler compiler_ = nullptr;
     spvc_resources resources_ = nullptr;
@@ -77,8 +81,7 @@ Reflector::Reflector(const ShaderCode& code) : code_(code) {
     check(spvc_context_parse_spirv(context, code.words.data(), code.words.size(), &ir));
     check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
                                        &compiler_));
-    if (spvc_compiler_get_execution_model(compiler_) != SpvExecutionModelGLCompute)
-        fail("is no compute shader");
+    stage_ = stageOf(spvc_compiler_get_execution_model(compiler_));
     check(spvc_compiler_create_shader_resources(compiler_, &resources_));
 }
 
@@ -149,6 +152,31 @@ ShaderBinding Reflector::image(const spvc_reflected_resource& resource) const {
     }
     result.format = *format;
     return result;
+}
+
+ShaderBinding Reflector::accelerationStructure(const spvc_reflected_resource& resource) const {
+    ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
+    result.kind = BindingKind::AccelerationStructure;
+    result.readable = true;
+    result.writable = false;
+    return result;
+}
+
+ShaderStage Reflector::stageOf(SpvExecutionModel model) const {
+    switch (model) {
+        case SpvExecutionModelGLCompute:
+            return ShaderStage::Compute;
+        case SpvExecutionModelRayGenerationKHR:
+            return ShaderStage::RayGeneration;
+        case SpvExecutionModelMissKHR:
+            return ShaderStage::Miss;
+        case SpvExecutionModelClosestHitKHR:
+            return ShaderStage::ClosestHit;
+        case SpvExecutionModelAnyHitKHR:
+            return ShaderStage::AnyHit;
+        default:
+            fail("is of a stage that Limpid does not use");
+    }
 }
 
 bool Reflector::everyMemberHas(const spvc_reflected_resource& resource, SpvDecoration decoration) const {
@@ -230,8 +258,10 @@ ShaderReflection Reflector::run() {
     refuse(SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS, "samplers");
     refuse(SPVC_RESOURCE_TYPE_PUSH_CONSTANT, "push constants");
     refuse(SPVC_RESOURCE_TYPE_ATOMIC_COUNTER, "atomic counters");
-    refuse(SPVC_RESOURCE_TYPE_ACCELERATION_STRUCTURE, "acceleration structures in shaders yet");
     ShaderReflection reflection;
+    reflection.stage = stage_;
+    for (const auto& r : list(SPVC_RESOURCE_TYPE_ACCELERATION_STRUCTURE))
+        reflection.bindings.push_back(accelerationStructure(r));
     for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_IMAGE)) reflection.bindings.push_back(image(r));
     for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_BUFFER))
         reflection.bindings.push_back(storageBuffer(r));
@@ -241,7 +271,7 @@ ShaderReflection Reflector::run() {
     std::ranges::sort(reflection.bindings, {}, &ShaderBinding::binding);
     checkNumbers(reflection);
     readConstants(reflection);
-    readWorkgroupSize(reflection);
+    if (stage_ == ShaderStage::Compute) readWorkgroupSize(reflection);
     return reflection;
 }
 
@@ -254,6 +284,36 @@ const ShaderBinding* ShaderReflection::find(std::string_view name) const {
 
 ShaderReflection reflect(const ShaderCode& code) {
     return Reflector(code).run();
+}
+
+void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other) {
+    const auto fail = [&](const std::string& name) {
+        throw Error(
+            fmt::format("shader '{}' declares '{}' otherwise than the shader that calls it", other, name));
+    };
+    for (const ShaderBinding& b : from.bindings) {
+        const auto same = [&](const ShaderBinding& a) { return a.name == b.name || a.binding == b.binding; };
+        const auto found = std::ranges::find_if(into.bindings, same);
+        if (found == into.bindings.end()) {
+            into.bindings.push_back(b);
+            continue;
+        }
+        if (found->name != b.name || found->binding != b.binding || found->kind != b.kind ||
+            found->format != b.format || found->blockSize != b.blockSize) {
+            fail(b.name);
+        }
+        found->readable |= b.readable;
+        found->writable |= b.writable;
+    }
+    std::ranges::sort(into.bindings, {}, &ShaderBinding::binding);
+    for (const ShaderConstant& b : from.constants) {
+        const auto found = std::ranges::find(into.constants, b.name, &ShaderConstant::name);
+        if (found == into.constants.end()) {
+            into.constants.push_back(b);
+        } else if (found->id != b.id) {
+            fail(b.name);
+        }
+    }
 }
 
 }  // namespace limpid::gpu

@@ -1,4 +1,4 @@
-// A compute shader as data: its SPIR-V and what reflection says of it. Needs no device.
+// Shaders as data: their SPIR-V and what reflection says of it. Needs no device.
 #pragma once
 
 #include <array>
@@ -16,7 +16,16 @@ struct ShaderCode {
     std::span<const uint32_t> words;
 };
 
-enum class BindingKind { StorageImage, StorageTexelBuffer, StorageBuffer, UniformBuffer };
+enum class ShaderStage { Compute, RayGeneration, Miss, ClosestHit, AnyHit };
+
+enum class BindingKind {
+    StorageImage,
+    StorageTexelBuffer,
+    StorageBuffer,
+    UniformBuffer,
+    AccelerationStructure
+};
+inline constexpr size_t bindingKindCount = 5;
 
 /// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares
 /// it.
@@ -53,9 +62,10 @@ struct ShaderConstant {
 };
 
 struct ShaderReflection {
+    ShaderStage stage = ShaderStage::Compute;
     std::vector<ShaderBinding> bindings;  ///< descriptor set 0 only; another set is an error
     std::vector<ShaderConstant> constants;
-    std::array<uint32_t, 3> workgroupSize{};
+    std::array<uint32_t, 3> workgroupSize{};  ///< of compute shaders
     /// The constant ids of layout(local_size_x_id = ...); noConstant where the size is fixed.
     std::array<uint32_t, 3> workgroupSizeIds{noConstant, noConstant, noConstant};
 
@@ -63,11 +73,15 @@ struct ShaderReflection {
     const ShaderBinding* find(std::string_view name) const;
 };
 
-/// Reads the bindings of a compute shader with SPIRV-Cross: all that the SPIR-V declares, used or not (glslc
+/// Reads the bindings of a shader with SPIRV-Cross: all that the SPIR-V declares, used or not (glslc
 /// without -O keeps unused ones), in the order of their binding numbers. A buffer block is named by its
 /// instance, or by the block if it has none. Constants that have no GLSL name are left out. Throws Error
 /// naming the shader if it uses what Limpid does not (sampled images, push constants, arrays of resources,
 /// another set than 0, an unlisted format, several uniform blocks, two variables at one binding).
 ShaderReflection reflect(const ShaderCode& code);
+
+/// What several stages of one pipeline declare together. Throws Error naming `other` if the two disagree
+/// about a binding or a constant.
+void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other);
 
 }  // namespace limpid::gpu

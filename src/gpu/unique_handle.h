@@ -44,6 +44,8 @@ using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, vkDestroyDescriptorP
 using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, vkDestroyPipelineLayout>;
 using UniquePipeline = UniqueHandle<VkPipeline, vkDestroyPipeline>;
+using UniqueAccelerationStructure =
+    UniqueHandle<VkAccelerationStructureKHR, vkDestroyAccelerationStructureKHR>;
 using UniqueShaderModule = UniqueHandle<VkShaderModule, vkDestroyShaderModule>;
 
 /// Instances and devices have no parent to be destroyed with.
@@ -101,6 +103,9 @@ constexpr VkObjectType objectType(VkPipeline) {
 }
 constexpr VkObjectType objectType(VkShaderModule) {
     return VK_OBJECT_TYPE_SHADER_MODULE;
+}
+constexpr VkObjectType objectType(VkAccelerationStructureKHR) {
+    return VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR;
 }
 constexpr VkObjectType objectType(VkQueue) {
     return VK_OBJECT_TYPE_QUEUE;

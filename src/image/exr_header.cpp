@@ -24,6 +24,9 @@ namespace fs = std::filesystem;
 
 /// A row of chunks is decoded into one buffer; this much at most.
 constexpr uint64_t maxChunkBytes = uint64_t{1} << 30;
+/// OpenEXR allocates several tiles at once, whole even where the picture ends. Beyond this size they may be
+/// at most as large as the picture, whose size the file's limits.
+constexpr uint64_t maxTileBytes = uint64_t{1} << 26;
 
 /// Walks the raw attribute lists: an attribute that claims more bytes than the file has would make the
 /// library allocate them before it notices.
@@ -89,11 +92,11 @@ int rowsPerChunk(Imf::Compression compression) {
     }
 }
 
-/// Above the best that each method can do on a constant picture.
+/// Above the best that each method can do on a constant picture (DWA: 37,000 on rows of 131,072 pixels).
 uint64_t largestRatio(Imf::Compression compression) {
     if (compression == Imf::NO_COMPRESSION) return 1;
     const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
-    return dwa ? uint64_t{1} << 17 : 2048;
+    return dwa ? uint64_t{1} << 16 : 2048;
 }
 
 /// Width and height of a window whose coordinates are too small to overflow anything.
@@ -139,6 +142,11 @@ int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bo
         if (rows == 0 || columns == 0 || rows > maxPixels || columns > maxPixels) {
             throw InputError(name, fmt::format("has tiles of {}x{} pixels", columns, rows));
         }
+        const uint64_t tile = rows * columns;
+        if (tile > maxTileBytes / bytesPerPixel && tile > data.width * data.height) {
+            throw InputError(name, fmt::format("has tiles of {}x{} pixels in a picture of {}x{}", columns,
+                                               rows, data.width, data.height));
+        }
     }
     // Rows of tiles are cached whole, so the widest extent counts.
     if (rows > maxChunkBytes / (std::max(columns, data.width) * bytesPerPixel)) {
@@ -173,9 +181,9 @@ ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes
 
     // The frame may be far larger than a cropped render inside it, but not without limit: it is allocated.
     checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
-    const uint64_t values = display.width * display.height * (bytesPerPixel / 2);
-    const uint64_t stored = data.width * data.height * (bytesPerPixel / 2);
-    if (values > (uint64_t{1} << 27) && values / 64 > stored) {
+    const uint64_t pixels = display.width * display.height;
+    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 27);
+    if (large && pixels / 64 > data.width * data.height) {
         throw InputError(name, fmt::format("has a frame of {}x{} pixels around {}x{} stored ones",
                                            display.width, display.height, data.width, data.height));
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <string_view>
 
 #include "base/error.h"
@@ -18,12 +19,15 @@
 namespace limpid::image {
 namespace {
 
+/// All channels, their values still to come: memory that a damaged file only claims is reserved, but never
+/// touched.
 LayeredImage emptyImage(const ExrFrame& frame, const Imf::Header& header) {
     LayeredImage image;
     image.width = frame.width();
     image.height = frame.height();
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-        Channel channel{it.name(), Storage::Float, std::vector<float>(size_t{image.width} * image.height)};
+        Channel channel{it.name(), Storage::Float, {}};
+        channel.values.reserve(size_t{image.width} * image.height);
         if (it.channel().type == Imf::HALF) channel.storage = Storage::Half;
         if (it.channel().type == Imf::UINT) channel.storage = Storage::Uint;
         image.channels.push_back(std::move(channel));
@@ -38,13 +42,21 @@ LayeredImage emptyImage(const ExrFrame& frame, const Imf::Header& header) {
     return image;
 }
 
+/// Rows that exist already keep their values, new ones are 0.
+void growTo(LayeredImage& image, int rows) {
+    for (Channel& channel : image.channels)
+        channel.values.resize(size_t{image.width} * static_cast<size_t>(rows));
+}
+
 /// Whole chunks of rows, decoded at the data window's full width: one plane of 32-bit words for each channel.
 class Band {
   public:
     Band(const Imath::Box2i& data, int rows, size_t channels)
-        : data_(data),
-          width_(static_cast<size_t>(data.max.x - data.min.x) + 1),
-          planes_(channels, std::vector<uint32_t>(width_ * static_cast<size_t>(rows))) {}
+        : data_(data), width_(static_cast<size_t>(data.max.x - data.min.x) + 1), planes_(channels) {
+        // Not initialised: decoding fills them, and where it fails the memory was never touched.
+        for (auto& plane : planes_)
+            plane = std::make_unique_for_overwrite<uint32_t[]>(width_ * static_cast<size_t>(rows));
+    }
 
     /// Decodes rows first..last of the file, in its own coordinates.
     void read(Imf::InputPart& part, const LayeredImage& image, int first, int last) {
@@ -53,7 +65,7 @@ class Band {
         for (size_t c = 0; c < planes_.size(); ++c) {
             // EXR addresses pixels by absolute coordinates, so its base pointer lies outside the plane: an
             // integer, because C++ gives such a pointer no meaning.
-            const auto base = reinterpret_cast<intptr_t>(planes_[c].data());
+            const auto base = reinterpret_cast<intptr_t>(planes_[c].get());
             const auto width = static_cast<intptr_t>(width_);
             const intptr_t origin = base - 4 * (intptr_t{data_.min.x} + intptr_t{first} * width);
             const Imf::PixelType type = image.channels[c].storage == Storage::Uint ? Imf::UINT : Imf::FLOAT;
@@ -85,7 +97,7 @@ class Band {
     Imath::Box2i data_;
     size_t width_;
     int first_ = 0;
-    std::vector<std::vector<uint32_t>> planes_;
+    std::vector<std::unique_ptr<uint32_t[]>> planes_;
 };
 
 void readPixels(Imf::InputPart& part, const ExrFrame& frame, LayeredImage& image) {
@@ -101,8 +113,10 @@ void readPixels(Imf::InputPart& part, const ExrFrame& frame, LayeredImage& image
         const int bottom = std::min(last, frame.display.max.y);
         if (top > bottom) continue;  // overscan rows
         band.read(part, image, first, last);
+        growTo(image, bottom - frame.display.min.y + 1);
         for (int y = top; y <= bottom; ++y) band.copyRow(image, frame.display, y);
     }
+    growTo(image, frame.display.max.y - frame.display.min.y + 1);
 }
 
 LayeredImage decode(std::span<const std::byte> bytes, const std::filesystem::path& name) {

@@ -13,8 +13,12 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// An accessor without a buffer view costs no file bytes, so the document's size does not bound it.
-constexpr uint64_t maxZeroElements = uint64_t{1} << 24;
+/// An accessor without a buffer view is zeros that no byte of the file pays for, and each use of it makes
+/// vertices or triangles. Where they mean something (the base of a sparse morph target) the document holds as
+/// many vertices, of several bytes each.
+uint64_t maxZeroElements(const Document& document) {
+    return 4096 + document.byteCount();
+}
 
 enum class Component : uint32_t { I8 = 5120, U8 = 5121, I16 = 5122, U16 = 5123, U32 = 5125, F32 = 5126 };
 
@@ -100,7 +104,7 @@ Elements baseElements(const Document& document, const Object& accessor) {
     elements.normalized = accessor.boolean("normalized", false);
     elements.count = static_cast<size_t>(countOf(accessor));
     locate(document, accessor, true, elements);
-    if (!accessor.has("bufferView") && elements.count > maxZeroElements) {
+    if (!accessor.has("bufferView") && elements.count > maxZeroElements(document)) {
         accessor.fail("count", fmt::format("is {}, too many for an accessor without data", elements.count));
     }
     return elements;

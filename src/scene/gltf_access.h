@@ -5,7 +5,8 @@
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#accessors
 //
 // Every function takes an accessor's index, in range, and throws InputError if the accessor has another shape
-// than asked for, reaches beyond its buffer view, or has more than `maxElements` elements.
+// than asked for, reaches beyond its buffer view, or has more than `maxElements` elements
+// (without a buffer view: than 4096 and one for each byte of the document).
 #pragma once
 
 #include <cstdint>

@@ -98,7 +98,9 @@ Document::Lists::Lists(const Object& r)
 }
 
 Document::Document(const std::filesystem::path& file) : files_(file) {
-    const std::vector<std::byte> text = takeJson(readSceneFile(file));
+    std::vector<std::byte> content = readSceneFile(file);
+    byteCount_ = content.size();
+    const std::vector<std::byte> text = takeJson(std::move(content));
     json_ = std::make_unique<const Json>(parseJson(this->file(), text));
     const Object root(this->file(), *json_, "");
     lists_ = std::make_unique<const Lists>(root);
@@ -164,6 +166,7 @@ void Document::readBuffers() {
         total += bytes.size();
         if (total > SceneFiles::maxTotalBytes) buffer.fail("the buffers are too large together");
         bytes.resize(static_cast<size_t>(length));
+        byteCount_ += length;
         buffers_.push_back(std::move(bytes));
     }
 }

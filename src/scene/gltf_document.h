@@ -41,6 +41,9 @@ class Document {
     };
     const Lists& lists() const { return *lists_; }
 
+    /// The bytes of the file and of all buffers: what the document cost whoever made it.
+    uint64_t byteCount() const { return byteCount_; }
+
     /// The bytes of a buffer view (index in range). Throws InputError if they are not inside its buffer.
     std::span<const std::byte> bytes(int bufferView) const;
 
@@ -62,6 +65,7 @@ class Document {
     std::unique_ptr<const Lists> lists_;
     std::vector<std::byte> binaryChunk_;
     std::vector<std::vector<std::byte>> buffers_;
+    uint64_t byteCount_ = 0;
     std::set<std::string> warnings_;
 };
 

@@ -32,14 +32,16 @@ std::vector<vec3> readDeltas(const Document& document, const Object& target, con
 void normaliseWeights(Document& document, const Object& primitive, std::vector<vec4>& weights) {
     size_t odd = 0;
     for (vec4& weight : weights) {
+        const bool negative = glm::any(glm::lessThan(weight, vec4(0.0f)));
+        weight = glm::max(weight, vec4(0.0f));
         const float sum = weight.x + weight.y + weight.z + weight.w;
         const bool usable = isFinite(weight) && sum > 1e-20f && std::isfinite(sum);
-        if (!usable || std::abs(sum - 1.0f) > weightTolerance) ++odd;
+        if (negative || !usable || std::abs(sum - 1.0f) > weightTolerance) ++odd;
         // Dividing by the sum also covers files that spread weights over WEIGHTS_1.
         weight = usable ? weight / sum : vec4(0.0f);
     }
     if (odd > 0) {
-        document.warn(fmt::format("{}: the weights of {} vertices do not sum to 1 and were scaled",
+        document.warn(fmt::format("{}: the weights of {} vertices are negative or do not sum to 1 and were corrected",
                                   primitive.place(), odd));
     }
 }

@@ -6,7 +6,7 @@
 
 namespace limpid::scene {
 
-GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
+GpuScene::GpuScene(gpu::Device& device, const SceneData& data, Tracer tracer)
     : features_(data.features), params_(data.params), stackSize_(data.stackSize), cpuDevice_(device.isCpu()) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
@@ -36,6 +36,9 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data)
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
     }
     if (!data.motion.deforming.empty()) addDeformBuffers(device, data);
+    if (tracer == Tracer::Pipeline) {
+        structures_.emplace(device, "scene/structures", buffer("bvhTriangles"), data.trees, data.placements);
+    }
 }
 
 void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
@@ -71,6 +74,7 @@ const gpu::Buffer& GpuScene::buffer(std::string_view name) const {
 std::vector<gpu::Binding> GpuScene::bindings() const {
     std::vector<gpu::Binding> result;
     for (const NamedBuffer& named : buffers_) result.push_back({named.name, &named.buffer});
+    if (structures_) result.push_back({"topLevel", &*structures_});
     return result;
 }
 
@@ -95,6 +99,7 @@ uint64_t GpuScene::byteCount() const {
     uint64_t sum = 0;
     for (const NamedBuffer& named : buffers_) sum += named.buffer.size();
     for (const NamedBuffer& named : deformBuffers_) sum += named.buffer.size();
+    if (structures_) sum += structures_->byteCount();
     return sum;
 }
 

@@ -14,6 +14,7 @@ struct MovingLeaf {
     uint32_t instance = 0;
     uint32_t record = 0;  ///< in bvhInstances
     uint32_t root = 0;    ///< of its tree
+    uint32_t tree = 0;    ///< in SceneData::trees
     Aabb bounds;          ///< of that tree, in the instance's space; of deforming ones at rest
 };
 

@@ -30,6 +30,9 @@ void fillDielectricTable(std::vector<float>& table);
 /// JCGT 2014).
 uint32_t packDirection(const vec3& direction);
 
+/// Invisible if it cannot be inverted, as in our own trees.
+gpu::TreePlacement placementOf(uint32_t tree, const mat4& toWorld);
+
 inline uint32_t bits(float value) {
     return std::bit_cast<uint32_t>(value);
 }

@@ -62,6 +62,7 @@ class GeometryPacker {
             packTwoLevels();
         } else {
             const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+            data_.placements.push_back(placementOf(tree.number, mat4(1.0f)));
             data_.params.rootNode = tree.root;
             data_.stackSize = tree.stackSize + 1;
             bounds_ = tree.bounds;
@@ -79,6 +80,7 @@ class GeometryPacker {
     struct Tree {
         uint32_t root, stackSize;
         Aabb bounds;
+        uint32_t number;  ///< in SceneData::trees
     };
 
     void findInstancedMeshes() {
@@ -187,7 +189,8 @@ class GeometryPacker {
     }
 
     /// Builds a tree and appends it to the node and triangle buffers.
-    Tree appendTree(const std::vector<Aabb>& boxes, const std::vector<LeafTriangle>& triangles) {
+    Tree appendTree(const std::vector<Aabb>& boxes, const std::vector<LeafTriangle>& triangles,
+                    bool moves = false) {
         const Bvh bvh = buildBvh(boxes, maxTrianglesPerLeaf);
         const auto firstTriangle =
             static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS);
@@ -205,7 +208,11 @@ class GeometryPacker {
             data_.bvhTriangles.emplace_back(t.v[1], std::bit_cast<float>(t.instance));
             data_.bvhTriangles.emplace_back(t.v[2], std::bit_cast<float>(t.shadingTriangle));
         }
-        return {root, bvh.stackSize, bvh.bounds};
+        const bool opaque = std::none_of(triangles.begin(), triangles.end(), [](const LeafTriangle& t) {
+            return (t.primitive & layout::BVH_TRIANGLE_ALPHA) != 0;
+        });
+        data_.trees.push_back({firstTriangle, static_cast<uint32_t>(triangles.size()), opaque, moves});
+        return {root, bvh.stackSize, bvh.bounds, static_cast<uint32_t>(data_.trees.size() - 1)};
     }
 
     template <typename Rebase>
@@ -245,7 +252,8 @@ class GeometryPacker {
         const size_t at = data_.bvhInstances.size();
         data_.bvhInstances.resize(at + layout::BVH_INSTANCE_TEXELS);
         packRows(&data_.bvhInstances[at], isInvertible(toWorld) ? glm::inverse(toWorld) : mat4(1.0f));
-        data_.bvhInstances[at + 3] = {tree.root, instance, 0, 0};
+        data_.bvhInstances[at + 3] = {tree.root, instance, data_.trees[tree.number].first, 0};
+        data_.placements.push_back(placementOf(tree.number, toWorld));
         deepest_ = std::max(deepest_, tree.stackSize);
         return static_cast<uint32_t>(at / layout::BVH_INSTANCE_TEXELS);
     }
@@ -261,7 +269,8 @@ class GeometryPacker {
             if (!trees[mesh]) trees[mesh] = appendMeshTree(mesh);
             const uint32_t record = addRecord(*trees[mesh], instance.transform, i);
             if (moves) {
-                data_.motion.leaves.push_back({i, record, trees[mesh]->root, trees[mesh]->bounds});
+                data_.motion.leaves.push_back(
+                    {i, record, trees[mesh]->root, trees[mesh]->number, trees[mesh]->bounds});
             } else {
                 still_.push_back({record, transformed(trees[mesh]->bounds, instance.transform)});
             }
@@ -282,10 +291,10 @@ class GeometryPacker {
                 addTriangle(mesh, t, Transform(mat4(1.0f)), t | alphaFlag(mesh, instance, t), layout::NONE,
                             firstTriangle + t, boxes, triangles);
             }
-            const Tree tree = appendTree(boxes, triangles);
+            const Tree tree = appendTree(boxes, triangles, true);
             deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
             const uint32_t record = addRecord(tree, instance.transform, deforming.instance);
-            motion.leaves.push_back({deforming.instance, record, tree.root, tree.bounds});
+            motion.leaves.push_back({deforming.instance, record, tree.root, tree.number, tree.bounds});
         }
         motion.refitNodeCount = nodeCount() - motion.firstRefitNode;
         findRefitLevels(data_);
@@ -344,6 +353,15 @@ class GeometryPacker {
 };
 
 }  // namespace
+
+gpu::TreePlacement placementOf(uint32_t tree, const mat4& toWorld) {
+    gpu::TreePlacement placement{.tree = tree, .visible = isInvertible(toWorld)};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column)
+            placement.toWorld[static_cast<size_t>(4 * row + column)] = toWorld[column][row];
+    }
+    return placement;
+}
 
 void packGeometry(const Scene& scene, SceneData& data) {
     GeometryPacker(scene, data).pack();

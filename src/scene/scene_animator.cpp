@@ -42,6 +42,19 @@ bool isMirrored(const mat4& m) {
     return glm::determinant(mat3(m)) < 0.0f;
 }
 
+/// Far enough from overflow for squared lengths and areas: the limit of findFault() for scenes at rest. The
+/// empty box of what has become NaN is not in it.
+bool isInRange(const Aabb& box) {
+    const auto small = [](const vec3& v) {
+        return std::abs(v.x) < 1e18f && std::abs(v.y) < 1e18f && std::abs(v.z) < 1e18f;
+    };
+    return !box.empty() && small(box.lower) && small(box.upper);
+}
+
+[[noreturn]] void failOutOfRange(const Instance& instance) {
+    throw Error(fmt::format("instance '{}' leaves the range of numbers", instance.name));
+}
+
 /// `box` with each corner moved by weight * something in `delta`.
 Aabb widened(Aabb box, const Aabb& delta, float weight) {
     const vec3 a = weight * delta.lower, b = weight * delta.upper;
@@ -57,6 +70,7 @@ SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
     if (scene.clip == none) throw Error("no clip is chosen");
     for (const MovingLeaf& leaf : motion_.leaves)
         records_.push_back(data.instances[size_t{leaf.instance} * layout::INSTANCE_TEXELS + 3]);
+    for (const gpu::TriangleTree& tree : data.trees) firstTriangles_.push_back(tree.first);
     firstPunctual_ = data.lights.size() - scene.lights.size() * layout::LIGHT_TEXELS;
     punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
     // On the device already, and the largest part.
@@ -67,6 +81,11 @@ SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
 SceneAnimator::Moment SceneAnimator::momentAt(double time) const {
     Moment moment;
     moment.pose = evaluate(scene_.rig, &scene_.rig.clips[static_cast<size_t>(scene_.clip)], time);
+    for (size_t node = 0; node < moment.pose.toWorld.size(); ++node) {
+        if (!isFinite(moment.pose.toWorld[node]))
+            throw Error(
+                fmt::format("node {} '{}' leaves the range of numbers", node, scene_.rig.nodes[node].name));
+    }
     for (const MovingLeaf& leaf : motion_.leaves) {
         const Instance& instance = scene_.instances[leaf.instance];
         const bool skinned = instance.skin != none;
@@ -153,8 +172,9 @@ void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneF
 
         std::array<uvec4, layout::BVH_INSTANCE_TEXELS> bvh{};
         packRows(bvh.data(), isInvertible(transform) ? glm::inverse(transform) : mat4(1.0f));
-        bvh[3] = {leaf.root, leaf.instance, 0, 0};
+        bvh[3] = {leaf.root, leaf.instance, firstTriangles_[leaf.tree], 0};
         addUpload<uvec4>(frame, "bvhInstances", uint64_t{leaf.record} * sizeof(bvh), bvh);
+        frame.placements.emplace_back(leaf.record, placementOf(leaf.tree, transform));
     }
 }
 
@@ -169,7 +189,9 @@ Aabb SceneAnimator::boundsOf(const DeformingInstance& deforming, const Moment& m
         for (size_t t = 0; t < deforming.targetBounds.size() && t < weights.size(); ++t)
             box = widened(box, deforming.targetBounds[t], weights[t]);
         const bool moved = instance.skin != none && joint != layout::NONE;
-        result.grow(moved ? transformed(box, moment.skins.at(instance.skin)[joint]) : box);
+        if (moved && isInRange(box)) box = transformed(box, moment.skins.at(instance.skin)[joint]);
+        if (!isInRange(box)) failOutOfRange(instance);
+        result.grow(box);
     }
     return result;
 }
@@ -182,7 +204,10 @@ void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
     for (size_t i = 0; i < motion_.leaves.size(); ++i) {
         const mat4& transform = now.transforms[i];
         Aabb box;
-        if (isFinite(transform) && isInvertible(transform)) box = transformed(bounds[i], transform);
+        if (isInvertible(transform)) {
+            box = transformed(bounds[i], transform);
+            if (!isInRange(box)) failOutOfRange(scene_.instances[motion_.leaves[i].instance]);
+        }
         leaves.push_back({motion_.leaves[i].record, box});
     }
     const uint32_t firstMoving = motion_.firstTopNode + 1;

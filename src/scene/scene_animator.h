@@ -20,8 +20,9 @@ struct SceneFrame {
         std::vector<std::byte> bytes;
     };
     std::vector<Upload> uploads;
-    std::vector<layout::PoseParams> poses;    ///< one per deforming instance
-    std::span<const RefitLevel> refitLevels;  ///< of the animator
+    std::vector<std::pair<uint32_t, gpu::TreePlacement>> placements;  ///< of SceneData, by their numbers
+    std::vector<layout::PoseParams> poses;                            ///< one per deforming instance
+    std::span<const RefitLevel> refitLevels;                          ///< of the animator
     uint32_t firstRefitNode = 0;
     layout::SceneParams params{};
 };
@@ -52,8 +53,9 @@ class SceneAnimator {
     bool hasVertexData_;
     std::vector<uvec4>
         records_;  ///< the last texel of every moving instance's record in `instances`, by leaf
-    std::vector<uvec4> punctual_;  ///< the scene's punctual lights as packed
-    uint64_t firstPunctual_ = 0;   ///< their first texel in `lights`
+    std::vector<uint32_t> firstTriangles_;  ///< of the trees
+    std::vector<uvec4> punctual_;           ///< the scene's punctual lights as packed
+    uint64_t firstPunctual_ = 0;            ///< their first texel in `lights`
 };
 
 /// The camera where its node stands at `time`.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gpu/acceleration_structures.h"
 #include "scene/motion_data.h"
 #include "scene/scene.h"
 #include "shaders/scene_layout.h"
@@ -36,6 +37,10 @@ struct SceneData {
     layout::SceneParams params{};
     uint32_t stackSize = 0;
     MotionData motion;
+    /// For the `pipeline` tracer: the trees as runs of bvhTriangles, and a placement for each record of
+    /// bvhInstances; in a scene of one tree, one placement.
+    std::vector<gpu::TriangleTree> trees;
+    std::vector<gpu::TreePlacement> placements;
 
     uint64_t byteCount() const;
 };

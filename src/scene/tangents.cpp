@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "scene/mesh_repair.h"
 
@@ -26,14 +28,17 @@ void gatherVertices(Mesh& mesh, const std::vector<uint32_t>& from) {
     gather(mesh.colors, from);
 }
 
-void addFlatNormals(Mesh& mesh) {
-    gatherVertices(mesh, mesh.indices);
+/// Returns the old vertex that each new one copies.
+std::vector<uint32_t> addFlatNormals(Mesh& mesh) {
+    const std::vector<uint32_t> from = mesh.indices;
+    gatherVertices(mesh, from);
     for (size_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = static_cast<uint32_t>(i);
     mesh.normals = sumFaceNormals(mesh);
     for (vec3& normal : mesh.normals) {
         normal = safeNormalize(normal);
         if (normal == vec3(0.0f)) normal = {0.0f, 1.0f, 0.0f};
     }
+    return from;
 }
 
 struct Face {
@@ -53,8 +58,13 @@ Face faceTangent(const Mesh& mesh, const std::vector<vec2>& uv, size_t first) {
     return {safeNormalize((e1 * d2.y - e2 * d1.y) * (area > 0.0f ? 1.0f : -1.0f)), area > 0.0f};
 }
 
+struct Split {
+    std::vector<uint32_t> from;  ///< the old vertex that each new one copies
+    std::vector<bool> mirrored;  ///< of each new one
+};
+
 /// Gives triangles on either side of a mirroring edge vertices of their own.
-std::vector<bool> splitMirrored(Mesh& mesh, const std::vector<Face>& faces) {
+Split splitMirrored(Mesh& mesh, const std::vector<Face>& faces) {
     constexpr uint32_t unset = ~0u;
     const size_t vertices = mesh.positions.size();
     std::vector<std::array<uint32_t, 2>> copies(vertices, {unset, unset});
@@ -77,7 +87,7 @@ std::vector<bool> splitMirrored(Mesh& mesh, const std::vector<Face>& faces) {
         index = copy;
     }
     if (from.size() > vertices) gatherVertices(mesh, from);
-    return mirrored;
+    return {std::move(from), std::move(mirrored)};
 }
 
 float angleAt(const Mesh& mesh, const uint32_t* corner, size_t c) {
@@ -101,23 +111,56 @@ std::vector<vec3> sumTangents(const Mesh& mesh, const std::vector<Face>& faces) 
     return sums;
 }
 
-}  // namespace
-
-void generateTangents(Mesh& mesh, int uvSet) {
+/// generateTangents() for the mesh as it stands. Returns the old vertex that each new one copies, which
+/// follows from the indices and texture coordinates alone.
+std::vector<uint32_t> generateStill(Mesh& mesh, int uvSet) {
     mesh.tangents.clear();
-    if (mesh.normals.empty()) addFlatNormals(mesh);
+    std::vector<uint32_t> flat;
+    if (mesh.normals.empty()) flat = addFlatNormals(mesh);
     const std::vector<vec2>& uv = uvSet == 1 ? mesh.uv1 : mesh.uv0;
     std::vector<Face> faces(mesh.triangleCount());
     for (size_t f = 0; f < faces.size() && !uv.empty(); ++f) faces[f] = faceTangent(mesh, uv, 3 * f);
-    const std::vector<bool> mirrored = splitMirrored(mesh, faces);
+    Split split = splitMirrored(mesh, faces);
     const std::vector<vec3> sums = sumTangents(mesh, faces);
     mesh.tangents.reserve(sums.size());
     for (size_t i = 0; i < sums.size(); ++i) {
         const vec3& normal = mesh.normals[i];
         vec3 tangent = safeNormalize(sums[i] - normal * glm::dot(normal, sums[i]));
         if (tangent == vec3(0.0f)) tangent = anyPerpendicular(normal);
-        mesh.tangents.emplace_back(tangent, mirrored[i] ? -1.0f : 1.0f);
+        mesh.tangents.emplace_back(tangent, split.mirrored[i] ? -1.0f : 1.0f);
     }
+    gather(flat, split.from);
+    return flat.empty() ? std::move(split.from) : flat;
+}
+
+}  // namespace
+
+void generateTangents(Mesh& mesh, int uvSet) {
+    if (!mesh.deformation) {
+        generateStill(mesh, uvSet);
+        return;
+    }
+    // What moves the vertices is split as they are, and starts from normals and tangents of the mesh at rest.
+    Deformation deformation = *mesh.deformation;
+    Mesh rest;
+    rest.positions = std::move(deformation.positions);
+    rest.normals = std::move(deformation.normals);
+    rest.uv0 = mesh.uv0;
+    rest.uv1 = mesh.uv1;
+    rest.indices = mesh.indices;
+    const std::vector<uint32_t> from = generateStill(rest, uvSet);
+    generateStill(mesh, uvSet);
+    deformation.positions = std::move(rest.positions);
+    deformation.normals = std::move(rest.normals);
+    deformation.tangents = std::move(rest.tangents);
+    for (MorphTarget& target : deformation.targets) {
+        gather(target.positions, from);
+        gather(target.normals, from);
+        target.tangents.clear();  // they would belong to tangents that the file does not have
+    }
+    gather(deformation.joints, from);
+    gather(deformation.weights, from);
+    mesh.deformation = std::make_shared<const Deformation>(std::move(deformation));
 }
 
 }  // namespace limpid::scene

@@ -10,7 +10,8 @@ namespace limpid::scene {
 /// wrinkled surfaces revisited", 2008), perpendicular to the normal. w is +1 where cross(normal, tangent)
 /// points up the picture (against v), -1 where the picture is mirrored; vertices between the two are split. A
 /// mesh without normals gets flat ones, for which its vertices are split by triangle. Without texture
-/// coordinates any perpendicular serves.
+/// coordinates any perpendicular serves. mesh.deformation follows: it gets the same vertices, and normals and
+/// tangents of the mesh at rest.
 void generateTangents(Mesh& mesh, int uvSet);
 
 }  // namespace limpid::scene

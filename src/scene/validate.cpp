@@ -33,6 +33,20 @@ bool fits(const std::vector<Vector>& values, const Mesh& mesh) {
     return values.empty() || values.size() == mesh.positions.size();
 }
 
+/// The arrays of a deformation, which are indexed by vertex without further checks.
+bool fitsDeformation(const Mesh& mesh) {
+    const Deformation& d = *mesh.deformation;
+    const auto sameAs = [&](const auto& values, bool present) {
+        return values.size() == (present ? mesh.positions.size() : 0);
+    };
+    const bool targets = std::all_of(d.targets.begin(), d.targets.end(), [&](const MorphTarget& target) {
+        return fits(target.positions, mesh) && fits(target.normals, mesh) && fits(target.tangents, mesh);
+    });
+    return targets && sameAs(d.positions, true) && sameAs(d.normals, !mesh.normals.empty()) &&
+           sameAs(d.tangents, !mesh.tangents.empty()) && fits(d.joints, mesh) && fits(d.weights, mesh) &&
+           d.joints.size() == d.weights.size();
+}
+
 Fault checkMesh(const Mesh& mesh) {
     if (mesh.indices.size() % 3 != 0) return "has an incomplete triangle";
     if (!mesh.materialSlots.empty() && mesh.materialSlots.size() != mesh.triangleCount()) {
@@ -42,6 +56,7 @@ Fault checkMesh(const Mesh& mesh) {
         !fits(mesh.uv1, mesh) || !fits(mesh.colors, mesh)) {
         return "has an attribute of another length than its positions";
     }
+    if (mesh.deformation && !fitsDeformation(mesh)) return "has a deformation of other vertices than its own";
     const size_t vertices = mesh.positions.size();
     if (!std::all_of(mesh.indices.begin(), mesh.indices.end(), [&](uint32_t i) { return i < vertices; })) {
         return "has an index out of range";

@@ -103,8 +103,9 @@ vec4 materialTexture(uint index, VertexData data, float footprint) {
     return result;
 }
 
-/// True if a candidate hit on a MASK or BLEND material counts.
-bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, inout uint rng) {
+/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by `rng` and the triangle together, so
+/// that neither the order of candidates nor asking twice makes a difference.
+bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) {
     const TriangleIds ids = loadTriangleIds(triangle, instance);
     const uvec4 indices = imageLoad(triangles, int(ids.shadingTriangle));
     const int at = int(materialOf(indices.w, instance) * MATERIAL_TEXELS);
@@ -116,9 +117,10 @@ bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, inout uint
         alpha *= data.color.a;
         if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data, 0.0).a;
     }
-    const float threshold = (flags & MATERIAL_BLEND) != 0u ? random(rng) : uintBitsToFloat(alphaTexel.y);
+    const bool blend = (flags & MATERIAL_BLEND) != 0u;
+    const float threshold = blend ? randomOf(rng, triangle, instance) : uintBitsToFloat(alphaTexel.y);
     const bool opaque = (flags & (MATERIAL_BLEND | MATERIAL_MASK)) == 0u;
-    return opaque || ((flags & MATERIAL_BLEND) != 0u ? alpha > threshold : alpha >= threshold);
+    return opaque || (blend ? alpha > threshold : alpha >= threshold);
 }
 
 /// The tangent-space normal of the map, in world space.

@@ -41,6 +41,12 @@ float random(inout uint state) {
     return float(result >> 8) / float(0x01000000);
 }
 
+/// A number that follows from the state and two more, and leaves the state as it is.
+float randomOf(uint state, uint a, uint b) {
+    const uint mixed = pcgOutput(state ^ pcgOutput(a * 747796405u + 2891336453u) ^ (b * 277803737u));
+    return float(pcgOutput(mixed * 747796405u + 2891336453u) >> 8) / float(0x01000000);
+}
+
 vec2 random2(inout uint state) {
     const float x = random(state);
     return vec2(x, random(state));

@@ -21,7 +21,8 @@ LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
 LIMPID_CONST uint BVH_TRIANGLE_TEXELS = 3u;
 LIMPID_CONST uint BVH_TRIANGLE_ALPHA = 0x80000000u;  // in the first texel's w: candidates need the alpha test
 
-// bvhInstances, leaves of the top tree: three rows of world-to-object; root node | instance | 0 | 0.
+// bvhInstances, leaves of the top tree: three rows of world-to-object; root node | instance | the tree's
+// first triangle in bvhTriangles | 0.
 LIMPID_CONST uint BVH_INSTANCE_TEXELS = 4u;
 
 // triangles (shading): vertex 0, 1, 2 | material slot and flags.

@@ -1,5 +1,6 @@
 // The one interface through which passes trace rays. Implementations: trace_compute.glsl (our tree, walked in a
-// compute shader). Shading never depends on which one is used.
+// compute shader) and, where the including shader defines LIMPID_TRACE_PIPELINE, trace_pipeline.glsl (the driver's, from
+// ray generation). Shading never depends on which one is used.
 #ifndef LIMPID_TRACE_GLSL
 #define LIMPID_TRACE_GLSL
 
@@ -24,16 +25,16 @@ bool isHit(Hit hit) {
     return hit.t < INFINITE_DISTANCE;
 }
 
+// Each has:
+//
+//     /// The nearest hit with t in (0, ray.tMax). `rng` decides on partly transparent (BLEND) surfaces; it is not used up.
+//     Hit traceClosest(Ray ray, uint rootNode, uint rng);
+//     /// Whether anything lies between the origin and ray.tMax.
+//     bool traceAny(Ray ray, uint rootNode, uint rng);
+#ifdef LIMPID_TRACE_PIPELINE
+#include "shaders/trace_pipeline.glsl"
+#else
 #include "shaders/trace_compute.glsl"
-
-/// The nearest hit with t in (0, ray.tMax). `rng` decides on partly transparent (BLEND) surfaces.
-Hit traceClosest(Ray ray, uint rootNode, inout uint rng) {
-    return traverse(ray, rootNode, false, rng);
-}
-
-/// Whether anything lies between the origin and ray.tMax.
-bool traceAny(Ray ray, uint rootNode, inout uint rng) {
-    return isHit(traverse(ray, rootNode, true, rng));
-}
+#endif
 
 #endif

@@ -84,7 +84,7 @@ vec2 across(TraversalRay ray, vec3 p) {
 }
 
 /// Replaces `hit` if the triangle is nearer.
-void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hit, inout uint rng) {
+void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hit, uint rng) {
     const int at = int(index * BVH_TRIANGLE_TEXELS);
     const vec4 texel0 = imageLoad(bvhTriangles, at);
     const vec3 v0 = texel0.xyz - ray.origin;
@@ -112,7 +112,7 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
 }
 
 /// With `anyHit` the first hit found ends the traversal.
-Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
+Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
     Hit hit = Hit(worldRay.tMax, vec2(0.0), NONE, NONE);
     TraversalRay ray = traversalRay(worldRay.origin, worldRay.direction);
     uint instance = NONE;
@@ -177,6 +177,14 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, inout uint rng) {
     }
     if (hit.triangle == NONE) hit.t = INFINITE_DISTANCE;
     return hit;
+}
+
+Hit traceClosest(Ray ray, uint rootNode, uint rng) {
+    return traverse(ray, rootNode, false, rng);
+}
+
+bool traceAny(Ray ray, uint rootNode, uint rng) {
+    return isHit(traverse(ray, rootNode, true, rng));
 }
 
 #endif

@@ -5,36 +5,56 @@
 #include "refit.comp.h"
 
 namespace limpid {
+namespace {
 
-void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame) {
+std::vector<gpu::Binding> bind(const scene::GpuScene& scene, std::initializer_list<std::string_view> names) {
+    std::vector<gpu::Binding> bindings;
+    for (const std::string_view name : names) bindings.push_back({name, &scene.buffer(name)});
+    return bindings;
+}
+
+void upload(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::SceneFrame& frame) {
     for (const scene::SceneFrame::Upload& upload : frame.uploads)
         graph.upload(scene.buffer(upload.buffer), upload.offset, upload.bytes);
-    scene.setParams(frame.params);
-    const auto bind = [&](std::initializer_list<std::string_view> names) {
-        std::vector<gpu::Binding> bindings;
-        for (const std::string_view name : names) bindings.push_back({name, &scene.buffer(name)});
-        return bindings;
-    };
+    if (!scene.structures()) return;
+    for (const auto& [number, placement] : frame.placements)
+        graph.place(*scene.structures(), number, placement);
+}
+
+void pose(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::SceneFrame& frame) {
     for (const layout::PoseParams& pose : frame.poses) {
         graph.dispatch({.pass = "deform/pose",
                         .shader = shaders::pose_comp,
-                        .bindings = bind({"restVertices", "morphDeltas", "poseMatrices", "posedVertices",
-                                          "vertices", "previousGeometry"}),
+                        .bindings = bind(scene, {"restVertices", "morphDeltas", "poseMatrices",
+                                                 "posedVertices", "vertices", "previousGeometry"}),
                         .params = gpu::paramsOf(pose),
                         .constants = {},
                         .extent = {pose.vertexCount, 1}});
     }
-    if (frame.poses.empty()) return;
+}
+
+/// Moves the triangles, which both tracers read, and fits our own trees.
+void refit(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::SceneFrame& frame) {
     for (const scene::RefitLevel& level : frame.refitLevels) {
         const RefitParams params{level.first, level.count, frame.firstRefitNode};
         graph.dispatch({.pass = "deform/refit",
                         .shader = shaders::refit_comp,
-                        .bindings = bind({"refitNodes", "nodeBounds", "bvhNodes", "bvhTriangles", "triangles",
-                                          "posedVertices"}),
+                        .bindings = bind(scene, {"refitNodes", "nodeBounds", "bvhNodes", "bvhTriangles",
+                                                 "triangles", "posedVertices"}),
                         .params = gpu::paramsOf(params),
                         .constants = {},
                         .extent = {level.count, 1}});
     }
+}
+
+}  // namespace
+
+void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame) {
+    upload(graph, scene, frame);
+    scene.setParams(frame.params);
+    pose(graph, scene, frame);
+    if (!frame.poses.empty()) refit(graph, scene, frame);
+    if (scene.structures()) graph.rebuild("deform/structures", *scene.structures());
 }
 
 }  // namespace limpid

@@ -1,7 +1,10 @@
 #include "passes/pathtrace/pathtrace.h"
 
 #include "pathtrace.comp.h"
+#include "pathtrace.rgen.h"
 #include "pathtrace_layers.comp.h"
+#include "pathtrace_layers.rgen.h"
+#include "shaders/ray_shaders.h"
 
 namespace limpid {
 namespace {
@@ -32,7 +35,13 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     return params;
 }
 
-void dispatch(FrameGraph& graph, const gpu::ShaderCode& shader, const scene::GpuScene& scene,
+/// The same pass for either tracer.
+struct TracerShaders {
+    const gpu::ShaderCode& compute;
+    const gpu::ShaderCode& rayGeneration;
+};
+
+void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuScene& scene,
               const PathtraceSettings& settings, const PathtraceLaunch& launch,
               const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
@@ -40,12 +49,14 @@ void dispatch(FrameGraph& graph, const gpu::ShaderCode& shader, const scene::Gpu
     bindings.insert(bindings.end(), images.begin(), images.end());
     std::vector<gpu::ConstantValue> constants = scene.constants();
     constants.push_back({"SAMPLER_TEA", settings.samplerTea ? 1u : 0u});
+    const bool pipeline = scene.tracer() == scene::Tracer::Pipeline;
     graph.dispatch({.pass = "pathtrace",
-                    .shader = shader,
+                    .shader = pipeline ? shaders.rayGeneration : shaders.compute,
                     .bindings = std::move(bindings),
                     .params = gpu::paramsOf(params),
                     .constants = std::move(constants),
-                    .extent = launch.extent});
+                    .extent = launch.extent,
+                    .rays = pipeline ? &rayShaders() : nullptr});
 }
 
 }  // namespace
@@ -72,7 +83,7 @@ PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch) {
     const ImageHandle beauty = graph.transient("pathtrace/beauty", Format::RGBA32Float, launch.extent);
     const gpu::History counters = graph.history("pathtrace/counters", Format::RG32Uint, launch.extent);
-    dispatch(graph, shaders::pathtrace_comp, scene, settings, launch,
+    dispatch(graph, {shaders::pathtrace_comp, shaders::pathtrace_rgen}, scene, settings, launch,
              {{"beauty", beauty}, {"countersBefore", counters.previous}, {"counters", counters.current}});
     return {beauty, counters.current};
 }
@@ -98,7 +109,8 @@ PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,
     image("depth", layers.depth);
     image("motion", layers.motion);
     image("previousNormal", layers.previousNormal);
-    dispatch(graph, shaders::pathtrace_layers_comp, scene, settings, launch, images);
+    dispatch(graph, {shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen}, scene, settings, launch,
+             images);
     return layers;
 }
 

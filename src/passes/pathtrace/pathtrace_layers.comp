@@ -1,99 +1,11 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The path tracer with every layer of docs/layers.md, means and variances over this launch's samples.
-const bool SPLIT_LOBES = true;
-#include "passes/pathtrace/pathtrace.glsl"
+// pathtrace_layers_pixel.glsl with the `compute` tracer.
+#include "passes/pathtrace/pathtrace_layers_pixel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// rgb: mean; a: mean squared deviation (of luminance for colours) within this launch.
-layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D diffuse;
-layout(set = 0, binding = 22, rgba32f) uniform writeonly image2D specular;
-layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D emission;
-layout(set = 0, binding = 24, rgba32f) uniform writeonly image2D albedo;
-layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D albedoSpecular;
-layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D normal;
-layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 of misses | hits | 0
-layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their number, by samples
-layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
-layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
-layout(set = 0, binding = 30, rg32ui) uniform readonly uimage2D countersBefore;
-layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
-
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
-
-/// Running mean and sum of squared deviations of dot(value, weights): B. P. Welford, Technometrics 1962.
-void accumulate(inout vec4 moments, vec3 value, vec3 weights, float count) {
-    const vec3 before = value - moments.rgb;
-    moments.rgb += before / count;
-    moments.a += dot(before, weights) * dot(value - moments.rgb, weights);
-}
-
-/// The same, averaged over the three components.
-void accumulateVector(inout vec4 moments, vec3 value, float count) {
-    const vec3 before = value - moments.rgb;
-    moments.rgb += before / count;
-    moments.a += dot(before, value - moments.rgb) / 3.0;
-}
-
-/// Pixel that sees the point (of a miss: the direction) in xy; distance in z; valid in w.
-vec4 project(CameraParams camera, vec3 point, bool isDirection) {
-    const vec3 d = isDirection ? point : point - camera.origin;
-    const vec2 along = vec2(dot(d, camera.right) / dot(camera.right, camera.right),
-                            dot(d, camera.up) / dot(camera.up, camera.up));
-    const float w = dot(d, camera.forward);
-    const bool orthographic = camera.orthographic != 0u;
-    const vec2 ndc = orthographic ? along : along / max(w, 1e-20);
-    const vec2 pixel = (ndc * vec2(0.5, -0.5) + 0.5) * vec2(params.width, params.height);
-    return vec4(pixel, orthographic ? w : length(d), w > 0.0 && !(orthographic && isDirection) ? 1.0 : 0.0);
-}
-
-vec4 motionOf(FirstHit first) {
-    const vec4 now = project(params.camera, first.position, !first.hit);
-    const vec4 before = project(params.previousCamera, first.previous.position, !first.hit);
-    if (params.hasPrevious == 0u || now.w * before.w == 0.0) return vec4(0.0);
-    return vec4(before.xy - now.xy, first.hit ? before.z - now.z : 0.0, 1.0);
-}
-
 void main() {
     const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (pixel.x >= params.width || pixel.y >= params.height) return;
-    const ivec2 at = ivec2(pixel);
-    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
-    uint rays = 0u, rejected = 0u;
-    vec4 diffuseMoments = vec4(0.0), specularMoments = vec4(0.0), emissionMoments = vec4(0.0);
-    vec4 albedoMoments = vec4(0.0), albedoSpecularMoments = vec4(0.0), normalMoments = vec4(0.0);
-    vec4 depthMoments = vec4(0.0), motionSum = vec4(0.0);
-    vec3 previousNormalSum = vec3(0.0);
-    for (uint i = 0u; i < params.samples; ++i) {
-        FirstHit first;
-        const vec2 point = vec2(pixel) + subpixel(i, rng);
-        PathRadiance path = tracePath(cameraRay(point), rng, rays, first);
-        if (!isFinite(path.emission + path.diffuse + path.specular)) {
-            path = PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0));
-            ++rejected;
-        }
-        const float count = float(i + 1u);
-        accumulate(diffuseMoments, path.diffuse, LUMINANCE, count);
-        accumulate(specularMoments, path.specular, LUMINANCE, count);
-        accumulate(emissionMoments, path.emission, LUMINANCE, count);
-        accumulate(albedoMoments, first.albedo, LUMINANCE, count);
-        accumulate(albedoSpecularMoments, first.albedoSpecular, LUMINANCE, count);
-        accumulateVector(normalMoments, first.normal, count);
-        accumulate(depthMoments, vec3(first.depth, first.hit ? 1.0 : 0.0, 0.0), vec3(1.0, 0.0, 0.0), count);
-        motionSum += motionOf(first);
-        previousNormalSum += first.previous.normal;
-        if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
-    }
-    const vec4 perSample = vec4(1.0, 1.0, 1.0, 1.0 / float(params.samples));
-    imageStore(diffuse, at, diffuseMoments * perSample);
-    imageStore(specular, at, specularMoments * perSample);
-    imageStore(emission, at, emissionMoments * perSample);
-    imageStore(albedo, at, albedoMoments * perSample);
-    imageStore(albedoSpecular, at, albedoSpecularMoments * perSample);
-    imageStore(normal, at, normalMoments * perSample);
-    imageStore(depth, at, depthMoments * perSample);
-    imageStore(motion, at, motionSum / float(params.samples));
-    imageStore(previousNormal, at, vec4(previousNormalSum / float(params.samples), 0.0));
-    imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));
+    if (pixel.x < params.width && pixel.y < params.height) tracePixel(pixel);
 }

@@ -1,0 +1,21 @@
+// How rays are traced: the implementations of shaders/trace.glsl.
+#pragma once
+
+#include <string_view>
+
+#include "gpu/device.h"
+
+namespace limpid::scene {
+
+enum class Tracer {
+    Compute,   ///< our own tree, walked in a compute shader; on every device
+    Pipeline,  ///< VK_KHR_ray_tracing_pipeline
+};
+
+std::string_view toString(Tracer tracer);
+
+/// `pipeline` where there is hardware for it. Drivers that offer the extension without are slower at it than
+/// our own tree (docs/benchmarks.md).
+Tracer automaticTracer(const gpu::DeviceInfo& device);
+
+}  // namespace limpid::scene

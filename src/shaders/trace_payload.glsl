@@ -1,0 +1,13 @@
+// What a ray of the `pipeline` tracer carries between its shaders.
+#ifndef LIMPID_TRACE_PAYLOAD_GLSL
+#define LIMPID_TRACE_PAYLOAD_GLSL
+
+struct TracePayload {
+    float t;  // negative: nothing hit
+    vec2 barycentrics;
+    uint triangle;  // in bvhTriangles
+    uint instance;
+    uint rng;  // for the alpha test
+};
+
+#endif

@@ -1,0 +1,58 @@
+// What the targets share: a folder in memory for the files that readers want, and the way of a scene to the
+// device.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "base/error.h"
+#include "scene/scene.h"
+#include "scene/scene_data.h"
+#include "targets.h"
+
+namespace limpid::fuzz {
+
+/// A folder of this process, in memory where the system has such a place; removed when the process ends.
+class Scratch {
+  public:
+    Scratch();
+    ~Scratch();
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    /// Writes a file of the folder and returns its path. Throws Error, not InputError, if it cannot.
+    std::filesystem::path write(std::string_view name, Bytes content) const;
+    void remove(std::string_view name) const;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// The process's one folder; it has the picture "a.png" of 2x2 pixels.
+const Scratch& scratch();
+
+/// Loads a scene file, prepares it and packs it for the device as `limpid render` does, and plays its clips.
+/// False if it was refused.
+bool reachesDevice(const std::filesystem::path& sceneFile);
+
+/// The steps of buildSceneData() that depend on the scene.
+scene::SceneData pack(const scene::Scene& scene);
+
+/// Reads what `read` reads; false if it threw InputError.
+template <typename Read>
+bool accepts(const Read& read) {
+    try {
+        read();
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+struct Parts {
+    Bytes first, second;
+    bool split = false;  ///< there is a zero byte, which belongs to neither
+};
+Parts splitAtZero(Bytes input);
+
+}  // namespace limpid::fuzz
