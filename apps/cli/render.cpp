@@ -224,7 +224,8 @@ void report(const RenderOptions& o, const gpu::Device& device, const Summary& s,
 
 /// What files of sums and pictures say about this render.
 AccumulationHeader headerOf(const RenderOptions& o, const RenderSettings& settings, const Sequence& sequence,
-                            uint64_t frames, uint64_t sceneContent, const gpu::Device& device) {
+                            uint64_t frames, uint64_t sceneContent, const gpu::Device& device,
+                            scene::Tracer tracer) {
     AccumulationHeader header;
     const RenderIdentity identity{.version = LIMPID_VERSION,
                                   .sceneName = fs::path(o.scene.scene).filename().string(),
@@ -239,6 +240,7 @@ AccumulationHeader headerOf(const RenderOptions& o, const RenderSettings& settin
     header.frame = frames > 1 ? header.shard.at(0) : 0;
     header.device = validUtf8(device.info().name);
     header.driver = validUtf8(device.info().driver);
+    header.tracer = scene::toString(tracer);
     header.floatColors = o.floatExr;
     header.exposure = o.exposure;
     return header;
@@ -308,7 +310,7 @@ void render(const RenderOptions& o) {
     scene::GpuScene gpuScene(*device, data, chosenTracer(o.device, *device));
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
     const AccumulationHeader header = headerOf(o, settings, sequence, static_cast<uint64_t>(summary.frames),
-                                               sceneHash(scene, data), *device);
+                                               sceneHash(scene, data), *device, gpuScene.tracer());
     data = {};  // it is on the device now, and so are the textures
     scene.textures.clear();
     summary.timings.uploadSeconds = since(uploadStart);

@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "base/error.h"
+#include "shaders/scene_layout.h"
 
 namespace limpid {
 namespace {
@@ -189,6 +190,8 @@ RenderedLayers FrameSums::means() const {
         });
     }
     result.ids = ids;
+    // Block 0 has them, and may be missing.
+    if (wantsIds && ids.empty()) result.ids.assign(pixels() * 2, layout::NONE);
     return result;
 }
 

@@ -80,7 +80,8 @@ struct FrameSums {
     /// Adds the other's blocks. Both are of the same frame and layers; throws Error if a block is in both.
     void merge(const FrameSums& other);
 
-    /// The means, as the layers of a picture. Throws Error if there are no samples.
+    /// The means, as the layers of a picture. Without block 0 there is nothing at any pixel, by `ids`. Throws
+    /// Error if there are no samples.
     RenderedLayers means() const;
 
   private:

@@ -17,6 +17,7 @@ inline AccumulationHeader smallHeader() {
     header.plan = {.samples = 40, .blockSamples = 16, .launchSamples = 1};  // three blocks, the last of 8
     header.device = "device";
     header.driver = "driver";
+    header.tracer = "compute";
     return header;
 }
 

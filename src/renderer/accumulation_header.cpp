@@ -160,10 +160,12 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
 
 void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
                        const AccumulationHeader& ours) {
-    if (theirs.device == ours.device && theirs.driver == ours.driver) return;
-    log::warn(
-        "{}: comes from {} ({}), the rest from {} ({}): right, but not bit for bit what one device gives",
-        file.string(), theirs.device, theirs.driver, ours.device, ours.driver);
+    if (theirs.device == ours.device && theirs.driver == ours.driver && theirs.tracer == ours.tracer) return;
+    const auto describe = [](const AccumulationHeader& h) {
+        return fmt::format("{} ({}, tracer {})", h.device, h.driver, h.tracer);
+    };
+    log::warn("{}: comes from {}, the rest from {}: right, but not bit for bit what one device gives",
+              file.string(), describe(theirs), describe(ours));
 }
 
 uint64_t renderHash(const AccumulationHeader& header) {
@@ -173,6 +175,7 @@ uint64_t renderHash(const AccumulationHeader& header) {
     shared.finished.clear();
     shared.device.clear();
     shared.driver.clear();
+    shared.tracer.clear();
     Hash64 hash;
     hash.add(toJson(shared));
     return hash.value();
@@ -198,6 +201,7 @@ std::string toJson(const AccumulationHeader& header) {
                     {"finished", finished},
                     {"device", header.device},
                     {"driver", header.driver},
+                    {"tracer", header.tracer},
                     {"float", header.floatColors},
                     {"exposure", header.exposure}};
     return json.dump();
@@ -221,6 +225,7 @@ AccumulationHeader headerFromJson(std::string_view text, const std::filesystem::
     header.finished = finishedOf(reader, header.shard.countOf(header.frames));
     header.device = reader.text("device", reader.at("device"));
     header.driver = reader.text("driver", reader.at("driver"));
+    header.tracer = reader.text("tracer", reader.at("tracer"));
     header.floatColors = reader.flag("float");
     header.exposure = reader.text("exposure", reader.at("exposure"));
     return header;

@@ -41,8 +41,9 @@ struct AccumulationHeader {
     /// Frames of this shard whose pictures are written, counted within the shard, first to last, ascending.
     std::vector<std::pair<uint64_t, uint64_t>> finished;
 
-    /// What rendered it, for messages: samples of two devices are equally right, but differ in the last bits.
-    std::string device, driver;
+    /// What rendered it, for messages: samples of two devices, or of two tracers, are equally right, but
+    /// differ in the last bits.
+    std::string device, driver, tracer;
 
     // How the picture is to be written.
     bool floatColors = false;
@@ -53,10 +54,10 @@ struct AccumulationHeader {
 };
 
 /// What makes two renders different ones, for a message: "seed is 1, not 0" (`theirs`, not `ours`). Empty if
-/// the samples of both may be mixed. Shard, frame and device are not compared.
+/// the samples of both may be mixed. Shard, frame, device and tracer are not compared.
 std::optional<std::string> firstDifference(const AccumulationHeader& theirs, const AccumulationHeader& ours);
 
-/// Logs a warning if the file's samples come from another device or driver.
+/// Logs a warning if the file's samples come from another device, driver or tracer.
 void warnOfOtherDevice(const std::filesystem::path& file, const AccumulationHeader& theirs,
                        const AccumulationHeader& ours);
 

@@ -91,6 +91,7 @@ TEST(FrameSums, MeansAndVariancesAreThoseOfAllSamples) {
         }
     }
     EXPECT_EQ(result.ids, std::vector<uint32_t>(12, 7));
+    EXPECT_EQ(randomSums(header, {1}).means().ids, std::vector<uint32_t>(12, UINT32_MAX)) << "nothing";
 }
 
 TEST(FrameSums, OneBlocksMeansComeBackExactly) {

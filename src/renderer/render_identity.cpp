@@ -101,7 +101,6 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
     for (size_t i = 0; i < table.infos().size(); ++i)
         entries.emplace_back(table.group() + "." + table.infos()[i].name,
                              toString(table.get(settings.pathtrace, i)));
-    entries.emplace_back("the tracer", identity.tracer);
     entries.emplace_back(versionEntry, validUtf8(identity.version));
     return entries;
 }

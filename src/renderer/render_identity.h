@@ -22,7 +22,6 @@ struct RenderIdentity {
     std::string sceneName;  ///< the file's name without folders, or builtin:...
     uint64_t scene = 0;     ///< sceneHash()
     uint64_t cameras = 0;   ///< cameraHash()
-    std::string tracer = "compute";
 };
 
 /// Entries of AccumulationHeader::identity that are asked for by name.
