@@ -247,6 +247,14 @@ TEST_F(CliLongRenderTest, ACheckpointThatDoesNotFitIsRefused) {
     EXPECT_FALSE(fs::exists(path("a.exr")));
 }
 
+TEST_F(CliLongRenderTest, EmptyShardsSaySo) {
+    const std::string rest = " --spp 1 --shard 3/3" + std::string(small);
+    expect("render builtin:cornell -o " + path("a.sums") + rest, 0, "shard 3/3 is empty");
+    EXPECT_TRUE(fs::exists(path("a.sums"))) << "or a script that expects it fails";
+    expect("render builtin:cornell-moving --frames 2 -o " + path("%d.exr") + rest, 0, "shard 3/3 is empty");
+    expect("render builtin:cornell-moving --frames 1 -o " + path("%d.exr") + rest, 2, "a still");
+}
+
 TEST_F(CliLongRenderTest, TheSceneFilesContentCounts) {
     const auto triangle = [&](const char* height) {
         put("a.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 0 {} 0\nf 1 2 3\n", height));

@@ -166,6 +166,8 @@ void warnOfLosses(const SampleCounts& counts) {
 }
 
 void warnOfRest(const RenderOptions& o, const Summary& s) {
+    if (s.framesToDo == 0 || (s.complete && s.samples == 0 && writesSums(o)))
+        log::warn("shard {} is empty: there are fewer parts than shards", o.longRender.shard);
     if (s.complete) return;
     const std::string rest = o.longRender.checkpoint.empty() ? "" : "; --resume makes the rest";
     if (s.frames > 1) {
