@@ -179,6 +179,7 @@ TEST_F(AccumulationFileTest, HostileHeadersAreRefusedBeforeMemoryIsAskedFor) {
         {"\"finished\":[]", "\"finished\":[[0]]", "finished"},
         {"\"finished\":[]", "\"finished\":[[0,0],[0,0]]", "finished"},
         {"\"identity\":[", "\"identity\":[1,", "identity"},
+        {"\"identity\":[", "\"identity\":[[\"seed\",\"0\"],", "twice"},
         {"\"float\":false", "\"float\":0", "float"},
         {"\"exposure\":\"auto\"", "\"exposure\":[]", "exposure"},
         {"{", "[", "header"},

@@ -16,6 +16,7 @@ namespace limpid {
 namespace {
 
 constexpr size_t maxFinishedRanges = 4096;
+constexpr size_t maxIdentityEntries = 256;
 constexpr uint64_t maxFrames = uint64_t{1} << 32;
 
 using Json = nlohmann::ordered_json;
@@ -77,6 +78,20 @@ std::vector<std::string> layersOf(const HeaderReader& reader) {
         layers.push_back(*next++);
     }
     return layers;
+}
+
+std::vector<std::pair<std::string, std::string>> readIdentity(const HeaderReader& reader) {
+    std::vector<std::pair<std::string, std::string>> identity;
+    if (reader.array("identity").size() > maxIdentityEntries) reader.fail("has too long an identity");
+    for (const Json& json : reader.array("identity")) {
+        const Json& entry = reader.pair("identity", json);
+        const std::string name = reader.text("identity", entry[0]);
+        const bool twice = std::any_of(identity.begin(), identity.end(),
+                                       [&](const auto& earlier) { return earlier.first == name; });
+        if (twice) reader.fail(fmt::format("names '{}' twice in its identity", name));
+        identity.emplace_back(name, reader.text("identity", entry[1]));
+    }
+    return identity;
 }
 
 BlockPlan planOf(const HeaderReader& reader) {
@@ -210,10 +225,7 @@ std::string toJson(const AccumulationHeader& header) {
 AccumulationHeader headerFromJson(std::string_view text, const std::filesystem::path& file) {
     const HeaderReader reader(text, file);
     AccumulationHeader header;
-    for (const Json& json : reader.array("identity")) {
-        const Json& entry = reader.pair("identity", json);
-        header.identity.emplace_back(reader.text("identity", entry[0]), reader.text("identity", entry[1]));
-    }
+    header.identity = readIdentity(reader);
     header.extent = extentOf(reader);
     header.plan = planOf(reader);
     header.layers = layersOf(reader);
