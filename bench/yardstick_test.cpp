@@ -113,7 +113,7 @@ class YardstickTest : public RenderTest {
         const EmbreeScene embree(scene, data);
         EmbreeLaunch launch = launchOf(scene, theirSettings);
         BlockMoments theirs(theirSettings.extent), ours(ourSettings.extent);
-        const scene::GpuScene gpuScene(device(), data);
+        scene::GpuScene gpuScene(device(), data);
         ProgressiveStill still(device(), gpuScene, samples);
         still.update(launch.camera, ourSettings);
         std::vector<float> before(size_t{launch.width} * launch.height * 4, 0.0f);

@@ -41,8 +41,9 @@ void normaliseWeights(Document& document, const Object& primitive, std::vector<v
         weight = usable ? weight / sum : vec4(0.0f);
     }
     if (odd > 0) {
-        document.warn(fmt::format("{}: the weights of {} vertices are negative or do not sum to 1 and were corrected",
-                                  primitive.place(), odd));
+        document.warn(
+            fmt::format("{}: the weights of {} vertices are negative or do not sum to 1 and were corrected",
+                        primitive.place(), odd));
     }
 }
 
