@@ -32,13 +32,6 @@ void addClip(Hash64& hash, const scene::Clip& clip) {
     }
 }
 
-void addFeatures(Hash64& hash, const scene::SceneFeatures& f) {
-    for (const bool feature : {f.twoLevel, f.vertexData, f.textures, f.alpha, f.specular, f.transmission,
-                               f.triangleLights, f.punctualLights, f.environment, f.mirrored, f.motion}) {
-        hash.addValue(feature);
-    }
-}
-
 const char* nameOf(Jitter jitter) {
     return jitter == Jitter::Pixel ? "pixel" : jitter == Jitter::Frame ? "frame" : "off";
 }
@@ -63,7 +56,8 @@ uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
     for (const auto* records : {&data.lightAlias, &data.environmentAlias}) hash.addValues(*records);
     for (const auto* records : {&data.lightDensity, &data.dielectricTable}) hash.addValues(*records);
     for (const auto& texels : data.texels) hash.addValues(texels);
-    addFeatures(hash, data.features);
+    static_assert(std::has_unique_object_representations_v<scene::SceneFeatures>, "no padding");
+    hash.addValue(data.features);
     hash.addValue(data.params);
     hash.addValue(data.stackSize);
     hash.addValue(data.byteCount());  // a buffer that is missing above shows at least by its size
