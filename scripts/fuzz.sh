@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# fuzz.sh TARGET SECONDS [LIBFUZZER OPTION ...]: builds and runs one fuzzer: gltf, obj, hdr, exr or png.
+# fuzz.sh TARGET SECONDS [LIBFUZZER OPTION ...]: builds and runs one fuzzer: gltf, obj, hdr, exr, png or
+# checkpoint.
 # fuzz.sh TARGET merge: reduces what earlier runs found to what covers the code. See docs/fuzzing.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[ $# -ge 2 ] || { sed -n '2,3s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 target=$1
 seconds=$2
 shift 2

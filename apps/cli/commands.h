@@ -6,6 +6,7 @@
 namespace limpid::cli {
 
 void addRenderCommand(CLI::App& app);
+void addMergeCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);

@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", LIMPID_VERSION);
     app.require_subcommand(1);
     addRenderCommand(app);
+    addMergeCommand(app);
     addCompareCommand(app);
     addBenchCommand(app);
     addInfoCommand(app);

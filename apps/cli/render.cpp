@@ -11,11 +11,12 @@
 #include "commands.h"
 #include "device_options.h"
 #include "image/exr.h"
-#include "image/png.h"
-#include "image/tonemap.h"
+#include "long_render_options.h"
+#include "picture_output.h"
 #include "progress.h"
+#include "renderer/long_render.h"
+#include "renderer/render_identity.h"
 #include "renderer/sequence.h"
-#include "renderer/still.h"
 #include "scene_options.h"
 #include "sequence_options.h"
 
@@ -29,6 +30,7 @@ struct RenderOptions {
     SceneChoice scene;
     SequenceChoice sequence;
     DeviceChoice device;
+    LongRenderChoice longRender;
     std::string output;
     uint32_t width = 1280, height = 720;
     uint64_t samples = 64;
@@ -76,6 +78,7 @@ void addOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
     command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");
     command.add_flag("--json", o.json, "One JSON object about the run on stdout");
+    addLongRenderOptions(command, o.longRender);
     addDeviceOptions(command, o.device);
 }
 
@@ -99,49 +102,38 @@ RenderSettings settingsOf(const RenderOptions& o) {
     return settings;
 }
 
-/// Stops, or nothing for "auto".
-std::optional<float> parseExposure(const std::string& text) {
-    if (text == "auto") return std::nullopt;
-    const ParamValue value = parseParam("--exposure", text, ParamValue(0.0f));
-    checkRange("--exposure", {"stops", 0.0f, -100.0, 100.0, "stops", ""}, value);
-    return std::get<float>(value);
-}
-
-bool isExr(const fs::path& path) {
-    return path.extension() == ".exr";
+/// A shard of a still is no picture yet.
+bool writesSums(const RenderOptions& o) {
+    return !FramePattern(o.output).numbered() && chosenShard(o.longRender).count > 1;
 }
 
 void checkOutput(const RenderOptions& o) {
     const fs::path path = FramePattern(o.output).format(0);
-    if (!isExr(path) && path.extension() != ".png") {
-        throw UsageError("'" + o.output + "': an output's name ends in .exr or .png");
+    const bool sums = path.extension() == ".sums";
+    if (sums != writesSums(o)) {
+        throw UsageError(
+            "'" + o.output +
+            (sums ? "': only a shard of a still is written to a .sums file"
+                  : "': the name of a still's shard ends in .sums; 'limpid merge' makes the picture"));
     }
-    if (!o.layers.empty() && !isExr(path)) throw UsageError("--aov needs an .exr output");
-    checkWritable(path);
+    if (sums) return checkWritable(path);
+    checkPictureOutput(path, !o.layers.empty());
 }
 
-void writeOutput(const RenderOptions& o, const fs::path& path, const RenderedLayers& layers,
-                 const gpu::Device& device) {
-    if (isExr(path)) {
-        image::LayeredImage exr = toLayeredImage(layers, parseLayers(o.layers),
-                                                 o.floatExr ? image::Storage::Float : image::Storage::Half);
-        exr.metadata = {{"limpid.version", LIMPID_VERSION},
-                        {"limpid.scene", fs::path(o.scene.scene).filename().string()},
-                        {"limpid.samples", std::to_string(layers.samples)},
-                        {"limpid.seed", std::to_string(o.seed)},
-                        {"limpid.device", device.info().name},
-                        {"limpid.driver", device.info().driver}};
-        image::writeExr(path, exr);
-        return;
+/// In the order of layerNames(), each once.
+std::vector<std::string> chosenLayers(const RenderOptions& o) {
+    const std::vector<std::string> chosen = parseLayers(o.layers);
+    std::vector<std::string> layers;
+    for (const std::string& name : layerNames()) {
+        if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) layers.push_back(name);
     }
-    const image::Image beauty = beautyOf(layers);
-    const float stops = parseExposure(o.exposure).value_or(image::autoExposure(beauty));
-    image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
+    return layers;
 }
 
-void writeDump(const RenderOptions& o, const fs::path& output, ProgressiveStill& still) {
+void writeDump(const RenderOptions& o, const fs::path& output, BlockRenderer& renderer) {
     if (o.dump.empty()) return;
-    for (auto& [name, picture] : still.dump(o.dump)) {
+    if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
+    for (auto& [name, picture] : renderer.dump(o.dump)) {
         std::string flat = name;
         std::replace(flat.begin(), flat.end(), '/', '.');
         fs::path path(output);
@@ -158,21 +150,50 @@ void writeDump(const RenderOptions& o, const fs::path& output, ProgressiveStill&
 /// What was rendered, for the last line or the JSON object.
 struct Summary {
     int frames = 0;
-    RenderCounters counters;  ///< of all frames
+    uint64_t framesFinished = 0;  ///< with those of earlier runs
+    uint64_t framesToDo = 0;      ///< of the shard
+    uint64_t blocksFinished = 0;
+    uint64_t samples = 0;  ///< of the last picture or file of sums, per pixel
+    bool complete = false;
+    SampleCounts counts;  ///< of this run
     Timings timings;
     std::vector<gpu::PassTime> passes;  ///< of the last launch
 };
 
+void warnOfLosses(const SampleCounts& counts) {
+    if (counts.rejected > 0) log::warn("{} samples were NaN or infinite and count as black", counts.rejected);
+    if (counts.clamped > 0) log::warn("{} means were beyond +-1e12 and were clamped", counts.clamped);
+}
+
+void warnOfRest(const RenderOptions& o, const Summary& s) {
+    if (s.framesToDo == 0 || (s.complete && s.samples == 0 && writesSums(o)))
+        log::warn("shard {} is empty: there are fewer parts than shards", o.longRender.shard);
+    if (s.complete) return;
+    const std::string rest = o.longRender.checkpoint.empty() ? "" : "; --resume makes the rest";
+    if (s.frames > 1) {
+        log::warn("time is up: {} of {} frames are finished{}", s.framesFinished, s.framesToDo, rest);
+    } else {
+        log::warn("time is up: the picture has {} of {} samples{}", s.samples, o.samples, rest);
+    }
+}
+
+void warnOfNoProgress(const RenderOptions& o, const Summary& s) {
+    if (s.complete || s.blocksFinished > 0 || (o.longRender.checkpoint.empty() && !writesSums(o))) return;
+    log::warn("not one block of {} samples was finished in that time, and only whole blocks are kept",
+              std::min<uint64_t>(o.samples, blockSamplesFor(o.samples)));
+}
+
 void report(const RenderOptions& o, const gpu::Device& device, const Summary& s, const scene::Scene& scene,
             const scene::GpuScene& gpuScene) {
-    if (s.counters.rejected > 0)
-        log::warn("{} samples were NaN or infinite and count as black", s.counters.rejected);
+    warnOfLosses(s.counts);
+    warnOfRest(o, s);
+    warnOfNoProgress(o, s);
     const double megaRays =
-        static_cast<double>(s.counters.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
+        static_cast<double>(s.counts.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
     if (!o.json) {
-        const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.frames) : "";
+        const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.framesFinished) : "";
         log::info("{}{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", frames,
-                  o.samples, o.width, o.height, s.timings.renderSeconds, megaRays, device.info().name);
+                  s.samples, o.width, o.height, s.timings.renderSeconds, megaRays, device.info().name);
         return;
     }
     nlohmann::json passTimes = nlohmann::json::object();
@@ -186,68 +207,117 @@ void report(const RenderOptions& o, const gpu::Device& device, const Summary& s,
                                 {"width", o.width},
                                 {"height", o.height},
                                 {"frames", s.frames},
-                                {"samples", o.samples},
+                                {"frames_finished", s.framesFinished},
+                                {"samples", s.samples},
+                                {"complete", s.complete},
                                 {"seed", o.seed},
                                 {"triangles", scene.triangleCount()},
                                 {"scene_bytes", gpuScene.byteCount()},
                                 {"load_seconds", s.timings.loadSeconds},
                                 {"upload_seconds", s.timings.uploadSeconds},
                                 {"render_seconds", s.timings.renderSeconds},
-                                {"rays", s.counters.rays},
+                                {"rays", s.counts.rays},
                                 {"million_rays_per_second", megaRays},
-                                {"rejected_samples", s.counters.rejected},
+                                {"rejected_samples", s.counts.rejected},
                                 {"last_frame_ms", passTimes},
                                 {"validation_messages", device.validationMessages()}};
     fmt::print("{}\n", object.dump(2));
 }
 
-/// All frames, each written as soon as it is done.
-void renderFrames(const RenderOptions& o, const RenderSettings& settings, const Sequence& sequence,
-                  gpu::Device& device, scene::GpuScene& gpuScene, Summary& summary) {
-    const FramePattern output(o.output);
-    ProgressiveStill still(device, gpuScene, o.samples);
-    Progress progress("samples", o.samples * static_cast<uint64_t>(summary.frames));
-    for (int frame = 0; frame < summary.frames; ++frame) {
-        const auto number = static_cast<uint64_t>(frame);
-        const Clock::time_point start = Clock::now();
-        still.update(sequence.moment(number, settings.extent), settings);
-        while (still.launch()) progress.show(number * o.samples + still.samples());
-        still.finish();
-        summary.timings.renderSeconds += since(start);
-        writeOutput(o, output.format(frame), still.download(), device);
-        writeDump(o, output.format(frame), still);
-        const RenderCounters counters = still.counters();
-        summary.counters.rays += counters.rays;
-        summary.counters.rejected += counters.rejected;
-    }
-    summary.passes = still.passTimes();
+/// What files of sums and pictures say about this render.
+AccumulationHeader headerOf(const RenderOptions& o, const RenderSettings& settings, const Sequence& sequence,
+                            uint64_t frames, uint64_t sceneContent, const gpu::Device& device,
+                            scene::Tracer tracer) {
+    AccumulationHeader header;
+    const RenderIdentity identity{.version = LIMPID_VERSION,
+                                  .sceneName = fs::path(o.scene.scene).filename().string(),
+                                  .scene = sceneContent,
+                                  .cameras = cameraHash(sequence, frames, settings.extent)};
+    header.identity = identityOf(identity, settings, o.sequence.timing);
+    header.extent = settings.extent;
+    header.plan = planBlocks(device, settings, o.samples);
+    header.layers = chosenLayers(o);
+    header.frames = frames;
+    header.shard = chosenShard(o.longRender);
+    header.frame = frames > 1 ? header.shard.at(0) : 0;
+    header.device = validUtf8(device.info().name);
+    header.driver = validUtf8(device.info().driver);
+    header.tracer = scene::toString(tracer);
+    header.floatColors = o.floatExr;
+    header.exposure = o.exposure;
+    return header;
 }
 
-void render(const RenderOptions& o) {
+/// All frames, each written as soon as it is done.
+void renderFrames(const RenderOptions& o, const RenderSettings& settings, const AccumulationHeader& header,
+                  const Sequence& sequence, gpu::Device& device, scene::GpuScene& gpuScene,
+                  Clock::time_point started, Summary& summary) {
+    const FramePattern output(o.output);
+    BlockRenderer renderer(device, gpuScene, settings, header.plan);
+    LongRender job(renderer, sequence, header);
+    if (o.longRender.timeLimit > 0.0) {
+        const std::chrono::duration<double> limit(o.longRender.timeLimit);
+        job.setDeadline(started + std::chrono::duration_cast<Clock::duration>(limit));
+    }
+    if (!o.longRender.checkpoint.empty())
+        job.setCheckpoint(Checkpoint(o.longRender.checkpoint), o.longRender.resume);
+    Progress progress("samples", job.samplesToDo());
+    const auto file = [&](uint64_t frame) { return output.format(static_cast<int>(frame)); };
+    const auto finish = [&](uint64_t frame, const FrameSums& sums) {
+        summary.samples = sums.samples();
+        if (o.longRender.resume) removeStaleTemporaries(file(frame));
+        if (writesSums(o)) {
+            writeAccumulation(file(frame), job.header(), sums);
+        } else {
+            writePicture(file(frame), job.header(), frame, sums);
+        }
+        writeDump(o, file(frame), renderer);
+    };
+    summary.complete = job.run({.progress = [&](uint64_t samples) { progress.show(samples); },
+                                .finish = finish,
+                                .isThere = [&](uint64_t frame) { return fs::exists(file(frame)); }});
+    summary.blocksFinished = job.blocksFinished();
+    summary.framesFinished = job.framesFinished();
+    summary.framesToDo = job.framesToDo();
+    summary.timings.renderSeconds = job.renderSeconds();
+    summary.counts = renderer.counts();
+    if (renderer.hasLaunched()) summary.passes = renderer.passTimes();
+}
+
+void checkOptions(const RenderOptions& o) {
+    checkLongRender(o.longRender);
     checkOutput(o);
     parseExposure(o.exposure);
     parseLayers(o.layers);
+}
+
+void render(const RenderOptions& o) {
+    checkOptions(o);
     const RenderSettings settings = settingsOf(o);
     const FramePattern output(o.output);
     Summary summary;
-    Clock::time_point start = Clock::now();
+    const Clock::time_point started = Clock::now();
     scene::Scene scene = loadChosenScene(o.scene);
     chooseAnimation(o.sequence, output, scene);
     const scene::Camera camera = chosenCamera(scene, o.scene.camera);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
     summary.frames = frameCount(o.sequence, output, scene, path);
-    summary.timings.loadSeconds = since(start);
+    if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender).count > 1)
+        throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
+    summary.timings.loadSeconds = since(started);
 
-    start = Clock::now();
+    const Clock::time_point uploadStart = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
+    const AccumulationHeader header = headerOf(o, settings, sequence, static_cast<uint64_t>(summary.frames),
+                                               sceneHash(scene, data), *device, gpuScene.tracer());
     data = {};  // it is on the device now, and so are the textures
     scene.textures.clear();
-    summary.timings.uploadSeconds = since(start);
+    summary.timings.uploadSeconds = since(uploadStart);
 
-    renderFrames(o, settings, sequence, *device, gpuScene, summary);
+    renderFrames(o, settings, header, sequence, *device, gpuScene, started, summary);
     report(o, *device, summary, scene, gpuScene);
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));

@@ -82,6 +82,19 @@ void checkWritable(const fs::path& path) {
     }
 }
 
+void removeStaleTemporaries(const fs::path& path) {
+    const std::string start = "." + path.stem().string() + ".", end = path.extension().string();
+    constexpr size_t unique = 6;  // characters, as in createTemporary()
+    std::error_code status;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), status)) {
+        const std::string name = entry.path().filename().string();
+        const bool ours = name.size() == start.size() + unique + end.size() && name.starts_with(start) &&
+                          name.ends_with(end) && name.find('.', start.size()) >= start.size() + unique;
+        std::error_code ignored;
+        if (ours && entry.is_regular_file(ignored)) fs::remove(entry.path(), ignored);
+    }
+}
+
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
     checkWritable(path);
     const fs::path temporary = createTemporary(path);

@@ -19,6 +19,10 @@ std::vector<std::byte> readFile(const std::filesystem::path& path, uint64_t maxB
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// Removes the temporaries of earlier writeAtomically(path) calls whose process was killed. No other process
+/// may be writing `path`. What cannot be removed stays.
+void removeStaleTemporaries(const std::filesystem::path& path);
+
 /// Throws what writeAtomically(path) would throw before any work is done: call it before a long render.
 void checkWritable(const std::filesystem::path& path);
 

@@ -73,5 +73,22 @@ TEST_F(FileTest, ReadsAndRefuses) {
     EXPECT_THROW(readFile(folder / "none"), InputError);
 }
 
+TEST_F(FileTest, RemovesOnlyItsOwnStaleTemporaries) {
+    for (const char* name : {".a.Ab12xY.txt", ".a.Ab12x.txt", ".a.Ab12xYz.txt", ".b.Ab12xY.txt",
+                             ".a.Ab12xY.exr", "a.Ab12xY.txt", "a.txt", ".a.Ab1.xY.txt"})
+        put(folder / name, "x");
+    fs::create_directories(folder / ".a.folder.txt");
+    removeStaleTemporaries(folder / "a.txt");
+    EXPECT_FALSE(fs::exists(folder / ".a.Ab12xY.txt"));
+    EXPECT_EQ(files(), 8u);
+    removeStaleTemporaries(folder / "no" / "such.txt");  // nothing happens
+    EXPECT_NO_THROW(writeAtomically(folder / "a.txt", [&](const fs::path& temporary) {
+        EXPECT_TRUE(fs::exists(temporary));
+        removeStaleTemporaries(folder / "a.txt");
+        EXPECT_FALSE(fs::exists(temporary)) << "temporaries have another name than was thought";
+        put(temporary, "new");
+    }));
+}
+
 }  // namespace
 }  // namespace limpid

@@ -27,6 +27,10 @@ class Sequence {
 
     /// For pictures of this size. Motion is invalid in frame 0 and where the camera path cuts.
     Moment moment(uint64_t frame, gpu::Extent extent) const;
+    /// The camera alone.
+    CameraParams camera(uint64_t frame, gpu::Extent extent) const {
+        return cameraAt(timing_.timeOf(frame), extent);
+    }
 
   private:
     CameraParams cameraAt(double time, gpu::Extent extent) const;

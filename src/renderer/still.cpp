@@ -18,6 +18,35 @@ constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 }  // namespace
 
+uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings) {
+    return device.isCpu() ? std::min(settings.samplesPerLaunch, maxSamplesPerCpuLaunch)
+                          : settings.samplesPerLaunch;
+}
+
+std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
+                                                               const std::string& pass) {
+    const std::vector<gpu::ImageHandle> handles = graph.imagesWrittenBy(pass);
+    if (handles.empty()) {
+        std::string names;
+        for (const gpu::RecordedPass& recorded : graph.passes()) names += " " + recorded.name;
+        throw UsageError("there is no pass '" + pass + "' in this pipeline; its passes are" + names);
+    }
+    std::vector<std::pair<std::string, image::Image>> result;
+    for (const gpu::ImageHandle handle : handles) {
+        const gpu::Extent extent = graph.extent(handle);
+        image::Image picture(extent.width, extent.height, gpu::componentCount(graph.format(handle)));
+        if (isUint(graph.format(handle))) {
+            const std::vector<uint32_t> values = graph.downloadUint(device, handle);
+            std::transform(values.begin(), values.end(), picture.pixels.begin(),
+                           [](uint32_t v) { return static_cast<float>(v); });
+        } else {
+            picture.pixels = graph.downloadFloat(device, handle);
+        }
+        result.emplace_back(graph.name(handle), std::move(picture));
+    }
+    return result;
+}
+
 ProgressiveStill::ProgressiveStill(gpu::Device& device, scene::GpuScene& scene, uint64_t maxSamples)
     : device_(device), scene_(scene), maxSamples_(maxSamples) {}
 
@@ -50,7 +79,8 @@ bool ProgressiveStill::launch() {
     input.frame = frame_;
     input.stream = number_ * launchesOfAFrame() + frame_;
     input.samplesBefore = samples_;
-    input.samples = static_cast<uint32_t>(std::min(samplesPerLaunch(), maxSamples_ - samples_));
+    input.samples = static_cast<uint32_t>(
+        std::min<uint64_t>(samplesPerLaunch(device_, state_.settings), maxSamples_ - samples_));
     graph_.beginFrame();
     images_ = recordPathFrame(graph_, scene_, state_.settings, input);
     graph_.execute(device_);
@@ -61,14 +91,9 @@ bool ProgressiveStill::launch() {
     return true;
 }
 
-uint64_t ProgressiveStill::samplesPerLaunch() const {
-    const uint64_t most = device_.isCpu() ? maxSamplesPerCpuLaunch : UINT32_MAX;
-    return std::min<uint64_t>(state_.settings.samplesPerLaunch, most);
-}
-
 /// So that no two frames of a sequence draw the same numbers.
 uint64_t ProgressiveStill::launchesOfAFrame() const {
-    return 1 + (maxSamples_ - 1) / samplesPerLaunch();
+    return 1 + (maxSamples_ - 1) / samplesPerLaunch(device_, state_.settings);
 }
 
 RenderCounters ProgressiveStill::counters() {
@@ -102,29 +127,6 @@ RenderedLayers ProgressiveStill::download() {
     layers.previousNormal = get(images_.previousNormal);
     layers.ids = ids_;
     return layers;
-}
-
-std::vector<std::pair<std::string, image::Image>> ProgressiveStill::dump(const std::string& pass) {
-    const std::vector<gpu::ImageHandle> handles = graph_.imagesWrittenBy(pass);
-    if (handles.empty()) {
-        std::string names;
-        for (const gpu::RecordedPass& recorded : graph_.passes()) names += " " + recorded.name;
-        throw UsageError("there is no pass '" + pass + "' in this pipeline; its passes are" + names);
-    }
-    std::vector<std::pair<std::string, image::Image>> result;
-    for (const gpu::ImageHandle handle : handles) {
-        const gpu::Extent extent = graph_.extent(handle);
-        image::Image picture(extent.width, extent.height, gpu::componentCount(graph_.format(handle)));
-        if (isUint(graph_.format(handle))) {
-            const std::vector<uint32_t> values = graph_.downloadUint(device_, handle);
-            std::transform(values.begin(), values.end(), picture.pixels.begin(),
-                           [](uint32_t v) { return static_cast<float>(v); });
-        } else {
-            picture.pixels = graph_.downloadFloat(device_, handle);
-        }
-        result.emplace_back(graph_.name(handle), std::move(picture));
-    }
-    return result;
 }
 
 }  // namespace limpid

@@ -27,6 +27,14 @@ struct Moment {
     uint64_t number = 0;                         ///< of the frame: another one, other noise
 };
 
+/// What settings.samplesPerLaunch comes to on this device: CPUs have a limit.
+uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
+
+/// The images that the pass of this name wrote in the graph's last frame, by name, for --dump; throws
+/// UsageError listing the passes if there is none.
+std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
+                                                               const std::string& pass);
+
 class ProgressiveStill {
   public:
     /// `maxSamples` per pixel. The scene must outlive this.
@@ -48,12 +56,8 @@ class ProgressiveStill {
     RenderedLayers download();
     RenderCounters counters();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
-    /// The images that the pass of this name wrote in the last frame, for --dump; throws UsageError listing
-    /// the passes if there is none.
-    std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass);
 
   private:
-    uint64_t samplesPerLaunch() const;
     uint64_t launchesOfAFrame() const;
 
     gpu::Device& device_;

@@ -23,5 +23,7 @@ bool hdr(Bytes input);
 bool exr(Bytes input);
 /// PNG and JPEG.
 bool png(Bytes input);
+/// Files of sums: checkpoints and shards of stills.
+bool checkpoint(Bytes input);
 
 }  // namespace limpid::fuzz

@@ -1,0 +1,55 @@
+#include "picture_output.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/params.h"
+#include "image/exr.h"
+#include "image/png.h"
+#include "image/tonemap.h"
+#include "renderer/merge_frames.h"
+#include "renderer/render_identity.h"
+
+namespace limpid::cli {
+
+namespace fs = std::filesystem;
+
+std::optional<float> parseExposure(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    const ParamValue value = parseParam("--exposure", text, ParamValue(0.0f));
+    checkRange("--exposure", {"stops", 0.0f, -100.0, 100.0, "stops", ""}, value);
+    return std::get<float>(value);
+}
+
+bool isExr(const fs::path& path) {
+    return path.extension() == ".exr";
+}
+
+void checkPictureOutput(const fs::path& path, bool layers) {
+    if (!isExr(path) && path.extension() != ".png")
+        throw UsageError("'" + path.string() + "': an output's name ends in .exr or .png");
+    if (layers && !isExr(path)) throw UsageError("--aov needs an .exr output");
+    checkWritable(path);
+}
+
+void writePicture(const fs::path& path, const AccumulationHeader& header, uint64_t frame,
+                  const FrameSums& sums) {
+    const RenderedLayers layers = sums.means();
+    if (!isExr(path)) {
+        const image::Image beauty = beautyOf(layers);
+        const float stops = parseExposure(header.exposure).value_or(image::autoExposure(beauty));
+        image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
+        return;
+    }
+    image::LayeredImage exr = toLayeredImage(
+        layers, header.layers, header.floatColors ? image::Storage::Float : image::Storage::Half);
+    exr.metadata = {{"limpid.version", std::string(header.value(versionEntry))},
+                    {"limpid.scene", std::string(header.value(sceneEntry))},
+                    {"limpid.samples", std::to_string(layers.samples)},
+                    {"limpid.seed", std::string(header.value(seedEntry))},
+                    {"limpid.device", header.device},
+                    {"limpid.driver", header.driver}};
+    exr.metadata.merge(frameMetadata(header, frame));
+    image::writeExr(path, exr);
+}
+
+}  // namespace limpid::cli

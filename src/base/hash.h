@@ -1,0 +1,52 @@
+// A 64-bit hash of bytes: to tell contents apart, and to notice damage. Not against forgery.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace limpid {
+
+/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo, http://www.isthe.com/chongo/tech/comp/fnv/) over little-endian
+/// words of eight bytes instead of bytes, each step followed by x ^= x >> 32, without which the highest bits
+/// of a word would meet no others. Every step is one-to-one in the state and in the word, so a change inside
+/// one word always changes the hash. The length counts: trailing zeros are told apart.
+class Hash64 {
+  public:
+    /// Appends bytes; how a stream is cut into calls does not matter.
+    void add(std::span<const std::byte> bytes);
+    void add(std::string_view text) { add(std::as_bytes(std::span(text))); }
+
+    /// Appends a value's bytes, or the number of values and then their bytes. T has no padding.
+    template <typename T>
+    void addValue(const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        add(std::as_bytes(std::span<const T, 1>(&value, 1)));
+    }
+    template <typename T>
+    void addValues(const std::vector<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        addValue(uint64_t{values.size()});
+        add(std::as_bytes(std::span(values)));
+    }
+
+    /// Of all bytes so far.
+    uint64_t value() const;
+
+  private:
+    void step(uint64_t word);
+
+    uint64_t state_ = 0xCBF29CE484222325u;
+    uint64_t length_ = 0;
+    std::array<std::byte, 8> rest_{};  ///< the last length_ % 8 bytes
+};
+
+/// Sixteen hexadecimal digits.
+std::string hashText(uint64_t hash);
+
+}  // namespace limpid
