@@ -182,7 +182,7 @@ ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes
     // The frame may be far larger than a cropped render inside it, but not without limit: it is allocated.
     checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
     const uint64_t pixels = display.width * display.height;
-    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 27);
+    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 26);
     if (large && pixels / 64 > data.width * data.height) {
         throw InputError(name, fmt::format("has a frame of {}x{} pixels around {}x{} stored ones",
                                            display.width, display.height, data.width, data.height));

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "image/jpeg.h"
 #include "image/limits.h"
 #include "image/png_check.h"
 
@@ -39,23 +40,17 @@ void checkBeforeDecoding(std::span<const std::byte> bytes, const fs::path& name)
     if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
         throw InputError(name, fmt::format("is {} bytes long, too much for a picture", bytes.size()));
     }
-    const bool png = looksLikePng(bytes);
+    if (looksLikeJpeg(bytes)) return checkJpeg(bytes, name);
     // stb_image would try a dozen formats; its other decoders are not meant for files of unknown origin.
-    if (!png && !looksLikeJpeg(bytes)) throw InputError(name, "is neither PNG nor JPEG");
-    if (png) {
-        checkPng(bytes, name);
-    } else {
-        checkJpeg(bytes, name);
-    }
+    if (!looksLikePng(bytes)) throw InputError(name, "is neither PNG nor JPEG");
+    checkPng(bytes, name);
     int width = 0, height = 0, components = 0;
     if (!stbi_info_from_memory(stbBytes(bytes), stbLength(bytes), &width, &height, &components)) {
         throw InputError(name, fmt::format("cannot be decoded: {}", stbi_failure_reason()));
     }
-    // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one. A JPEG needs at least a bit per
-    // block of 64 pixels, and that for a subsampled colour may stand for 4 blocks.
-    const uint64_t pixelsPerByte = png ? 8 * 1032 : 8 * 256;
+    // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one.
     checkDimensions(name, static_cast<uint64_t>(width), static_cast<uint64_t>(height), bytes.size(),
-                    pixelsPerByte);
+                    8 * 1032);
 }
 
 template <typename T, typename Load>
@@ -124,6 +119,7 @@ void writePng(const fs::path& path, const ByteImage& image) {
 
 ByteImage decodeImage(std::span<const std::byte> bytes, const fs::path& name) {
     checkBeforeDecoding(bytes, name);
+    if (looksLikeJpeg(bytes)) return decodeJpeg(bytes, name);
     const auto decoded = decodeWith<stbi_uc>(stbi_load_from_memory, bytes, name);
     ByteImage image{decoded.width, decoded.height, 4, {}};
     const size_t count = size_t{image.width} * image.height * 4;
@@ -136,18 +132,21 @@ ByteImage readPngOrJpeg(const fs::path& path) {
 }
 
 Image decodeImageFloat(std::span<const std::byte> bytes, const fs::path& name) {
-    checkBeforeDecoding(bytes, name);
-    const auto convert = [](const auto& decoded, float largest) {
-        Image image(decoded.width, decoded.height, 4);
-        const auto* pixels = decoded.pixels.get();
+    const auto convert = [](uint32_t width, uint32_t height, const auto* pixels, float largest) {
+        Image image(width, height, 4);
         for (size_t i = 0; i < image.pixels.size(); ++i)
             image.pixels[i] = static_cast<float>(pixels[i]) / largest;
         return image;
     };
-    if (stbi_is_16_bit_from_memory(stbBytes(bytes), stbLength(bytes))) {
-        return convert(decodeWith<stbi_us>(stbi_load_16_from_memory, bytes, name), 65535.0f);
+    if (!looksLikeJpeg(bytes)) {
+        checkBeforeDecoding(bytes, name);
+        if (stbi_is_16_bit_from_memory(stbBytes(bytes), stbLength(bytes))) {
+            const auto decoded = decodeWith<stbi_us>(stbi_load_16_from_memory, bytes, name);
+            return convert(decoded.width, decoded.height, decoded.pixels.get(), 65535.0f);
+        }
     }
-    return convert(decodeWith<stbi_uc>(stbi_load_from_memory, bytes, name), 255.0f);
+    const ByteImage image = decodeImage(bytes, name);
+    return convert(image.width, image.height, image.pixels.data(), 255.0f);
 }
 
 }  // namespace limpid::image
