@@ -11,7 +11,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
     : features_(data.features),
       params_(data.params),
       stackSize_(data.stackSize),
-      gpuTraversal_(options.gpuTraversal.value_or(!device.isCpu())) {
+      gpuTraversal_(options.tracer == Tracer::Compute && options.gpuTraversal.value_or(!device.isCpu())) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
         buffers_.push_back(
