@@ -15,10 +15,6 @@ namespace {
 /// Vulkan's alignment of acceleration structures in their buffer.
 constexpr uint64_t structureAlignment = 256;
 
-uint64_t alignUp(uint64_t value, uint64_t alignment) {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 /// Places things in a buffer one behind the other.
 class Layout {
   public:

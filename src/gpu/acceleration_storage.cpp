@@ -13,8 +13,7 @@
 namespace limpid::gpu {
 
 VkDeviceAddress scratchAddress(const BufferStorage& scratch) {
-    const uint64_t alignment = std::max(1u, scratch.context->rayTracing().scratchAlignment);
-    return (deviceAddress(scratch) + alignment - 1) / alignment * alignment;
+    return alignUp(deviceAddress(scratch), std::max(1u, scratch.context->rayTracing().scratchAlignment));
 }
 
 std::shared_ptr<const BufferStorage> makeScratch(const std::shared_ptr<const Context>& context,

@@ -91,8 +91,7 @@ void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
 }
 
 uint64_t FrameSlot::alignedSize(uint64_t bytes) const {
-    const uint64_t alignment = std::max<uint64_t>(16, context_->limits().minUniformBufferOffsetAlignment);
-    return (bytes + alignment - 1) / alignment * alignment;
+    return alignUp(bytes, std::max<uint64_t>(16, context_->limits().minUniformBufferOffsetAlignment));
 }
 
 void FrameSlot::reserveParams(const RecordedFrame& frame) {

@@ -23,6 +23,11 @@ enum class MemoryUse {
 Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
                 const std::string& name, bool addressed = false);
 
+/// The next multiple of `alignment`, which is not 0.
+constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
 /// "12.5 MiB": for messages.
 std::string bytesText(uint64_t bytes);
 

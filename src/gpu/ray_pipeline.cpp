@@ -11,10 +11,6 @@ namespace {
 
 enum Group : uint32_t { rayGenerationGroup, missGroup, hitGroup, groupCount };
 
-uint64_t alignUp(uint64_t value, uint64_t alignment) {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
 }  // namespace
 
 UniquePipeline makeRayPipeline(const Context& context,
