@@ -104,9 +104,9 @@ struct CompressedFile : GltfFile {
     fs::path saveCompressed(const fs::path& folder, bool marked = true) {
         document["extensionsUsed"] = document["extensionsRequired"] = {extensionName};
         finishBuffer("scene.bin");
-        json placeholder = {{"byteLength", decodedBytes}};
-        if (marked) placeholder["extensions"][extensionName] = {{"fallback", true}};
-        document["buffers"].push_back(placeholder);
+        json fallback = {{"byteLength", decodedBytes}};
+        if (marked) fallback["extensions"][extensionName] = {{"fallback", true}};
+        document["buffers"].push_back(fallback);
         put(folder / "scene.bin", bytes);
         put(folder / "scene.gltf", document.dump());
         return folder / "scene.gltf";
@@ -182,7 +182,7 @@ TEST_F(MeshoptTest, ReadsGlb) {
     file.saveCompressed(folder);
     const json buffers = file.document["buffers"];
     std::string glb = file.glb();
-    // glb() leaves only its own buffer: put the placeholder back, in the same number of bytes or more.
+    // glb() leaves only its own buffer: put the fallback buffer back, in the same number of bytes or more.
     file.document["buffers"] = {{{"byteLength", file.bytes.size()}}, buffers[1]};
     std::string text = file.document.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
