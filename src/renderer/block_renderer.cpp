@@ -55,13 +55,8 @@ void BlockRenderer::launch(uint32_t samples) {
 }
 
 SampleCounts BlockRenderer::countsOfBlock() {
-    const std::vector<uint32_t> values = graph_.downloadUint(device_, images_.counters);
-    SampleCounts sum;
-    for (size_t i = 0; i + 1 < values.size(); i += 2) {
-        sum.rays += values[i];
-        sum.rejected += values[i + 1];
-    }
-    return sum;
+    const RenderCounters sum = sumCounters(graph_.downloadUint(device_, images_.counters));
+    return {.rays = sum.rays, .rejected = sum.rejected};
 }
 
 void BlockRenderer::addTo(FrameSums& sums) {

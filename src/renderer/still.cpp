@@ -18,6 +18,15 @@ constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 }  // namespace
 
+RenderCounters sumCounters(std::span<const uint32_t> pixels) {
+    RenderCounters sum;
+    for (size_t i = 0; i + 1 < pixels.size(); i += 2) {
+        sum.rays += pixels[i];
+        sum.rejected += pixels[i + 1];
+    }
+    return sum;
+}
+
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings) {
     return device.isCpu() ? std::min(settings.samplesPerLaunch, maxSamplesPerCpuLaunch)
                           : settings.samplesPerLaunch;
@@ -98,13 +107,7 @@ uint64_t ProgressiveStill::launchesOfAFrame() const {
 
 RenderCounters ProgressiveStill::counters() {
     if (frame_ == 0) return {};
-    const std::vector<uint32_t> values = graph_.downloadUint(device_, images_.counters);
-    RenderCounters sum;
-    for (size_t i = 0; i + 1 < values.size(); i += 2) {
-        sum.rays += values[i];
-        sum.rejected += values[i + 1];
-    }
-    return sum;
+    return sumCounters(graph_.downloadUint(device_, images_.counters));
 }
 
 RenderedLayers ProgressiveStill::download() {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gpu/device.h"
@@ -18,6 +19,9 @@ struct RenderCounters {
     uint64_t rays = 0;      ///< closest-hit and shadow rays
     uint64_t rejected = 0;  ///< samples dropped because they were NaN or infinite
 };
+
+/// The sum over the pixels of the image `counters`: rays | rejected, as downloaded.
+RenderCounters sumCounters(std::span<const uint32_t> pixels);
 
 /// A frame of a sequence.
 struct Moment {
