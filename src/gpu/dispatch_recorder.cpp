@@ -55,6 +55,9 @@ void DispatchRecorder::record() {
                             .name = bound.name,
                             .reads = bound.variable->readable,
                             .writes = bound.variable->writable});
+        if (bound.resource.buffer) continue;
+        const uint64_t bytes = graph_.frame.images[bound.resource.image].bytes();
+        pass_.imageBytes += bytes * (bound.variable->readable + bound.variable->writable);
     }
     graph_.noteAccesses(pass_, accesses);
 
@@ -93,10 +96,6 @@ DispatchRecorder::Bound DispatchRecorder::bind(const Binding& binding) const {
 
 void DispatchRecorder::bindImage(Bound& bound, ImageHandle handle) const {
     const ShaderBinding& variable = *bound.variable;
-    if (variable.kind != BindingKind::StorageImage) {
-        fail(variable.name,
-             fmt::format("is a {} in the shader, but an image is bound", kindName(variable.kind)));
-    }
     try {
         bound.resource.image = graph_.indexOf(handle);
     } catch (const Error& error) {
@@ -104,7 +103,14 @@ void DispatchRecorder::bindImage(Bound& bound, ImageHandle handle) const {
     }
     const RecordedImage& image = graph_.frame.images[bound.resource.image];
     bound.name = image.name;
-    if (image.key.format != variable.format) {
+    const bool inBuffer = image.key.backing == Backing::Buffer;
+    if (inBuffer && variable.kind == BindingKind::StorageImage)
+        fail(variable.name, "is an image in the shader, but what is bound lies in a buffer");
+    if (variable.kind != (inBuffer ? BindingKind::StorageBuffer : BindingKind::StorageImage)) {
+        fail(variable.name,
+             fmt::format("is a {} in the shader, but an image is bound", kindName(variable.kind)));
+    }
+    if (!inBuffer && image.key.format != variable.format) {
         fail(variable.name, fmt::format("is {} in the shader, but image '{}' is {}",
                                         toString(variable.format), image.name, toString(image.key.format)));
     }

@@ -6,6 +6,18 @@
 #include "gpu/check.h"
 
 namespace limpid::gpu {
+namespace {
+
+/// Tightly packed rows, from byte `offset` of `source` on.
+void copyToImage(VkCommandBuffer commands, VkBuffer source, uint64_t offset, const Image& image) {
+    VkBufferImageCopy region{};
+    region.bufferOffset = offset;
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {image.extent.width, image.extent.height, 1};
+    vkCmdCopyBufferToImage(commands, source, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+}
+
+}  // namespace
 
 FrameExecutor::FrameExecutor(std::shared_ptr<const Context> context)
     : context_(std::move(context)),
@@ -46,7 +58,7 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
     for (const RecordedImage& recorded : frame.images) {
         ImagePool::Entry& entry = images_.acquire(recorded.key, submitted_);
         frameImages_.push_back(&entry);
-        if (entry.initialised) continue;
+        if (entry.initialised || entry.image.buffer) continue;
         VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
         barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -93,8 +105,14 @@ void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
     if (frame.uploads.empty()) return;
     const VkBuffer staging = slot.stage(frame.uploadData);
     for (const RecordedUpload& upload : frame.uploads) {
+        const Image* image = upload.buffer ? nullptr : &frameImages_[upload.image]->image;
+        if (image && !image->buffer) {
+            copyToImage(slot.commands(), staging, upload.at, *image);
+            continue;
+        }
+        const BufferStorage& buffer = image ? *image->buffer : *upload.buffer;
         const VkBufferCopy region{upload.at, upload.offset, upload.size};
-        vkCmdCopyBuffer(slot.commands(), staging, upload.buffer->buffer.get(), 1, &region);
+        vkCmdCopyBuffer(slot.commands(), staging, buffer.buffer.get(), 1, &region);
     }
     memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -186,6 +204,10 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
             const Image& image = frameImages_[resource.image]->image;
             images.push_back({VK_NULL_HANDLE, image.view.get(), VK_IMAGE_LAYOUT_GENERAL});
             write.pImageInfo = &images.back();
+        } else if (!resource.buffer) {
+            const BufferStorage& buffer = *frameImages_[resource.image]->image.buffer;
+            buffers.push_back({buffer.buffer.get(), 0, buffer.allocated});
+            write.pBufferInfo = &buffers.back();
         } else if (resource.kind == BindingKind::StorageTexelBuffer) {
             views.push_back(resource.buffer->view.get());
             write.pTexelBufferView = &views.back();

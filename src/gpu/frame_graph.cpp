@@ -11,6 +11,7 @@
 #include "gpu/dispatch_recorder.h"
 #include "gpu/frame_executor.h"
 #include "gpu/frame_graph_impl.h"
+#include "gpu/memory.h"
 
 namespace limpid::gpu {
 namespace {
@@ -141,10 +142,10 @@ void FrameGraph::beginFrame() {
     impl_->lastBarrier = 0;
 }
 
-ImageHandle FrameGraph::transient(const std::string& name, Format format, Extent extent) {
+ImageHandle FrameGraph::transient(const std::string& name, Format format, Extent extent, Backing backing) {
     impl_->requireRecording();
     impl_->claimName(name);
-    return impl_->addImage({.name = name, .key = {name, 0, format, extent.width, extent.height}});
+    return impl_->addImage({.name = name, .key = {name, 0, format, extent.width, extent.height, backing}});
 }
 
 History FrameGraph::history(const std::string& name, Format format, Extent extent) {
@@ -201,8 +202,26 @@ void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const s
     }
     if (data.empty()) return;
     std::vector<std::byte>& all = impl_->frame.uploadData;
-    impl_->frame.uploads.push_back({storage, offset, all.size(), data.size()});
+    impl_->frame.uploads.push_back(
+        {.buffer = storage, .offset = offset, .at = all.size(), .size = data.size()});
     all.insert(all.end(), data.begin(), data.end());
+}
+
+void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
+    impl_->requireRecording();
+    const uint32_t index = impl_->indexOf(handle);
+    RecordedImage& image = impl_->frame.images[index];
+    if (image.role != RecordedImage::Role::Transient || image.written)
+        throw Error(fmt::format("image '{}' cannot be uploaded: it is a history, or written", image.name));
+    if (pixels.size() != image.bytes()) {
+        throw Error(fmt::format("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
+                                pixels.size()));
+    }
+    image.written = true;
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    all.resize(alignUp(all.size(), 16));  // copies to images start at whole texels
+    impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
+    all.insert(all.end(), pixels.begin(), pixels.end());
 }
 
 void FrameGraph::place(const AccelerationStructures& structures, uint32_t placement,
@@ -212,8 +231,10 @@ void FrameGraph::place(const AccelerationStructures& structures, uint32_t placem
     const auto record = storage->instanceRecord(placement, where);
     const auto bytes = std::as_bytes(std::span(&record, 1));
     std::vector<std::byte>& all = impl_->frame.uploadData;
-    impl_->frame.uploads.push_back(
-        {storage->instances, uint64_t{placement} * sizeof(record), all.size(), bytes.size()});
+    impl_->frame.uploads.push_back({.buffer = storage->instances,
+                                    .offset = uint64_t{placement} * sizeof(record),
+                                    .at = all.size(),
+                                    .size = bytes.size()});
     all.insert(all.end(), bytes.begin(), bytes.end());
 }
 

@@ -47,6 +47,10 @@ struct ImageHandle {
     bool operator==(const ImageHandle&) const = default;
 };
 
+/// What holds an image's pixels. A shader declares the one as an image, the other as an array of texels, row
+/// 0 first, in a storage buffer; on some GPUs filters read buffers twice as fast, on CPUs images are faster.
+enum class Backing { Image, Buffer };
+
 /// An image pair that lives from frame to frame.
 struct History {
     ImageHandle previous;  ///< what `current` was in the last frame that recorded this history
@@ -104,6 +108,7 @@ struct RecordedPass {
     std::vector<std::string> reads, writes;  ///< resource names
     std::vector<Hazard> hazards;             ///< empty: runs without a barrier
     std::array<uint32_t, 3> groups{};
+    uint64_t imageBytes = 0;  ///< of the images it reads plus those it writes: the least that it can move
 };
 
 struct PassTime {
@@ -123,7 +128,8 @@ class FrameGraph {
 
     /// An image for this frame; its content is undefined until a pass writes it. Names are unique within a
     /// frame.
-    ImageHandle transient(const std::string& name, Format format, Extent extent);
+    ImageHandle transient(const std::string& name, Format format, Extent extent,
+                          Backing backing = Backing::Image);
     /// A pair that lives across frames. One call per frame and name. Not recording it in a frame drops it.
     /// `previous` can only be read; while the history is invalid it is zero. The history is valid in the next
     /// frame if this frame writes `current` and is executed.
@@ -146,6 +152,10 @@ class FrameGraph {
     /// passes of earlier frames. Both are multiples of 4 bytes; ranges of one frame must not overlap. Throws
     /// Error if the data reaches beyond the buffer.
     void upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data);
+
+    /// Gives a transient image, which nothing has written yet, its pixels: all components, row 0 first.
+    /// Throws Error if `pixels` has another size than the image.
+    void upload(ImageHandle image, std::span<const std::byte> pixels);
 
     /// Puts a tree elsewhere, for the next rebuild(); as an upload().
     void place(const AccelerationStructures& structures, uint32_t placement, const TreePlacement& where);

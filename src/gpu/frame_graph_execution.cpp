@@ -20,8 +20,7 @@ std::vector<std::byte> downloadPixels(FrameGraph::Impl& graph, Device& device, I
         throw Error(fmt::format("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
     }
     const Image& image = executor.image(recorded);
-    std::vector<std::byte> pixels(uint64_t{image.extent.width} * image.extent.height *
-                                  bytesPerTexel(image.format));
+    std::vector<std::byte> pixels(recorded.bytes());
     device.waitIdle();
     device.impl().transfer.download(image, pixels);
     return pixels;
@@ -72,7 +71,7 @@ void FrameGraph::execute(Device& device) {
         }
     }
     for (const RecordedUpload& upload : impl_->frame.uploads) {
-        if (upload.buffer->context.get() != &executor.context())
+        if (upload.buffer && upload.buffer->context.get() != &executor.context())
             throw Error(fmt::format("buffer '{}' belongs to another device", upload.buffer->name));
     }
     executor.execute(impl_->frame);

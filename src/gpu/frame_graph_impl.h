@@ -31,6 +31,7 @@ struct ImageKey {
     uint32_t half = 0;
     Format format{};
     uint32_t width = 0, height = 0;
+    Backing backing = Backing::Image;
     auto operator<=>(const ImageKey&) const = default;
 };
 
@@ -43,6 +44,7 @@ struct RecordedImage {
     bool written = false;
 
     Extent extent() const { return {key.width, key.height}; }
+    uint64_t bytes() const { return uint64_t{key.width} * key.height * bytesPerTexel(key.format); }
 };
 
 struct BoundResource {
@@ -65,11 +67,12 @@ struct RecordedDispatch {
     std::array<uint32_t, 3> workgroupSize{};
 };
 
-/// Data that reaches a buffer before the first pass.
+/// Data that reaches a buffer or an image before the first pass.
 struct RecordedUpload {
-    std::shared_ptr<const BufferStorage> buffer;
-    uint64_t offset = 0;      ///< in the buffer
-    size_t at = 0, size = 0;  ///< in RecordedFrame::uploadData
+    std::shared_ptr<const BufferStorage> buffer;  ///< none: an image
+    uint64_t offset = 0;                          ///< in the buffer
+    uint32_t image = 0;                           ///< index of images
+    size_t at = 0, size = 0;                      ///< in RecordedFrame::uploadData
 };
 
 /// Everything that one frame says.

@@ -50,7 +50,9 @@ void FrameSlot::submit(const RecordedFrame& frame) {
             if (resource.structures) structures_.push_back(resource.structures);
         }
     }
-    for (const RecordedUpload& upload : frame.uploads) buffers_.push_back(upload.buffer);
+    for (const RecordedUpload& upload : frame.uploads) {
+        if (upload.buffer) buffers_.push_back(upload.buffer);
+    }
     context_->submit(commands_, fence_.get());
     submitted_ = true;
     for (const RecordedPass& pass : frame.passes) passNames_.push_back(pass.name);
@@ -115,8 +117,10 @@ VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) 
 VkBuffer FrameSlot::stage(std::span<const std::byte> data) {
     if (!staging_ || staging_->size < data.size()) {
         staging_.reset();
-        staging_ = makeBuffer(context_, name("uploads"), BufferUse::Staging,
-                              std::max<uint64_t>(64 << 10, 2 * data.size()));
+        // Small uploads vary from frame to frame; pictures do not, and are too large to be generous.
+        const uint64_t bytes = data.size() < (1u << 20) ? 2 * data.size() : data.size();
+        staging_ =
+            makeBuffer(context_, name("uploads"), BufferUse::Staging, std::max<uint64_t>(64 << 10, bytes));
     }
     std::memcpy(staging_->memory.mapped, data.data(), data.size());
     return staging_->buffer.get();

@@ -24,14 +24,26 @@ UniqueImageView makeView(const Context& context, VkImage image, Format format, c
     return owned;
 }
 
+Image makeBufferImage(std::shared_ptr<const Context> context, const std::string& name, Format format,
+                      Extent extent) {
+    Image image;
+    image.format = format;
+    image.extent = extent;
+    const uint64_t bytes = uint64_t{extent.width} * extent.height * bytesPerTexel(format);
+    image.buffer = makeBuffer(context, name, BufferUse::Storage, bytes);
+    image.context = std::move(context);
+    return image;
+}
+
 }  // namespace
 
 VkImageSubresourceRange wholeImage() {
     return {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
 }
 
-Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format,
-                Extent extent) {
+Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
+                Backing backing) {
+    if (backing == Backing::Buffer) return makeBufferImage(std::move(context), name, format, extent);
     const uint32_t maximum = context->limits().maxImageDimension2D;
     if (std::max(extent.width, extent.height) > maximum) {
         throw Error(fmt::format("image '{}' of {} x {} pixels exceeds maxImageDimension2D = {} of {}", name,

@@ -1,6 +1,8 @@
-// Storage images on the device: one layer, one level, GENERAL layout for all their life.
+// Images on the device: storage images of one layer and one level, in GENERAL layout for all their life; or
+// texels in a buffer.
 #pragma once
 
+#include "gpu/buffer.h"
 #include "gpu/frame_graph.h"
 #include "gpu/memory.h"
 
@@ -11,13 +13,14 @@ struct Image {
     Memory memory;
     UniqueImage image;
     UniqueImageView view;
+    std::shared_ptr<BufferStorage> buffer;  ///< with Backing::Buffer, instead of the three
     Format format{};
     Extent extent;
 };
 
-/// In UNDEFINED layout at first. Throws Error if the extent exceeds maxImageDimension2D.
-Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format,
-                Extent extent);
+/// In UNDEFINED layout at first. Throws Error naming the limit that the extent exceeds.
+Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
+                Backing backing = Backing::Image);
 
 VkImageSubresourceRange wholeImage();
 

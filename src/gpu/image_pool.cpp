@@ -16,7 +16,7 @@ std::string debugName(const ImageKey& key) {
 ImagePool::Entry& ImagePool::acquire(const ImageKey& key, uint64_t frame) {
     auto found = entries_.find(key);
     if (found == entries_.end()) {
-        Entry entry{makeImage(context_, debugName(key), key.format, {key.width, key.height})};
+        Entry entry{makeImage(context_, debugName(key), key.format, {key.width, key.height}, key.backing)};
         found = entries_.emplace(key, std::move(entry)).first;
     }
     found->second.lastFrame = frame;

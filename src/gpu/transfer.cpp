@@ -95,6 +95,7 @@ void Transfer::download(const BufferStorage& buffer, std::span<std::byte> data) 
 }
 
 void Transfer::download(const Image& image, std::span<std::byte> data) {
+    if (image.buffer) return download(*image.buffer, data);
     const uint32_t width = image.extent.width, height = image.extent.height;
     const uint64_t rowBytes = uint64_t{width} * bytesPerTexel(image.format);
     const uint32_t rowsPerChunk =
