@@ -1,13 +1,14 @@
 // limpid info: devices with features and limits, pipelines, built-in scenes, every parameter.
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "gpu/device.h"
-#include "passes/pathtrace/pathtrace.h"
 #include "renderer/layers.h"
+#include "renderer/parameters.h"
 #include "scene/builtin.h"
 #include "scene/tracer.h"
 
@@ -39,15 +40,35 @@ json devicesJson(const std::vector<gpu::DeviceInfo>& devices) {
 
 json parametersJson() {
     json list = json::array();
-    const auto& table = pathtraceParams();
-    for (const ParamInfo& info : table.infos()) {
-        list.push_back({{"name", table.group() + "." + info.name},
-                        {"default", toString(info.defaultValue)},
-                        {"minimum", info.minimum},
-                        {"maximum", info.maximum},
-                        {"unit", info.unit},
-                        {"help", info.help}});
+    for (const ParamGroup& group : paramGroups()) {
+        for (const ParamInfo& info : group.infos) {
+            list.push_back({{"name", group.name + "." + info.name},
+                            {"default", toString(info.defaultValue)},
+                            {"minimum", info.minimum},
+                            {"maximum", info.maximum},
+                            {"unit", info.unit},
+                            {"help", info.help}});
+        }
     }
+    return list;
+}
+
+/// By name, every parameter that it sets, and to what.
+std::map<std::string, std::map<std::string, std::string>> presets() {
+    std::map<std::string, std::map<std::string, std::string>> result;
+    for (const ParamGroup& group : paramGroups()) {
+        for (const ParamPreset& preset : group.presets) {
+            for (const auto& [parameter, text] : preset.values)
+                result[preset.name][group.name + "." + parameter] = text;
+        }
+    }
+    return result;
+}
+
+json pipelinesJson() {
+    json list = json::array();
+    for (const Pipeline& pipeline : pipelines())
+        list.push_back({{"name", pipeline.name()}, {"help", pipeline.help()}});
     return list;
 }
 
@@ -75,8 +96,10 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
     if (devices.empty())
         fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
     for (const gpu::DeviceInfo& device : devices) printDevice(device);
+    fmt::print("\nPipelines (--pipeline)\n");
+    for (const Pipeline& pipeline : pipelines()) fmt::print("{:<10} {}\n", pipeline.name(), pipeline.help());
     fmt::print(
-        "\nPipelines\npath   the path tracer alone, accumulated progressively\n\nTracers\n"
+        "\nTracers (--tracer)\n"
         "compute   our own tree in a compute shader; every device\n"
         "pipeline  the driver's ray-tracing pipeline; devices with VK_KHR_ray_tracing_pipeline\n\nBuilt-in "
         "scenes\n");
@@ -86,10 +109,17 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
     fmt::print("\nLayers (--aov)\n");
     for (const std::string& name : layerNames()) fmt::print("{} ", name);
     fmt::print("\n\nParameters (--set group.name=value)\n");
-    const auto& table = pathtraceParams();
-    for (const ParamInfo& info : table.infos()) {
-        fmt::print("{:<28} default {}, {} to {} {}\n   {}\n", table.group() + "." + info.name,
-                   toString(info.defaultValue), info.minimum, info.maximum, info.unit, info.help);
+    for (const ParamGroup& group : paramGroups()) {
+        for (const ParamInfo& info : group.infos) {
+            fmt::print("{:<28} default {}, {} to {} {}\n   {}\n", group.name + "." + info.name,
+                       toString(info.defaultValue), info.minimum, info.maximum, info.unit, info.help);
+        }
+    }
+    fmt::print("\nPresets (--preset)\n");
+    for (const auto& [name, values] : presets()) {
+        fmt::print("{:<10}", name);
+        for (const auto& [parameter, text] : values) fmt::print(" {}={}", parameter, text);
+        fmt::print("\n");
     }
 }
 
@@ -103,10 +133,10 @@ void addInfoCommand(CLI::App& app) {
     command->callback([asJson] {
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
         if (!*asJson) return printText(devices);
-        const json object{{"version", LIMPID_VERSION},     {"devices", devicesJson(devices)},
-                          {"pipelines", {"path"}},         {"tracers", {"compute", "pipeline"}},
-                          {"scenes", scenesJson()},        {"layers", layerNames()},
-                          {"parameters", parametersJson()}};
+        const json object{{"version", LIMPID_VERSION},      {"devices", devicesJson(devices)},
+                          {"pipelines", pipelinesJson()},   {"tracers", {"compute", "pipeline"}},
+                          {"scenes", scenesJson()},         {"layers", layerNames()},
+                          {"parameters", parametersJson()}, {"presets", presets()}};
         fmt::print("{}\n", object.dump(2));
     });
 }

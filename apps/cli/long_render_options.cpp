@@ -34,6 +34,10 @@ void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice) {
         "is then a .sums file for 'limpid merge'");
 }
 
+bool isLongRender(const LongRenderChoice& choice) {
+    return choice.timeLimit > 0.0 || !choice.checkpoint.empty() || choice.resume || !choice.shard.empty();
+}
+
 Shard chosenShard(const LongRenderChoice& choice) {
     if (choice.shard.empty()) return {};
     const size_t slash = std::min(choice.shard.find('/'), choice.shard.size());

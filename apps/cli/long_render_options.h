@@ -17,6 +17,9 @@ struct LongRenderChoice {
 
 void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice);
 
+/// Whether any of the four is chosen.
+bool isLongRender(const LongRenderChoice& choice);
+
 /// 1/1 if none is chosen. Throws UsageError if it makes no sense.
 Shard chosenShard(const LongRenderChoice& choice);
 

@@ -30,7 +30,8 @@ nlohmann::json mergeStill(const MergeOptions& o, const FramePattern& output) {
     const std::vector<fs::path> files(o.inputs.begin(), o.inputs.end());
     const Accumulation sum = mergeAccumulations(files);
     checkPictureOutput(path, !sum.header.layers.empty());
-    writePicture(path, sum.header, 0, sum.sums);
+    writePicture(path, formatOf(sum.header), sum.sums.means(),
+                 metadataOf(sum.header, 0, sum.sums.samples(), std::nullopt));
     log::info("{} samples of {}x{} from {} files", sum.sums.samples(), sum.header.extent.width,
               sum.header.extent.height, files.size());
     return {{"output", o.output}, {"samples", sum.sums.samples()}, {"files", files.size()}};

@@ -6,6 +6,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "renderer/camera_text.h"
 #include "renderer/merge_frames.h"
 #include "renderer/render_identity.h"
 
@@ -31,24 +32,34 @@ void checkPictureOutput(const fs::path& path, bool layers) {
     checkWritable(path);
 }
 
-void writePicture(const fs::path& path, const AccumulationHeader& header, uint64_t frame,
-                  const FrameSums& sums) {
-    const RenderedLayers layers = sums.means();
+PictureFormat formatOf(const AccumulationHeader& header) {
+    return {header.layers, header.floatColors, header.exposure};
+}
+
+std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
+                                              uint64_t samples, const std::optional<CameraParams>& camera) {
+    std::map<std::string, std::string> metadata{{"limpid.version", std::string(header.value(versionEntry))},
+                                                {"limpid.scene", std::string(header.value(sceneEntry))},
+                                                {"limpid.samples", std::to_string(samples)},
+                                                {"limpid.seed", std::string(header.value(seedEntry))},
+                                                {"limpid.device", header.device},
+                                                {"limpid.driver", header.driver}};
+    if (camera) metadata[cameraAttribute] = cameraText(*camera);
+    metadata.merge(frameMetadata(header, frame));
+    return metadata;
+}
+
+void writePicture(const fs::path& path, const PictureFormat& format, const RenderedLayers& layers,
+                  const std::map<std::string, std::string>& metadata) {
     if (!isExr(path)) {
         const image::Image beauty = beautyOf(layers);
-        const float stops = parseExposure(header.exposure).value_or(image::autoExposure(beauty));
+        const float stops = parseExposure(format.exposure).value_or(image::autoExposure(beauty));
         image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
         return;
     }
     image::LayeredImage exr = toLayeredImage(
-        layers, header.layers, header.floatColors ? image::Storage::Float : image::Storage::Half);
-    exr.metadata = {{"limpid.version", std::string(header.value(versionEntry))},
-                    {"limpid.scene", std::string(header.value(sceneEntry))},
-                    {"limpid.samples", std::to_string(layers.samples)},
-                    {"limpid.seed", std::string(header.value(seedEntry))},
-                    {"limpid.device", header.device},
-                    {"limpid.driver", header.driver}};
-    exr.metadata.merge(frameMetadata(header, frame));
+        layers, format.layers, format.floatColors ? image::Storage::Float : image::Storage::Half);
+    exr.metadata = metadata;
     image::writeExr(path, exr);
 }
 

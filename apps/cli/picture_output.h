@@ -1,12 +1,15 @@
-// What `limpid render` and `limpid merge` write: a frame's picture.
+// What `limpid render`, `merge` and `denoise` write: a frame's picture.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "renderer/accumulation.h"
 #include "renderer/accumulation_header.h"
+#include "renderer/layers.h"
+#include "shaders/camera.h"
 
 namespace limpid::cli {
 
@@ -19,8 +22,20 @@ bool isExr(const std::filesystem::path& path);
 /// file can be written.
 void checkPictureOutput(const std::filesystem::path& path, bool layers);
 
-/// The frame's means as an EXR with the header's layers, or as a PNG with its exposure.
-void writePicture(const std::filesystem::path& path, const AccumulationHeader& header, uint64_t frame,
-                  const FrameSums& sums);
+struct PictureFormat {
+    std::vector<std::string> layers;  ///< of an EXR, besides beauty
+    bool floatColors = false;         ///< of an EXR; else half
+    std::string exposure = "auto";    ///< of a PNG
+};
+PictureFormat formatOf(const AccumulationHeader& header);
+
+/// The string attributes of an EXR. Without `camera`, which a merged still does not know, no denoiser that
+/// needs it can read the file.
+std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
+                                              uint64_t samples, const std::optional<CameraParams>& camera);
+
+/// An EXR with layers and metadata, or a PNG.
+void writePicture(const std::filesystem::path& path, const PictureFormat& format,
+                  const RenderedLayers& layers, const std::map<std::string, std::string>& metadata);
 
 }  // namespace limpid::cli

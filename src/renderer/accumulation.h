@@ -23,7 +23,7 @@ inline constexpr double meanLimit = 0x1p40;
 inline constexpr int squareFraction = 38;
 inline constexpr double squareLimit = 0x1p63;
 
-/// An image of recordPathFrame() that can be summed.
+/// An image of recordFrame() that can be summed.
 struct LayerKind {
     const char* name;  ///< as in layerNames(); "beauty" where layers are not computed
     uint32_t components;

@@ -45,7 +45,7 @@ void BlockRenderer::launch(uint32_t samples) {
     input.samplesBefore = samplesDone_;
     input.samples = samples;
     graph_.beginFrame();
-    images_ = recordPathFrame(graph_, scene_, settings_, input);
+    images_ = recordFrame(graph_, scene_, settings_, input);
     graph_.execute(device_);
     moment_.scene.reset();  // the device has it until the next frame
     if (input.frame == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);

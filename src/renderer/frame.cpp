@@ -1,10 +1,16 @@
 #include "renderer/frame.h"
 
+#include <algorithm>
+#include <array>
+
 #include "passes/accumulate/accumulate.h"
 #include "passes/deform/deform.h"
 
 namespace limpid {
 namespace {
+
+using gpu::FrameGraph;
+using gpu::ImageHandle;
 
 float radicalInverse(uint32_t index, uint32_t base) {
     float result = 0.0f, digit = 1.0f;
@@ -21,22 +27,42 @@ vec2 frameJitter(Jitter jitter, uint32_t frame) {
     return {radicalInverse(frame, 2), radicalInverse(frame, 3)};
 }
 
-}  // namespace
+PathtraceLaunch launchOf(const RenderSettings& settings, const FrameInput& input) {
+    return {.extent = settings.extent,
+            .camera = input.camera,
+            .previousCamera = input.previousCamera,
+            .hasPrevious = input.hasPrevious,
+            .frame = input.frame,
+            .stream = static_cast<uint32_t>(input.stream),
+            .seed = settings.seed,
+            .samples = input.samples,
+            .jitterPerPixel = settings.jitter == Jitter::Pixel,
+            .jitter = frameJitter(settings.jitter, input.frame)};
+}
 
-FrameImages recordPathFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
-                            const FrameInput& input) {
-    if (input.moved) deform(graph, scene, *input.moved);
-    const PathtraceLaunch launch{.extent = settings.extent,
-                                 .camera = input.camera,
-                                 .previousCamera = input.previousCamera,
-                                 .hasPrevious = input.hasPrevious,
-                                 .frame = input.frame,
-                                 .stream = static_cast<uint32_t>(input.stream),
-                                 .seed = settings.seed,
-                                 .samples = input.samples,
-                                 .jitterPerPixel = settings.jitter == Jitter::Pixel,
-                                 .jitter = frameJitter(settings.jitter, input.frame)};
-    const auto mean = [&](const char* name, gpu::ImageHandle added, VarianceOf varianceOf) {
+/// The layers that are means over samples, and what their variances are of.
+struct MeanLayer {
+    ImageHandle PathtraceLayers::*image;
+    const char* name;
+    VarianceOf varianceOf;
+};
+constexpr std::array<MeanLayer, 9> meanLayers{{
+    {&PathtraceLayers::diffuse, "diffuse", VarianceOf::Luminance},
+    {&PathtraceLayers::specular, "specular", VarianceOf::Luminance},
+    {&PathtraceLayers::emission, "emission", VarianceOf::Luminance},
+    {&PathtraceLayers::albedo, "albedo", VarianceOf::Luminance},
+    {&PathtraceLayers::albedoSpecular, "albedoSpecular", VarianceOf::Luminance},
+    {&PathtraceLayers::normal, "normal", VarianceOf::MeanOfComponents},
+    {&PathtraceLayers::previousNormal, "previousNormal", VarianceOf::Nothing},
+    {&PathtraceLayers::depth, "depth", VarianceOf::FirstComponent},
+    {&PathtraceLayers::motion, "motion", VarianceOf::Nothing},
+}};
+
+/// The path tracer alone: running means over frames.
+FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                       const FrameInput& input) {
+    const PathtraceLaunch launch = launchOf(settings, input);
+    const auto mean = [&](const char* name, ImageHandle added, VarianceOf varianceOf) {
         return accumulate(graph, name, added, input.samplesBefore, input.samples, varianceOf);
     };
     FrameImages out;
@@ -46,19 +72,85 @@ FrameImages recordPathFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, cons
         out.counters = traced.counters;
         return out;
     }
-    const PathtraceLayers traced = pathtraceLayers(graph, scene, settings.pathtrace, launch);
-    out.counters = traced.counters;
-    out.ids = traced.ids;
-    out.diffuse = mean("diffuse", traced.diffuse, VarianceOf::Luminance);
-    out.specular = mean("specular", traced.specular, VarianceOf::Luminance);
-    out.emission = mean("emission", traced.emission, VarianceOf::Luminance);
-    out.albedo = mean("albedo", traced.albedo, VarianceOf::Luminance);
-    out.albedoSpecular = mean("albedoSpecular", traced.albedoSpecular, VarianceOf::Luminance);
-    out.normal = mean("normal", traced.normal, VarianceOf::MeanOfComponents);
-    out.previousNormal = mean("previousNormal", traced.previousNormal, VarianceOf::Nothing);
-    out.depth = mean("depth", traced.depth, VarianceOf::FirstComponent);
-    out.motion = mean("motion", traced.motion, VarianceOf::Nothing);
+    static_cast<PathtraceLayers&>(out) = pathtraceLayers(graph, scene, settings.pathtrace, launch);
+    for (const MeanLayer& layer : meanLayers)
+        out.*layer.image = mean(layer.name, out.*layer.image, layer.varianceOf);
     return out;
+}
+
+/// A frame's samples in as many launches as the device needs, averaged.
+PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                             const FrameInput& input) {
+    PathtraceLaunch launch = launchOf(settings, input);
+    if (input.samples <= input.launchSamples)
+        return pathtraceLayers(graph, scene, settings.pathtrace, launch);
+    const gpu::Extent extent = settings.extent;
+    const gpu::History counters = graph.history("pathtrace/counters", gpu::Format::RG32Uint, extent);
+    std::array<PathtraceLayers, 2> means{makePathtraceLayers(graph, "mean/", extent),
+                                         makePathtraceLayers(graph, "other mean/", extent)};
+    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent);
+    for (PathtraceLayers* layers : {&means[0], &means[1], &traced})
+        layers->counters =
+            graph.transient(graph.name(layers->ids) + " counters", gpu::Format::RG32Uint, extent);
+    ImageHandle countersBefore = counters.previous;
+    const ImageHandle ids = means[0].ids;  // of the first launch
+    for (uint32_t done = 0, number = 0; done < input.samples; ++number) {
+        launch.samples = std::min(input.launchSamples, input.samples - done);
+        launch.stream = static_cast<uint32_t>(input.stream + number);
+        PathtraceLayers& mean = means[number % 2];
+        PathtraceLayers& into = number == 0 ? mean : traced;
+        into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;
+        pathtraceLayers(graph, scene, settings.pathtrace, launch, countersBefore, into);
+        countersBefore = into.counters;
+        for (const MeanLayer& layer : meanLayers) {
+            if (number == 0) break;
+            accumulateStep(graph, layer.name,
+                           {.before = means[1 - number % 2].*layer.image,
+                            .added = traced.*layer.image,
+                            .after = mean.*layer.image,
+                            .countBefore = static_cast<float>(done),
+                            .countAdded = static_cast<float>(launch.samples),
+                            .varianceOf = layer.varianceOf});
+        }
+        done += launch.samples;
+        if (done < input.samples) continue;
+        mean.ids = ids;
+        mean.counters = counters.current;
+        return mean;
+    }
+    return means[0];
+}
+
+/// The path tracer, and a denoiser that keeps its histories from frame to frame.
+FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                           const FrameInput& input) {
+    FrameImages out;
+    static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
+    const denoise::DenoiserInput frame{.diffuse = out.diffuse,
+                                       .specular = out.specular,
+                                       .emission = out.emission,
+                                       .albedo = out.albedo,
+                                       .normal = out.normal,
+                                       .depth = out.depth,
+                                       .motion = out.motion,
+                                       .previousNormal = out.previousNormal,
+                                       .ids = out.ids,
+                                       .camera = input.camera,
+                                       .filters = input.filters};
+    const denoise::DenoiserOutput denoised =
+        settings.pipeline.denoiser->record(graph, frame, settings.denoisers);
+    out.beauty = denoised.beauty;
+    out.cases = denoised.cases;
+    return out;
+}
+
+}  // namespace
+
+FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
+                        const FrameInput& input) {
+    if (input.moved) deform(graph, scene, *input.moved);
+    return settings.pipeline.denoiser ? recordDenoised(graph, scene, settings, input)
+                                      : recordPath(graph, scene, settings, input);
 }
 
 }  // namespace limpid

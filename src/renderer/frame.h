@@ -4,13 +4,14 @@
 #include <cstdint>
 
 #include "gpu/frame_graph.h"
+#include "passes/pathtrace/pathtrace.h"
 #include "renderer/settings.h"
 #include "scene/gpu_scene.h"
 #include "scene/scene_animator.h"
 
 namespace limpid {
 
-/// Where a progressive render stands.
+/// Where a render stands.
 struct FrameInput {
     CameraParams camera;
     CameraParams previousCamera;
@@ -20,19 +21,20 @@ struct FrameInput {
     uint64_t stream = 0;                       ///< of random numbers: `frame`, or beyond in a sequence
     uint64_t samplesBefore = 0;                ///< per pixel, in the running means
     uint32_t samples = 1;                      ///< per pixel, in this frame
+    uint32_t launchSamples = UINT32_MAX;  ///< ... of these in one launch at most, of pipelines that denoise
+    gpu::Backing filters = gpu::Backing::Image;  ///< of images that filters read many times over
 };
 
-/// Running means after this frame (passes/pathtrace/pathtrace.h says what the components hold). Without
-/// layers only `beauty` and `counters` are set; with layers beauty is the sum of diffuse, specular and
-/// emission.
-struct FrameImages {
-    gpu::ImageHandle beauty, counters;
-    gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal, previousNormal, depth,
-        motion, ids;
+/// What a frame leaves on the device; images that a pipeline does not make are empty. `path` without layers
+/// makes `beauty` and `counters`; with layers beauty is the sum of diffuse, specular and emission. These are
+/// running means of `path`, and this frame's own of pipelines that denoise.
+struct FrameImages : PathtraceLayers {
+    gpu::ImageHandle beauty;
+    gpu::ImageHandle cases;  ///< denoise::HistoryImages::cases
 };
 
-/// Records one frame of `--pipeline path`.
-FrameImages recordPathFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
-                            const FrameInput& input);
+/// Records one frame of settings.pipeline.
+FrameImages recordFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
+                        const FrameInput& input);
 
 }  // namespace limpid

@@ -13,6 +13,7 @@ bool sameCamera(const CameraParams& a, const CameraParams& b) {
 bool mustReset(const AccumulationState& before, const AccumulationState& now) {
     RenderSettings settings = now.settings;
     settings.samplesPerLaunch = before.settings.samplesPerLaunch;
+    settings.denoisers = before.settings.denoisers;
     return !sameCamera(before.camera, now.camera) || before.settings != settings ||
            before.sceneVersion != now.sceneVersion;
 }

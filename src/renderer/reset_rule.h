@@ -16,8 +16,8 @@ struct AccumulationState {
 };
 
 /// True if samples taken under `before` must not be averaged with samples under `now`: the camera's matrix or
-/// field of view, the size, any setting, or the scene has changed. (Samples per launch alone change no
-/// pixel's distribution.)
+/// field of view, the size, any setting, or the scene has changed. (Samples per launch change no pixel's
+/// distribution, and what denoisers do nothing that is accumulated.)
 bool mustReset(const AccumulationState& before, const AccumulationState& now);
 
 }  // namespace limpid

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 
+#include "denoise/denoiser.h"
 #include "gpu/frame_graph.h"
 #include "passes/pathtrace/pathtrace.h"
+#include "renderer/pipeline.h"
 
 namespace limpid {
 
@@ -21,8 +23,10 @@ struct RenderSettings {
     uint32_t seed = 0;
     uint32_t samplesPerLaunch = 1;  ///< 1 or more
     Jitter jitter = Jitter::Pixel;
-    bool layers = false;  ///< false: only beauty is computed, which is faster
+    Pipeline pipeline;
+    bool layers = false;  ///< of `path`; false: only beauty is computed, which is faster
     PathtraceSettings pathtrace;
+    denoise::DenoiserSettings denoisers;
     bool operator==(const RenderSettings&) const = default;
 };
 

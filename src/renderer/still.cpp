@@ -56,6 +56,30 @@ std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& 
     return result;
 }
 
+RenderedLayers downloadLayers(gpu::FrameGraph& graph, gpu::Device& device, const FrameImages& images,
+                              uint64_t samples) {
+    const gpu::ImageHandle any = images.beauty ? images.beauty : images.diffuse;
+    if (!any) throw Error("nothing has been rendered yet");
+    RenderedLayers layers;
+    layers.extent = graph.extent(any);
+    layers.samples = samples;
+    const auto get = [&](gpu::ImageHandle handle) {
+        return handle ? graph.downloadFloat(device, handle) : std::vector<float>();
+    };
+    layers.beauty = get(images.beauty);
+    layers.diffuse = get(images.diffuse);
+    layers.specular = get(images.specular);
+    layers.emission = get(images.emission);
+    layers.albedo = get(images.albedo);
+    layers.albedoSpecular = get(images.albedoSpecular);
+    layers.normal = get(images.normal);
+    layers.depth = get(images.depth);
+    layers.motion = get(images.motion);
+    layers.previousNormal = get(images.previousNormal);
+    if (images.ids) layers.ids = graph.downloadUint(device, images.ids);
+    return layers;
+}
+
 ProgressiveStill::ProgressiveStill(gpu::Device& device, scene::GpuScene& scene, uint64_t maxSamples)
     : device_(device), scene_(scene), maxSamples_(maxSamples) {}
 
@@ -91,7 +115,7 @@ bool ProgressiveStill::launch() {
     input.samples = static_cast<uint32_t>(
         std::min<uint64_t>(samplesPerLaunch(device_, state_.settings), maxSamples_ - samples_));
     graph_.beginFrame();
-    images_ = recordPathFrame(graph_, scene_, state_.settings, input);
+    images_ = recordFrame(graph_, scene_, state_.settings, input);
     graph_.execute(device_);
     moved_.reset();
     if (frame_ == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
@@ -112,22 +136,7 @@ RenderCounters ProgressiveStill::counters() {
 
 RenderedLayers ProgressiveStill::download() {
     if (frame_ == 0) throw Error("nothing has been rendered yet");
-    RenderedLayers layers;
-    layers.extent = state_.settings.extent;
-    layers.samples = samples_;
-    const auto get = [&](gpu::ImageHandle handle) {
-        return handle ? graph_.downloadFloat(device_, handle) : std::vector<float>();
-    };
-    layers.beauty = get(images_.beauty);
-    layers.diffuse = get(images_.diffuse);
-    layers.specular = get(images_.specular);
-    layers.emission = get(images_.emission);
-    layers.albedo = get(images_.albedo);
-    layers.albedoSpecular = get(images_.albedoSpecular);
-    layers.normal = get(images_.normal);
-    layers.depth = get(images_.depth);
-    layers.motion = get(images_.motion);
-    layers.previousNormal = get(images_.previousNormal);
+    RenderedLayers layers = downloadLayers(graph_, device_, images_, samples_);
     layers.ids = ids_;
     return layers;
 }

@@ -39,6 +39,11 @@ uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& setti
 std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
                                                                const std::string& pass);
 
+/// Of a graph's last frame; images that are empty stay out. `samples` per pixel are in the means. Waits for
+/// the device.
+RenderedLayers downloadLayers(gpu::FrameGraph& graph, gpu::Device& device, const FrameImages& images,
+                              uint64_t samples);
+
 class ProgressiveStill {
   public:
     /// `maxSamples` per pixel. The scene must outlive this.

@@ -52,6 +52,13 @@ vec3 directionOfLatLong(vec2 uv) {
     return vec3(sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi));
 }
 
+/// A unit vector in 2 x snorm16: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010. 0 becomes +Z.
+uint encodeOctahedral(vec3 n) {
+    const vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
+    const vec2 signs = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
+    return packSnorm2x16(n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * signs);
+}
+
 vec3 decodeOctahedral(uint packed) {
     const vec2 e = unpackSnorm2x16(packed);
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));

@@ -21,23 +21,34 @@ vec3 varianceWeights(VarianceOf varianceOf) {
 
 }  // namespace
 
-gpu::ImageHandle accumulate(gpu::FrameGraph& graph, const std::string& name, gpu::ImageHandle added,
-                            uint64_t countBefore, uint32_t countAdded, VarianceOf varianceOf) {
-    const gpu::Extent extent = graph.extent(added);
-    const gpu::History history = graph.history("accumulate/" + name, gpu::Format::RGBA32Float, extent);
+void accumulateStep(gpu::FrameGraph& graph, const std::string& name, const AccumulateStep& step) {
+    const gpu::Extent extent = graph.extent(step.added);
     AccumulateParams params{};
     params.width = extent.width;
     params.height = extent.height;
-    params.countBefore = history.valid ? static_cast<float>(countBefore) : 0.0f;
-    params.countAdded = static_cast<float>(countAdded);
-    params.weights = varianceWeights(varianceOf);
-    params.perComponent = varianceOf == VarianceOf::MeanOfComponents ? 1u : 0u;
+    params.countBefore = step.countBefore;
+    params.countAdded = step.countAdded;
+    params.weights = varianceWeights(step.varianceOf);
+    params.perComponent = step.varianceOf == VarianceOf::MeanOfComponents ? 1u : 0u;
     graph.dispatch({.pass = "accumulate/" + name,
                     .shader = shaders::accumulate_comp,
-                    .bindings = {{"added", added}, {"before", history.previous}, {"after", history.current}},
+                    .bindings = {{"added", step.added}, {"before", step.before}, {"after", step.after}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
                     .extent = extent});
+}
+
+gpu::ImageHandle accumulate(gpu::FrameGraph& graph, const std::string& name, gpu::ImageHandle added,
+                            uint64_t countBefore, uint32_t countAdded, VarianceOf varianceOf) {
+    const gpu::History history =
+        graph.history("accumulate/" + name, gpu::Format::RGBA32Float, graph.extent(added));
+    accumulateStep(graph, name,
+                   {.before = history.previous,
+                    .added = added,
+                    .after = history.current,
+                    .countBefore = history.valid ? static_cast<float>(countBefore) : 0.0f,
+                    .countAdded = static_cast<float>(countAdded),
+                    .varianceOf = varianceOf});
     return history.current;
 }
 

@@ -10,6 +10,16 @@ namespace limpid {
 /// What the alpha channel's variance is of.
 enum class VarianceOf { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
+/// The mean of `countBefore` samples in `before` and `countAdded` in `added` goes to `after`, all within one
+/// frame. Alpha as below.
+struct AccumulateStep {
+    gpu::ImageHandle before, added, after;
+    float countBefore = 0.0f;  ///< 0: `before` is not looked at
+    float countAdded = 1.0f;
+    VarianceOf varianceOf = VarianceOf::Nothing;
+};
+void accumulateStep(gpu::FrameGraph& graph, const std::string& name, const AccumulateStep& step);
+
 /// Adds `added` (mean of `countAdded` samples; alpha: their mean squared deviation) to the history `name`,
 /// which holds the mean of `countBefore` samples, and returns the new mean. countBefore = 0 starts anew. All
 /// images are rgba32f; with VarianceOf::Nothing alpha is averaged like the rest.

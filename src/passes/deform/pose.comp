@@ -60,9 +60,7 @@ Vertex pose(Vertex v, uint vertex, uint weights, uint matrices, uvec4 joints, ve
 uint packDirection(vec3 direction, vec3 otherwise) {
     const float length2 = dot(direction, direction);
     const vec3 d = length2 > 1e-30 && length2 < 1e30 ? direction : otherwise;
-    const vec3 n = d / (abs(d.x) + abs(d.y) + abs(d.z));
-    const vec2 folded = 1.0 - abs(n.yx);
-    return packSnorm2x16(n.z >= 0.0 ? n.xy : mix(-folded, folded, greaterThanEqual(n.xy, vec2(0.0))));
+    return encodeOctahedral(d);
 }
 
 void main() {

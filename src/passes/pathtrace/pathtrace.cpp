@@ -88,29 +88,47 @@ PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
     return {beauty, counters.current};
 }
 
+PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix, gpu::Extent extent) {
+    const auto image = [&](const char* name) {
+        return graph.transient(prefix + name, Format::RGBA32Float, extent);
+    };
+    PathtraceLayers layers;
+    layers.diffuse = image("diffuse");
+    layers.specular = image("specular");
+    layers.emission = image("emission");
+    layers.albedo = image("albedo");
+    layers.albedoSpecular = image("albedoSpecular");
+    layers.normal = image("normal");
+    layers.depth = image("depth");
+    layers.motion = image("motion");
+    layers.previousNormal = image("previousNormal");
+    layers.ids = graph.transient(prefix + "ids", Format::RG32Uint, extent);
+    return layers;
+}
+
+void pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
+                     const PathtraceLaunch& launch, ImageHandle countersBefore, const PathtraceLayers& into) {
+    dispatch(graph, {shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen}, scene, settings, launch,
+             {{"diffuse", into.diffuse},
+              {"specular", into.specular},
+              {"emission", into.emission},
+              {"albedo", into.albedo},
+              {"albedoSpecular", into.albedoSpecular},
+              {"normal", into.normal},
+              {"depth", into.depth},
+              {"motion", into.motion},
+              {"previousNormal", into.previousNormal},
+              {"ids", into.ids},
+              {"countersBefore", countersBefore},
+              {"counters", into.counters}});
+}
+
 PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch) {
-    PathtraceLayers layers;
+    PathtraceLayers layers = makePathtraceLayers(graph, "pathtrace/", launch.extent);
     const gpu::History counters = graph.history("pathtrace/counters", Format::RG32Uint, launch.extent);
     layers.counters = counters.current;
-    layers.ids = graph.transient("pathtrace/ids", Format::RG32Uint, launch.extent);
-    std::vector<Binding> images{
-        {"countersBefore", counters.previous}, {"counters", counters.current}, {"ids", layers.ids}};
-    const auto image = [&](const char* name, ImageHandle& handle) {
-        handle = graph.transient(std::string("pathtrace/") + name, Format::RGBA32Float, launch.extent);
-        images.push_back({name, handle});
-    };
-    image("diffuse", layers.diffuse);
-    image("specular", layers.specular);
-    image("emission", layers.emission);
-    image("albedo", layers.albedo);
-    image("albedoSpecular", layers.albedoSpecular);
-    image("normal", layers.normal);
-    image("depth", layers.depth);
-    image("motion", layers.motion);
-    image("previousNormal", layers.previousNormal);
-    dispatch(graph, {shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen}, scene, settings, launch,
-             images);
+    pathtraceLayers(graph, scene, settings, launch, counters.previous, layers);
     return layers;
 }
 

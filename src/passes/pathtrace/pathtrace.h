@@ -53,5 +53,12 @@ PathtraceBeauty pathtraceBeauty(gpu::FrameGraph& graph, const scene::GpuScene& s
 /// Every layer.
 PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch);
+/// ... into images made before, for frames of several launches. `countersBefore` are those of the launch
+/// before.
+void pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
+                     const PathtraceLaunch& launch, gpu::ImageHandle countersBefore,
+                     const PathtraceLayers& into);
+/// All images but the counters; their names begin with `prefix`.
+PathtraceLayers makePathtraceLayers(gpu::FrameGraph& graph, const std::string& prefix, gpu::Extent extent);
 
 }  // namespace limpid

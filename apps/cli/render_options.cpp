@@ -1,0 +1,126 @@
+#include "render_options.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/frame_pattern.h"
+#include "picture_output.h"
+#include "renderer/layers.h"
+#include "renderer/parameters.h"
+
+namespace limpid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Jitter per pixel flips the first hit at silhouettes, which breaks histories.
+Jitter jitterOf(const RenderOptions& o, const Pipeline& pipeline) {
+    if (o.jitter == "auto") return pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    return o.jitter == "pixel" ? Jitter::Pixel : o.jitter == "frame" ? Jitter::Frame : Jitter::Off;
+}
+
+void checkOutput(const RenderOptions& o) {
+    const fs::path path = FramePattern(o.output).format(0);
+    const bool sums = path.extension() == ".sums";
+    if (sums != writesSums(o)) {
+        throw UsageError(
+            "'" + o.output +
+            (sums ? "': only a shard of a still is written to a .sums file"
+                  : "': the name of a still's shard ends in .sums; 'limpid merge' makes the picture"));
+    }
+    if (sums) return checkWritable(path);
+    checkPictureOutput(path, !o.layers.empty());
+}
+
+}  // namespace
+
+void addRenderOptions(CLI::App& command, RenderOptions& o) {
+    addSceneOptions(command, o.scene);
+    addSequenceOptions(command, o.sequence);
+    command
+        .add_option("-o,--output", o.output,
+                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames")
+        ->required();
+    command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
+    command
+        .add_option("--spp", o.samples, "Samples per pixel (64); with a denoiser, per pixel and frame (1)")
+        ->check(CLI::Range(1, 1 << 24));
+    command
+        .add_option("--samples-per-launch", o.samplesPerLaunch,
+                    "Of these, so many in one launch (1); at most 4 on a CPU")
+        ->check(CLI::Range(1, 4096));
+    command.add_option("--max-depth", o.maxDepth, "Bounces (8); the same as --set pathtrace.max_depth")
+        ->check(CLI::Range(0, 1024));
+    command.add_option("--seed", o.seed, "Another seed, other noise (0)");
+    command.add_option("--sampler", o.sampler, "Random numbers: pcg (default) or tea")
+        ->check(CLI::IsMember({"pcg", "tea"}));
+    command
+        .add_option("--jitter", o.jitter,
+                    "Where in its pixel a ray goes: pixel, frame or off; default: pixel, with a denoiser off")
+        ->check(CLI::IsMember({"pixel", "frame", "off"}));
+    std::string names;
+    for (const Pipeline& pipeline : pipelines()) names += " " + std::string(pipeline.name());
+    command.add_option("--pipeline", o.pipeline, "What makes the picture; path (default), or one of" + names);
+    command.add_option("--preset", o.presets, "A named set of parameters, as course; before --set");
+    command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
+    command.add_option("--exposure", o.exposure, "Of a PNG: stops, or 'auto' (default)");
+    command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
+    command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
+    command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");
+    command.add_flag("--json", o.json, "One JSON object about the run on stdout");
+    addLongRenderOptions(command, o.longRender);
+    addDeviceOptions(command, o.device);
+}
+
+RenderSettings settingsOf(const RenderOptions& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.seed = o.seed;
+    settings.samplesPerLaunch = o.samplesPerLaunch;
+    settings.pipeline = parsePipeline(o.pipeline);
+    settings.jitter = jitterOf(o, settings.pipeline);
+    settings.layers = !o.layers.empty();
+    settings.pathtrace.samplerTea = o.sampler == "tea";
+    if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;
+    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    for (const std::string& text : o.assignments) assign(settings, text);
+    return settings;
+}
+
+uint64_t samplesOf(const RenderOptions& o) {
+    if (o.samples > 0) return o.samples;
+    return parsePipeline(o.pipeline).accumulates() ? 64 : 1;
+}
+
+bool writesSums(const RenderOptions& o) {
+    return !FramePattern(o.output).numbered() && chosenShard(o.longRender).count > 1;
+}
+
+std::vector<std::string> chosenLayers(const RenderOptions& o) {
+    const std::vector<std::string> chosen = parseLayers(o.layers);
+    std::vector<std::string> layers;
+    for (const std::string& name : layerNames()) {
+        if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) layers.push_back(name);
+    }
+    return layers;
+}
+
+void checkRenderOptions(const RenderOptions& o) {
+    const Pipeline pipeline = parsePipeline(o.pipeline);
+    if (pipeline != Pipeline{} && isLongRender(o.longRender)) {
+        throw UsageError(
+            "--checkpoint, --resume, --shard and --time-limit are for --pipeline path: the frames of '" +
+            std::string(pipeline.name()) + "' build on each other");
+    }
+    if (!pipeline.accumulates() && samplesOf(o) > 65536)
+        throw UsageError("--spp: a frame that is denoised takes 65536 samples at most");
+    checkLongRender(o.longRender);
+    checkOutput(o);
+    parseExposure(o.exposure);
+    parseLayers(o.layers);
+    settingsOf(o);
+}
+
+}  // namespace limpid::cli

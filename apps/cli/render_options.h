@@ -1,0 +1,45 @@
+// The options of `limpid render`, and what they come to.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "device_options.h"
+#include "long_render_options.h"
+#include "renderer/settings.h"
+#include "scene_options.h"
+#include "sequence_options.h"
+
+namespace limpid::cli {
+
+struct RenderOptions {
+    SceneChoice scene;
+    SequenceChoice sequence;
+    DeviceChoice device;
+    LongRenderChoice longRender;
+    std::string output;
+    uint32_t width = 1280, height = 720;
+    uint64_t samples = 0;  // 0: the pipeline's own default
+    uint32_t samplesPerLaunch = 1;
+    uint32_t seed = 0;
+    int maxDepth = -1;  // -1: the parameter's own default
+    std::string pipeline = "path", sampler = "pcg", jitter = "auto", exposure = "auto", layers, dump;
+    std::vector<std::string> presets, assignments;
+    bool floatExr = false, json = false;
+};
+
+void addRenderOptions(CLI::App& command, RenderOptions& options);
+
+/// Throws UsageError or OutputError if the options contradict each other, or name what there is not.
+void checkRenderOptions(const RenderOptions& options);
+
+RenderSettings settingsOf(const RenderOptions& options);
+/// Per pixel; of a frame, where the pipeline goes from frame to frame.
+uint64_t samplesOf(const RenderOptions& options);
+/// In the order of layerNames(), each once.
+std::vector<std::string> chosenLayers(const RenderOptions& options);
+/// A shard of a still is no picture yet.
+bool writesSums(const RenderOptions& options);
+
+}  // namespace limpid::cli

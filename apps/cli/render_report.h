@@ -1,0 +1,42 @@
+// What `limpid render` says at its end: a line, or a JSON object.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "denoise/history/history.h"
+#include "gpu/device.h"
+#include "render_options.h"
+#include "renderer/accumulation.h"
+#include "scene/gpu_scene.h"
+#include "scene/scene.h"
+
+namespace limpid::cli {
+
+struct Timings {
+    double loadSeconds = 0.0, uploadSeconds = 0.0, renderSeconds = 0.0;
+};
+
+struct RenderSummary {
+    int frames = 0;
+    uint64_t framesFinished = 0;  ///< with those of earlier runs
+    uint64_t framesToDo = 0;      ///< of the shard
+    uint64_t blocksFinished = 0;
+    uint64_t samples = 0;  ///< of the last picture or file of sums, per pixel
+    bool complete = false;
+    SampleCounts counts;  ///< of this run
+    Timings timings;
+    std::map<std::string, double> lastFrame;        ///< milliseconds by pass, of the last launch
+    std::map<std::string, double> medians;          ///< ... over all frames; empty with `path`
+    std::optional<denoise::HistoryCounts> history;  ///< of the last frame
+};
+
+/// Milliseconds by pass; a pass may be dispatched several times.
+std::map<std::string, double> sumByName(const std::vector<gpu::PassTime>& passes);
+
+/// Warns of what was lost and of what is still to be done, then reports.
+void reportRender(const RenderOptions& options, const gpu::Device& device, const RenderSummary& summary,
+                  const scene::Scene& scene, const scene::GpuScene& gpuScene);
+
+}  // namespace limpid::cli

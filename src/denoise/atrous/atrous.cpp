@@ -1,0 +1,133 @@
+#include "denoise/atrous/atrous.h"
+
+#include <string>
+
+#include "atrous_demodulate.comp.h"
+#include "atrous_demodulate_buffers.comp.h"
+#include "atrous_level.comp.h"
+#include "atrous_level_buffers.comp.h"
+#include "atrous_modulate.comp.h"
+#include "atrous_modulate_buffers.comp.h"
+#include "denoise/atrous/atrous_params.h"
+
+namespace limpid::denoise {
+namespace {
+
+using gpu::Backing;
+using gpu::Extent;
+using gpu::FrameGraph;
+using gpu::ImageHandle;
+
+struct Signal {
+    ImageHandle light;     ///< half4: demodulated; alpha: something is seen
+    ImageHandle geometry;  ///< two words: octahedral normal, depth
+};
+
+AtrousEndsParams endsParams(Extent extent, const DenoiserInput& input, const AtrousSettings& settings) {
+    return {input.camera, extent.width, extent.height, settings.plane ? 1u : 0u};
+}
+
+Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                  const AtrousSettings& settings) {
+    const Extent extent = graph.extent(input.albedo);
+    const Signal signal{
+        graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
+        graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
+    const AtrousEndsParams params = endsParams(extent, input, settings);
+    const bool buffers = input.filters == Backing::Buffer;
+    graph.dispatch(
+        {.pass = "atrous/demodulate",
+         .shader = buffers ? shaders::atrous_demodulate_buffers_comp : shaders::atrous_demodulate_comp,
+         .bindings = {{"lightA", light.first},
+                      {"lightB", light.second ? light.second : light.first},
+                      {"albedo", input.albedo},
+                      {"normal", input.normal},
+                      {"depth", input.depth},
+                      {"signal", signal.light},
+                      {"geometry", signal.geometry}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"SUM_OF_TWO", light.second ? 1u : 0u}},
+         .extent = extent});
+    return signal;
+}
+
+ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& signal, int number,
+                  const AtrousSettings& settings) {
+    const Extent extent = graph.extent(signal.light);
+    const std::string name = "atrous/level " + std::to_string(number);
+    const ImageHandle filtered = graph.transient(name, gpu::Format::RGBA16Float, extent, input.filters);
+    const int step = 1 << (number - 1);
+    AtrousLevelParams params{};
+    params.camera = input.camera;
+    params.width = extent.width;
+    params.height = extent.height;
+    params.step = step;
+    params.normalScale = 1.0f / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
+    params.depthScale = 1.0f / settings.depthFactor;
+    params.plane = settings.plane ? 1u : 0u;
+    const bool buffers = input.filters == Backing::Buffer;
+    const uint32_t group = buffers ? 16 : 8;  // measured: H200, lavapipe
+    graph.dispatch(
+        {.pass = name,
+         .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
+         .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"GROUP_X", group}, {"GROUP_Y", group}},
+         .extent = extent});
+    return filtered;
+}
+
+ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal,
+                     const AtrousSettings& settings) {
+    const Extent extent = graph.extent(signal);
+    const ImageHandle beauty = graph.transient("atrous/beauty", gpu::Format::RGBA32Float, extent);
+    const AtrousEndsParams params = endsParams(extent, input, settings);
+    const bool buffers = input.filters == Backing::Buffer;
+    graph.dispatch({.pass = "atrous/modulate",
+                    .shader = buffers ? shaders::atrous_modulate_buffers_comp : shaders::atrous_modulate_comp,
+                    .bindings = {{"signal", signal},
+                                 {"albedo", input.albedo},
+                                 {"emission", input.emission},
+                                 {"beauty", beauty}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
+    return beauty;
+}
+
+}  // namespace
+
+const ParamTable<AtrousSettings>& atrousParams() {
+    static const auto table = [] {
+        using S = AtrousSettings;
+        ParamTable<S> t("atrous");
+        t.add("history", &S::history, "filter the running means of `history`; off: the frame's own samples");
+        t.add("levels", &S::levels, 0, 10, "levels",
+              "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels; more is smoother "
+              "and slower");
+        t.add("normal_factor", &S::normalFactor, 1e-9, 1e9, "",
+              "tolerated squared difference of normals at level 1, fourfold at each further; higher smooths "
+              "over "
+              "edges and curves");
+        t.add("depth_factor", &S::depthFactor, 1e-12, 1e12, "of the squared distance",
+              "tolerated squared deviation from the pixel's plane, relative to its distance from the eye "
+              "(without "
+              "`plane`: of depths, world units); higher smooths over steps");
+        t.add("plane", &S::plane,
+              "weigh by the deviation from the pixel's plane instead of the difference of depths");
+        t.preset("course",
+                 {{"levels", "5"}, {"normal_factor", "0.003"}, {"depth_factor", "0.007"}, {"plane", "off"}});
+        return t;
+    }();
+    return table;
+}
+
+ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                         const AtrousSettings& settings) {
+    Signal signal = demodulate(graph, input, light, settings);
+    for (int number = 1; number <= settings.levels; ++number)
+        signal.light = level(graph, input, signal, number, settings);
+    return modulate(graph, input, signal.light, settings);
+}
+
+}  // namespace limpid::denoise

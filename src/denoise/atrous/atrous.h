@@ -1,0 +1,32 @@
+// The edge-avoiding a-trous filter: levels of a 5x5 B3 spline with growing holes, weighted by geometry, over
+// light without albedo. docs/denoising.md has the formulas and the paper.
+#pragma once
+
+#include "base/params.h"
+#include "denoise/denoiser_input.h"
+#include "gpu/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; atrousParams() is where range and meaning stand.
+struct AtrousSettings {
+    bool history = true;
+    int levels = 5;
+    float normalFactor = 0.003f;
+    float depthFactor = 1e-4f;
+    bool plane = true;
+    bool operator==(const AtrousSettings&) const = default;
+};
+const ParamTable<AtrousSettings>& atrousParams();
+
+/// Scattered light: one image (`second` empty), or the sum of two. rgba32f.
+struct AtrousLight {
+    gpu::ImageHandle first, second;
+};
+
+/// The filtered beauty, rgba32f, alpha 1: `light` filtered, plus the frame's emission. Passes:
+/// "atrous/demodulate", "atrous/level 1" and so on, "atrous/modulate".
+gpu::ImageHandle filterAtrous(gpu::FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                              const AtrousSettings& settings);
+
+}  // namespace limpid::denoise

@@ -1,0 +1,36 @@
+// Light without albedo, in half precision, and the geometry that the filter's weights need, packed.
+#include "denoise/atrous/atrous_params.h"
+#include "denoise/guides.glsl"
+#include "shaders/filter_image.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, else lightA
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    AtrousEndsParams params;
+};
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
+layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D normal;
+layout(set = 0, binding = 5, rgba32f) uniform readonly image2D depth;
+WRITE_HALF4(6, signal);    // light / max(albedo, 0.1); 1 where something is seen
+WRITE_UINT2(7, geometry);  // octahedral normal | depth
+
+void main() {
+    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= params.width || pixel.y >= params.height) return;
+    const ivec2 at = ivec2(pixel);
+    vec3 light = imageLoad(lightA, at).rgb;
+    if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
+    const vec3 demodulated = finiteOr(light, vec3(0.0)) / modulation(imageLoad(albedo, at));
+    const float z = hitDistance(imageLoad(depth, at));
+    float d = z;
+    if (params.plane != 0u) {
+        const vec2 onScreen = pixelOnScreen(vec2(pixel), vec2(params.width, params.height));
+        d *= inversesqrt(max(dot(viewVector(params.camera, onScreen), viewVector(params.camera, onScreen)), 1e-30));
+    }
+    STORE_HALF4(signal, at, vec4(clamp(demodulated, -MAX_HALF, MAX_HALF), z > 0.0 ? 1.0 : 0.0));
+    STORE_UINT2(geometry, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(d)));
+}

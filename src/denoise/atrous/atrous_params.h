@@ -1,0 +1,31 @@
+// Parameters of the a-trous filter's passes. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_ATROUS_PARAMS_H
+#define LIMPID_DENOISE_ATROUS_PARAMS_H
+
+#include "shaders/camera.h"
+
+#ifdef __cplusplus
+namespace limpid::denoise {
+#endif
+
+struct AtrousEndsParams {  // of demodulation and modulation
+    CameraParams camera;
+    uint width;
+    uint height;
+    uint plane;  // the geometry's depth is along `forward`, not along the ray
+};
+
+struct AtrousLevelParams {
+    CameraParams camera;
+    uint width;
+    uint height;
+    int step;           // pixels
+    float normalScale;  // 1 / (step^2 normal_factor)
+    float depthScale;   // 1 / depth_factor
+    uint plane;
+};
+
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif

@@ -1,0 +1,19 @@
+// Parameters of the compose shader. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_COMPOSE_PARAMS_H
+#define LIMPID_DENOISE_COMPOSE_PARAMS_H
+
+#ifdef __cplusplus
+#include "base/math.h"
+namespace limpid::denoise {
+#endif
+
+struct ComposeParams {
+    uint width;
+    uint height;
+    uint showCases;  // colours instead of light where there is no history
+};
+
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif

@@ -1,0 +1,45 @@
+#include "denoise/denoiser.h"
+
+#include <algorithm>
+#include <array>
+
+#include "denoise/compose/compose.h"
+
+namespace limpid::denoise {
+namespace {
+
+DenoiserOutput recordHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
+                             const DenoiserSettings& settings) {
+    const HistoryImages history = trackHistory(graph, input, settings.history);
+    return {compose(graph, history.color, input.emission, history.cases, settings.history.showCases),
+            history.cases};
+}
+
+DenoiserOutput recordAtrous(gpu::FrameGraph& graph, const DenoiserInput& input,
+                            const DenoiserSettings& settings) {
+    if (!settings.atrous.history)
+        return {filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous), {}};
+    const HistoryImages history = trackHistory(graph, input, settings.history);
+    return {filterAtrous(graph, input, {history.color, {}}, settings.atrous), history.cases};
+}
+
+constexpr std::array<std::string_view, 1> historyGroups{"history"};
+constexpr std::array<std::string_view, 2> atrousGroups{"history", "atrous"};
+
+constexpr std::array<Denoiser, 2> all{
+    Denoiser{"history", "each pixel's running mean follows its surface through camera and object motion",
+             recordHistory, historyGroups, 2.0},
+    Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 4.0}};
+
+}  // namespace
+
+std::span<const Denoiser> denoisers() {
+    return all;
+}
+
+const Denoiser* findDenoiser(std::string_view name) {
+    const auto found = std::ranges::find(all, name, &Denoiser::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace limpid::denoise

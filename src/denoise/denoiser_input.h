@@ -1,0 +1,29 @@
+// What every denoiser reads.
+#pragma once
+
+#include "denoise/host_frame.h"
+#include "gpu/frame_graph.h"
+#include "shaders/camera.h"
+
+namespace limpid::denoise {
+
+/// One frame: images of one size, rgba32f unless said otherwise. What their components hold is in
+/// docs/denoising.md, "What a frame gives"; rays go through the pixels' centres. NaN and infinity are
+/// allowed: such radiance is rejected, such a normal, distance or motion counts as missing.
+struct DenoiserInput {
+    gpu::ImageHandle diffuse, specular;  ///< scattered light, cd/m^2, albedo multiplied in
+    gpu::ImageHandle emission;           ///< what the camera sees directly
+    gpu::ImageHandle albedo;
+    gpu::ImageHandle normal, depth;
+    gpu::ImageHandle motion, previousNormal;
+    gpu::ImageHandle ids;  ///< rg32ui: instance, material; UINT32_MAX where nothing is seen
+    CameraParams camera{};
+    /// Of images that filters read many times over. Measure: buffers are faster on an H200, images on
+    /// lavapipe.
+    gpu::Backing filters = gpu::Backing::Image;
+};
+
+/// The frame's images on the device. Throws Error if an image of `frame` has another size than the frame.
+DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
+
+}  // namespace limpid::denoise

@@ -1,0 +1,81 @@
+#include "renderer/frame_renderer.h"
+
+#include <algorithm>
+
+namespace limpid {
+namespace {
+
+/// Histories of samples that settled differently belong to another picture. What denoisers make of them does
+/// not matter, nor does the camera.
+bool sameSamples(const RenderSettings& a, const RenderSettings& b) {
+    return a.extent == b.extent && a.jitter == b.jitter && a.pipeline == b.pipeline &&
+           a.pathtrace == b.pathtrace;
+}
+
+}  // namespace
+
+FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
+                             uint32_t samples)
+    : device_(device), scene_(scene), settings_(settings), samples_(samples) {}
+
+void FrameRenderer::setSettings(const RenderSettings& settings) {
+    if (!sameSamples(settings, settings_)) graph_.resetHistories();
+    settings_ = settings;
+}
+
+void FrameRenderer::render(Moment moment) {
+    FrameInput input{.camera = moment.camera,
+                     .previousCamera = moment.previousCamera.value_or(moment.camera)};
+    input.hasPrevious = moment.previousCamera.has_value();
+    input.moved = moment.scene ? &*moment.scene : nullptr;
+    input.launchSamples = samplesPerLaunch(device_, settings_);
+    input.filters = device_.isCpu() ? gpu::Backing::Image : gpu::Backing::Buffer;
+    if (moment.scene) ++sceneVersion_;
+    const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
+    input.stream = moment.number * launches;
+    if (settings_.pipeline.accumulates()) return launchAccumulated(input);
+    input.frame = static_cast<uint32_t>(moment.number);
+    input.samples = samples_;
+    launch(input);
+}
+
+void FrameRenderer::launchAccumulated(const FrameInput& first) {
+    const AccumulationState now{first.camera, settings_, sceneVersion_};
+    if (state_ && mustReset(*state_, now)) {
+        graph_.resetHistories();
+        samplesInMean_ = 0;
+    }
+    state_ = now;
+    FrameInput input = first;
+    for (uint32_t done = 0; done < samples_; done += input.samples) {
+        input.samples = std::min(first.launchSamples, samples_ - done);
+        input.samplesBefore = samplesInMean_;
+        input.frame = static_cast<uint32_t>(std::min<uint64_t>(samplesInMean_, UINT32_MAX));
+        launch(input);
+        input.moved = nullptr;
+        ++input.stream;
+        samplesInMean_ += input.samples;
+    }
+}
+
+void FrameRenderer::launch(FrameInput input) {
+    graph_.beginFrame();
+    images_ = recordFrame(graph_, scene_, settings_, input);
+    graph_.execute(device_);
+}
+
+RenderedLayers FrameRenderer::download() {
+    return downloadLayers(graph_, device_, images_,
+                          settings_.pipeline.accumulates() ? samplesInMean_ : samples_);
+}
+
+RenderCounters FrameRenderer::counters() {
+    return images_.counters ? sumCounters(graph_.downloadUint(device_, images_.counters)) : RenderCounters{};
+}
+
+denoise::HistoryCounts FrameRenderer::historyCounts() {
+    return images_.cases ? denoise::countCases(graph_.downloadUint(device_, images_.cases))
+                         : denoise::HistoryCounts{};
+}
+
+}  // namespace limpid

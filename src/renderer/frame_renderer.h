@@ -1,0 +1,56 @@
+// Frames one after the other, by a pipeline that keeps something from frame to frame: histories of a
+// denoiser, or a mean that goes on as long as nothing changes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "gpu/device.h"
+#include "renderer/frame.h"
+#include "renderer/layers.h"
+#include "renderer/reset_rule.h"
+#include "renderer/still.h"
+
+namespace limpid {
+
+class FrameRenderer {
+  public:
+    /// `samples` per pixel and frame, at least 1. The scene must outlive this.
+    FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
+                  uint32_t samples);
+
+    /// Renders the next frame; `moment` says what it shows. Pipelines that denoise keep their histories
+    /// whatever moves; the others start anew when camera, scene, size or settings change. Does not wait for
+    /// the device.
+    void render(Moment moment);
+    /// For the frames to come. Histories go on unless the samples they are made of are of another kind.
+    void setSettings(const RenderSettings& settings);
+
+    /// Of the last frame. Waits for the device.
+    RenderedLayers download();
+    RenderCounters counters();
+    /// Zeros where the pipeline tracks no history.
+    denoise::HistoryCounts historyCounts();
+    std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
+    const gpu::FrameGraph& graph() const { return graph_; }
+    std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
+        return imagesOfPass(graph_, device_, pass);
+    }
+
+  private:
+    void launch(FrameInput input);
+    void launchAccumulated(const FrameInput& input);
+
+    gpu::Device& device_;
+    scene::GpuScene& scene_;
+    RenderSettings settings_;
+    uint32_t samples_;
+    gpu::FrameGraph graph_;
+    std::optional<AccumulationState> state_;  ///< of the last frame
+    uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved
+    uint64_t samplesInMean_ = 0;              ///< of pipelines that accumulate
+    FrameImages images_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,61 @@
+#include "renderer/parameters.h"
+
+#include <set>
+
+#include "base/error.h"
+
+namespace limpid {
+namespace {
+
+/// `select` says where the technique's settings lie.
+template <typename Settings, typename Select>
+ParamGroup groupOf(const ParamTable<Settings>& table, Select select) {
+    return {
+        .name = table.group(),
+        .infos = table.infos(),
+        .presets = table.presets(),
+        .set = [&table, select](RenderSettings& settings, std::string_view name,
+                                std::string_view text) { return table.set(select(settings), name, text); },
+        .get = [&table, select](const RenderSettings& settings,
+                                size_t index) { return table.get(select(settings), index); },
+        .applyPreset = [&table, select](
+                           RenderSettings& settings,
+                           std::string_view preset) { return table.applyPreset(select(settings), preset); }};
+}
+
+}  // namespace
+
+const std::vector<ParamGroup>& paramGroups() {
+    static const std::vector<ParamGroup> all{
+        groupOf(
+            pathtraceParams(), [](auto& s) -> auto& { return s.pathtrace; }),
+        groupOf(
+            denoise::historyParams(), [](auto& s) -> auto& { return s.denoisers.history; }),
+        groupOf(
+            denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),
+    };
+    return all;
+}
+
+void assign(RenderSettings& settings, std::string_view assignment) {
+    const Assignment a = parseAssignment(assignment);
+    for (const ParamGroup& group : paramGroups()) {
+        if (group.name == a.group && group.set(settings, a.name, a.value)) return;
+    }
+    throw UsageError("there is no parameter '" + a.group + "." + a.name + "'; 'limpid info' lists them");
+}
+
+void applyPreset(RenderSettings& settings, std::string_view preset) {
+    bool found = false;
+    std::set<std::string> names;
+    for (const ParamGroup& group : paramGroups()) {
+        found = group.applyPreset(settings, preset) || found;
+        for (const ParamPreset& known : group.presets) names.insert(known.name);
+    }
+    if (found) return;
+    std::string list;
+    for (const std::string& name : names) list += " " + name;
+    throw UsageError("there is no preset '" + std::string(preset) + "'; the presets are" + list);
+}
+
+}  // namespace limpid

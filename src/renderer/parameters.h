@@ -1,0 +1,33 @@
+// Every technique's parameters in one place: for --set, --preset, `limpid info` and the viewer.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/params.h"
+#include "renderer/settings.h"
+
+namespace limpid {
+
+/// A technique's ParamTable, applied to where its settings lie in RenderSettings.
+struct ParamGroup {
+    std::string name;
+    std::vector<ParamInfo> infos;
+    std::vector<ParamPreset> presets;
+    /// As ParamTable::set(), get() and applyPreset().
+    std::function<bool(RenderSettings&, std::string_view name, std::string_view text)> set;
+    std::function<ParamValue(const RenderSettings&, size_t index)> get;
+    std::function<bool(RenderSettings&, std::string_view preset)> applyPreset;
+};
+
+const std::vector<ParamGroup>& paramGroups();
+
+/// "group.name=value". Throws UsageError if there is no such parameter, or on a bad value.
+void assign(RenderSettings& settings, std::string_view assignment);
+
+/// Of every technique that has it. Throws UsageError listing the presets if none has.
+void applyPreset(RenderSettings& settings, std::string_view preset);
+
+}  // namespace limpid

@@ -1,0 +1,43 @@
+// Images that a filter reads many times over: storage images, or texels in buffers (gpu::Backing) where the including
+// shader defines LIMPID_FILTER_BUFFERS. Declare with READ_* and WRITE_*, access with LOAD_* and STORE_*; the including
+// shader's `params` has the picture's `width`. HALF4: four halves. UINT2: two words.
+#ifndef LIMPID_FILTER_IMAGE_GLSL
+#define LIMPID_FILTER_IMAGE_GLSL
+
+const float MAX_HALF = 65504.0;
+
+#ifdef LIMPID_FILTER_BUFFERS
+
+vec4 unpackHalf4(uvec2 texel) {
+    return vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y));
+}
+
+uvec2 packHalf4(vec4 value) {
+    return uvec2(packHalf2x16(value.xy), packHalf2x16(value.zw));
+}
+
+#define TEXEL_INDEX(at) (uint((at).y) * params.width + uint((at).x))
+#define READ_UINT2(slot, name) \
+    layout(set = 0, binding = slot, scalar) readonly buffer name##Texels { uvec2 texels[]; } name
+#define WRITE_UINT2(slot, name) \
+    layout(set = 0, binding = slot, scalar) writeonly buffer name##Texels { uvec2 texels[]; } name
+#define LOAD_UINT2(name, at) name.texels[TEXEL_INDEX(at)]
+#define STORE_UINT2(name, at, value) name.texels[TEXEL_INDEX(at)] = value
+#define READ_HALF4(slot, name) READ_UINT2(slot, name)
+#define WRITE_HALF4(slot, name) WRITE_UINT2(slot, name)
+#define LOAD_HALF4(name, at) unpackHalf4(LOAD_UINT2(name, at))
+#define STORE_HALF4(name, at, value) STORE_UINT2(name, at, packHalf4(value))
+
+#else
+
+#define READ_UINT2(slot, name) layout(set = 0, binding = slot, rg32ui) uniform readonly uimage2D name
+#define WRITE_UINT2(slot, name) layout(set = 0, binding = slot, rg32ui) uniform writeonly uimage2D name
+#define LOAD_UINT2(name, at) imageLoad(name, at).xy
+#define STORE_UINT2(name, at, value) imageStore(name, at, uvec4(value, 0u, 0u))
+#define READ_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform readonly image2D name
+#define WRITE_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform writeonly image2D name
+#define LOAD_HALF4(name, at) imageLoad(name, at)
+#define STORE_HALF4(name, at, value) imageStore(name, at, value)
+
+#endif
+#endif
