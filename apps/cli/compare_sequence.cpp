@@ -25,23 +25,11 @@ using image::FrameScores;
 using image::MotionSource;
 using image::SequencePicture;
 
-/// The pattern's frames. Throws InputError if there are none or some are missing in between.
-std::vector<int> framesOf(const FramePattern& pattern) {
-    std::vector<int> frames = pattern.existingFrames();
-    if (frames.empty()) throw InputError(pattern.text(), "there is no such file with any frame number");
-    for (size_t i = 1; i < frames.size(); ++i) {
-        if (frames[i] == frames[i - 1] + 1) continue;
-        throw InputError(pattern.text(), fmt::format("frame {} is missing: there are {}", frames[i - 1] + 1,
-                                                     describeFrames(frames)));
-    }
-    return frames;
-}
-
 /// The frames to compare. Throws InputError unless test and reference (where it is a sequence) have the same.
 std::vector<int> matchingFrames(const CompareOptions& options) {
-    const std::vector<int> frames = framesOf(options.test);
+    const std::vector<int> frames = options.test.wholeSequence();
     if (!options.reference.numbered()) return frames;
-    const std::vector<int> reference = framesOf(options.reference);
+    const std::vector<int> reference = options.reference.wholeSequence();
     if (frames == reference) return frames;
     throw InputError(options.test.text(),
                      fmt::format("its frames are {}, but those of {} are {}", describeFrames(frames),

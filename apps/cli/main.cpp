@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     addRenderCommand(app);
     addMergeCommand(app);
+    addDenoiseCommand(app);
     addCompareCommand(app);
     addBenchCommand(app);
     addInfoCommand(app);

@@ -95,6 +95,17 @@ std::vector<int> FramePattern::existingFrames() const {
     return frames;
 }
 
+std::vector<int> FramePattern::wholeSequence() const {
+    std::vector<int> frames = existingFrames();
+    if (frames.empty()) throw InputError(text_, "there is no such file with any frame number");
+    for (size_t i = 1; i < frames.size(); ++i) {
+        if (frames[i] == frames[i - 1] + 1) continue;
+        throw InputError(text_, "frame " + std::to_string(frames[i - 1] + 1) + " is missing: there are " +
+                                    describeFrames(frames));
+    }
+    return frames;
+}
+
 std::string describeFrames(const std::vector<int>& frames) {
     std::string text;
     for (size_t first = 0, last = 0; first < frames.size(); first = ++last) {

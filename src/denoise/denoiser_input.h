@@ -18,10 +18,12 @@ struct DenoiserInput {
     gpu::ImageHandle motion, previousNormal;
     gpu::ImageHandle ids;  ///< rg32ui: instance, material; UINT32_MAX where nothing is seen
     CameraParams camera{};
-    /// Of images that filters read many times over. Measure: buffers are faster on an H200, images on
-    /// lavapipe.
-    gpu::Backing filters = gpu::Backing::Image;
+    gpu::Backing filters = gpu::Backing::Image;  ///< filterBacking(device)
 };
+
+/// Of images that filters read many times over: buffers are faster on GPUs, images on CPUs
+/// (docs/benchmarks.md).
+gpu::Backing filterBacking(const gpu::Device& device);
 
 /// The frame's images on the device. Throws Error if an image of `frame` has another size than the frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);

@@ -29,7 +29,7 @@ void FrameRenderer::render(Moment moment) {
     input.hasPrevious = moment.previousCamera.has_value();
     input.moved = moment.scene ? &*moment.scene : nullptr;
     input.launchSamples = samplesPerLaunch(device_, settings_);
-    input.filters = device_.isCpu() ? gpu::Backing::Image : gpu::Backing::Buffer;
+    input.filters = denoise::filterBacking(device_);
     if (moment.scene) ++sceneVersion_;
     const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
     input.stream = moment.number * launches;

@@ -1,0 +1,169 @@
+// limpid denoise: EXR frames of any renderer to clean ones.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/frame_pattern.h"
+#include "base/log.h"
+#include "commands.h"
+#include "device_options.h"
+#include "image/exr.h"
+#include "image/png.h"
+#include "image/tonemap.h"
+#include "picture_output.h"
+#include "progress.h"
+#include "render_job.h"
+#include "renderer/frame_file.h"
+#include "renderer/parameters.h"
+
+namespace limpid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using image::LayeredImage;
+
+struct DenoiseOptions {
+    std::string input, output, method, exposure = "auto", dump;
+    std::vector<std::string> presets, assignments;
+    DeviceChoice device;
+    bool json = false;
+};
+
+const denoise::Denoiser& chosenMethod(const DenoiseOptions& o) {
+    std::string names;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
+        if (denoiser.name == o.method) return denoiser;
+        names += " " + std::string(denoiser.name);
+    }
+    throw UsageError("--method: there is no '" + o.method + "'; the methods are" + names);
+}
+
+denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
+    RenderSettings settings;
+    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    for (const std::string& text : o.assignments) assign(settings, text);
+    return settings.denoisers;
+}
+
+/// All frames of the sequence, or -1 for one file.
+std::vector<int> framesOf(const FramePattern& input, const FramePattern& output) {
+    if (input.numbered() != output.numbered())
+        throw UsageError("'" + output.text() + "': the output's name holds a number if the input's does");
+    return input.numbered() ? input.wholeSequence() : std::vector<int>{-1};
+}
+
+/// The file with its beauty replaced: every other layer stays, so that metrics and further filters have them.
+LayeredImage withBeauty(LayeredImage file, const std::vector<float>& beauty, std::string_view method) {
+    const image::Channel* before = file.find("R");
+    const image::Storage storage = before ? before->storage : image::Storage::Half;
+    std::erase_if(file.channels, [](const image::Channel& channel) {
+        return channel.name == "R" || channel.name == "G" || channel.name == "B" || channel.name == "A";
+    });
+    image::Image picture(file.width, file.height, 4);
+    picture.pixels = beauty;
+    file.add("", "RGBA", picture, storage);
+    file.metadata["limpid.denoiser"] = method;
+    return file;
+}
+
+void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
+           const std::vector<float>& beauty) {
+    const LayeredImage result = withBeauty(std::move(file), beauty, o.method);
+    if (isExr(path)) return image::writeExr(path, result);
+    const image::Image picture = result.get("", "RGB");
+    const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture));
+    image::writePng(path, image::toBytes(image::tonemap(picture, stops)));
+}
+
+void warnOfLacking(const std::vector<std::string>& lacking) {
+    for (const std::string& layer : lacking) {
+        log::warn(
+            "the layer '{}' is missing: {}", layer,
+            layer == "id" ? "objects that touch share their history" : "turning objects lose their history");
+    }
+}
+
+struct DenoiseSummary {
+    int frames = 0;
+    denoise::HistoryCounts history;
+    std::map<std::string, double> lastFrame;
+};
+
+DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
+    const denoise::Denoiser& method = chosenMethod(o);
+    const denoise::DenoiserSettings settings = settingsOf(o);
+    const FramePattern input(o.input), output(o.output);
+    const std::vector<int> frames = framesOf(input, output);
+    Progress progress("frames", frames.size());
+    gpu::FrameGraph graph;
+    DenoiseSummary summary;
+    for (const int frame : frames) {
+        const fs::path name = input.format(std::max(frame, 0)), result = output.format(std::max(frame, 0));
+        LayeredImage file = image::readExr(name);
+        std::vector<std::string> lacking;
+        const denoise::HostFrame host = frameOf(file, name, frames.size() > 1, lacking);
+        if (summary.frames == 0) warnOfLacking(lacking);
+        graph.beginFrame();
+        denoise::DenoiserInput images = denoise::upload(graph, host);
+        images.filters = denoise::filterBacking(device);
+        const denoise::DenoiserOutput denoised = method.record(graph, images, settings);
+        graph.execute(device);
+        write(o, result, std::move(file), graph.downloadFloat(device, denoised.beauty));
+        if (!o.dump.empty()) writeDump(result, imagesOfPass(graph, device, o.dump));
+        if (denoised.cases) summary.history = denoise::countCases(graph.downloadUint(device, denoised.cases));
+        if (summary.history.rejected > 0)
+            log::warn("{}: {} pixels are NaN or infinite and were left out", name.string(),
+                      summary.history.rejected);
+        summary.lastFrame = sumByName(graph.passTimes(device));
+        progress.show(static_cast<uint64_t>(++summary.frames));
+    }
+    return summary;
+}
+
+void denoiseFiles(const DenoiseOptions& o) {
+    parseExposure(o.exposure);
+    checkPictureOutput(FramePattern(o.output).format(0), false);
+    chosenMethod(o);
+    settingsOf(o);
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const DenoiseSummary summary = denoiseFrames(o, *device);
+    if (o.json) {
+        const nlohmann::json object{{"output", o.output},
+                                    {"method", o.method},
+                                    {"device", device->info().name},
+                                    {"frames", summary.frames},
+                                    {"last_frame_ms", summary.lastFrame}};
+        fmt::print("{}\n", object.dump(2));
+    } else {
+        log::info("{} frames by {}, on {}", summary.frames, o.method, device->info().name);
+    }
+    if (device->validationMessages() > 0)
+        throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
+}
+
+}  // namespace
+
+void addDenoiseCommand(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("denoise", "Clean EXR frames that have the layers of docs/layers.md");
+    auto o = std::make_shared<DenoiseOptions>();
+    command->add_option("IN", o->input, "frame.exr, or frame.%04d.exr for all frames that there are")
+        ->required();
+    command->add_option("-o,--output", o->output, "EXR (all layers of the input, beauty replaced) or PNG")
+        ->required();
+    std::string names;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names += " " + std::string(denoiser.name);
+    command->add_option("--method", o->method, "One of" + names)->required();
+    command->add_option("--preset", o->presets, "A named set of parameters, as course; before --set");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value; 'limpid info' lists them");
+    command->add_option("--exposure", o->exposure, "Of a PNG: stops, or 'auto' (default)");
+    command->add_option("--dump", o->dump, "Write the images of this pass beside the output");
+    command->add_flag("--json", o->json, "One JSON object about the run on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { denoiseFiles(*o); });
+}
+
+}  // namespace limpid::cli
