@@ -1,4 +1,6 @@
 // limpid bench: how fast rays are traced, and how fast the picture converges.
+#include "bench.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "commands.h"
-#include "device_options.h"
 #include "image/exr.h"
 #include "image/metrics.h"
 #include "image/png.h"
@@ -17,9 +18,15 @@
 #include "progress.h"
 #include "renderer/still.h"
 #include "scene/camera.h"
-#include "scene_options.h"
 
 namespace limpid::cli {
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
 namespace {
 
 using nlohmann::json;
@@ -61,12 +68,6 @@ RenderSettings settingsOf(const BenchOptions& o) {
     settings.extent = {o.width, o.height};
     settings.pathtrace.maxDepth = o.maxDepth;
     return settings;
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
 }
 
 /// One sample per launch; device time of the path-tracing pass alone.
@@ -254,6 +255,7 @@ void addBenchCommand(CLI::App& app) {
         if (options->scenes.empty()) options->scenes = {"builtin:cornell", "builtin:cornell-spheres"};
         runConvergence(*options);
     });
+    addDenoiseBench(*bench);
 }
 
 }  // namespace limpid::cli

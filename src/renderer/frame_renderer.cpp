@@ -16,7 +16,11 @@ bool sameSamples(const RenderSettings& a, const RenderSettings& b) {
 
 FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
                              uint32_t samples)
-    : device_(device), scene_(scene), settings_(settings), samples_(samples) {}
+    : device_(device),
+      scene_(scene),
+      settings_(settings),
+      samples_(samples),
+      filters_(denoise::filterBacking(device)) {}
 
 void FrameRenderer::setSettings(const RenderSettings& settings) {
     if (!sameSamples(settings, settings_)) graph_.resetHistories();
@@ -29,7 +33,7 @@ void FrameRenderer::render(Moment moment) {
     input.hasPrevious = moment.previousCamera.has_value();
     input.moved = moment.scene ? &*moment.scene : nullptr;
     input.launchSamples = samplesPerLaunch(device_, settings_);
-    input.filters = denoise::filterBacking(device_);
+    input.filters = filters_;
     if (moment.scene) ++sceneVersion_;
     const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
     input.stream = moment.number * launches;

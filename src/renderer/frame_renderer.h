@@ -27,6 +27,9 @@ class FrameRenderer {
     /// For the frames to come. Histories go on unless the samples they are made of are of another kind.
     void setSettings(const RenderSettings& settings);
 
+    /// Other than the device's own, for measurements and tests.
+    void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
+
     /// Of the last frame. Waits for the device.
     RenderedLayers download();
     RenderCounters counters();
@@ -46,6 +49,7 @@ class FrameRenderer {
     scene::GpuScene& scene_;
     RenderSettings settings_;
     uint32_t samples_;
+    gpu::Backing filters_;
     gpu::FrameGraph graph_;
     std::optional<AccumulationState> state_;  ///< of the last frame
     uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved

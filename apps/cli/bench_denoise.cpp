@@ -1,0 +1,145 @@
+// limpid bench denoise: milliseconds of every pass of a pipeline, and how near its memory traffic comes to
+// what the device can do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "bench.h"
+#include "bench_copy.comp.h"
+#include "renderer/frame_renderer.h"
+#include "renderer/parameters.h"
+#include "renderer/sequence.h"
+#include "scene/camera_path.h"
+
+namespace limpid::cli {
+namespace {
+
+using nlohmann::json;
+
+struct DenoiseBench {
+    DeviceChoice device;
+    std::string scene = "builtin:cornell", pipeline = "atrous";
+    std::vector<std::string> presets, assignments;
+    uint32_t width = 640, height = 360, frames = 100, warmup = 20;
+    bool json = false;
+    std::string filters = "auto";
+};
+
+struct PassCost {
+    std::vector<double> milliseconds;  ///< by frame
+    uint64_t bytes = 0;                ///< of a frame
+};
+
+/// Bytes per second of a copy between images larger than any cache.
+double copyRate(gpu::Device& device) {
+    const gpu::Extent extent = device.isCpu() ? gpu::Extent{2048, 1024} : gpu::Extent{8192, 4096};
+    const std::vector<float> pixels(size_t{4} * extent.width * extent.height);
+    gpu::FrameGraph graph;
+    std::vector<double> times;
+    for (int i = 0; i < 10; ++i) {
+        graph.beginFrame();
+        const gpu::ImageHandle source = graph.transient("source", gpu::Format::RGBA32Float, extent);
+        const gpu::ImageHandle result = graph.transient("result", gpu::Format::RGBA32Float, extent);
+        graph.upload(source, gpu::bytesOf(pixels));
+        graph.dispatch({.pass = "copy",
+                        .shader = shaders::bench_copy_comp,
+                        .bindings = {{"source", source}, {"result", result}},
+                        .params = {},
+                        .constants = {},
+                        .extent = extent});
+        graph.execute(device);
+        times.push_back(graph.passTimes(device).front().milliseconds);
+    }
+    return 2.0 * static_cast<double>(gpu::bytesOf(pixels).size()) / (median(times) * 1e-3);
+}
+
+std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.pipeline = parsePipeline(o.pipeline);
+    settings.jitter = Jitter::Off;
+    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    for (const std::string& text : o.assignments) assign(settings, text);
+    scene::Scene scene = loadChosenScene({o.scene, "", ""});
+    const scene::SceneData data = scene::buildSceneData(scene);
+    scene::GpuScene gpuScene(device, data, {chosenTracer(o.device, device), {}});
+    const SequenceTiming timing;
+    const double seconds = timing.timeOf(uint64_t{o.warmup} + o.frames);
+    const Sequence sequence(scene, data, scene.cameras.front(),
+                            scene::builtinCameraPath("shake", scene, scene.cameras.front(), seconds), timing);
+    FrameRenderer renderer(device, gpuScene, settings, 1);
+    if (o.filters != "auto")
+        renderer.setFilterBacking(o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer);
+    std::map<std::string, PassCost> costs;
+    for (uint64_t frame = 0; frame < uint64_t{o.warmup} + o.frames; ++frame) {
+        renderer.render(sequence.moment(frame, settings.extent));
+        const std::vector<gpu::PassTime> times = renderer.passTimes();
+        if (frame < o.warmup) continue;
+        for (const auto& [name, milliseconds] : sumByName(times))
+            costs[name].milliseconds.push_back(milliseconds);
+    }
+    for (const gpu::RecordedPass& pass : renderer.graph().passes()) costs[pass.name].bytes += pass.imageBytes;
+    return costs;
+}
+
+void run(const DenoiseBench& o) {
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const double limit = copyRate(*device);
+    json passes = json::array();
+    if (!o.json) {
+        fmt::print("{}, {}x{}, {}, {} frames; a copy moves {:.1f} GB/s\n{:<24}{:>12}{:>12}{:>10}{:>10}\n",
+                   device->info().name, o.width, o.height, o.pipeline, o.frames, limit * 1e-9, "pass",
+                   "ms median", "ms least", "MB", "GB/s");
+    }
+    for (auto& [name, cost] : measure(*device, o)) {
+        const double ms = median(cost.milliseconds);
+        const double least = *std::min_element(cost.milliseconds.begin(), cost.milliseconds.end());
+        const double rate = static_cast<double>(cost.bytes) / (ms * 1e-3);
+        passes.push_back({{"pass", name},
+                          {"ms_median", ms},
+                          {"ms_minimum", least},
+                          {"image_bytes", cost.bytes},
+                          {"bytes_per_second", rate}});
+        if (o.json) continue;
+        fmt::print("{:<24}{:>12.4f}{:>12.4f}{:>10.1f}{:>10.1f}\n", name, ms, least,
+                   static_cast<double>(cost.bytes) * 1e-6, rate * 1e-9);
+    }
+    if (!o.json) return;
+    const json object{{"device", device->info().name},
+                      {"driver", device->info().driver},
+                      {"scene", o.scene},
+                      {"pipeline", o.pipeline},
+                      {"width", o.width},
+                      {"height", o.height},
+                      {"frames", o.frames},
+                      {"copy_bytes_per_second", limit},
+                      {"passes", passes}};
+    fmt::print("{}\n", object.dump(2));
+}
+
+}  // namespace
+
+void addDenoiseBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "denoise", "Milliseconds of every pass of a pipeline under a moving camera, and the bytes it moves");
+    auto o = std::make_shared<DenoiseBench>();
+    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
+    command->add_option("--pipeline", o->pipeline, "Pipeline (atrous)");
+    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--frames", o->frames, "Frames timed (100)")->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Frames before them (20)")->check(CLI::Range(0, 100000));
+    command->add_option("--filters", o->filters, "What filters read lies in images or buffers; default: auto")
+        ->check(CLI::IsMember({"auto", "image", "buffer"}));
+    command->add_flag("--json", o->json, "One JSON object on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli
