@@ -7,8 +7,8 @@
 namespace limpid::test {
 namespace {
 
-/// Pixels. Far more than float32's error of s, which is at most an ulp: 2^-12 below 4096 pixels.
-constexpr double positionMargin = 1e-3;
+/// Pixels. Several times the error of s in float32, an ulp: 2^-16 below 256 pixels.
+constexpr double positionMargin = 1e-4;
 
 /// Compares, and remembers whether float32 may have decided otherwise.
 class Decision {
@@ -134,7 +134,7 @@ bool Tracker::inPicture(const dvec2& s, Decision& decision) const {
 bool Tracker::agrees(const Expected& expected, size_t q, Decision& decision) const {
     const dvec4& was = previous_.normalDepth[q];
     const double cosine = glm::dot(expected.normal, dvec3(was));
-    return was.w > 0.0 && previous_.albedoId[q].w == expected.id &&
+    return was.w > 0.0 && previous_.colour[q].w > 0.0 && previous_.albedoId[q].w == expected.id &&
            decision.above(cosine, params_.normal, marginOf(params_.normal, 1.0)) &&
            decision.above(expected.tolerance, std::abs(expected.distance - was.w), expected.toleranceMargin);
 }

@@ -8,11 +8,15 @@
 namespace limpid::denoise {
 namespace {
 
-DenoiserOutput recordHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
-                             const DenoiserSettings& settings) {
-    const HistoryImages history = trackHistory(graph, input, settings.history);
+DenoiserOutput composed(gpu::FrameGraph& graph, const DenoiserInput& input, const HistoryImages& history,
+                        const DenoiserSettings& settings) {
     return {compose(graph, history.color, input.emission, history.cases, settings.history.showCases),
             history.cases};
+}
+
+DenoiserOutput recordHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
+                             const DenoiserSettings& settings) {
+    return composed(graph, input, trackHistory(graph, input, settings.history), settings);
 }
 
 DenoiserOutput recordAtrous(gpu::FrameGraph& graph, const DenoiserInput& input,
@@ -20,6 +24,7 @@ DenoiserOutput recordAtrous(gpu::FrameGraph& graph, const DenoiserInput& input,
     if (!settings.atrous.history)
         return {filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous), {}};
     const HistoryImages history = trackHistory(graph, input, settings.history);
+    if (settings.history.showCases) return composed(graph, input, history, settings);
     return {filterAtrous(graph, input, {history.color, {}}, settings.atrous), history.cases};
 }
 
@@ -28,8 +33,8 @@ constexpr std::array<std::string_view, 2> atrousGroups{"history", "atrous"};
 
 constexpr std::array<Denoiser, 2> all{
     Denoiser{"history", "each pixel's running mean follows its surface through camera and object motion",
-             recordHistory, historyGroups, 2.0},
-    Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 4.0}};
+             recordHistory, historyGroups, 8.0},
+    Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 8.0}};
 
 }  // namespace
 

@@ -39,7 +39,7 @@ struct Denoiser {
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const DenoiserSettings&);
     /// Parameter groups that it heeds.
     std::span<const std::string_view> groups;
-    /// Error of a noisy still sequence's last frame over that of the denoised one (RMS), which tests demand.
+    /// dB of PSNR that the tests demand over the noisy frames, after 24 of them.
     double leastGain;
 };
 

@@ -6,8 +6,6 @@
 
 const float MAX_HALF = 65504.0;
 
-#ifdef LIMPID_FILTER_BUFFERS
-
 vec4 unpackHalf4(uvec2 texel) {
     return vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y));
 }
@@ -15,6 +13,8 @@ vec4 unpackHalf4(uvec2 texel) {
 uvec2 packHalf4(vec4 value) {
     return uvec2(packHalf2x16(value.xy), packHalf2x16(value.zw));
 }
+
+#ifdef LIMPID_FILTER_BUFFERS
 
 #define TEXEL_INDEX(at) (uint((at).y) * params.width + uint((at).x))
 #define READ_UINT2(slot, name) \
@@ -37,7 +37,8 @@ uvec2 packHalf4(vec4 value) {
 #define READ_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform readonly image2D name
 #define WRITE_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform writeonly image2D name
 #define LOAD_HALF4(name, at) imageLoad(name, at)
-#define STORE_HALF4(name, at, value) imageStore(name, at, value)
+// Some drivers (lavapipe) store halves rounded towards zero: from level to level the picture would darken.
+#define STORE_HALF4(name, at, value) imageStore(name, at, unpackHalf4(packHalf4(value)))
 
 #endif
 #endif

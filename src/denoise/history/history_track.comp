@@ -56,10 +56,10 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), last);
     const vec4 nd = imageLoad(normalDepthBefore, inside);
     const vec4 ai = imageLoad(albedoIdBefore, inside);
-    const bool counts = at == inside && nd.w > 0.0 && dot(expected.normal, nd.xyz) > params.normalThreshold &&
+    vec4 before = imageLoad(colorBefore, inside);
+    const bool counts = at == inside && before.w > 0.0 && nd.w > 0.0 && dot(expected.normal, nd.xyz) > params.normalThreshold &&
                         abs(expected.depth - nd.w) < expected.tolerance && ai.w == expected.id;
     if (!counts || weight <= 0.0) return;
-    vec4 before = imageLoad(colorBefore, inside);
     if (params.demodulate != 0u) before.rgb /= modulation(ai);
     taps.sum += weight * before;
     taps.weight += weight;
@@ -125,6 +125,9 @@ void main() {
         const bool grey = params.greyRestart != 0u && failure != CASE_NOTHING_HIT;
         now = grey ? updated(vec4(vec3(0.5), 1.0), radiance) : vec4(radiance, 1.0);
     }
+    // Near the end of float's range resampling may overflow, too.
+    if (!isFinite(before.rgb)) before = vec4(0.0);
+    if (!isFinite(now.rgb)) now = vec4(radiance, 1.0);
     const bool valid = isFinite(radiance);
     imageStore(color, at, valid ? now : before);
     imageStore(normalDepth, at, vec4(hit ? n : vec3(0.0), z));
