@@ -27,6 +27,12 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+std::string sceneStem(const std::string& scene) {
+    constexpr std::string_view prefix = "builtin:";
+    return scene.starts_with(prefix) ? scene.substr(prefix.size())
+                                     : std::filesystem::path(scene).stem().string();
+}
+
 namespace {
 
 using nlohmann::json;
@@ -127,13 +133,6 @@ void runTrace(const BenchOptions& o) {
     fmt::print("{}\n", object.dump(2));
 }
 
-/// Files of a scene are named after it, without path and prefix.
-std::string fileStem(const std::string& scene) {
-    constexpr std::string_view prefix = "builtin:";
-    return scene.starts_with(prefix) ? scene.substr(prefix.size())
-                                     : std::filesystem::path(scene).stem().string();
-}
-
 struct Picture {
     uint64_t samples = 0;
     double seconds = 0.0;
@@ -180,7 +179,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     const Picture converged = renderPicture(reference, camera, settings, o.referenceSamples);
     const image::Image truth = beautyOf(converged.layers);
     const float stops = image::autoExposure(truth);
-    writePicture(o, fileStem(name), converged, stops);
+    writePicture(o, sceneStem(name), converged, stops);
     json rows = json::array();
     const auto add = [&](const Picture& p, const json& psnr) {
         rows.push_back({{"scene", name},
@@ -195,7 +194,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
         ProgressiveStill still(device, *loaded.gpu, samples);
         const Picture noisy = renderPicture(still, camera, settings, samples);
         add(noisy, image::compare(beautyOf(noisy.layers), truth, stops).psnr);
-        writePicture(o, fileStem(name), noisy, stops);
+        writePicture(o, sceneStem(name), noisy, stops);
     }
     add(converged, nullptr);
     return rows;
@@ -256,6 +255,7 @@ void addBenchCommand(CLI::App& app) {
         runConvergence(*options);
     });
     addDenoiseBench(*bench);
+    addQualityBench(*bench);
 }
 
 }  // namespace limpid::cli
