@@ -141,13 +141,11 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
 }  // namespace
 
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
-                               const RenderSettings& settings, const std::vector<Pipeline>& pipelines,
-                               const QualityFrames& frames, uint64_t referenceSamples, uint32_t samples) {
-    RenderSettings used = settings;
-    used.jitter = Jitter::Off;
+                               const std::vector<QualityMethod>& methods, const QualityFrames& frames,
+                               uint64_t referenceSamples, uint32_t samples) {
     std::vector<Reference> references;
     {
-        ReferenceRenderer renderer(device, scene, used, referenceSamples);
+        ReferenceRenderer renderer(device, scene, methods.front().settings, referenceSamples);
         Progress progress("references", frames.count - frames.first);
         for (uint64_t frame = frames.first; frame < frames.count; ++frame) {
             references.push_back(renderer.render(sequence, frame));
@@ -162,14 +160,13 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     quality.referencePsnr = ownPsnr(references, quality.exposure);
     quality.reference = references.back().picture;
     quality.methods.push_back({.name = "noisy", .scores = {}, .last = {}, .medianMs = {}});
-    for (const Pipeline& pipeline : pipelines) {
-        used.pipeline = pipeline;
-        FrameRenderer renderer(device, scene, used, samples);
+    for (const QualityMethod& chosen : methods) {
+        FrameRenderer renderer(device, scene, chosen.settings, samples);
         const Judge judge(references, frames.first, quality.exposure);
         const bool first = quality.methods.size() == 1;
-        MethodQuality method = measure(renderer, sequence, used.extent, frames, judge,
+        MethodQuality method = measure(renderer, sequence, chosen.settings.extent, frames, judge,
                                        first ? std::optional(judge) : std::nullopt, quality.methods.front());
-        method.name = pipeline.name();
+        method.name = chosen.name;
         quality.methods.push_back(std::move(method));
     }
     return quality;

@@ -35,10 +35,16 @@ struct SequenceQuality {
     image::Image reference;  ///< of the last frame
 };
 
-/// Renders references of `referenceSamples` (at least 2) per pixel, and every pipeline at `samples` per
+/// A pipeline with its parameters.
+struct QualityMethod {
+    std::string name;
+    RenderSettings settings;
+};
+
+/// Renders references of `referenceSamples` (at least 2) per pixel, and every method at `samples` per
 /// frame. Rays go through the pixels' centres in both.
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
-                               const RenderSettings& settings, const std::vector<Pipeline>& pipelines,
-                               const QualityFrames& frames, uint64_t referenceSamples, uint32_t samples);
+                               const std::vector<QualityMethod>& methods, const QualityFrames& frames,
+                               uint64_t referenceSamples, uint32_t samples);
 
 }  // namespace limpid::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "base/error.h"
 #include "bench.h"
@@ -22,7 +23,7 @@ using nlohmann::json;
 
 struct QualityOptions {
     DeviceChoice device;
-    std::vector<std::string> scenes, pipelines, presets, assignments;
+    std::vector<std::string> scenes, pipelines, presets, assignments, variants;
     std::string environment, cameraPath = "orbit", folder;
     uint32_t width = 640, height = 360, samples = 1;
     uint64_t referenceSamples = 4096;
@@ -30,12 +31,25 @@ struct QualityOptions {
     bool json = false;
 };
 
-RenderSettings settingsOf(const QualityOptions& o) {
-    RenderSettings settings;
-    settings.extent = {o.width, o.height};
-    for (const std::string& preset : o.presets) applyPreset(settings, preset);
-    for (const std::string& text : o.assignments) assign(settings, text);
-    return settings;
+/// Every pipeline as it is, and the last in every variant.
+std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
+    RenderSettings common;
+    common.extent = {o.width, o.height};
+    common.jitter = Jitter::Off;
+    for (const std::string& preset : o.presets) applyPreset(common, preset);
+    for (const std::string& text : o.assignments) assign(common, text);
+    std::vector<QualityMethod> methods;
+    for (const std::string& pipeline : o.pipelines) {
+        common.pipeline = parsePipeline(pipeline);
+        methods.push_back({pipeline, common});
+    }
+    for (const std::string& variant : o.variants) {
+        QualityMethod method{variant, common};
+        std::istringstream words(variant);
+        for (std::string text; std::getline(words, text, ',');) assign(method.settings, text);
+        methods.push_back(std::move(method));
+    }
+    return methods;
 }
 
 SequenceQuality measureScene(gpu::Device& device, const QualityOptions& o, const std::string& name) {
@@ -52,10 +66,7 @@ SequenceQuality measureScene(gpu::Device& device, const QualityOptions& o, const
                    : scene::loadCameraPath(o.cameraPath);
     }
     const Sequence sequence(scene, data, scene.cameras.front(), path, timing);
-    std::vector<Pipeline> pipelines;
-    for (const std::string& pipeline : o.pipelines) pipelines.push_back(parsePipeline(pipeline));
-    return measureQuality(device, gpuScene, sequence, settingsOf(o), pipelines, o.frames, o.referenceSamples,
-                          o.samples);
+    return measureQuality(device, gpuScene, sequence, methodsOf(o), o.frames, o.referenceSamples, o.samples);
 }
 
 /// Infinite where a frame equals its reference: JSON has no such number.
@@ -111,7 +122,7 @@ void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& q
 
 void run(const QualityOptions& o) {
     if (o.frames.first >= o.frames.count) throw UsageError("--first: there are fewer frames");
-    settingsOf(o);
+    methodsOf(o);
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     if (!o.folder.empty()) std::filesystem::create_directories(o.folder);
     if (!o.json) {
@@ -168,6 +179,8 @@ void addQualityBench(CLI::App& bench) {
     command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--variant", o->variants,
+                        "The last pipeline once more with these parameters, by commas (repeatable)");
     command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
     command->add_flag("--json", o->json, "One JSON object on stdout");
     addDeviceOptions(*command, o->device);

@@ -65,6 +65,8 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
     params.normalScale = 1.0f / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
     params.depthScale = 1.0f / settings.depthFactor;
     params.plane = settings.plane ? 1u : 0u;
+    const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
+    params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
     const bool buffers = input.filters == Backing::Buffer;
     const uint32_t group = buffers ? 16 : 8;  // measured: H200, lavapipe
     graph.dispatch(
@@ -113,10 +115,18 @@ const ParamTable<AtrousSettings>& atrousParams() {
               "tolerated squared deviation from the pixel's plane, relative to its distance from the eye "
               "(without "
               "`plane`: of depths, world units); higher smooths over steps");
+        t.add("sample_target", &S::sampleTarget, 0.0, 1e9, "samples",
+              "a pixel that has gathered so many, over time and over the levels so far, weighs itself twice "
+              "as much as "
+              "the level asks; lower keeps shadows sharper where history is long, higher is smoother; 0 is "
+              "no limit");
         t.add("plane", &S::plane,
               "weigh by the deviation from the pixel's plane instead of the difference of depths");
-        t.preset("course",
-                 {{"levels", "5"}, {"normal_factor", "0.003"}, {"depth_factor", "0.007"}, {"plane", "off"}});
+        t.preset("course", {{"levels", "5"},
+                            {"normal_factor", "0.003"},
+                            {"depth_factor", "0.007"},
+                            {"sample_target", "0"},
+                            {"plane", "off"}});
         return t;
     }();
     return table;

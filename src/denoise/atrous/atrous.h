@@ -14,12 +14,14 @@ struct AtrousSettings {
     int levels = 5;
     float normalFactor = 0.003f;
     float depthFactor = 1e-4f;
+    float sampleTarget = 512.0f;
     bool plane = true;
     bool operator==(const AtrousSettings&) const = default;
 };
 const ParamTable<AtrousSettings>& atrousParams();
 
-/// Scattered light: one image (`second` empty), or the sum of two. rgba32f.
+/// Scattered light, rgba32f: a mean over frames, whose number is in alpha (`second` empty), or the sum of two
+/// images of one frame.
 struct AtrousLight {
     gpu::ImageHandle first, second;
 };

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, else lightA
+layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, of one frame; else lightA, a mean
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     AtrousEndsParams params;
@@ -15,22 +15,22 @@ layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
 layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(set = 0, binding = 4, rgba32f) uniform readonly image2D normal;
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D depth;
-WRITE_HALF4(6, signal);    // light / max(albedo, 0.1); 1 where something is seen
+WRITE_HALF4(6, signal);    // light / max(albedo, 0.1); frames in the mean
 WRITE_UINT2(7, geometry);  // octahedral normal | depth
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    vec3 light = imageLoad(lightA, at).rgb;
-    if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
-    const vec3 demodulated = finiteOr(light, vec3(0.0)) / modulation(imageLoad(albedo, at));
+    vec4 light = imageLoad(lightA, at);
+    if (SUM_OF_TWO) light = vec4(light.rgb + imageLoad(lightB, at).rgb, 1.0);
+    const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) / modulation(imageLoad(albedo, at));
     const float z = hitDistance(imageLoad(depth, at));
     float d = z;
     if (params.plane != 0u) {
         const vec2 onScreen = pixelOnScreen(vec2(pixel), vec2(params.width, params.height));
         d *= inversesqrt(max(dot(viewVector(params.camera, onScreen), viewVector(params.camera, onScreen)), 1e-30));
     }
-    STORE_HALF4(signal, at, vec4(clamp(demodulated, -MAX_HALF, MAX_HALF), z > 0.0 ? 1.0 : 0.0));
+    STORE_HALF4(signal, at, vec4(clamp(demodulated, -MAX_HALF, MAX_HALF), min(light.a, MAX_HALF)));
     STORE_UINT2(geometry, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(d)));
 }

@@ -57,8 +57,10 @@ void main() {
     }
     const PlaneDistance plane = planeDistance(n, d, vec2(pixel));
     const float here = alongNormal(plane, d, vec2(0.0));
-    vec3 sum = centre.rgb * (B3[0] * B3[0]);
-    float weights = B3[0] * B3[0];
+    // Relative to its neighbours, the centre weighs more the more samples it has.
+    const float centreWeight = B3[0] * B3[0] * (1.0 + centre.a * params.fade);
+    vec3 sum = centre.rgb * centreWeight;
+    float weights = centreWeight;
     for (int j = -2; j <= 2; ++j) {
         for (int i = -2; i <= 2; ++i) {
             if (i == 0 && j == 0) continue;

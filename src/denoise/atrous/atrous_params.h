@@ -23,6 +23,7 @@ struct AtrousLevelParams {
     float normalScale;  // 1 / (step^2 normal_factor)
     float depthScale;   // 1 / depth_factor
     uint plane;
+    float fade;  // 4^(level - 1) / sample_target
 };
 
 #ifdef __cplusplus
