@@ -54,6 +54,19 @@ scene::Scene punctualSpheres() {
     return scene;
 }
 
+/// Half transparent, seen through the back of a wall by an orthographic camera.
+scene::Scene veiledSpheres() {
+    scene::Scene scene = scene::cornellSpheresScene();
+    for (scene::Material& material : scene.materials) {
+        material.alphaMode = scene::AlphaMode::Blend;
+        material.baseColor.a = 0.5f;
+    }
+    scene.cameras = {scene::lookAt({0.4f, 0.5f, -1.5f}, {0, 0.25f, 0}, {0, 1, 0}, 0.6f)};
+    scene.cameras[0].orthographic = true;
+    scene.cameras[0].halfHeight = 0.3f;
+    return scene;
+}
+
 class GBufferTest : public PassTest {
   protected:
     struct Both {
@@ -163,6 +176,7 @@ TEST_P(GBufferTest, HasTheLayersOfThePathTracer) {
     checkStill(scene::cornellSpheresScene());
     checkStill(scene::heavyScene());
     checkStill(punctualSpheres());
+    checkStill(veiledSpheres());
 }
 
 TEST_P(GBufferTest, HasTheLayersOfThePathTracerWhereThingsMove) {
@@ -278,6 +292,27 @@ TEST_P(GBufferTest, MeanLightIsThePathTracersAtDepthOne) {
     }
 }
 
+/// Under a sky of 1 a floor shows its albedo.
+TEST_P(GBufferTest, MeanLightOfAFloorUnderAWhiteSky) {
+    scene::Scene scene = viewedFloor();
+    scene.environment = {16, 8, std::vector<vec3>(128, vec3(1.0f))};
+    Stage stage(device(), scene, GetParam());
+    CameraLaunch launch = centredLaunch(scene, extent);
+    constexpr uint32_t frames = 32;
+    double sum = 0.0, squares = 0.0;
+    for (launch.stream = 0; launch.stream < frames; ++launch.stream) {
+        for (const vec4& light : pixels(stage, look(stage, launch).light)) {
+            sum += double{light.x};
+            squares += double{light.x} * double{light.x};
+        }
+    }
+    constexpr double count = double{frames} * extent.width * extent.height;
+    const double mean = sum / count, sigma = std::sqrt((squares / count - mean * mean) / count);
+    fmt::print("white sky: mean {:.5f}, exactly 0.6; sigma {:.5f}\n", mean, sigma);
+    EXPECT_LT(sigma, 0.003);
+    EXPECT_LT(std::abs(mean - 0.6), 4.0 * sigma);
+}
+
 /// Positions lie on the primary ray, through the point that the random numbers say; triangles have the
 /// normals that they have.
 TEST_P(GBufferTest, PositionsAreWhereTheRaysMeetTheFloor) {
@@ -331,6 +366,18 @@ TEST_P(GBufferTest, CountsItsRays) {
     EXPECT_EQ(rays({}), 4 * count);
     EXPECT_EQ(rays({.shadows = false}), 5 * count);
     EXPECT_EQ(rays({.light = false}), 6 * count);
+}
+
+TEST_P(GBufferTest, PassesTheBacksOfSingleSidedWalls) {
+    const scene::Scene scene = veiledSpheres();
+    Stage stage(device(), scene, GetParam());
+    const CameraLaunch launch = centredLaunch(scene, extent);
+    const GBufferImages images = look(stage, launch, {.light = false});
+    constexpr uint64_t count = uint64_t{extent.width} * extent.height;
+    EXPECT_GT(sumCounters(stage.graph.downloadUint(device(), images.counters)).rays, count + count / 8);
+    uint64_t hits = 0;
+    for (const vec4& depth : pixels(stage, images.depth)) hits += depth.y == 1.0f;
+    EXPECT_GT(hits, count / 8);
 }
 
 TEST_P(GBufferTest, EveryParameterChangesTheLight) {

@@ -13,6 +13,7 @@ namespace {
 /// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a ray may take two
 /// thousand. More rays would be lost without a word.
 constexpr uint32_t maxRaysPerDispatch = 32;
+constexpr float unlimited = 1e30f;  ///< INFINITE_DISTANCE of shaders/trace.glsl
 
 }  // namespace
 
@@ -39,7 +40,7 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
     params.height = extent.height;
     params.stream = launch.stream;
     params.seed = launch.seed;
-    params.reach = settings.radius > 0.0f ? settings.radius * params.scene.sceneRadius : 1e30f;
+    params.reach = settings.radius > 0.0f ? settings.radius * params.scene.sceneRadius : unlimited;
     // The first dispatch does not read `before`, but something must be bound.
     gpu::ImageHandle open = gbuffer.position;
     for (uint32_t first = 0; first < rays; first += params.rays) {
