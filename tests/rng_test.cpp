@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu_fixture.h"
+#include "rng_copy.h"
 #include "rng_test.comp.h"
 #include "statistics.h"
 
@@ -10,29 +11,6 @@ namespace limpid::test {
 namespace {
 
 constexpr uint32_t numbers = 64, streams = 4096;
-
-uint32_t tea(uint32_t v0, uint32_t v1) {
-    uint32_t sum = 0;
-    for (int round = 0; round < 16; ++round) {
-        sum += 0x9e3779b9u;
-        v0 += ((v1 << 4) + 0xa341316cu) ^ (v1 + sum) ^ ((v1 >> 5) + 0xc8013ea4u);
-        v1 += ((v0 << 4) + 0xad90777du) ^ (v0 + sum) ^ ((v0 >> 5) + 0x7e95761eu);
-    }
-    return v0;
-}
-
-/// Numerical Recipes' generator, low 24 bits (seed document 004).
-float lcg(uint32_t& state) {
-    state = state * 1664525u + 1013904223u;
-    return static_cast<float>(state & 0xffffffu) / 16777216.0f;
-}
-
-/// PCG-RXS-M-XS-32, high 24 bits. The output is of the state before the step.
-float pcg(uint32_t& state) {
-    const uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
-    state = state * 747796405u + 2891336453u;
-    return static_cast<float>(((word >> 22) ^ word) >> 8) / 16777216.0f;
-}
 
 struct Settings {
     uint32_t count, frame, seed;
@@ -52,7 +30,7 @@ class RngTest : public GpuTest {
         const std::vector<uint32_t> all = words(settings, samplerTea);
         for (uint32_t i = 0; i < settings.count; ++i) {
             const uint32_t* stream = &all[size_t{i} * (numbers + 2)];
-            uint32_t state = tea(i, settings.frame ^ settings.seed * 0x9e3779b9u);
+            uint32_t state = startStream(i, settings.frame, settings.seed);
             ASSERT_EQ(stream[0], tea(i, settings.frame)) << "stream " << i << " frame " << settings.frame;
             ASSERT_EQ(stream[1], state)
                 << "stream " << i << " frame " << settings.frame << " seed " << settings.seed;

@@ -19,6 +19,20 @@ struct CameraParams {
     vec3 up;
 };
 
+/// A launch of primary rays: from where, through which points of the pixels, by which random numbers.
+struct ViewParams {
+    CameraParams camera;
+    CameraParams previousCamera;
+    uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
+    uint width;
+    uint height;
+    uint frame;   // since the last reset
+    uint stream;  // of random numbers
+    uint seed;
+    uint jitterPerPixel;
+    vec2 jitter;  // otherwise: the point in every pixel
+};
+
 #ifdef __cplusplus
 }  // namespace limpid
 #endif

@@ -32,6 +32,12 @@ bool isBoundary(Surface s) {
     return !s.thin && s.transmission > 0.0;
 }
 
+/// Where a ray that leaves the surface in `direction` starts.
+vec3 leavingPoint(Surface s, vec3 direction) {
+    const float side = dot(direction, s.geometricNormal) < 0.0 ? -1.0 : 1.0;
+    return offsetRay(s.position, side * s.geometricNormal, s.magnitude);
+}
+
 /// What a triangle in bvhTriangles says of itself.
 struct TriangleIds {
     uint instance, primitive, shadingTriangle;

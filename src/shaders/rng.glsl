@@ -4,7 +4,7 @@
 // Encryption Algorithm", HPG 2010. Streams: `tea` continues with the low 24 bits of Numerical Recipes' linear
 // congruential generator (seed document 004; the low bits are poor, it is kept for comparison); `pcg` with the
 // RXS-M-XS output of M. E. O'Neill, "PCG: a family of simple fast space-efficient statistically good algorithms for
-// random number generation", 2014. C++ copy for tests: tests/rng_test.cpp.
+// random number generation", 2014. C++ copy for tests: tests/rng_copy.h.
 #ifndef LIMPID_RNG_GLSL
 #define LIMPID_RNG_GLSL
 

@@ -7,5 +7,5 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
     const uvec2 pixel = pixelOfInvocation(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (pixel.x < params.width && pixel.y < params.height) tracePixel(pixel);
+    if (pixel.x < params.view.width && pixel.y < params.view.height) tracePixel(pixel);
 }

@@ -1,10 +1,11 @@
 #include "passes/pathtrace/pathtrace.h"
 
+#include "passes/camera_launch.h"
+#include "passes/traced_dispatch.h"
 #include "pathtrace.comp.h"
 #include "pathtrace.rgen.h"
 #include "pathtrace_layers.comp.h"
 #include "pathtrace_layers.rgen.h"
-#include "shaders/ray_shaders.h"
 
 namespace limpid {
 namespace {
@@ -18,45 +19,20 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
                            const PathtraceLaunch& launch) {
     PathtraceParams params{};
     params.scene = scene.params();
-    params.camera = launch.camera;
-    params.previousCamera = launch.previousCamera;
-    params.width = launch.extent.width;
-    params.height = launch.extent.height;
-    params.frame = launch.frame;
-    params.stream = launch.stream;
-    params.seed = launch.seed;
+    params.view = viewParams(launch);
     params.samples = launch.samples;
     params.maxDepth = static_cast<uint>(settings.maxDepth);
     params.rouletteDepth = static_cast<uint>(settings.rouletteDepth);
     params.fireflyClamp = settings.fireflyClamp;
-    params.jitterPerPixel = launch.jitterPerPixel ? 1u : 0u;
-    params.jitter = launch.jitter;
-    params.hasPrevious = launch.hasPrevious ? 1u : 0u;
     return params;
 }
-
-/// The same pass for either tracer.
-struct TracerShaders {
-    const gpu::ShaderCode& compute;
-    const gpu::ShaderCode& rayGeneration;
-};
 
 void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuScene& scene,
               const PathtraceSettings& settings, const PathtraceLaunch& launch,
               const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
-    std::vector<Binding> bindings = scene.bindings();
-    bindings.insert(bindings.end(), images.begin(), images.end());
-    std::vector<gpu::ConstantValue> constants = scene.constants();
-    constants.push_back({"SAMPLER_TEA", settings.samplerTea ? 1u : 0u});
-    const bool pipeline = scene.tracer() == scene::Tracer::Pipeline;
-    graph.dispatch({.pass = "pathtrace",
-                    .shader = pipeline ? shaders.rayGeneration : shaders.compute,
-                    .bindings = std::move(bindings),
-                    .params = gpu::paramsOf(params),
-                    .constants = std::move(constants),
-                    .extent = launch.extent,
-                    .rays = pipeline ? &rayShaders() : nullptr});
+    dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
+                   {{"SAMPLER_TEA", settings.samplerTea ? 1u : 0u}}, launch.extent);
 }
 
 }  // namespace

@@ -4,46 +4,18 @@
 // The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
 // and a dozen registers are free for traversal.
 #include "passes/pathtrace/pathtrace_params.h"
-#include "shaders/bsdf.glsl"
-#include "shaders/trace.glsl"
+#include "shaders/first_hit.glsl"
 #include "shaders/lights.glsl"
-#include "shaders/motion.glsl"
+#include "shaders/medium.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
-};
-
-/// Backs of single-sided surfaces that a camera ray passes at most.
-const uint MAX_CULLED = 64u;
-
-/// What the camera sees first, for the layers.
-struct FirstHit {
-    bool hit;
-    vec3 position;  // of a miss: the direction
-    vec3 normal, albedo, albedoSpecular;
-    float depth;
-    uvec2 ids;                // instance, material
-    PreviousPoint previous;  // the same point in the previous frame
 };
 
 struct PathRadiance {
     vec3 emission;           // seen directly
     vec3 diffuse, specular;  // by the first surface's lobes; their sum is all scattered light
 };
-
-Ray cameraRay(vec2 pixel) {
-    const CameraParams camera = params.camera;
-    const vec2 p = vec2(2.0, -2.0) * pixel / vec2(params.width, params.height) + vec2(-1.0, 1.0);
-    const vec3 offset = p.x * camera.right + p.y * camera.up;
-    if (camera.orthographic != 0u) return Ray(camera.origin + offset, camera.forward, INFINITE_DISTANCE);
-    return Ray(camera.origin, normalize(camera.forward + offset), INFINITE_DISTANCE);
-}
-
-vec2 subpixel(uint sampleIndex, inout uint rng) {
-    const vec2 u = random2(rng);
-    if (params.jitterPerPixel == 0u) return params.jitter;
-    return params.frame == 0u && sampleIndex == 0u ? vec2(0.5) : u;
-}
 
 vec3 clampFirefly(vec3 radiance, uint depth) {
     const float l = luminance(radiance);
@@ -84,19 +56,6 @@ void addEnvironment(inout Path path, uint depth) {
     addEmission(path, environmentRadiance(uv, params.scene), density, depth);
 }
 
-/// Absorption on the viewer's side of a surface. The surface knows it where it is met from within, and for bodies in
-/// bodies better than the path: that forgets the outer one.
-vec3 mediumBefore(Path path, Surface surface) {
-    return isBoundary(surface) && !surface.front ? surface.absorption : path.medium;
-}
-
-/// Absorption where `direction` leads to from the surface.
-vec3 mediumTowards(Path path, Surface surface, vec3 direction) {
-    const bool crosses = dot(direction, surface.geometricNormal) < 0.0 && isBoundary(surface);
-    if (!crosses) return mediumBefore(path, surface);
-    return surface.front ? surface.absorption : vec3(0.0);
-}
-
 void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const LightSample light = sampleLight(surface.position, params.scene, rng);
     const BsdfValue value = evaluateBsdf(bsdf, light.direction);
@@ -104,7 +63,7 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
     if (HAS_VOLUME) {
         if (light.distance < INFINITE_DISTANCE) {
-            incident *= exp(-light.distance * mediumTowards(path, surface, light.direction));
+            incident *= exp(-light.distance * mediumTowards(path.medium, surface, light.direction));
         }
     }
     vec3 diffuse = incident * value.diffuse, specular = incident * value.specular;
@@ -117,10 +76,8 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
         specular = sum - diffuse;
     }
     if (light.pdf > 0.0 && luminance(diffuse) + luminance(specular) > 0.0) {
-        const float side = dot(light.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
-        const vec3 start = offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude);
         ++path.rays;
-        if (!traceAny(shadowRay(start, light), params.scene.rootNode, rng)) {
+        if (!traceAny(shadowRay(leavingPoint(surface, light.direction), light), params.scene.rootNode, rng)) {
             path.radiance.diffuse += diffuse;
             path.radiance.specular += specular;
         }
@@ -141,30 +98,17 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
     }
-    if (HAS_VOLUME) path.medium = mediumTowards(path, surface, next.direction);
-    const float side = dot(next.direction, surface.geometricNormal) < 0.0 ? -1.0 : 1.0;
-    path.ray = Ray(offsetRay(surface.position, side * surface.geometricNormal, surface.magnitude), next.direction,
-                   INFINITE_DISTANCE);
+    if (HAS_VOLUME) path.medium = mediumTowards(path.medium, surface, next.direction);
+    path.ray = Ray(leavingPoint(surface, next.direction), next.direction, INFINITE_DISTANCE);
     return path.throughput != vec3(0.0);
 }
 
-FirstHit firstHitOf(Hit hit, Surface surface, Bsdf bsdf, float depth) {
-    PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
-    if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
-    return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
-                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous);
-}
-
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
-    Path path =
-        Path(ray, vec3(1.0), vec3(1.0), 0.0, true, 0.0, vec3(0.0), PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
-    float spread = params.camera.spread;
-    if (params.camera.orthographic != 0u) {
-        path.coneWidth = spread;
-        spread = 0.0;
-    }
-    first = FirstHit(false, ray.direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE),
-                     PreviousPoint(ray.direction, vec3(0.0)));
+    const Cone cone = pixelCone(params.view.camera);
+    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, cone.width, vec3(0.0),
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
+    float spread = cone.spread;
+    first = noHit(ray.direction);
     float traveled = 0.0;
     uint culled = 0u;
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
@@ -178,17 +122,17 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         const vec3 toViewer = -path.ray.direction;
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
-        if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path, surface));
+        if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
         if (depth == 0u) {
             traveled += hit.t;
-            // glTF: the back of a single-sided material is not seen. It still blocks light.
-            if (surface.culled && ++culled < MAX_CULLED) {
-                path.ray.origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
+            if (passesBack(surface, culled, path.ray.origin)) {
                 --depth;
                 continue;
             }
-            first = firstHitOf(hit, surface, bsdf, traveled);
+            PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
+            if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
+            first = firstHitOf(surface, bsdf, traveled, previous);
         }
         if (surface.emission != vec3(0.0)) {
             const float density =

@@ -32,28 +32,9 @@ void accumulateVector(inout vec4 moments, vec3 value, float count) {
     moments.a += dot(before, value - moments.rgb) / 3.0;
 }
 
-/// Pixel that sees the point (of a miss: the direction) in xy; distance in z; valid in w.
-vec4 project(CameraParams camera, vec3 point, bool isDirection) {
-    const vec3 d = isDirection ? point : point - camera.origin;
-    const vec2 along = vec2(dot(d, camera.right) / dot(camera.right, camera.right),
-                            dot(d, camera.up) / dot(camera.up, camera.up));
-    const float w = dot(d, camera.forward);
-    const bool orthographic = camera.orthographic != 0u;
-    const vec2 ndc = orthographic ? along : along / max(w, 1e-20);
-    const vec2 pixel = (ndc * vec2(0.5, -0.5) + 0.5) * vec2(params.width, params.height);
-    return vec4(pixel, orthographic ? w : length(d), w > 0.0 && !(orthographic && isDirection) ? 1.0 : 0.0);
-}
-
-vec4 motionOf(FirstHit first) {
-    const vec4 now = project(params.camera, first.position, !first.hit);
-    const vec4 before = project(params.previousCamera, first.previous.position, !first.hit);
-    if (params.hasPrevious == 0u || now.w * before.w == 0.0) return vec4(0.0);
-    return vec4(before.xy - now.xy, first.hit ? before.z - now.z : 0.0, 1.0);
-}
-
 void tracePixel(uvec2 pixel) {
     const ivec2 at = ivec2(pixel);
-    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
+    uint rng = startStream(pixel.y * params.view.width + pixel.x, params.view.stream, params.view.seed);
     uint rays = 0u, rejected = 0u;
     vec4 diffuseMoments = vec4(0.0), specularMoments = vec4(0.0), emissionMoments = vec4(0.0);
     vec4 albedoMoments = vec4(0.0), albedoSpecularMoments = vec4(0.0), normalMoments = vec4(0.0);
@@ -61,8 +42,8 @@ void tracePixel(uvec2 pixel) {
     vec3 previousNormalSum = vec3(0.0);
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
-        const vec2 point = vec2(pixel) + subpixel(i, rng);
-        PathRadiance path = tracePath(cameraRay(point), rng, rays, first);
+        const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
+        PathRadiance path = tracePath(cameraRay(params.view, point), rng, rays, first);
         if (!isFinite(path.emission + path.diffuse + path.specular)) {
             path = PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0));
             ++rejected;
@@ -75,7 +56,7 @@ void tracePixel(uvec2 pixel) {
         accumulate(albedoSpecularMoments, first.albedoSpecular, LUMINANCE, count);
         accumulateVector(normalMoments, first.normal, count);
         accumulate(depthMoments, vec3(first.depth, first.hit ? 1.0 : 0.0, 0.0), vec3(1.0, 0.0, 0.0), count);
-        motionSum += motionOf(first);
+        motionSum += motionOf(first, params.view);
         previousNormalSum += first.previous.normal;
         if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     }

@@ -12,20 +12,11 @@ using layout::SceneParams;
 
 struct PathtraceParams {
     SceneParams scene;
-    CameraParams camera;
-    CameraParams previousCamera;
-    uint width;
-    uint height;
-    uint frame;   // since the last reset
-    uint stream;  // of random numbers
-    uint seed;
+    ViewParams view;
     uint samples;  // per pixel in this launch
     uint maxDepth;
     uint rouletteDepth;
     float fireflyClamp;  // 0: off
-    uint jitterPerPixel;
-    vec2 jitter;       // otherwise: the point in every pixel
-    uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
 };
 
 #ifdef __cplusplus

@@ -7,13 +7,13 @@ layout(set = 0, binding = 22, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 23, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
 
 void tracePixel(uvec2 pixel) {
-    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
+    uint rng = startStream(pixel.y * params.view.width + pixel.x, params.view.stream, params.view.seed);
     uint rays = 0u, rejected = 0u;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
-        const vec2 point = vec2(pixel) + subpixel(i, rng);
-        const PathRadiance path = tracePath(cameraRay(point), rng, rays, first);
+        const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
+        const PathRadiance path = tracePath(cameraRay(params.view, point), rng, rays, first);
         const vec3 radiance = path.diffuse;
         if (isFinite(radiance)) {
             sum += radiance;

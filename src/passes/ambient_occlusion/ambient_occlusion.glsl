@@ -1,0 +1,41 @@
+// The share of cosine-weighted rays around the shading normal that meet nothing within their length: S. Zhukov, A. Iones,
+// G. Kronin, "An ambient light illumination model", 1998, with obstacles that count in full. Without a limit it is what a
+// white surface reflects of a white sky. The same for every tracer.
+#include "passes/ambient_occlusion/ambient_occlusion_params.h"
+#include "shaders/trace.glsl"
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    AmbientOcclusionParams params;
+};
+layout(set = 0, binding = 21, rgba32f) uniform readonly image2D position;  // a: magnitude, 0 of a miss
+layout(set = 0, binding = 22, rgba32f) uniform readonly image2D geometricNormal;
+layout(set = 0, binding = 23, rgba32f) uniform readonly image2D normal;
+layout(set = 0, binding = 24, rgba32f) uniform readonly image2D before;  // of earlier dispatches, if there are any
+layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D openness;
+
+/// Apart from the streams of passes that trace primary rays, which take startStream()'s own.
+const uint OWN_STREAMS = 0x0cc1u;
+
+/// A direction of the shading normal's hemisphere that leads into the surface is not open: no light comes through there.
+bool isOpen(vec4 place, vec3 faceNormal, vec3 direction, uint rng) {
+    bool open = dot(direction, faceNormal) > 0.0;
+    if (open) {
+        const Ray ray = Ray(offsetRay(place.xyz, faceNormal, place.w), direction, params.reach);
+        open = !traceAny(ray, params.scene.rootNode, rng);
+    }
+    return open;
+}
+
+void tracePixel(uvec2 pixel) {
+    const ivec2 at = ivec2(pixel);
+    const vec4 place = imageLoad(position, at);
+    const vec3 faceNormal = imageLoad(geometricNormal, at).xyz;
+    const mat3 frame = frameAround(imageLoad(normal, at).xyz);
+    uint rng = tea(startStream(pixel.y * params.width + pixel.x, params.stream, params.seed), OWN_STREAMS + params.firstRay);
+    float open = params.firstRay > 0u ? imageLoad(before, at).x : 0.0;
+    for (uint i = 0u; i < params.rays; ++i) {
+        const vec3 direction = frame * sampleCosineHemisphere(random2(rng));
+        if (isOpen(place, faceNormal, direction, rng)) open += 1.0;
+    }
+    imageStore(openness, at, vec4(vec3(place.w > 0.0 ? open / params.divisor : 1.0), 0.0));
+}

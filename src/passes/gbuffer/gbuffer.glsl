@@ -1,0 +1,121 @@
+// One primary ray per pixel: what it meets, and the light that arrives there directly. The same for every tracer.
+//
+// Rays, random numbers and surfaces are those of the path tracer's first sample, so that its layers and these are equal.
+#include "passes/gbuffer/gbuffer_params.h"
+#include "shaders/first_hit.glsl"
+#include "shaders/lights.glsl"
+#include "shaders/medium.glsl"
+
+layout(constant_id = 21) const bool LIGHT = true;    // false: the layer `light` is black
+layout(constant_id = 22) const bool SHADOWS = true;  // false: lights shine through everything
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    GBufferParams params;
+};
+layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D light;
+layout(set = 0, binding = 22, rgba32f) uniform writeonly image2D emission;
+layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D albedo;
+layout(set = 0, binding = 24, rgba32f) uniform writeonly image2D albedoSpecular;
+layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D normal;
+layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D depth;   // depth, 0 of a miss | hit
+layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D motion;  // a: valid
+layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D previousNormal;
+layout(set = 0, binding = 29, rgba32f) uniform writeonly image2D position;         // a: magnitude, 0 of a miss
+layout(set = 0, binding = 30, rgba32f) uniform writeonly image2D geometricNormal;
+layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D ids;              // instance | material
+layout(set = 0, binding = 32, rg32ui) uniform readonly uimage2D countersBefore;
+layout(set = 0, binding = 33, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
+
+/// What a primary ray found.
+struct Seen {
+    FirstHit first;
+    vec3 light, emission;
+    vec3 geometricNormal;
+    float magnitude;
+    uint rays;
+};
+
+/// One light, drawn by power. Nothing else finds the lights here, so that each counts in full; a perfectly smooth lobe
+/// shows none of them.
+vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
+    const LightSample drawn = sampleLight(surface.position, params.scene, rng);
+    const BsdfValue value = evaluateBsdf(bsdf, drawn.direction);
+    vec3 scattered = drawn.radiance * (value.diffuse + value.specular) / max(drawn.pdf, 1e-30);
+    if (HAS_VOLUME) {
+        if (drawn.distance < INFINITE_DISTANCE) {
+            scattered *= exp(-drawn.distance * mediumTowards(vec3(0.0), surface, drawn.direction));
+        }
+    }
+    bool arrives = drawn.pdf > 0.0 && luminance(scattered) > 0.0;
+    if (SHADOWS) {
+        if (arrives) {
+            ++rays;
+            const Ray ray = shadowRay(leavingPoint(surface, drawn.direction), drawn);
+            arrives = !traceAny(ray, params.scene.rootNode, rng);
+        }
+    }
+    return arrives ? scattered : vec3(0.0);
+}
+
+Seen shade(Hit hit, Surface surface, float depth, vec3 toViewer, uint rng, uint rays) {
+    const Bsdf bsdf = makeBsdf(surface, toViewer);
+    Seen seen;
+    seen.first = firstHitOf(surface, bsdf, depth, previousPoint(hit, surface, params.scene));
+    seen.geometricNormal = surface.geometricNormal;
+    seen.magnitude = surface.magnitude;
+    seen.emission = surface.emission;
+    seen.light = vec3(0.0);
+    seen.rays = rays;
+    if (LIGHT) {
+        if (!surface.unlit) seen.light = directLight(surface, bsdf, rng, seen.rays);
+    }
+    if (HAS_VOLUME) {
+        const vec3 throughput = exp(-hit.t * mediumBefore(vec3(0.0), surface));
+        seen.emission *= throughput;
+        seen.light *= throughput;
+    }
+    return seen;
+}
+
+Seen look(Ray ray, uint rng) {
+    Seen seen = Seen(noHit(ray.direction), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
+    const Cone cone = pixelCone(params.view.camera);
+    float coneWidth = cone.width, traveled = 0.0;
+    uint culled = 0u;
+    Hit hit;
+    Surface surface;
+    do {
+        ++seen.rays;
+        hit = traceClosest(ray, params.scene.rootNode, rng);
+        if (!isHit(hit)) {
+            if (HAS_ENVIRONMENT) seen.emission = environmentRadiance(latLongOf(ray.direction), params.scene);
+            return seen;
+        }
+        coneWidth += cone.spread * hit.t;
+        traveled += hit.t;
+        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, coneWidth);
+    } while (passesBack(surface, culled, ray.origin));
+    return shade(hit, surface, traveled, -ray.direction, rng, seen.rays);
+}
+
+void tracePixel(uvec2 pixel) {
+    const ivec2 at = ivec2(pixel);
+    uint rng = startStream(pixel.y * params.view.width + pixel.x, params.view.stream, params.view.seed);
+    const vec2 point = vec2(pixel) + subpixel(params.view, 0u, rng);
+    Seen seen = look(cameraRay(params.view, point), rng);
+    const bool rejected = !isFinite(seen.light + seen.emission);
+    if (rejected) seen.light = seen.emission = vec3(0.0);
+    const FirstHit first = seen.first;
+    imageStore(light, at, vec4(seen.light, 0.0));
+    imageStore(emission, at, vec4(seen.emission, 0.0));
+    imageStore(albedo, at, vec4(first.albedo, 0.0));
+    imageStore(albedoSpecular, at, vec4(first.albedoSpecular, 0.0));
+    imageStore(normal, at, vec4(first.normal, 0.0));
+    imageStore(depth, at, vec4(first.depth, first.hit ? 1.0 : 0.0, 0.0, 0.0));
+    imageStore(motion, at, motionOf(first, params.view));
+    imageStore(previousNormal, at, vec4(first.previous.normal, 0.0));
+    imageStore(position, at, first.hit ? vec4(first.position, seen.magnitude) : vec4(0.0));
+    imageStore(geometricNormal, at, vec4(seen.geometricNormal, 0.0));
+    imageStore(ids, at, uvec4(first.ids, 0u, 0u));
+    imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(seen.rays, rejected ? 1u : 0u, 0u, 0u));
+}

@@ -1,0 +1,43 @@
+// The G-buffer pass: what the camera sees first, and the light that arrives there directly. One primary ray
+// per pixel and launch; no bounce.
+#pragma once
+
+#include "base/params.h"
+#include "gpu/frame_graph.h"
+#include "passes/camera_launch.h"
+#include "scene/gpu_scene.h"
+
+namespace limpid {
+
+/// What a user may set; the table below is where range and meaning stand.
+struct GBufferSettings {
+    bool light = true;
+    bool shadows = true;
+    bool operator==(const GBufferSettings&) const = default;
+};
+const ParamTable<GBufferSettings>& gbufferParams();
+
+using GBufferLaunch = CameraLaunch;
+
+/// Of one sample; rgba32f, alpha 0 unless said otherwise. All but `light`, `position` and `geometricNormal`
+/// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample with the
+/// default sampler, bit for bit but for the sign of 0.
+struct GBufferImages {
+    /// Radiance that the surface scatters of what one light, drawn by power, sends to it: an unbiased
+    /// estimate of light scattered once. A perfectly smooth mirror or pane shows nothing.
+    gpu::ImageHandle light;
+    gpu::ImageHandle emission, albedo, albedoSpecular;
+    gpu::ImageHandle normal;           ///< shading normal: unit, world space, facing the viewer; 0 at a miss
+    gpu::ImageHandle depth;            ///< x: distance along the ray, world units, 0 at a miss; y: 1 at a hit
+    gpu::ImageHandle motion;           ///< xyz: motion, invalid as 0; a: 1 where it is valid
+    gpu::ImageHandle previousNormal;   ///< of the same point in the previous frame
+    gpu::ImageHandle position;         ///< xyz: world space; a: magnitude, for offsetRay(); all 0 at a miss
+    gpu::ImageHandle geometricNormal;  ///< of the triangle: unit, on the viewer's side; 0 at a miss
+    gpu::ImageHandle ids;              ///< rg32ui: instance, material; layout::NONE at a miss
+    gpu::ImageHandle counters;         ///< rg32ui: rays and rejected samples since the last reset
+};
+
+GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
+                      const GBufferLaunch& launch);
+
+}  // namespace limpid

@@ -1,0 +1,25 @@
+// Recording a pass that traces rays, with the scene's tracer.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "gpu/frame_graph.h"
+#include "scene/gpu_scene.h"
+
+namespace limpid {
+
+/// The same pass for either tracer.
+struct TracerShaders {
+    const gpu::ShaderCode& compute;
+    const gpu::ShaderCode& rayGeneration;
+};
+
+/// Records the pass with the scene's bindings and constants, to which those given here are added.
+void dispatchTraced(gpu::FrameGraph& graph, const scene::GpuScene& scene, std::string_view pass,
+                    const TracerShaders& shaders, const std::vector<gpu::Binding>& images,
+                    std::span<const std::byte> params, const std::vector<gpu::ConstantValue>& constants,
+                    gpu::Extent extent);
+
+}  // namespace limpid
