@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/params.h"
 #include "image/exr.h"
+#include "image/metrics.h"
 #include "image/png.h"
 #include "image/tonemap.h"
 #include "renderer/camera_text.h"
@@ -53,6 +54,8 @@ void writePicture(const fs::path& path, const PictureFormat& format, const Rende
                   const std::map<std::string, std::string>& metadata) {
     if (!isExr(path)) {
         const image::Image beauty = beautyOf(layers);
+        if (format.shownAsIs)
+            return image::writePng(path, image::toBytes(image::displayEncode(beauty, 0.0f)));
         const float stops = parseExposure(format.exposure).value_or(image::autoExposure(beauty));
         image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
         return;

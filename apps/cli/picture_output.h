@@ -26,6 +26,7 @@ struct PictureFormat {
     std::vector<std::string> layers;  ///< of an EXR, besides beauty
     bool floatColors = false;         ///< of an EXR; else half
     std::string exposure = "auto";    ///< of a PNG
+    bool shownAsIs = false;           ///< of a PNG: values are shares in [0,1], no radiance
 };
 PictureFormat formatOf(const AccumulationHeader& header);
 

@@ -99,11 +99,19 @@ bool writesSums(const RenderOptions& o) {
 }
 
 std::vector<std::string> chosenLayers(const RenderOptions& o) {
+    const Pipeline pipeline = parsePipeline(o.pipeline);
+    const std::vector<std::string> possible = pipeline.layers();
+    if (o.layers == "all") return possible;
     const std::vector<std::string> chosen = parseLayers(o.layers);
-    std::vector<std::string> layers;
-    for (const std::string& name : layerNames()) {
-        if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) layers.push_back(name);
+    for (const std::string& name : chosen) {
+        if (std::ranges::find(possible, name) == possible.end())
+            throw UsageError("--aov: the pipeline '" + std::string(pipeline.name()) + "' has no layer '" +
+                             name + "'");
     }
+    std::vector<std::string> layers;
+    std::ranges::copy_if(possible, std::back_inserter(layers), [&](const std::string& name) {
+        return std::ranges::find(chosen, name) != chosen.end();
+    });
     return layers;
 }
 
@@ -119,7 +127,7 @@ void checkRenderOptions(const RenderOptions& o) {
     checkLongRender(o.longRender);
     checkOutput(o);
     parseExposure(o.exposure);
-    parseLayers(o.layers);
+    chosenLayers(o);
     settingsOf(o);
 }
 

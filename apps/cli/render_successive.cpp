@@ -42,7 +42,8 @@ std::map<std::string, double> mediansOf(TimesByPass& times) {
 void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const FramePattern output(o.output);
-    const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure};
+    const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure,
+                               job.settings.pipeline.kind == Pipeline::Kind::AmbientOcclusion};
     FrameRenderer renderer(job.device, job.scene, job.settings, static_cast<uint32_t>(samplesOf(o)));
     Progress progress("frames", static_cast<uint64_t>(job.frames));
     const Clock::time_point start = Clock::now();

@@ -78,6 +78,64 @@ FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const Re
     return out;
 }
 
+/// What the camera sees, lit directly if `light` is set. Layers, where they are asked for, are running means.
+GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                            const FrameInput& input, bool light, FrameImages& out) {
+    GBufferSettings used = settings.gbuffer;
+    used.light = used.light && light;
+    const PathtraceLaunch launch = launchOf(settings, input);
+    const GBufferImages seen = gbuffer(graph, scene, used,
+                                       {.extent = launch.extent,
+                                        .camera = launch.camera,
+                                        .previousCamera = launch.previousCamera,
+                                        .hasPrevious = launch.hasPrevious,
+                                        .frame = launch.frame,
+                                        .stream = launch.stream,
+                                        .seed = launch.seed,
+                                        .jitterPerPixel = launch.jitterPerPixel,
+                                        .jitter = launch.jitter});
+    out.counters = seen.counters;
+    if (light) {
+        out.diffuse = seen.light;
+        out.emission = seen.emission;
+    }
+    if (settings.layers) {
+        out.albedo = seen.albedo;
+        out.albedoSpecular = seen.albedoSpecular;
+        out.normal = seen.normal;
+        out.previousNormal = seen.previousNormal;
+        out.depth = seen.depth;
+        out.motion = seen.motion;
+        out.ids = seen.ids;
+    }
+    for (const MeanLayer& layer : meanLayers) {
+        ImageHandle& image = out.*layer.image;
+        if (image)
+            image =
+                accumulate(graph, layer.name, image, input.samplesBefore, input.samples, layer.varianceOf);
+    }
+    return seen;
+}
+
+/// `diffuse` is all scattered light.
+FrameImages recordLit(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                      const FrameInput& input) {
+    FrameImages out;
+    recordGBuffer(graph, scene, settings, input, true, out);
+    return out;
+}
+
+FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& scene,
+                                   const RenderSettings& settings, const FrameInput& input) {
+    FrameImages out;
+    const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
+    const ImageHandle open = ambientOcclusion(graph, scene, settings.ambientOcclusion,
+                                              {static_cast<uint32_t>(input.stream), settings.seed}, seen);
+    out.beauty =
+        accumulate(graph, "ambient_occlusion", open, input.samplesBefore, input.samples, VarianceOf::Nothing);
+    return out;
+}
+
 /// A frame's samples in as many launches as the device needs, averaged.
 PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                              const FrameInput& input) {
@@ -149,8 +207,17 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
 FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
                         const FrameInput& input) {
     if (input.moved) deform(graph, scene, *input.moved);
-    return settings.pipeline.denoiser ? recordDenoised(graph, scene, settings, input)
-                                      : recordPath(graph, scene, settings, input);
+    switch (settings.pipeline.kind) {
+        case Pipeline::Kind::Path:
+            return recordPath(graph, scene, settings, input);
+        case Pipeline::Kind::GBuffer:
+            return recordLit(graph, scene, settings, input);
+        case Pipeline::Kind::AmbientOcclusion:
+            return recordAmbientOcclusion(graph, scene, settings, input);
+        case Pipeline::Kind::Denoised:
+            break;
+    }
+    return recordDenoised(graph, scene, settings, input);
 }
 
 }  // namespace limpid

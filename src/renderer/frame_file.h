@@ -10,9 +10,10 @@
 
 namespace limpid {
 
-/// The frame that the file holds. `sequence`: it has a frame before it, so motion is needed. Throws InputError listing
-/// all that is missing of diffuse, specular, emission, albedo, normal, depth, the camera, and motion. Without the
-/// layers id and prevNormal there is one object and nothing turns; `lacking` names them.
+/// The frame that the file holds. `sequence`: it has a frame before it, so motion is needed. Throws
+/// InputError listing all that is missing of diffuse, specular, emission, albedo, normal, depth, the camera,
+/// and motion. Without the layers id and prevNormal there is one object and nothing turns; `lacking` names
+/// them.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<std::string>& lacking);
 

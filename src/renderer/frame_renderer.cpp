@@ -32,7 +32,8 @@ void FrameRenderer::render(Moment moment) {
                      .previousCamera = moment.previousCamera.value_or(moment.camera)};
     input.hasPrevious = moment.previousCamera.has_value();
     input.moved = moment.scene ? &*moment.scene : nullptr;
-    input.launchSamples = samplesPerLaunch(device_, settings_);
+    input.launchSamples =
+        settings_.pipeline.takesOneSampleALaunch() ? 1 : samplesPerLaunch(device_, settings_);
     input.filters = filters_;
     if (moment.scene) ++sceneVersion_;
     const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;

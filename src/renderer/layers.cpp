@@ -84,8 +84,12 @@ std::vector<std::string> parseLayers(std::string_view list) {
 Image beautyOf(const RenderedLayers& layers) {
     if (!layers.beauty.empty()) return components(layers.beauty, layers.extent, 0, 3);
     Image sum = components(layers.diffuse, layers.extent, 0, 3);
-    const Image specular = components(layers.specular, layers.extent, 0, 3);
     const Image emission = components(layers.emission, layers.extent, 0, 3);
+    if (layers.specular.empty()) {
+        for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += emission.pixels[i];
+        return sum;
+    }
+    const Image specular = components(layers.specular, layers.extent, 0, 3);
     for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += specular.pixels[i] + emission.pixels[i];
     return sum;
 }

@@ -30,6 +30,10 @@ const std::vector<ParamGroup>& paramGroups() {
         groupOf(
             pathtraceParams(), [](auto& s) -> auto& { return s.pathtrace; }),
         groupOf(
+            gbufferParams(), [](auto& s) -> auto& { return s.gbuffer; }),
+        groupOf(
+            ambientOcclusionParams(), [](auto& s) -> auto& { return s.ambientOcclusion; }),
+        groupOf(
             denoise::historyParams(), [](auto& s) -> auto& { return s.denoisers.history; }),
         groupOf(
             denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),

@@ -1,6 +1,7 @@
 #include "renderer/pipeline.h"
 
 #include "base/error.h"
+#include "renderer/layers.h"
 
 namespace limpid {
 
@@ -30,6 +31,15 @@ std::string_view Pipeline::help() const {
             break;
     }
     return denoiser->help;
+}
+
+std::vector<std::string> Pipeline::layers() const {
+    std::vector<std::string> names = layerNames();
+    if (takesOneSampleALaunch()) std::erase(names, "specular");
+    if (takesOneSampleALaunch()) std::erase(names, "variance");
+    if (kind == Kind::AmbientOcclusion) std::erase(names, "diffuse");
+    if (kind == Kind::AmbientOcclusion) std::erase(names, "emission");
+    return names;
 }
 
 const std::vector<Pipeline>& pipelines() {

@@ -24,6 +24,10 @@ struct Pipeline {
     std::string_view help() const;
     /// Each frame is a mean of its own, or of all frames since the camera stood still.
     bool accumulates() const { return kind != Kind::Denoised; }
+    /// Its passes trace one primary ray per pixel and launch.
+    bool takesOneSampleALaunch() const { return kind == Kind::GBuffer || kind == Kind::AmbientOcclusion; }
+    /// Of layerNames(), in that order: those that an EXR file can have.
+    std::vector<std::string> layers() const;
     bool operator==(const Pipeline&) const = default;
 };
 

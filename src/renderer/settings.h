@@ -5,6 +5,8 @@
 
 #include "denoise/denoiser.h"
 #include "gpu/frame_graph.h"
+#include "passes/ambient_occlusion/ambient_occlusion.h"
+#include "passes/gbuffer/gbuffer.h"
 #include "passes/pathtrace/pathtrace.h"
 #include "renderer/pipeline.h"
 
@@ -26,6 +28,8 @@ struct RenderSettings {
     Pipeline pipeline;
     bool layers = false;  ///< of `path`; false: only beauty is computed, which is faster
     PathtraceSettings pathtrace;
+    GBufferSettings gbuffer;
+    AmbientOcclusionSettings ambientOcclusion;
     denoise::DenoiserSettings denoisers;
     bool operator==(const RenderSettings&) const = default;
 };

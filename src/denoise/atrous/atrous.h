@@ -12,9 +12,9 @@ namespace limpid::denoise {
 struct AtrousSettings {
     bool history = true;
     int levels = 5;
-    float normalFactor = 0.003f;
+    float normalFactor = 3e-4f;
     float depthFactor = 1e-4f;
-    float sampleTarget = 512.0f;
+    float sampleTarget = 32.0f;
     bool plane = true;
     bool operator==(const AtrousSettings&) const = default;
 };

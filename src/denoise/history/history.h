@@ -18,7 +18,7 @@ struct HistorySettings {
     bool relative = true;
     bool search = true;
     bool demodulate = true;
-    float maxHistory = 64.0f;
+    float maxHistory = 8.0f;
     bool greyRestart = false;
     bool showCases = false;
     bool operator==(const HistorySettings&) const = default;
