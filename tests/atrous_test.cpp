@@ -10,7 +10,7 @@ struct Case {
     const char* name;
     SyntheticOptions options;
     bool plane = true;
-    float normalFactor = 0.003f, depthFactor = 1e-4f;
+    float normalFactor = 0.003f, depthFactor = 1e-4f, sampleTarget = 32.0f;
     uint32_t columns = 131, rows = 77;
 };
 
@@ -65,11 +65,13 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
                        .levels = 5,
                        .normalFactor = c.normalFactor,
                        .depthFactor = c.depthFactor,
+                       .sampleTarget = c.sampleTarget,
                        .plane = c.plane};
     denoise(*denoise::findDenoiser("atrous"), frame, settings);
     const DoubleAtrousParams params{.levels = 5,
                                     .normalFactor = double{c.normalFactor},
                                     .depthFactor = double{c.depthFactor},
+                                    .sampleTarget = double{c.sampleTarget},
                                     .plane = c.plane};
     AtrousGeometry geometry;
     std::vector<dvec4> light = demodulated(frame, params, geometry);
@@ -87,11 +89,12 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, AtrousPassTest,
     testing::Combine(
         testing::Values(Case{"Default", {}}, Case{"Moved", {.cameraMoves = true, .objectMoves = true}},
-                        Case{"Wide", {}, true, 10.0f, 1.0f}, Case{"Orthographic", {.orthographic = true}},
-                        Case{"Scaled", {.scale = 1024}}, Case{"Course", {}, false, 0.003f, 0.007f},
+                        Case{"Wide", {}, true, 10.0f, 1.0f, 1.0f},
+                        Case{"Orthographic", {.orthographic = true}}, Case{"Scaled", {.scale = 1024}},
+                        Case{"Course", {}, false, 0.003f, 0.007f, 0.0f},
                         Case{"OrthographicCourse", {.orthographic = true}, false, 0.003f, 0.007f},
-                        Case{"Tiny", {}, true, 0.003f, 1e-4f, 3, 2},
-                        Case{"Thin", {}, true, 0.003f, 1e-4f, 1, 40}),
+                        Case{"Tiny", {}, true, 0.003f, 1e-4f, 32.0f, 3, 2},
+                        Case{"Thin", {}, true, 0.003f, 1e-4f, 32.0f, 1, 40}),
         testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
     nameOf);
 

@@ -50,7 +50,7 @@ class Level {
                 const int64_t qy = y + step_ * (static_cast<int64_t>(k) - 2);
                 if (qx < 0 || qy < 0 || qx >= width_ || qy >= height_ || !sees(index(qx, qy))) continue;
                 const size_t q = index(qx, qy);
-                const double weight = spline[j] * spline[k] * edgeWeight(p, q);
+                const double weight = spline[j] * spline[k] * (q == p ? centreFactor(p) : edgeWeight(p, q));
                 sum += weight * dvec3(light_[q]);
                 weights += weight;
             }
@@ -61,6 +61,11 @@ class Level {
   private:
     size_t index(int64_t x, int64_t y) const { return static_cast<size_t>(y * width_ + x); }
     bool sees(size_t p) const { return geometry_.distance[p] > 0.0; }
+
+    double centreFactor(size_t p) const {
+        if (params_.sampleTarget == 0.0) return 1.0;
+        return 1.0 + light_[p].w * static_cast<double>(step_ * step_) / params_.sampleTarget;
+    }
 
     double edgeWeight(size_t p, size_t q) const {
         const auto& normal = geometry_.normal;
@@ -96,8 +101,7 @@ Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>
     Demodulated out;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const dvec3 light = dvec3(mean[p]) / modulation(pixels.albedo(p));
-        out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z),
-                               pixels.hit(p) ? 1.0 : 0.0);
+        out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z), mean[p].w);
         out.geometry.normal.push_back(pixels.normal(p));
         const double z = pixels.distance(p);
         out.geometry.distance.push_back(alongForward ? z / glm::length(pixels.ray(p)) : z);

@@ -9,11 +9,11 @@
 
 namespace limpid::test {
 
-/// The specification names no defaults.
 struct DoubleAtrousParams {
     uint32_t levels = 5;
-    double normalFactor = 0.1;
+    double normalFactor = 3e-4;
     double depthFactor = 1e-4;
+    double sampleTarget = 32.0;  ///< 0: no limit
     bool plane = true;
 };
 
@@ -24,14 +24,14 @@ struct AtrousGeometry {
 };
 
 struct Demodulated {
-    std::vector<dvec4> light;  ///< L, and 1 where something is seen, else 0
+    std::vector<dvec4> light;  ///< L, and N, the count of the mean
     AtrousGeometry geometry;
 };
 
 /// C, and 1: what is filtered with `atrous.history=off`.
 std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
 
-/// Nothing is rounded. `mean`: of the history, or scatteredLight(); the fourth is not read.
+/// Nothing is rounded. `mean`: of the history, with its count, or scatteredLight().
 Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean, bool plane);
 
 /// Level `i` of the filter. Of the frame only the size and the camera are read.

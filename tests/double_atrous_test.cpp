@@ -32,7 +32,7 @@ dvec3 splineAt(const std::vector<dvec4>& light, size_t p, size_t stride) {
 TEST(DoubleAtrous, AConstantImageStaysConstant) {
     const HostFrame frame = SyntheticScene({}).frame(0, width, height, 1);
     const DoubleFrame pixels(frame);
-    const DoubleAtrousParams params{.levels = 4};
+    const DoubleAtrousParams params{.levels = 4, .sampleTarget = 0.0};
     Demodulated d = demodulate(frame, scatteredLight(frame), params.plane);
     d.light.assign(frame.pixelCount(), dvec4(0.25, 1.0, 7.0, 1.0));
     const std::vector<dvec4> constant = d.light;
@@ -51,7 +51,7 @@ TEST(DoubleAtrous, FlatGeometryGivesTheSplineConvolution) {
     const HostFrame frame = frontalPlane(width, height);
     const std::vector<dvec4> light = randomLight(frame.pixelCount());
     for (const bool plane : {false, true}) {
-        const DoubleAtrousParams params{.plane = plane};
+        const DoubleAtrousParams params{.sampleTarget = 0.0, .plane = plane};
         AtrousGeometry geometry = demodulate(frame, light, plane).geometry;
         // The plane is one of equal distances along `forward`; with `plane` off they are those from the eye.
         if (plane) geometry.distance.assign(frame.pixelCount(), 2.0);
@@ -77,8 +77,8 @@ TEST(DoubleAtrous, APlaneAtAGrazingAngleIsOnePlane) {
         const std::vector<dvec4> light = randomLight(frame.pixelCount());
         const AtrousGeometry geometry = demodulate(frame, light, true).geometry;
         // A distance of 1e-4 from the plane, relative to that from the eye, would leave nothing of a weight.
-        const std::vector<dvec4> filtered =
-            level(frame, light, geometry, 0, {.normalFactor = 0.1, .depthFactor = 1e-10});
+        const std::vector<dvec4> filtered = level(
+            frame, light, geometry, 0, {.normalFactor = 0.1, .depthFactor = 1e-10, .sampleTarget = 0.0});
         std::vector<dvec4> rows = light;
         for (size_t p = 2; p + 2 < light.size(); ++p) rows[p] = dvec4(splineAt(light, p, 1), 1.0);
         size_t compared = 0;
@@ -96,7 +96,7 @@ TEST(DoubleAtrous, WeightsByHand) {
     const HostFrame frame = frontalPlane(3, 1);
     const std::vector<dvec4> light{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
     AtrousGeometry geometry{{{0, 0, 1}, {0, 0, 1}, {0.6, 0, 0.8}}, {2.0, 2.0, 2.5}};
-    DoubleAtrousParams params{.normalFactor = 0.5, .depthFactor = 0.1};
+    DoubleAtrousParams params{.normalFactor = 0.5, .depthFactor = 0.1, .sampleTarget = 0.0};
     // Seen from the middle: |n - n'|^2 = 0.36 + 0.04; the right point is (5/3, 0, -2.5), 0.5 off the plane.
     const double right = std::exp(-0.4 / 0.5) * std::exp(-0.25 * 0.25 / 0.1);
     dvec3 expected = dvec3(4, 6, 4 * right) / (10 + 4 * right);
@@ -106,6 +106,10 @@ TEST(DoubleAtrous, WeightsByHand) {
     const double far = std::exp(-0.4 / (4 * 0.5)) * std::exp(-0.25 / z2 / 0.1);
     expected = dvec3(6, 0, 4 * far) / (6 + 4 * far);
     EXPECT_LT(largest(dvec3(level(frame, light, geometry, 1, params)[0]) - expected), 1e-6);
+    params.sampleTarget = 8.0;  // the left pixel's one sample, and a step of two pixels: half as much again
+    expected = dvec3(6 * 1.5, 0, 4 * far) / (6 * 1.5 + 4 * far);
+    EXPECT_LT(largest(dvec3(level(frame, light, geometry, 1, params)[0]) - expected), 1e-6);
+    params.sampleTarget = 0.0;
     params.plane = false;
     const double plain = std::exp(-0.4 / (4 * 0.5)) * std::exp(-0.25 / 0.1);
     expected = dvec3(6, 0, 4 * plain) / (6 + 4 * plain);

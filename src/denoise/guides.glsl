@@ -8,6 +8,8 @@
 
 /// Albedo below this is not divided by: dark texels would amplify what little light they scatter.
 const float MIN_ALBEDO = 0.1;
+/// None is above 1; far above it modulation would overflow.
+const float MAX_ALBEDO = 65504.0;
 
 vec3 finiteOr(vec3 value, vec3 otherwise) {
     return isFinite(value) ? value : otherwise;
@@ -26,7 +28,7 @@ vec3 unitNormal(vec4 normal) {
 }
 
 vec3 modulation(vec4 albedo) {
-    return max(finiteOr(albedo.rgb, vec3(1.0)), vec3(MIN_ALBEDO));
+    return clamp(finiteOr(albedo.rgb, vec3(1.0)), vec3(MIN_ALBEDO), vec3(MAX_ALBEDO));
 }
 
 /// Where in [-1, 1]^2, y up, the centre of a pixel is.

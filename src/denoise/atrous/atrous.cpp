@@ -51,6 +51,12 @@ Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLig
     return signal;
 }
 
+/// Along one axis, each filters two pixels that lie a step apart.
+uint32_t invocations(uint32_t pixels, int step) {
+    const uint32_t block = 2 * static_cast<uint32_t>(step);
+    return (pixels + block - 1) / block * static_cast<uint32_t>(step);
+}
+
 ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& signal, int number,
                   const AtrousSettings& settings) {
     const Extent extent = graph.extent(signal.light);
@@ -75,7 +81,7 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
          .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
          .params = gpu::paramsOf(params),
          .constants = {{"GROUP_X", group}, {"GROUP_Y", group}},
-         .extent = extent});
+         .extent = {invocations(extent.width, step), invocations(extent.height, step)}});
     return filtered;
 }
 

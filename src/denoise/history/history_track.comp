@@ -116,7 +116,7 @@ void main() {
         const float depthBefore = z + motionNow.z;
         const Expected expected =
             Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, depthTolerance(depthBefore, n, vec2(pixel)), id);
-        before = historyAt(position, expected, max(albedoNow, vec3(MIN_ALBEDO)));
+        before = historyAt(position, expected, modulation(vec4(albedoNow, 0.0)));
         if (before.w < 0.0) failure = CASE_NO_VALID_TAP;
     }
     vec4 now = updated(before, radiance);
