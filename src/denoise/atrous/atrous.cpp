@@ -51,11 +51,14 @@ Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLig
     return signal;
 }
 
-/// Along one axis, each filters two pixels that lie a step apart.
-uint32_t invocations(uint32_t pixels, int step) {
-    const uint32_t block = 2 * static_cast<uint32_t>(step);
-    return (pixels + block - 1) / block * static_cast<uint32_t>(step);
+/// Along one axis. An invocation filters `block` pixels that lie a step apart.
+uint32_t invocations(uint32_t pixels, int step, uint32_t block) {
+    const uint32_t span = block * static_cast<uint32_t>(step);
+    return (pixels + span - 1) / span * static_cast<uint32_t>(step);
 }
+
+/// The shader takes powers of 2.
+constexpr float log2e = 1.44269504f;
 
 ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& signal, int number,
                   const AtrousSettings& settings) {
@@ -68,20 +71,25 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
     params.width = extent.width;
     params.height = extent.height;
     params.step = step;
-    params.normalScale = 1.0f / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
-    params.depthScale = 1.0f / settings.depthFactor;
-    params.plane = settings.plane ? 1u : 0u;
+    params.normalScale =
+        2.0f * log2e / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
+    params.depthScale = log2e / settings.depthFactor;
     const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
     params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
     const bool buffers = input.filters == Backing::Buffer;
-    const uint32_t group = buffers ? 16 : 8;  // measured: H200, lavapipe
+    const uint32_t group = buffers ? 16 : 8;
+    const Extent block = buffers ? Extent{1, 1} : Extent{4, 2};  // as in atrous_level.glsl
     graph.dispatch(
         {.pass = name,
          .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
          .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
          .params = gpu::paramsOf(params),
-         .constants = {{"GROUP_X", group}, {"GROUP_Y", group}},
-         .extent = {invocations(extent.width, step), invocations(extent.height, step)}});
+         .constants = {{"GROUP_X", group},
+                       {"GROUP_Y", group},
+                       {"PLANE", settings.plane ? 1u : 0u},
+                       {"ORTHOGRAPHIC", input.camera.orthographic}},
+         .extent = {invocations(extent.width, step, block.width),
+                    invocations(extent.height, step, block.height)}});
     return filtered;
 }
 

@@ -20,10 +20,9 @@ struct AtrousLevelParams {
     uint width;
     uint height;
     int step;           // pixels
-    float normalScale;  // 1 / (step^2 normal_factor)
-    float depthScale;   // 1 / depth_factor
-    uint plane;
-    float fade;  // 4^(level - 1) / sample_target
+    float normalScale;  // 2 log2(e) / (step^2 normal_factor)
+    float depthScale;   // log2(e) / depth_factor
+    float fade;         // 4^(level - 1) / sample_target
 };
 
 #ifdef __cplusplus

@@ -69,19 +69,26 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
 /// a negative count.
 vec4 historyAt(vec2 position, Expected expected, vec3 modulationNow) {
     const vec2 corner = floor(position), share = position - corner;
-    const ivec2 first = ivec2(corner);
+    const ivec2 first = ivec2(corner), nearest = ivec2(floor(position + 0.5));
     Taps taps = Taps(vec4(0.0), 0.0);
-    for (int i = 0; i < 4; ++i) {
-        const ivec2 offset = ivec2(i & 1, i >> 1);
-        const vec2 weight = mix(1.0 - share, share, vec2(offset));
-        addTap(taps, first + offset, weight.x * weight.y, expected);
-    }
-    // A loop rather than a branch: CPUs skip it where no lane needs it.
-    const bool found = taps.weight > MIN_SHARE;
-    const int searched = found || params.search == 0u ? 0 : 9;
-    if (!found) taps = Taps(vec4(0.0), 0.0);
-    const ivec2 nearest = ivec2(floor(position + 0.5));
-    for (int i = 0; i < searched; ++i) addTap(taps, nearest + ivec2(i % 3, i / 3) - 1, 1.0, expected);
+    addTap(taps, first, (1.0 - share.x) * (1.0 - share.y), expected);
+    addTap(taps, first + ivec2(1, 0), share.x * (1.0 - share.y), expected);
+    addTap(taps, first + ivec2(0, 1), (1.0 - share.x) * share.y, expected);
+    // The fourth tap and the search in one loop: CPUs run the body of any loop once, but only where a pixel searches
+    // more often.
+    ivec2 at = first + 1;
+    float weight = share.x * share.y;
+    int searched = 0;
+    bool more;
+    do {
+        addTap(taps, at, weight, expected);
+        const bool failed = taps.weight <= MIN_SHARE;
+        more = params.search != 0u && searched < 9 && (failed || searched > 0);
+        if (failed && searched == 0) taps = Taps(vec4(0.0), 0.0);
+        at = nearest + ivec2(searched % 3, searched / 3) - 1;
+        weight = 1.0;
+        ++searched;
+    } while (more);
     if (taps.weight <= 0.0) return vec4(0.0, 0.0, 0.0, -1.0);
     vec4 before = taps.sum / taps.weight;
     if (params.demodulate != 0u) before.rgb *= modulationNow;
