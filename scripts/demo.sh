@@ -1,13 +1,17 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release, and shows the main job: built-in scenes noisy and converged, as PNG and EXR
-# under out/, and a table of samples, seconds, million rays per second and PSNR against the converged picture.
+# Installs what is missing, builds Release, and shows the main jobs under out/: moving sequences of one sample per pixel and
+# frame, denoised, beside their references, with PSNR and FLIP; and stills noisy and converged, with samples, seconds and PSNR.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh
 scripts/build.sh release -DLIMPID_TESTS=OFF
 
 mkdir -p out
+build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 320 --height 180 \
+    --frames 24 --first 20 --reference-spp 256 --out out | tee out/quality.txt
+echo
 build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 320 --height 180 \
     --spp 512 --out out | tee out/convergence.txt
 echo
-echo "Pictures: out/*.png (tone-mapped) and out/*.exr (linear); the table: out/convergence.txt"
+echo "Denoised: out/quality.*.png (noisy, history, a-trous, reference, side by side); the table: out/quality.txt"
+echo "Converged: out/*spp.png (tone-mapped) and out/*spp.exr (linear); the table: out/convergence.txt"

@@ -18,7 +18,9 @@ namespace fs = std::filesystem;
 void writeDump(const fs::path& output, const std::vector<std::pair<std::string, image::Image>>& images) {
     for (const auto& [name, picture] : images) {
         std::string flat = name;
-        std::replace(flat.begin(), flat.end(), '/', '.');
+        std::ranges::replace(flat, '/', '.');
+        if (const size_t mark = flat.find(" (previous)"); mark != std::string::npos)
+            flat.replace(mark, std::string::npos, ".previous");
         fs::path path(output);
         path.replace_extension("." + flat + ".exr");
         image::LayeredImage exr;

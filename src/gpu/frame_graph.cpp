@@ -258,15 +258,32 @@ const std::vector<RecordedPass>& FrameGraph::passes() const {
     return impl_->frame.passes;
 }
 
-std::vector<ImageHandle> FrameGraph::imagesWrittenBy(std::string_view pass) const {
+namespace {
+
+/// Images of the frame that one of the passes of this name touches; `names` says how.
+std::vector<ImageHandle> imagesTouched(const RecordedFrame& frame, std::string_view pass,
+                                       std::vector<std::string> RecordedPass::*names) {
     std::vector<ImageHandle> images;
-    const RecordedFrame& frame = impl_->frame;
     for (uint32_t i = 0; i < frame.images.size(); ++i) {
-        const bool writes = std::ranges::any_of(frame.passes, [&](const RecordedPass& p) {
-            return p.name == pass && std::ranges::find(p.writes, frame.images[i].name) != p.writes.end();
+        const bool touches = std::ranges::any_of(frame.passes, [&](const RecordedPass& p) {
+            return p.name == pass && std::ranges::find(p.*names, frame.images[i].name) != (p.*names).end();
         });
-        if (writes) images.push_back({i | generation(frame.number) << indexBits});
+        if (touches) images.push_back({i | generation(frame.number) << indexBits});
     }
+    return images;
+}
+
+}  // namespace
+
+std::vector<ImageHandle> FrameGraph::imagesWrittenBy(std::string_view pass) const {
+    return imagesTouched(impl_->frame, pass, &RecordedPass::writes);
+}
+
+std::vector<ImageHandle> FrameGraph::previousReadBy(std::string_view pass) const {
+    std::vector<ImageHandle> images = imagesTouched(impl_->frame, pass, &RecordedPass::reads);
+    std::erase_if(images, [&](ImageHandle image) {
+        return impl_->frame.images[impl_->indexOf(image)].role != RecordedImage::Role::Previous;
+    });
     return images;
 }
 

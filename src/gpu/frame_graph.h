@@ -166,6 +166,8 @@ class FrameGraph {
     const std::vector<RecordedPass>& passes() const;
     /// Images that the pass writes, for --dump. Empty if there is no such pass.
     std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;
+    /// The previous images of histories that the pass reads, for --dump too.
+    std::vector<ImageHandle> previousReadBy(std::string_view pass) const;
 
     /// Submits the recorded frame. Returns at once; at most two frames are under way. Once per frame, and
     /// always on the same device.

@@ -34,12 +34,13 @@ uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& setti
 
 std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
                                                                const std::string& pass) {
-    const std::vector<gpu::ImageHandle> handles = graph.imagesWrittenBy(pass);
+    std::vector<gpu::ImageHandle> handles = graph.imagesWrittenBy(pass);
     if (handles.empty()) {
         std::string names;
         for (const gpu::RecordedPass& recorded : graph.passes()) names += " " + recorded.name;
         throw UsageError("there is no pass '" + pass + "' in this pipeline; its passes are" + names);
     }
+    for (const gpu::ImageHandle previous : graph.previousReadBy(pass)) handles.push_back(previous);
     std::vector<std::pair<std::string, image::Image>> result;
     for (const gpu::ImageHandle handle : handles) {
         const gpu::Extent extent = graph.extent(handle);

@@ -34,8 +34,8 @@ struct Moment {
 /// What settings.samplesPerLaunch comes to on this device: CPUs have a limit.
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
 
-/// The images that the pass of this name wrote in the graph's last frame, by name, for --dump; throws
-/// UsageError listing the passes if there is none.
+/// The images that the pass of this name wrote in the graph's last frame, and those it found there from the
+/// frame before, by name, for --dump; throws UsageError listing the passes if there is none.
 std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
                                                                const std::string& pass);
 
