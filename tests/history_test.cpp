@@ -141,8 +141,9 @@ TEST_F(HistoryTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
     frame.specular[4 * 500 + 2] = std::numeric_limits<float>::infinity();
     denoise(method, frame);
     const std::vector<dvec4> after = download("history/track", "color");
-    EXPECT_EQ(after[300], before[300]);
-    EXPECT_EQ(after[500], before[500]);
+    // Dividing by the albedo and multiplying again may cost the last bit.
+    EXPECT_LT(glm::distance(after[300], before[300]), 1e-6);
+    EXPECT_LT(glm::distance(after[500], before[500]), 1e-6);
     EXPECT_NE(after[301], before[301]);
     EXPECT_EQ(denoise::countCases(graph_.downloadUint(device(), output_.cases)).rejected, 2u);
 }

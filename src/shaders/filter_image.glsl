@@ -6,12 +6,20 @@
 
 const float MAX_HALF = 65504.0;
 
+/// To the nearest half, ties to even, of magnitudes up to MAX_HALF. Drivers round towards zero, in packHalf2x16 or when
+/// they store: from level to level of a filter the picture would darken.
+vec4 nearestHalf(vec4 value) {
+    const uvec4 bits = floatBitsToUint(value);
+    return uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);
+}
+
 vec4 unpackHalf4(uvec2 texel) {
     return vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y));
 }
 
 uvec2 packHalf4(vec4 value) {
-    return uvec2(packHalf2x16(value.xy), packHalf2x16(value.zw));
+    const vec4 nearest = nearestHalf(value);
+    return uvec2(packHalf2x16(nearest.xy), packHalf2x16(nearest.zw));
 }
 
 #ifdef LIMPID_FILTER_BUFFERS
@@ -37,8 +45,7 @@ uvec2 packHalf4(vec4 value) {
 #define READ_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform readonly image2D name
 #define WRITE_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform writeonly image2D name
 #define LOAD_HALF4(name, at) imageLoad(name, at)
-// Some drivers (lavapipe) store halves rounded towards zero: from level to level the picture would darken.
-#define STORE_HALF4(name, at, value) imageStore(name, at, unpackHalf4(packHalf4(value)))
+#define STORE_HALF4(name, at, value) imageStore(name, at, nearestHalf(value))
 
 #endif
 #endif

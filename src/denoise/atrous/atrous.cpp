@@ -73,12 +73,13 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
     params.step = step;
     params.normalScale =
         2.0f * log2e / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
+    params.toScreen = {2.0f / static_cast<float>(extent.width), -2.0f / static_cast<float>(extent.height)};
     params.depthScale = log2e / settings.depthFactor;
     const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
     params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
     const bool buffers = input.filters == Backing::Buffer;
     const uint32_t group = buffers ? 16 : 8;
-    const Extent block = buffers ? Extent{1, 1} : Extent{4, 2};  // as in atrous_level.glsl
+    const Extent block = buffers ? Extent{1, 1} : Extent{4, 2};  // as in the shaders
     graph.dispatch(
         {.pass = name,
          .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,

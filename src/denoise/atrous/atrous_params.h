@@ -22,6 +22,7 @@ struct AtrousLevelParams {
     int step;           // pixels
     float normalScale;  // 2 log2(e) / (step^2 normal_factor)
     float depthScale;   // log2(e) / depth_factor
+    vec2 toScreen;      // 2 / width, -2 / height: there is no division to spare for every tap
     float fade;         // 4^(level - 1) / sample_target
 };
 
