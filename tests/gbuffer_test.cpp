@@ -211,7 +211,7 @@ TEST_P(GBufferTest, LightOfPunctualLampsIsThePathTracers) {
             const dvec3 a(vec3(light[p])), b = dvec3(vec3(diffuse[p])) + dvec3(vec3(specular[p]));
             lit += b.x > 0.0;
             if (glm::length(b) > 0.0) worst = std::max(worst, glm::length(a - b) / glm::length(b));
-            ASSERT_LE(glm::length(a - b), 1e-5 * glm::length(b) + 1e-7)
+            ASSERT_LE(glm::length(a - b), 1e-5 * glm::length(b) + 1e-6)
                 << "pixel " << p << ", within " << within;
         }
         fmt::print("{} of {} pixels lit, off by {:.2g} at worst\n", lit, light.size(), worst);
