@@ -32,7 +32,8 @@ class FramePattern {
     /// InputError if the folder cannot be read.
     std::vector<int> existingFrames() const;
 
-    /// The same, for whoever needs them all: throws InputError if there are none or some are missing in between.
+    /// The same, for whoever needs them all: throws InputError if there are none or some are missing in
+    /// between.
     std::vector<int> wholeSequence() const;
 
     /// The pattern as the user wrote it.

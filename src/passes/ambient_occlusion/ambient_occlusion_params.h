@@ -17,7 +17,7 @@ struct AmbientOcclusionParams {
     uint seed;
     uint firstRay;  // of this dispatch; those before are in `before`
     uint rays;      // of this dispatch, per pixel
-    float reach;   // of a ray, world units
+    float reach;    // of a ray, world units
     float divisor;  // of the sum of open rays: their number in the last dispatch, 1 in others
 };
 
