@@ -8,7 +8,11 @@ void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
     Centre centre = centreOf(loadTap(at));
-    for (int j = -2; j <= 2 && centre.seen; ++j) {
+    if (!centre.seen) {
+        store(at, centre);
+        return;
+    }
+    for (int j = -2; j <= 2; ++j) {
         for (int i = -2; i <= 2; ++i) {
             if (i == 0 && j == 0) continue;
             addTo(centre, loadTap(at + params.step * ivec2(i, j)), ivec2(i, j));
