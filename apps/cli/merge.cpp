@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "picture_output.h"
 #include "renderer/merge_frames.h"
+#include "renderer/render_identity.h"
 
 namespace limpid::cli {
 namespace {
@@ -31,7 +32,7 @@ nlohmann::json mergeStill(const MergeOptions& o, const FramePattern& output) {
     const Accumulation sum = mergeAccumulations(files);
     checkPictureOutput(path, !sum.header.layers.empty());
     writePicture(path, formatOf(sum.header), sum.sums.means(),
-                 metadataOf(sum.header, 0, sum.sums.samples(), std::nullopt));
+                 metadataOf(sum.header, 0, sum.sums.samples(), std::string(sum.header.value(cameraEntry))));
     log::info("{} samples of {}x{} from {} files", sum.sums.samples(), sum.header.extent.width,
               sum.header.extent.height, files.size());
     return {{"output", o.output}, {"samples", sum.sums.samples()}, {"files", files.size()}};

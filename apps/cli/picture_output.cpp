@@ -38,14 +38,14 @@ PictureFormat formatOf(const AccumulationHeader& header) {
 }
 
 std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
-                                              uint64_t samples, const std::optional<CameraParams>& camera) {
+                                              uint64_t samples, const std::string& camera) {
     std::map<std::string, std::string> metadata{{"limpid.version", std::string(header.value(versionEntry))},
                                                 {"limpid.scene", std::string(header.value(sceneEntry))},
                                                 {"limpid.samples", std::to_string(samples)},
                                                 {"limpid.seed", std::string(header.value(seedEntry))},
                                                 {"limpid.device", header.device},
-                                                {"limpid.driver", header.driver}};
-    if (camera) metadata[cameraAttribute] = cameraText(*camera);
+                                                {"limpid.driver", header.driver},
+                                                {cameraAttribute, camera}};
     metadata.merge(frameMetadata(header, frame));
     return metadata;
 }

@@ -9,7 +9,6 @@
 
 #include "renderer/accumulation_header.h"
 #include "renderer/layers.h"
-#include "shaders/camera.h"
 
 namespace limpid::cli {
 
@@ -30,10 +29,9 @@ struct PictureFormat {
 };
 PictureFormat formatOf(const AccumulationHeader& header);
 
-/// The string attributes of an EXR. Without `camera`, which a merged still does not know, no denoiser that
-/// needs it can read the file.
+/// The string attributes of an EXR; `camera` is the frame's cameraText().
 std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
-                                              uint64_t samples, const std::optional<CameraParams>& camera);
+                                              uint64_t samples, const std::string& camera);
 
 /// An EXR with layers and metadata, or a PNG.
 void writePicture(const std::filesystem::path& path, const PictureFormat& format,

@@ -4,6 +4,7 @@
 #include "picture_output.h"
 #include "progress.h"
 #include "render_job.h"
+#include "renderer/camera_text.h"
 #include "renderer/long_render.h"
 #include "renderer/render_identity.h"
 
@@ -21,7 +22,8 @@ AccumulationHeader headerOf(const RenderJob& job) {
     const RenderIdentity identity{.version = LIMPID_VERSION,
                                   .sceneName = fs::path(o.scene.scene).filename().string(),
                                   .scene = job.sceneContent,
-                                  .cameras = cameraHash(job.sequence, frames, settings.extent)};
+                                  .cameras = cameraHash(job.sequence, frames, settings.extent),
+                                  .camera = cameraText(job.sequence.camera(0, settings.extent))};
     header.identity = identityOf(identity, settings, o.sequence.timing);
     header.extent = settings.extent;
     header.plan = planBlocks(job.device, settings, samplesOf(o));
@@ -61,7 +63,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         } else {
             writePicture(file(frame), formatOf(render.header()), sums.means(),
                          metadataOf(render.header(), frame, sums.samples(),
-                                    job.sequence.camera(frame, job.settings.extent)));
+                                    cameraText(job.sequence.camera(frame, job.settings.extent))));
         }
         if (o.dump.empty()) return;
         if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");

@@ -86,6 +86,7 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
         {sceneEntry, validUtf8(identity.sceneName)},
         {"the scene's content", hashText(identity.scene)},
         {"the camera", hashText(identity.cameras)},
+        {cameraEntry, identity.camera},
         {"frames per second", fmt::format("{}", timing.framesPerSecond)},
         {"the first frame's time", fmt::format("{}", timing.start)},
         {seedEntry, fmt::format("{}", settings.seed)},

@@ -22,10 +22,12 @@ struct RenderIdentity {
     std::string sceneName;  ///< the file's name without folders, or builtin:...
     uint64_t scene = 0;     ///< sceneHash()
     uint64_t cameras = 0;   ///< cameraHash()
+    std::string camera;     ///< cameraText() of frame 0
 };
 
 /// Entries of AccumulationHeader::identity that are asked for by name.
 inline constexpr const char* sceneEntry = "the scene";
+inline constexpr const char* cameraEntry = "the first camera";
 inline constexpr const char* seedEntry = "seed";
 inline constexpr const char* versionEntry = "the version of Limpid";
 
