@@ -44,6 +44,7 @@ class GhostsTest : public RenderTest {
         result.seed = seed;
         result.jitter = Jitter::Off;
         result.pipeline = pipeline;
+        result.layers = true;
         return result;
     }
 

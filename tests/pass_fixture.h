@@ -31,16 +31,7 @@ inline CameraLaunch centredLaunch(const scene::Scene& scene, gpu::Extent extent)
 }
 
 inline PathtraceLaunch pathLaunch(const CameraLaunch& launch) {
-    return {.extent = launch.extent,
-            .camera = launch.camera,
-            .previousCamera = launch.previousCamera,
-            .hasPrevious = launch.hasPrevious,
-            .frame = launch.frame,
-            .stream = launch.stream,
-            .seed = launch.seed,
-            .samples = 1,
-            .jitterPerPixel = launch.jitterPerPixel,
-            .jitter = launch.jitter};
+    return {launch, 1};
 }
 
 /// Every test is run with both tracers, and both ways of the `compute` tracer.

@@ -88,6 +88,7 @@ TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     RenderSettings settings = settingsFor("history", 48, 27);
     settings.samplesPerLaunch = 3;
+    settings.layers = true;
     FrameRenderer renderer(device(), gpuScene, settings, 8);
     renderer.render(still(scene, settings, 0));
     const RenderedLayers layers = renderer.download();

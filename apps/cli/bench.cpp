@@ -21,12 +21,6 @@
 
 namespace limpid::cli {
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
-
 std::string sceneStem(const std::string& scene) {
     constexpr std::string_view prefix = "builtin:";
     return scene.starts_with(prefix) ? scene.substr(prefix.size())

@@ -39,21 +39,22 @@ double copyRate(gpu::Device& device) {
     const gpu::Extent extent = device.isCpu() ? gpu::Extent{2048, 1024} : gpu::Extent{8192, 4096};
     const std::vector<float> pixels(size_t{4} * extent.width * extent.height);
     gpu::FrameGraph graph;
-    std::vector<double> times;
+    graph.beginFrame();
+    gpu::ImageHandle source = graph.transient("source", gpu::Format::RGBA32Float, extent);
+    gpu::ImageHandle result = graph.transient("result", gpu::Format::RGBA32Float, extent);
+    graph.upload(source, gpu::bytesOf(pixels));
     for (int i = 0; i < 10; ++i) {
-        graph.beginFrame();
-        const gpu::ImageHandle source = graph.transient("source", gpu::Format::RGBA32Float, extent);
-        const gpu::ImageHandle result = graph.transient("result", gpu::Format::RGBA32Float, extent);
-        graph.upload(source, gpu::bytesOf(pixels));
         graph.dispatch({.pass = "copy",
                         .shader = shaders::bench_copy_comp,
                         .bindings = {{"source", source}, {"result", result}},
                         .params = {},
                         .constants = {},
                         .extent = extent});
-        graph.execute(device);
-        times.push_back(graph.passTimes(device).front().milliseconds);
+        std::swap(source, result);
     }
+    graph.execute(device);
+    std::vector<double> times;
+    for (const gpu::PassTime& pass : graph.passTimes(device)) times.push_back(pass.milliseconds);
     return 2.0 * static_cast<double>(gpu::bytesOf(pixels).size()) / (median(times) * 1e-3);
 }
 

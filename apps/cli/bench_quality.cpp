@@ -120,21 +120,21 @@ Image noisyOf(RenderedLayers layers) {
     return beautyOf(layers);
 }
 
-/// Runs a pipeline; with `noisy`, its input is scored too.
+/// Runs a pipeline; with `noisyJudge`, its input is scored too.
 MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Extent extent,
                       const QualityFrames& frames, Judge judge, std::optional<Judge> noisyJudge,
                       MethodQuality& noisy) {
     MethodQuality method;
-    std::map<std::string, std::vector<double>> times;
+    PassTimes times;
     for (uint64_t frame = 0; frame < frames.count; ++frame) {
         renderer.render(sequence.moment(frame, extent));
         if (frame < frames.first) continue;
-        for (const auto& [name, ms] : sumByName(renderer.passTimes())) times[name].push_back(ms);
+        times.add(sumByName(renderer.passTimes()));
         const RenderedLayers layers = renderer.download();
         judge.add(method, frame, beautyOf(layers));
         if (noisyJudge) noisyJudge->add(noisy, frame, noisyOf(layers));
     }
-    for (const auto& [name, values] : times) method.medianMs[name] = median(values);
+    method.medianMs = times.medians();
     return method;
 }
 

@@ -36,6 +36,7 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
     common.jitter = Jitter::Off;
+    common.layers = true;  // the noisy frames are judged too
     for (const std::string& preset : o.presets) applyPreset(common, preset);
     for (const std::string& text : o.assignments) assign(common, text);
     std::vector<QualityMethod> methods;

@@ -42,12 +42,6 @@ void warnOfNoProgress(const RenderOptions& o, const RenderSummary& s) {
 
 }  // namespace
 
-std::map<std::string, double> sumByName(const std::vector<gpu::PassTime>& passes) {
-    std::map<std::string, double> sums;
-    for (const gpu::PassTime& pass : passes) sums[pass.name] += pass.milliseconds;
-    return sums;
-}
-
 void reportRender(const RenderOptions& o, const gpu::Device& device, const RenderSummary& s,
                   const scene::Scene& scene, const scene::GpuScene& gpuScene) {
     warnOfLosses(s.counts);

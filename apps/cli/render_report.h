@@ -7,6 +7,7 @@
 
 #include "denoise/history/history.h"
 #include "gpu/device.h"
+#include "pass_times.h"
 #include "render_options.h"
 #include "renderer/accumulation.h"
 #include "scene/gpu_scene.h"
@@ -31,9 +32,6 @@ struct RenderSummary {
     std::map<std::string, double> medians;          ///< ... over all frames; empty with `path`
     std::optional<denoise::HistoryCounts> history;  ///< of the last frame
 };
-
-/// Milliseconds by pass; a pass may be dispatched several times.
-std::map<std::string, double> sumByName(const std::vector<gpu::PassTime>& passes);
 
 /// Warns of what was lost and of what is still to be done, then reports.
 void reportRender(const RenderOptions& options, const gpu::Device& device, const RenderSummary& summary,

@@ -1,6 +1,4 @@
 // limpid render with the pipelines that go from frame to frame.
-#include <algorithm>
-
 #include "base/log.h"
 #include "picture_output.h"
 #include "progress.h"
@@ -13,7 +11,6 @@ namespace limpid::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using TimesByPass = std::map<std::string, std::vector<double>>;
 
 std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t frame, uint64_t samples) {
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
@@ -27,16 +24,6 @@ std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t fra
             {cameraAttribute, cameraText(camera)}};
 }
 
-std::map<std::string, double> mediansOf(TimesByPass& times) {
-    std::map<std::string, double> medians;
-    for (auto& [name, values] : times) {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        medians[name] = *middle;
-    }
-    return medians;
-}
-
 }  // namespace
 
 void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
@@ -47,13 +34,13 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
     FrameRenderer renderer(job.device, job.scene, job.settings, static_cast<uint32_t>(samplesOf(o)));
     Progress progress("frames", static_cast<uint64_t>(job.frames));
     const Clock::time_point start = Clock::now();
-    TimesByPass times;
+    PassTimes times;
     summary.framesToDo = static_cast<uint64_t>(job.frames);
     for (uint64_t frame = 0; frame < summary.framesToDo; ++frame) {
         renderer.render(job.sequence.moment(frame, job.settings.extent));
         const RenderedLayers layers = renderer.download();
         summary.lastFrame = sumByName(renderer.passTimes());
-        for (const auto& [name, milliseconds] : summary.lastFrame) times[name].push_back(milliseconds);
+        times.add(summary.lastFrame);
         const std::filesystem::path file = output.format(static_cast<int>(frame));
         writePicture(file, format, layers, metadataOf(job, frame, layers.samples));
         if (!o.dump.empty()) writeDump(file, renderer.dump(o.dump));
@@ -61,7 +48,7 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
         progress.show(++summary.framesFinished);
     }
     summary.complete = true;
-    summary.medians = mediansOf(times);
+    summary.medians = times.medians();
     summary.timings.renderSeconds = std::chrono::duration<double>(Clock::now() - start).count();
     const RenderCounters counters = renderer.counters();
     summary.counts = {.rays = counters.rays, .rejected = counters.rejected};

@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-/// One launch of primary rays, one per pixel.
+/// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;
     CameraParams camera;
@@ -20,9 +20,7 @@ struct CameraLaunch {
     vec2 jitter{0.5f};  ///< the point inside every pixel, otherwise
 };
 
-/// Of a CameraLaunch, or of one with these fields and more.
-template <typename Launch>
-ViewParams viewParams(const Launch& launch) {
+inline ViewParams viewParams(const CameraLaunch& launch) {
     ViewParams view{};
     view.camera = launch.camera;
     view.previousCamera = launch.previousCamera;

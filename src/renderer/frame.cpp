@@ -27,7 +27,7 @@ vec2 frameJitter(Jitter jitter, uint32_t frame) {
     return {radicalInverse(frame, 2), radicalInverse(frame, 3)};
 }
 
-PathtraceLaunch launchOf(const RenderSettings& settings, const FrameInput& input) {
+CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& input) {
     return {.extent = settings.extent,
             .camera = input.camera,
             .previousCamera = input.previousCamera,
@@ -35,7 +35,6 @@ PathtraceLaunch launchOf(const RenderSettings& settings, const FrameInput& input
             .frame = input.frame,
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
-            .samples = input.samples,
             .jitterPerPixel = settings.jitter == Jitter::Pixel,
             .jitter = frameJitter(settings.jitter, input.frame)};
 }
@@ -61,7 +60,7 @@ constexpr std::array<MeanLayer, 9> meanLayers{{
 /// The path tracer alone: running means over frames.
 FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                        const FrameInput& input) {
-    const PathtraceLaunch launch = launchOf(settings, input);
+    const PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
     const auto mean = [&](const char* name, ImageHandle added, VarianceOf varianceOf) {
         return accumulate(graph, name, added, input.samplesBefore, input.samples, varianceOf);
     };
@@ -83,17 +82,7 @@ GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, con
                             const FrameInput& input, bool light, FrameImages& out) {
     GBufferSettings used = settings.gbuffer;
     used.light = used.light && light;
-    const PathtraceLaunch launch = launchOf(settings, input);
-    const GBufferImages seen = gbuffer(graph, scene, used,
-                                       {.extent = launch.extent,
-                                        .camera = launch.camera,
-                                        .previousCamera = launch.previousCamera,
-                                        .hasPrevious = launch.hasPrevious,
-                                        .frame = launch.frame,
-                                        .stream = launch.stream,
-                                        .seed = launch.seed,
-                                        .jitterPerPixel = launch.jitterPerPixel,
-                                        .jitter = launch.jitter});
+    const GBufferImages seen = gbuffer(graph, scene, used, cameraLaunch(settings, input));
     out.counters = seen.counters;
     if (light) {
         out.diffuse = seen.light;
@@ -139,7 +128,7 @@ FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& sce
 /// A frame's samples in as many launches as the device needs, averaged.
 PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                              const FrameInput& input) {
-    PathtraceLaunch launch = launchOf(settings, input);
+    PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
     if (input.samples <= input.launchSamples)
         return pathtraceLayers(graph, scene, settings.pathtrace, launch);
     const gpu::Extent extent = settings.extent;

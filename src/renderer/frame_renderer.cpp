@@ -57,6 +57,8 @@ void FrameRenderer::launchAccumulated(const FrameInput& first) {
         input.samplesBefore = samplesInMean_;
         input.frame = static_cast<uint32_t>(std::min<uint64_t>(samplesInMean_, UINT32_MAX));
         launch(input);
+        if (samplesInMean_ == 0)
+            ids_ = images_.ids ? graph_.downloadUint(device_, images_.ids) : std::vector<uint32_t>();
         input.moved = nullptr;
         ++input.stream;
         samplesInMean_ += input.samples;
@@ -70,8 +72,15 @@ void FrameRenderer::launch(FrameInput input) {
 }
 
 RenderedLayers FrameRenderer::download() {
-    return downloadLayers(graph_, device_, images_,
-                          settings_.pipeline.accumulates() ? samplesInMean_ : samples_);
+    FrameImages wanted = images_;
+    if (!settings_.layers && images_.beauty) {
+        wanted = {};
+        wanted.beauty = images_.beauty;
+    }
+    const bool accumulates = settings_.pipeline.accumulates();
+    RenderedLayers layers = downloadLayers(graph_, device_, wanted, accumulates ? samplesInMean_ : samples_);
+    if (accumulates) layers.ids = ids_;
+    return layers;
 }
 
 RenderCounters FrameRenderer::counters() {

@@ -30,7 +30,7 @@ class FrameRenderer {
     /// Other than the device's own, for measurements and tests.
     void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
 
-    /// Of the last frame. Waits for the device.
+    /// Of the last frame; without settings.layers only what beauty is made of. Waits for the device.
     RenderedLayers download();
     RenderCounters counters();
     /// Zeros where the pipeline tracks no history.
@@ -55,6 +55,7 @@ class FrameRenderer {
     uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved
     uint64_t samplesInMean_ = 0;              ///< of pipelines that accumulate
     FrameImages images_;
+    std::vector<uint32_t> ids_;  ///< of the mean's first launch, through the pixels' centres
 };
 
 }  // namespace limpid

@@ -26,7 +26,7 @@ struct RenderSettings {
     uint32_t samplesPerLaunch = 1;  ///< 1 or more
     Jitter jitter = Jitter::Pixel;
     Pipeline pipeline;
-    bool layers = false;  ///< of `path`; false: only beauty is computed, which is faster
+    bool layers = false;  ///< false: beauty alone, which is faster
     PathtraceSettings pathtrace;
     GBufferSettings gbuffer;
     AmbientOcclusionSettings ambientOcclusion;

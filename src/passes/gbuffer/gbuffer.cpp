@@ -22,7 +22,7 @@ const ParamTable<GBufferSettings>& gbufferParams() {
 }
 
 GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
-                      const GBufferLaunch& launch) {
+                      const CameraLaunch& launch) {
     GBufferImages images;
     const gpu::History counters = graph.history("gbuffer/counters", Format::RG32Uint, launch.extent);
     images.counters = counters.current;

@@ -17,8 +17,6 @@ struct GBufferSettings {
 };
 const ParamTable<GBufferSettings>& gbufferParams();
 
-using GBufferLaunch = CameraLaunch;
-
 /// Of one sample; rgba32f, alpha 0 unless said otherwise. All but `light`, `position` and `geometricNormal`
 /// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample with the
 /// default sampler: on CPUs bit for bit (but for the sign of 0), elsewhere up to rounding.
@@ -38,6 +36,6 @@ struct GBufferImages {
 };
 
 GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
-                      const GBufferLaunch& launch);
+                      const CameraLaunch& launch);
 
 }  // namespace limpid

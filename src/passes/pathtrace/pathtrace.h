@@ -3,6 +3,7 @@
 
 #include "base/params.h"
 #include "gpu/frame_graph.h"
+#include "passes/camera_launch.h"
 #include "passes/pathtrace/pathtrace_params.h"
 #include "scene/gpu_scene.h"
 
@@ -19,17 +20,8 @@ struct PathtraceSettings {
 const ParamTable<PathtraceSettings>& pathtraceParams();
 
 /// One launch of the path tracer.
-struct PathtraceLaunch {
-    gpu::Extent extent;
-    CameraParams camera;
-    CameraParams previousCamera;  ///< of the previous frame of a sequence, for motion
-    bool hasPrevious = false;     ///< false: no previous frame, all motion is invalid
-    uint32_t frame = 0;           ///< launches since the last reset
-    uint32_t stream = 0;          ///< of random numbers; in a still the same as `frame`
-    uint32_t seed = 0;
+struct PathtraceLaunch : CameraLaunch {
     uint32_t samples = 1;  ///< per pixel in this launch
-    bool jitterPerPixel = true;
-    vec2 jitter{0.5f};  ///< the point inside every pixel, otherwise
 };
 
 /// Means over the launch's samples, rgba32f. Alpha holds the mean squared deviation of luminance (diffuse,
