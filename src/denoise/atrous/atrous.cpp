@@ -1,5 +1,6 @@
 #include "denoise/atrous/atrous.h"
 
+#include <cmath>
 #include <string>
 
 #include "atrous_demodulate.comp.h"
@@ -23,17 +24,13 @@ struct Signal {
     ImageHandle geometry;  ///< two words: octahedral normal, depth
 };
 
-AtrousEndsParams endsParams(Extent extent, const DenoiserInput& input, const AtrousSettings& settings) {
-    return {input.camera, extent.width, extent.height, settings.plane ? 1u : 0u};
-}
-
 Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                   const AtrousSettings& settings) {
     const Extent extent = graph.extent(input.albedo);
     const Signal signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
-    const AtrousEndsParams params = endsParams(extent, input, settings);
+    const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch(
         {.pass = "atrous/demodulate",
@@ -74,31 +71,26 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
     params.normalScale =
         2.0f * log2e / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
     params.toScreen = {2.0f / static_cast<float>(extent.width), -2.0f / static_cast<float>(extent.height)};
-    params.depthScale = log2e / settings.depthFactor;
+    params.depthScale = std::sqrt(log2e / settings.depthFactor);
     const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
     params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
     const bool buffers = input.filters == Backing::Buffer;
-    const uint32_t group = buffers ? 16 : 8;
-    const Extent block = buffers ? Extent{1, 1} : Extent{4, 2};  // as in the shaders
+    const Extent block = buffers ? Extent{2, 2} : Extent{4, 2};  // as in the shaders
     graph.dispatch(
         {.pass = name,
          .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
          .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
          .params = gpu::paramsOf(params),
-         .constants = {{"GROUP_X", group},
-                       {"GROUP_Y", group},
-                       {"PLANE", settings.plane ? 1u : 0u},
-                       {"ORTHOGRAPHIC", input.camera.orthographic}},
+         .constants = {{"PLANE", settings.plane ? 1u : 0u}, {"ORTHOGRAPHIC", input.camera.orthographic}},
          .extent = {invocations(extent.width, step, block.width),
                     invocations(extent.height, step, block.height)}});
     return filtered;
 }
 
-ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal,
-                     const AtrousSettings& settings) {
+ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal) {
     const Extent extent = graph.extent(signal);
     const ImageHandle beauty = graph.transient("atrous/beauty", gpu::Format::RGBA32Float, extent);
-    const AtrousEndsParams params = endsParams(extent, input, settings);
+    const AtrousModulateParams params{extent.width, extent.height};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch({.pass = "atrous/modulate",
                     .shader = buffers ? shaders::atrous_modulate_buffers_comp : shaders::atrous_modulate_comp,
@@ -152,7 +144,7 @@ ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const At
     Signal signal = demodulate(graph, input, light, settings);
     for (int number = 1; number <= settings.levels; ++number)
         signal.light = level(graph, input, signal, number, settings);
-    return modulate(graph, input, signal.light, settings);
+    return modulate(graph, input, signal.light);
 }
 
 }  // namespace limpid::denoise

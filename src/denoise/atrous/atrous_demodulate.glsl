@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, of one frame; else lightA, a mean
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    AtrousEndsParams params;
+    AtrousDemodulateParams params;
 };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
@@ -28,8 +28,8 @@ void main() {
     const float z = hitDistance(imageLoad(depth, at));
     float d = z;
     if (params.plane != 0u) {
-        const vec2 onScreen = pixelOnScreen(vec2(pixel), vec2(params.width, params.height));
-        d *= inversesqrt(max(dot(viewVector(params.camera, onScreen), viewVector(params.camera, onScreen)), 1e-30));
+        const vec3 v = viewVector(params.camera, pixelOnScreen(vec2(pixel), vec2(params.width, params.height)));
+        d *= inversesqrt(max(dot(v, v), 1e-30));
     }
     STORE_HALF4(signal, at, vec4(clamp(demodulated, -MAX_HALF, MAX_HALF), min(light.a, MAX_HALF)));
     STORE_UINT2(geometry, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(d)));

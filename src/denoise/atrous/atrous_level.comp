@@ -4,6 +4,8 @@
 // lie a step apart, of whose 8 x 25 taps only 48 are different.
 #include "denoise/atrous/atrous_level.glsl"
 
+layout(local_size_x = 8, local_size_y = 8) in;
+
 const ivec2 BLOCK = ivec2(4, 2);  // as in atrous.cpp
 
 Centre centres[8];
@@ -42,7 +44,8 @@ ivec2 pixelOfBlock(ivec2 first, int number) {
 }
 
 void begin(ivec2 first, int number) {
-    centres[number] = centreOf(loadTap(pixelOfBlock(first, number)));
+    const ivec2 at = pixelOfBlock(first, number);
+    centres[number] = centreOf(loadTap(at), at);
 }
 
 void finish(ivec2 first, int number) {

@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    AtrousEndsParams params;
+    AtrousModulateParams params;
 };
 READ_HALF4(1, signal);
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D albedo;

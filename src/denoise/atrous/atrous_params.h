@@ -8,11 +8,16 @@
 namespace limpid::denoise {
 #endif
 
-struct AtrousEndsParams {  // of demodulation and modulation
+struct AtrousDemodulateParams {
     CameraParams camera;
     uint width;
     uint height;
     uint plane;  // the geometry's depth is along `forward`, not along the ray
+};
+
+struct AtrousModulateParams {
+    uint width;
+    uint height;
 };
 
 struct AtrousLevelParams {
@@ -21,7 +26,7 @@ struct AtrousLevelParams {
     uint height;
     int step;           // pixels
     float normalScale;  // 2 log2(e) / (step^2 normal_factor)
-    float depthScale;   // log2(e) / depth_factor
+    float depthScale;   // sqrt(log2(e) / depth_factor)
     vec2 toScreen;      // 2 / width, -2 / height: there is no division to spare for every tap
     float fade;         // 4^(level - 1) / sample_target
 };
