@@ -1,0 +1,42 @@
+// Spatiotemporal variance-guided filtering: C. Schied et al., "Spatiotemporal Variance-Guided Filtering:
+// Real-Time Reconstruction for Path-Traced Global Illumination", HPG 2017. The steps and formulas, and what
+// is added to the paper, are in docs/denoising.md.
+#pragma once
+
+#include "base/params.h"
+#include "denoise/denoiser_input.h"
+#include "gpu/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; svgfParams() is where range and meaning stand.
+struct SvgfSettings {
+    bool separate = true;
+    bool demodulate = true;
+    float alpha = 0.2f;
+    float alphaMoments = 0.2f;
+    float alphaFast = 0.5f;
+    float normalTest = 0.95f;
+    float depthTest = 0.02f;
+    bool relative = true;
+    bool search = true;
+    float antilag = 2.0f;
+    float firefly = 0.0f;
+    int levels = 5;
+    int historyLevel = 1;
+    float phiColor = 4.0f;
+    float phiNormal = 128.0f;
+    float phiDepth = 1.0f;
+    bool blurVariance = true;
+    bool position = false;
+    bool operator==(const SvgfSettings&) const = default;
+};
+const ParamTable<SvgfSettings>& svgfParams();
+
+/// One frame: the clean beauty, rgba32f, alpha 1. Passes, each once for every signal ("joint", or "diffuse"
+/// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL",
+/// "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces",
+/// "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and "svgf/SIGNAL tiles".
+gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
+
+}  // namespace limpid::denoise

@@ -1,0 +1,69 @@
+// Parameters of SVGF's passes. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_SVGF_PARAMS_H
+#define LIMPID_DENOISE_SVGF_PARAMS_H
+
+#include "shaders/camera.h"
+
+#ifdef __cplusplus
+namespace limpid::denoise {
+#define LIMPID_CONST inline constexpr
+#else
+#define LIMPID_CONST const
+#endif
+
+LIMPID_CONST int SVGF_TILE = 8;             // pixels along an edge
+LIMPID_CONST float SVGF_YOUNG = 4.0;        // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_LAG_SIGMAS = 3.0;   // of noise that are no lag
+LIMPID_CONST float SVGF_LEAST_SLOPE = 0.05; // cosine: surfaces seen at a more grazing angle have this one's slope
+LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3; // of the distance: tolerated where a surface faces the viewer
+LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // of the luminance: tolerated where there is no noise
+
+struct SvgfSizeParams {
+    uint width;
+    uint height;
+};
+
+struct SvgfReprojectParams {
+    CameraParams camera;
+    uint width;
+    uint height;
+    float normalTest;  // cosine
+    float depthTest;
+    uint relative;  // 0: depthTest is in world units
+    uint search;
+    uint demodulate;
+    float alpha;
+    float alphaMoments;
+    float alphaFast;
+    float longest;  // frames
+    float firefly;  // deviations; 0: off
+};
+
+struct SvgfTilesParams {
+    uint width;
+    uint height;
+    float steadyShare;  // of the samples' variance that fast minus slow mean has
+    float antilag;
+};
+
+struct SvgfFilterParams {
+    CameraParams camera;
+    uint width;
+    uint height;
+    int step;           // pixels
+    float phiColor;
+    float normalScale;  // log2(e) phi_normal; with positions log2(e) / phi_normal
+    float depthScale;   // log2(e) / phi_depth
+};
+
+struct SvgfModulateParams {
+    uint width;
+    uint height;
+    uint demodulate;
+};
+
+#undef LIMPID_CONST
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif
