@@ -16,6 +16,7 @@
 #include "scene/camera.h"
 #include "scene/camera_path.h"
 #include "scene/framing.h"
+#include "scene/mesh_builder.h"
 #include "scene/prepare.h"
 
 namespace limpid::scene::test {
@@ -80,6 +81,32 @@ std::optional<vec2> onScreen(const Camera& camera, const vec3& point) {
     if (p.z >= 0.0f) return std::nullopt;
     const float slope = std::tan(0.5f * camera.verticalFov);
     return vec2(p.x / (slope * 16.0f / 9.0f), p.y / slope) / -p.z;
+}
+
+/// Seen from its front, every face has u to the right and v down; walls have v against +Y.
+TEST(Wallpaper, IsUprightAndNeverMirrored) {
+    for (const bool inside : {false, true}) {
+        MeshBuilder builder("box");
+        builder.box({-1, -2, -3}, {2, 3, 1}, 0, inside);
+        Mesh mesh = builder.take();
+        addWallpaperCoordinates(mesh);
+        ASSERT_EQ(mesh.triangleCount(), 12u);
+        for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const uint32_t* index = &mesh.indices[i];
+            const vec3 e1 = mesh.positions[index[1]] - mesh.positions[index[0]],
+                       e2 = mesh.positions[index[2]] - mesh.positions[index[0]];
+            const vec2 t1 = mesh.uv0[index[1]] - mesh.uv0[index[0]],
+                       t2 = mesh.uv0[index[2]] - mesh.uv0[index[0]];
+            const float determinant = t1.x * t2.y - t1.y * t2.x;
+            const vec3 alongU = (t2.y * e1 - t1.y * e2) / determinant,
+                       alongV = (t1.x * e2 - t2.x * e1) / determinant;
+            const vec3 normal = glm::normalize(glm::cross(e1, e2));
+            EXPECT_LT(glm::distance(glm::cross(alongU, -alongV), normal), 1e-5f) << "in metres";
+            if (std::abs(normal.y) < 0.5f) {
+                EXPECT_LT(glm::distance(alongV, vec3(0, -1, 0)), 1e-5f);
+            }
+        }
+    }
 }
 
 TEST(LabScenes, AreSmallLitAndUsable) {
