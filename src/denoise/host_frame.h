@@ -15,6 +15,7 @@ struct HostFrame {
     uint32_t width = 0, height = 0;
     std::vector<float> diffuse, specular, emission;  ///< linear radiance; the fourth is not read
     std::vector<float> albedo;                       ///< the fourth is not read
+    std::vector<float> albedoSpecular;               ///< as albedo; empty: zeros
     std::vector<float> normal;                       ///< world space, facing the viewer; 0 at a miss
     std::vector<float> depth;           ///< x: distance from the eye times y; y: share of hits (0 or 1)
     std::vector<float> motion;          ///< xyz times w; w: share of valid samples (0 or 1)
