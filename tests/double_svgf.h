@@ -51,6 +51,8 @@ struct SvgfPixel {
     bool doubtful = false;
     /// By how much the results change at most if the back-projected position s is off by one pixel.
     dvec4 colorSlope{0.0}, momentsSlope{0.0};
+    /// The magnitude of what was averaged: what rounding is relative to.
+    dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
 /// c' with sigma, and the moments.

@@ -154,6 +154,7 @@ void Accumulator::update(const New& sample, const Old& old, dvec4& color, dvec4&
             blend({old.color.mean[i], old.color.slope[i]}, {sample.x[i], sample.slope[i]}, params_.alpha);
         color[i] = c.value;
         pixel.colorSlope[i] = c.slope;
+        pixel.colorOperands[i] = std::max(std::abs(old.color.mean[i]), std::abs(sample.x[i]));
     }
     const double l = luminance(sample.x), lSlope = luminance(sample.slope);
     const std::array<Sloped, 3> values{{{l, lSlope}, {l * l, 2.0 * std::abs(l) * lSlope}, {l, lSlope}}};
@@ -163,9 +164,11 @@ void Accumulator::update(const New& sample, const Old& old, dvec4& color, dvec4&
         const Sloped m = blend({old.moments.mean[i], old.moments.slope[i]}, values[at], alphas[at]);
         moments[i] = m.value;
         pixel.momentsSlope[i] = m.slope;
+        pixel.momentsOperands[i] = std::max(std::abs(old.moments.mean[i]), std::abs(values[at].value));
     }
     moments.w = n;
     pixel.momentsSlope.w = kept.slope;
+    pixel.momentsOperands.w = old.moments.mean.w;
 }
 
 void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {

@@ -17,6 +17,7 @@
 #include "denoise/atrous/atrous.h"
 #include "denoise/denoiser_input.h"
 #include "denoise/history/history.h"
+#include "denoise/svgf/svgf.h"
 
 namespace limpid::denoise {
 
@@ -24,6 +25,7 @@ namespace limpid::denoise {
 struct DenoiserSettings {
     HistorySettings history;
     AtrousSettings atrous;
+    SvgfSettings svgf;
     bool operator==(const DenoiserSettings&) const = default;
 };
 
