@@ -1,5 +1,7 @@
 #include "double_frame.h"
 
+#include <limits>
+
 namespace limpid::test {
 namespace {
 
@@ -14,8 +16,12 @@ dvec3 normalisedOrZero(const dvec3& v) {
 
 }  // namespace
 
-dvec3 DoubleFrame::scattered(size_t p) const {
-    return xyz(frame_.diffuse, p) + xyz(frame_.specular, p);
+dvec3 DoubleFrame::diffuse(size_t p) const {
+    return xyz(frame_.diffuse, p);
+}
+
+dvec3 DoubleFrame::specular(size_t p) const {
+    return xyz(frame_.specular, p);
 }
 
 dvec3 DoubleFrame::emission(size_t p) const {
@@ -24,6 +30,10 @@ dvec3 DoubleFrame::emission(size_t p) const {
 
 dvec3 DoubleFrame::albedo(size_t p) const {
     return xyz(frame_.albedo, p);
+}
+
+dvec3 DoubleFrame::albedoSpecular(size_t p) const {
+    return frame_.albedoSpecular.empty() ? dvec3(0.0) : xyz(frame_.albedoSpecular, p);
 }
 
 double DoubleFrame::distance(size_t p) const {
@@ -58,6 +68,12 @@ dvec3 DoubleFrame::ray(size_t p) const {
     const dvec2 at = screen(p);
     const CameraParams& camera = frame_.camera;
     return dvec3(camera.forward) + at.x * dvec3(camera.right) + at.y * dvec3(camera.up);
+}
+
+bool isFiniteInFloat(const dvec3& c) {
+    const dvec3 a = glm::abs(c);
+    constexpr double largest = std::numeric_limits<float>::max();
+    return a.x <= largest && a.y <= largest && a.z <= largest;
 }
 
 }  // namespace limpid::test

@@ -1,5 +1,5 @@
 // What a frame gives, in double precision: the table at the head of docs/denoising.md and nothing else. The
-// oracles of both denoisers read frames through it.
+// denoisers' oracles read frames through it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -19,9 +19,12 @@ class DoubleFrame {
     explicit DoubleFrame(const denoise::HostFrame& frame) : frame_(frame) {}
     explicit DoubleFrame(denoise::HostFrame&&) = delete;
 
-    dvec3 scattered(size_t p) const;  ///< C = diffuse + specular
+    dvec3 diffuse(size_t p) const;
+    dvec3 specular(size_t p) const;
+    dvec3 scattered(size_t p) const { return diffuse(p) + specular(p); }  ///< C
     dvec3 emission(size_t p) const;
     dvec3 albedo(size_t p) const;
+    dvec3 albedoSpecular(size_t p) const;  ///< 0 where the frame has none
     bool hit(size_t p) const { return frame_.depth[4 * p + 1] > 0.0f; }
     double distance(size_t p) const;              ///< z; 0 where nothing is seen
     dvec3 normal(size_t p) const;                 ///< n; 0 where nothing is seen
@@ -42,5 +45,8 @@ class DoubleFrame {
 inline dvec3 modulation(const dvec3& albedo) {
     return glm::max(albedo, dvec3(0.1));
 }
+
+/// As the shaders see it: a sum that overflows in float32 is infinite there.
+bool isFiniteInFloat(const dvec3& c);
 
 }  // namespace limpid::test

@@ -9,7 +9,7 @@ namespace {
 
 /// Without noise.
 struct Shading {
-    dvec3 albedo{0.0}, diffuse{0.0}, specular{0.0}, emission{0.0};
+    dvec3 albedo{0.0}, diffuse{0.0}, specular{0.0}, emission{0.0}, albedoSpecular{0.0};
 };
 
 /// 1 and 0 in squares of `side`.
@@ -46,7 +46,9 @@ Shading shade(const SyntheticHit& hit, const dvec3& direction) {
     const dvec3 albedo = albedoOf(hit.instance, hit.point);
     const double gloss = hit.instance == SyntheticScene::Sphere ? 0.5 : 0.05;
     const double pattern = 1.0 + 0.5 * std::sin(1.3 * hit.point.x + 0.4) * std::cos(0.9 * hit.point.z);
-    return {albedo, albedo * irradiance(hit.point, hit.normal), dvec3(gloss * pattern), dvec3(0.0)};
+    const dvec3 albedoSpecular(hit.instance == SyntheticScene::Sphere ? gloss * pattern : 0.04);
+    return {albedo, albedo * irradiance(hit.point, hit.normal), dvec3(gloss * pattern), dvec3(0.0),
+            albedoSpecular};
 }
 
 /// The output function of SplitMix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
@@ -147,6 +149,7 @@ denoise::HostFrame SyntheticScene::frame(int number, uint32_t width, uint32_t he
         append(frame.specular, shading.specular * (options_.noise ? noise.factor(p, 1) : 1.0));
         append(frame.emission, shading.emission);
         append(frame.albedo, shading.albedo);
+        append(frame.albedoSpecular, shading.albedoSpecular);
         append(frame.normal, moments.normal(hit));
         append(frame.previousNormal, moments.previousNormal(hit));
         append(frame.depth, hit.any() ? dvec3(options_.scale * hit.distance, 1.0, 0.0) : dvec3(0.0));

@@ -1,0 +1,247 @@
+// The oracle of SVGF, by numbers that were computed by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "double_denoise_fixture.h"
+#include "double_svgf.h"
+
+namespace limpid::test {
+namespace {
+
+using denoise::HostFrame;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The middle pixel of five by five goes back to s = (2.75, 3), hence to the taps (2, 2) and (2, 3) of weight
+/// 3/8 each and to (3, 2) and (3, 3) of 1/8. Its light is 2 in every component, its albedo 0.5: x is 4.
+class SvgfByHand : public testing::Test {
+  protected:
+    SvgfByHand() {
+        set(frame.motion, 4 * middle, {0.25f, 0.5f, 0});
+        set(frame.diffuse, 4 * middle, {2, 2, 2});
+        before.surfaces = svgfSurfaces(frame);
+        before.color.assign(25, dvec4(1, 2, 3, nan));
+        before.moments.assign(25, dvec4(1, 3, 2, 2));
+        before.tiles.assign(1, dvec4(0.0));
+    }
+
+    static void set(std::vector<float>& layer, size_t at, const vec3& value) {
+        for (int i = 0; i < 3; ++i) layer[at + static_cast<size_t>(i)] = value[i];
+    }
+    SvgfAccumulated accumulate() const { return svgfAccumulate(frame, SvgfSignal::Diffuse, before, params); }
+    void expect(const dvec3& color, const dvec4& moments) const {
+        const SvgfAccumulated result = accumulate();
+        const double sigma = std::sqrt(std::max(moments.y - moments.x * moments.x, 0.0));
+        EXPECT_LT(glm::distance(result.color[middle], dvec4(color, sigma)), 1e-6);
+        EXPECT_LT(glm::distance(result.moments[middle], moments), 1e-6);
+        EXPECT_FALSE(result.pixels[middle].doubtful);
+    }
+
+    static constexpr size_t middle = 12;
+    HostFrame frame = frontalPlane(5, 5);
+    SvgfHistory before{5, 5, {}, {}, {}, {}};
+    DoubleSvgfParams params;
+};
+
+TEST_F(SvgfByHand, Accumulation) {
+    // A third of the third frame; the fast mean's share is more.
+    expect(dvec3(2, 8.0 / 3, 10.0 / 3), dvec4(2, 3 + 13.0 / 3, 3, 3));
+    before.moments[middle] = dvec4(3, 11, 6, 10);  // weight 3/8: 7/4, 6, 7/2, 5; the fifth is the longest
+    expect(dvec3(1.6, 2.4, 3.2), dvec4(1.75 + 0.45, 6 + 2, 3.5 + 0.25, 5));
+    params.alpha = 0.5;  // (0.2 is still the least)
+    expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 0.45, 6 + 2, 3.5 + 0.25, 5));
+    params.alphaMoments = 0.5;  // at least four frames
+    expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 1.125, 6 + 5, 3.5 + 0.25, 4));
+}
+
+TEST_F(SvgfByHand, NothingFound) {
+    for (double& id : before.surfaces.id) id = 7.0;
+    params.search = false;
+    expect(dvec3(4), dvec4(4, 16, 4, 1));
+    EXPECT_EQ(accumulate().pixels[middle].failure, 3);
+    frame.diffuse[4 * middle] = std::numeric_limits<float>::infinity();
+    expect(dvec3(0), dvec4(0));
+    EXPECT_TRUE(accumulate().pixels[middle].rejected);
+    frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
+    EXPECT_EQ(accumulate().color[middle], dvec4(0, 0, 0, -1));
+    frame.diffuse[4 * middle] = 2.0f;
+    EXPECT_EQ(accumulate().color[middle], dvec4(4, 4, 4, -1));
+    EXPECT_EQ(accumulate().moments[middle], dvec4(0));
+}
+
+TEST_F(SvgfByHand, ATapNeedsALength) {
+    before.moments[12].w = before.moments[17].w = 0.0;  // both of weight 3/8
+    before.color[12] = before.color[17] = dvec4(100);
+    expect(dvec3(2, 8.0 / 3, 10.0 / 3), dvec4(2, 3 + 13.0 / 3, 3, 3));
+}
+
+TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
+    before.tiles[0].x = 0.75;  // half a frame is left, and then one and a half
+    const double a = 1 / 1.5;
+    expect(dvec3(1 + 3 * a, 2 + 2 * a, 3 + a), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
+    frame.diffuse[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
+    expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 0.5));
+    frame.diffuse[4 * middle + 1] = 2.0f;
+    before.tiles[0].x = 1.0;
+    expect(dvec3(4), dvec4(4, 16, 4, 1));
+}
+
+TEST_F(SvgfByHand, FirefliesAreScaledDown) {
+    before.tiles[0] = dvec4(0, 0.5, 0.25, 0);
+    params.firefly = 2.0;  // the luminance becomes 1
+    expect(dvec3(1, 5.0 / 3, 7.0 / 3), dvec4(1, 3 - 2.0 / 3, 1.5, 3));
+    set(frame.diffuse, 4 * middle, {2, 0, 0});  // a luminance of 0.8504; the hue stays
+    params.firefly = 1.0;
+    const double most = 0.75;
+    const dvec3 x(most / 0.2126, 0, 0);
+    expect(dvec3(1, 2, 3) + (x - dvec3(1, 2, 3)) / 3.0,
+           dvec4(1 + (most - 1) / 3, 3 + (most * most - 3) / 3, 2 + (most - 2) * 0.5, 3));
+    before.tiles[0].z = 0.0;  // no deviation is known
+    const double l = 4 * 0.2126;
+    expect(dvec3(2, 4.0 / 3, 2), dvec4(1 + (l - 1) / 3, 3 + (l * l - 3) / 3, 2 + (l - 2) * 0.5, 3));
+}
+
+TEST_F(SvgfByHand, Signals) {
+    set(frame.specular, 4 * middle, {1, 1, 1});
+    frame.albedo[4 * middle] = 0.05f;
+    frame.albedo[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
+    const auto x = [&](SvgfSignal signal, bool demodulate = true) {
+        return svgfSample(frame, signal, middle, demodulate).x;
+    };
+    EXPECT_LT(glm::distance(x(SvgfSignal::Diffuse), dvec3(20, 2, 4)), 1e-6);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(10)), 1e-6) << "no albedo is known";
+    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(30, 3, 6)), 1e-6);
+    EXPECT_EQ(x(SvgfSignal::Joint, false), dvec3(3));
+    frame.albedoSpecular.assign(100, 0.25f);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(4)), 1e-6);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(10, 3, 4)), 1e-6);
+    set(frame.diffuse, 4 * middle, {1e30f, -1e30f, 1});
+    EXPECT_EQ(x(SvgfSignal::Diffuse), dvec3(65504, -65504, 2));
+    frame.specular[4 * middle] = std::numeric_limits<float>::infinity();
+    EXPECT_FALSE(svgfSample(frame, SvgfSignal::Diffuse, middle, true).rejected);
+    EXPECT_TRUE(svgfSample(frame, SvgfSignal::Joint, middle, true).rejected);
+    const std::vector<dvec4> light(25, dvec4(1, 2, 3, 9));
+    frame.emission.assign(100, 0.5f);
+    const std::vector<dvec4> sum =
+        svgfModulate(frame, {{SvgfSignal::Diffuse, light}, {SvgfSignal::Specular, light}}, true);
+    EXPECT_LT(glm::distance(sum[middle], dvec4(0.5 + 0.1 + 0.25, 0.5 + 2 + 0.5, 0.5 + 1.5 + 0.75, 1)), 1e-6);
+    EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Joint, light}}, false)[middle], dvec4(1.5, 2.5, 3.5, 1));
+}
+
+TEST(SvgfTilesByHand, ChangeNoiseAndDeviation) {
+    // Nine columns: the second tile is a column of pixels.
+    const HostFrame frame = frontalPlane(9, 8);
+    // One third frame three times as bright as those before it.
+    std::vector<dvec4> moments(72, dvec4(1.4, 2.6, 2.0, 5));
+    const DoubleSvgfParams params;
+    EXPECT_NEAR(svgfSteadyShare(params), 0.125, 1e-12);  // (1/3 + 1/9 - 2/6) / (8/9)
+    const double lag = 2.0 * (64 * 0.6 - 3.0 * std::sqrt(64 * 0.125 * 0.64)) / (64 * 2.0);
+    SvgfTiles tiles = svgfTiles(frame, moments, params);
+    ASSERT_EQ(tiles.tiles.size(), 2u);
+    EXPECT_LT(glm::distance(tiles.tiles[0], dvec4(lag, 1.4, 0.8, 0)), 1e-12);
+    // With fewer pixels the same deviation may be noise.
+    const double thinLag = 2.0 * (8 * 0.6 - 3.0 * std::sqrt(8 * 0.125 * 0.64)) / (8 * 2.0);
+    EXPECT_LT(glm::distance(tiles.tiles[1], dvec4(thinLag, 1.4, 0.8, 0)), 1e-12);
+    for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 1, 1.9) : dvec4(1, 2, 1.1, 2);
+    tiles = svgfTiles(frame, moments, params);
+    EXPECT_EQ(tiles.tiles[1], dvec4(0)) << "too young";
+    EXPECT_LT(glm::distance(tiles.tiles[0], dvec4(0, 1, 1, 0)), 1e-12) << "3 sqrt(64 / 8) exceeds 6.4";
+    moments.assign(72, dvec4(1, 1, 9, 5));
+    EXPECT_EQ(svgfTiles(frame, moments, {.antilag = 10.0}).tiles[0].x, 1.0);
+    moments.assign(72, dvec4(0, 0, 0, 5));
+    EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], dvec4(0));
+}
+
+/// A row of sixteen pixels and two tiles, whose middles are at 4 and 12.
+TEST(SvgfTilesByHand, TheNextFrameReadsThemBilinearly) {
+    HostFrame frame = frontalPlane(16, 1);
+    SvgfHistory before{16, 1, svgfSurfaces(frame), {}, {}, {}};
+    before.color.assign(16, dvec4(0));
+    before.moments.assign(16, dvec4(0, 0, 0, 3));
+    before.tiles = {dvec4(0), dvec4(0.8, 0, 0, 0)};
+    const SvgfAccumulated result = svgfAccumulate(frame, SvgfSignal::Joint, before, {});
+    for (size_t p = 0; p < 16; ++p) {
+        const double lag = 0.8 * glm::clamp((static_cast<double>(p) + 0.5 - 4.0) / 8.0, 0.0, 1.0);
+        EXPECT_NEAR(result.moments[p].w, 3.0 * (1.0 - lag) + 1.0, 1e-12) << p;
+    }
+}
+
+/// Three pixels in a row; the rays through them are (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).
+class SvgfRow : public testing::Test {
+  protected:
+    /// Of the right neighbour's weight relative to 1, seen from the middle; the left one sees nothing.
+    void expectWeight(double weight) const {
+        const dvec4 result = svgfLevel(frame, surfaces, color, 0, params)[1];
+        const double centre = 36, right = 24 * weight, sum = centre + right;
+        const dvec3 mean = (centre * dvec3(color[1]) + right * dvec3(color[2])) / sum;
+        const double sigma = std::hypot(centre * color[1].w, right * color[2].w) / sum;
+        EXPECT_LT(glm::distance(result, dvec4(mean, sigma)), 1e-9);
+    }
+
+    HostFrame frame = frontalPlane(3, 1);
+    SvgfSurfaces surfaces{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {0, 2, 2}, {0, 1, 1}};
+    std::vector<dvec4> color{{9, 9, 9, -1}, {1, 1, 1, 0.3}, {2, 1, 1, 0.6}};
+    DoubleSvgfParams params{.phiColor = 1e9};
+};
+
+TEST_F(SvgfRow, VarianceOfAWeightedMean) {
+    expectWeight(1.0);
+    EXPECT_EQ(svgfLevel(frame, surfaces, color, 0, params)[0], color[0]);
+    EXPECT_LT(glm::distance(svgfLevel(frame, surfaces, color, 1, params)[1], color[1]), 1e-12)
+        << "both are out of reach";
+}
+
+TEST_F(SvgfRow, Color) {
+    params.phiColor = 0.5;
+    params.blurVariance = false;
+    expectWeight(std::exp(-0.2126 / (0.5 * 0.3 + 0.001 + 1e-6)));
+    params.blurVariance = true;
+    const double g = (4 * 0.09 + 2 * 0.36) / 6;
+    expectWeight(std::exp(-0.2126 / (0.5 * std::sqrt(g) + 0.001 + 1e-6)));
+}
+
+TEST_F(SvgfRow, Normals) {
+    surfaces.normal[2] = {0.6, 0, 0.8};
+    params.phiNormal = 3.0;
+    expectWeight(std::exp(-3.0 * 0.2));
+}
+
+TEST_F(SvgfRow, Distances) {
+    surfaces.distance[2] = 2.003;  // facing the viewer: 0.001 of the distance is tolerated
+    expectWeight(std::exp(-1.5));
+    params.phiDepth = 3.0;
+    expectWeight(std::exp(-0.5));
+    params.phiDepth = 1.0;
+    surfaces.normal = {{0.6, 0, 0.8}, {0.6, 0, 0.8}, {0.6, 0, 0.8}};
+    surfaces.distance[2] = 1.0;  // the slope is 0.6 (2/3) / 0.8 of the distance
+    expectWeight(std::exp(-1.0 / (1.0 + 0.002)));
+    frame.camera.orthographic = 1;  // and the same in world units
+    expectWeight(std::exp(-1.0 / (0.5 + 0.002)));
+}
+
+TEST_F(SvgfRow, Positions) {
+    params.position = true;
+    params.phiNormal = 0.7;
+    params.phiDepth = 2.0;
+    surfaces.normal[2] = {0.6, 0, 0.8};
+    const double length = std::sqrt(1 + 4.0 / 9.0), turn = std::sqrt(0.4);
+    const double apart = std::hypot(2 * (2.0 / 3) / length, 2 - 2 / length);
+    expectWeight(std::exp(-turn / 0.7 - apart / 2.0));
+    frame.camera.orthographic = 1;
+    expectWeight(std::exp(-turn / 0.7 - (2.0 / 3) / 2.0));
+}
+
+TEST_F(SvgfRow, YoungPixels) {
+    const std::vector<dvec4> moments{{7, 90, 0, 0}, {1, 2, 0, 3.5}, {2, 7, 0, 4}};
+    surfaces.distance[2] = 2.003;
+    const double w = std::exp(-1.5), m1 = (1 + 2 * w) / (1 + w), m2 = (2 + 7 * w) / (1 + w);
+    const std::vector<dvec4> young = svgfYoungVariance(frame, surfaces, color, moments, params).color;
+    EXPECT_LT(glm::distance(young[1], dvec4(1, 1, 1, std::sqrt(m2 - m1 * m1))), 1e-9);
+    EXPECT_EQ(young[0], color[0]);
+    EXPECT_EQ(young[2], color[2]);
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,313 @@
+// Steps 1 to 4 and 7: what is done pixel by pixel and over time.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "double_atrous.h"
+#include "double_reprojection.h"
+#include "double_svgf.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double largestHalf = 65504.0;
+constexpr size_t tileEdge = 8;
+/// Frames that are averaged with equal weights at least.
+constexpr double shortestHistory = 4.0;
+
+dvec3 signalOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p) {
+    if (signal == SvgfSignal::Joint) return pixels.scattered(p);
+    return signal == SvgfSignal::Diffuse ? pixels.diffuse(p) : pixels.specular(p);
+}
+
+/// M.
+dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, bool demodulate) {
+    if (!demodulate) return dvec3(1.0);
+    dvec3 a(0.0);
+    if (signal != SvgfSignal::Specular) a += pixels.albedo(p);
+    if (signal != SvgfSignal::Diffuse) a += pixels.albedoSpecular(p);
+    for (int i = 0; i < 3; ++i) {
+        if (!std::isfinite(a[i])) a[i] = 1.0;
+    }
+    return modulation(a);
+}
+
+std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t count) {
+    std::vector<PreviousSurface> result(count);
+    for (size_t q = 0; q < history.moments.size(); ++q) {
+        result[q] = {history.surfaces.normal[q], history.surfaces.distance[q], history.surfaces.id[q],
+                     history.moments[q].w > 0.0};
+    }
+    return result;
+}
+
+size_t tilesAlong(uint32_t pixels) {
+    return (pixels + tileEdge - 1) / tileEdge;
+}
+
+/// A value, and by how much it changes at most where s is off by one pixel.
+struct Sloped {
+    double value, slope;
+};
+
+class Accumulator {
+  public:
+    Accumulator(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfHistory& previous,
+                const DoubleSvgfParams& params)
+        : frame_(frame),
+          signal_(signal),
+          previous_(previous),
+          params_(params),
+          surfaces_(previousSurfaces(previous, frame.pixelCount())),
+          reprojection_{params.normalTest, params.depthTest, params.relative, params.search},
+          reprojector_(frame, surfaces_, reprojection_) {}
+    Accumulator(const Accumulator&) = delete;
+    Accumulator& operator=(const Accumulator&) = delete;
+
+    void accumulate(size_t p, SvgfAccumulated& result) const;
+
+  private:
+    struct Old {
+        Resampled color, moments, tile;
+    };
+    /// The new sample, with the slopes that the previous frame's tiles give it.
+    struct New {
+        dvec3 x, slope;
+    };
+    Old find(size_t p, SvgfPixel& pixel) const;
+    Resampled tileAt(const dvec2& s) const;
+    New withoutFireflies(const dvec3& x, const Old& old, Decision& decision) const;
+    Sloped shortened(const Old& old) const;
+    void update(const New& sample, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
+
+    const denoise::HostFrame& frame_;
+    SvgfSignal signal_;
+    const SvgfHistory& previous_;
+    const DoubleSvgfParams& params_;
+    std::vector<PreviousSurface> surfaces_;
+    ReprojectionParams reprojection_;
+    Reprojector reprojector_;
+};
+
+/// Bilinear at s / 8 - 0.5 with coordinates clamped.
+Resampled Accumulator::tileAt(const dvec2& s) const {
+    const dvec2 last(static_cast<double>(tilesAlong(frame_.width)) - 1.0,
+                     static_cast<double>(tilesAlong(frame_.height)) - 1.0);
+    const dvec2 f = s / double{tileEdge} - 0.5, first = glm::floor(f), fraction = f - first;
+    Reprojection taps;
+    for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i < 2; ++i) {
+            const dvec2 at = glm::clamp(first + dvec2(i, j), dvec2(0.0), last);
+            const double weight =
+                (i == 0 ? 1.0 - fraction.x : fraction.x) * (j == 0 ? 1.0 - fraction.y : fraction.y);
+            taps.taps.push_back(
+                {static_cast<size_t>(at.y) * tilesAlong(frame_.width) + static_cast<size_t>(at.x), weight});
+        }
+    }
+    Resampled tile = resample(taps, [&](size_t q) { return previous_.tiles[q]; });
+    tile.slope /= double{tileEdge};
+    return tile;
+}
+
+Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
+    Decision decision;
+    const Reprojection found = reprojector_.find(p, decision);
+    pixel.failure = found.failure;
+    pixel.doubtful = decision.doubtful();
+    if (found.failure != 0) return {};
+    return {resample(found, [&](size_t q) { return previous_.color[q]; }),
+            resample(found, [&](size_t q) { return previous_.moments[q]; }), tileAt(found.position)};
+}
+
+Accumulator::New Accumulator::withoutFireflies(const dvec3& x, const Old& old, Decision& decision) const {
+    const double u = old.tile.mean.y, d = old.tile.mean.z;
+    if (params_.firefly <= 0.0 || old.moments.mean.w <= 0.0) return {x, dvec3(0.0)};
+    const double most = u + params_.firefly * d;
+    // Elsewhere float32's error of a threshold changes the result as little as it changes the threshold.
+    if (luminance(x) > u && old.tile.slope.z > 0.0) decision.near(d, 0.0, 1e-4 * old.tile.slope.z);
+    if (d <= 0.0 || luminance(x) <= most) return {x, dvec3(0.0)};
+    const dvec3 hue = x / luminance(x);
+    return {most * hue, glm::abs(hue) * (old.tile.slope.y + params_.firefly * old.tile.slope.z)};
+}
+
+/// N after anti-lag.
+Sloped Accumulator::shortened(const Old& old) const {
+    const double n = old.moments.mean.w, kept = 1.0 - old.tile.mean.x;
+    return {n * kept, old.moments.slope.w * kept + n * old.tile.slope.x};
+}
+
+void Accumulator::update(const New& sample, const Old& old, dvec4& color, dvec4& moments,
+                         SvgfPixel& pixel) const {
+    const Sloped kept = shortened(old);
+    const double longest = std::max(shortestHistory, 1.0 / std::min(params_.alpha, params_.alphaMoments));
+    const double n = std::min(kept.value + 1.0, longest);
+    const auto blend = [&](const Sloped& was, const Sloped& is, double alpha) {
+        const double share = std::max(alpha, 1.0 / n);
+        const double shareSlope = kept.slope / (n * n);
+        return Sloped{
+            was.value + (is.value - was.value) * share,
+            was.slope * (1.0 - share) + is.slope * share + std::abs(is.value - was.value) * shareSlope};
+    };
+    for (int i = 0; i < 3; ++i) {
+        const Sloped c =
+            blend({old.color.mean[i], old.color.slope[i]}, {sample.x[i], sample.slope[i]}, params_.alpha);
+        color[i] = c.value;
+        pixel.colorSlope[i] = c.slope;
+        pixel.colorOperands[i] = std::max(std::abs(old.color.mean[i]), std::abs(sample.x[i]));
+    }
+    const double l = luminance(sample.x), lSlope = luminance(sample.slope);
+    const std::array<Sloped, 3> values{{{l, lSlope}, {l * l, 2.0 * std::abs(l) * lSlope}, {l, lSlope}}};
+    const std::array<double, 3> alphas{params_.alphaMoments, params_.alphaMoments, params_.alphaFast};
+    for (int i = 0; i < 3; ++i) {
+        const auto at = static_cast<size_t>(i);
+        const Sloped m = blend({old.moments.mean[i], old.moments.slope[i]}, values[at], alphas[at]);
+        moments[i] = m.value;
+        pixel.momentsSlope[i] = m.slope;
+        pixel.momentsOperands[i] = std::max(std::abs(old.moments.mean[i]), std::abs(values[at].value));
+    }
+    moments.w = n;
+    pixel.momentsSlope.w = kept.slope;
+    pixel.momentsOperands.w = old.moments.mean.w;
+}
+
+void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
+    const SvgfSample sample = svgfSample(frame_, signal_, p, params_.demodulate);
+    SvgfPixel& pixel = result.pixels[p];
+    dvec4 &color = result.color[p], &moments = result.moments[p];
+    const Old old = find(p, pixel);
+    pixel.rejected = sample.rejected;
+    if (pixel.failure == 1) {
+        color = dvec4(sample.x, -1.0);
+        return;
+    }
+    if (sample.rejected) {
+        const Sloped kept = shortened(old);
+        color = old.color.mean;
+        moments = dvec4(dvec3(old.moments.mean), kept.value);
+        pixel.colorSlope = old.color.slope;
+        pixel.momentsSlope = dvec4(dvec3(old.moments.slope), kept.slope);
+    } else {
+        Decision decision;
+        update(withoutFireflies(sample.x, old, decision), old, color, moments, pixel);
+        pixel.doubtful = pixel.doubtful || decision.doubtful();
+    }
+    color = glm::clamp(color, -largestHalf, largestHalf);
+    color.w = svgfDeviation(moments.x, moments.y);
+    pixel.colorSlope.w = 0.0;
+}
+
+/// Sums over one tile.
+struct TileSums {
+    double lag = 0.0, variance = 0.0, size = 0.0, m1 = 0.0, m2 = 0.0, count = 0.0;
+    double magnitude = 0.0;  ///< of what `lag` is the sum of
+
+    void add(const dvec4& moments) {
+        lag += moments.z - moments.x;
+        variance += std::max(moments.y - moments.x * moments.x, 0.0);
+        size += std::max(moments.z, moments.x);
+        m1 += moments.x;
+        m2 += moments.y;
+        count += 1.0;
+        magnitude += std::abs(moments.z) + std::abs(moments.x);
+    }
+};
+
+/// By how much sqrt(value) changes at most if the value changes by `error`.
+double rootError(double value, double error) {
+    return std::sqrt(value + error) - std::sqrt(std::max(value - error, 0.0));
+}
+
+}  // namespace
+
+SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame) {
+    const DoubleFrame pixels(frame);
+    SvgfSurfaces surfaces;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        surfaces.normal.push_back(pixels.normal(p));
+        surfaces.distance.push_back(pixels.distance(p));
+        surfaces.id.push_back(pixels.id(p));
+    }
+    return surfaces;
+}
+
+SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids) {
+    AtrousGeometry geometry = decodeGeometry(words);
+    return {std::move(geometry.normal), std::move(geometry.distance), {ids.begin(), ids.end()}};
+}
+
+SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, bool demodulate) {
+    const DoubleFrame pixels(frame);
+    const dvec3 c = signalOf(pixels, signal, p);
+    if (!isFiniteInFloat(c)) return {dvec3(0.0), true};
+    const dvec3 x = c / modulationOf(pixels, signal, p, demodulate);
+    return {glm::clamp(x, -largestHalf, largestHalf), false};
+}
+
+double svgfDeviation(double m1, double m2, double error) {
+    return std::min(std::sqrt(std::max(m2 - m1 * m1 + error, 0.0)), largestHalf);
+}
+
+SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,
+                               const SvgfHistory& previous, const DoubleSvgfParams& params) {
+    const bool fits = previous.width == frame.width && previous.height == frame.height;
+    const SvgfHistory none;
+    const Accumulator accumulator(frame, signal, fits ? previous : none, params);
+    const std::vector<dvec4> zeros(frame.pixelCount(), dvec4(0.0));
+    SvgfAccumulated result{zeros, zeros, std::vector<SvgfPixel>(frame.pixelCount())};
+    for (size_t p = 0; p < frame.pixelCount(); ++p) accumulator.accumulate(p, result);
+    return result;
+}
+
+double svgfSteadyShare(const DoubleSvgfParams& params) {
+    const auto b = [](double a) { return a / (2.0 - a); };
+    const double fast = params.alphaFast, slow = params.alphaMoments;
+    const double r = fast * slow / (fast + slow - fast * slow);
+    return (b(fast) + b(slow) - 2.0 * r) / (1.0 - b(slow));
+}
+
+SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
+                    const DoubleSvgfParams& params) {
+    const size_t columns = tilesAlong(frame.width), count = columns * tilesAlong(frame.height);
+    std::vector<TileSums> sums(count);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const size_t x = p % frame.width / tileEdge, y = p / frame.width / tileEdge;
+        if (moments[p].w >= 2.0) sums[y * columns + x].add(moments[p]);
+    }
+    const double k = svgfSteadyShare(params);
+    const double rounding = 64 * 0x1p-24;  // of a sum of 64 numbers
+    SvgfTiles result;
+    for (const TileSums& s : sums) {
+        if (s.count == 0.0) {
+            result.tiles.emplace_back(0.0);
+            result.error.emplace_back(0.0);
+            continue;
+        }
+        const double noise = std::sqrt(k * s.variance), excess = std::abs(s.lag) - 3.0 * noise;
+        const double lag =
+            s.size == 0.0 ? 0.0 : std::min(1.0, params.antilag * std::max(excess, 0.0) / s.size);
+        const double u = s.m1 / s.count, variance = s.m2 / s.count - u * u;
+        result.tiles.emplace_back(lag, u, std::sqrt(std::max(variance, 0.0)), 0.0);
+        const double excessError =
+            rounding * s.magnitude + 3.0 * rootError(k * s.variance, k * rounding * s.m2);
+        result.error.emplace_back(s.size == 0.0 ? 0.0 : params.antilag * excessError / s.size + 1e-5 * lag,
+                                  1e-5 * std::abs(u),
+                                  rootError(std::max(variance, 0.0), rounding * s.m2 / s.count), 0.0);
+    }
+    return result;
+}
+
+std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vector<SvgfFiltered>& signals,
+                                bool demodulate) {
+    const DoubleFrame pixels(frame);
+    std::vector<dvec4> result;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        dvec3 sum = pixels.emission(p);
+        for (const SvgfFiltered& filtered : signals)
+            sum += dvec3(filtered.color[p]) * modulationOf(pixels, filtered.signal, p, demodulate);
+        result.emplace_back(sum, 1.0);
+    }
+    return result;
+}
+
+}  // namespace limpid::test
