@@ -223,6 +223,7 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = filterConstants();
         constants.push_back({"BLUR_VARIANCE", settings_.blurVariance ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
+        constants.push_back({"MUTUAL", settings_.mutual ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -303,6 +304,9 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "tolerated difference of distance, in units of the surface's own slope (with `position`: "
               "tolerated distance of points, world units); higher smooths over steps");
         t.add("blur_variance", &S::blurVariance, "average the variance over 3x3 pixels before it guides");
+        t.add("mutual", &S::mutual,
+              "the noisier of two pixels decides what they tolerate of each other; off: the one that is "
+              "filtered, which rejects bright samples and darkens the picture");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("cis565", {{"separate", "off"},
                             {"demodulate", "off"},
@@ -315,9 +319,11 @@ const ParamTable<SvgfSettings>& svgfParams() {
                             {"firefly", "0"},
                             {"levels", "5"},
                             {"history_level", "1"},
+                            {"wide", "on"},
                             {"phi_color", "0.7"},
                             {"phi_normal", "0.2"},
                             {"phi_depth", "0.35"},
+                            {"mutual", "off"},
                             {"position", "on"}});
         return t;
     }();

@@ -29,6 +29,7 @@ struct SvgfSettings {
     float phiNormal = 128.0f;
     float phiDepth = 1.0f;
     bool blurVariance = true;
+    bool mutual = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;
 };

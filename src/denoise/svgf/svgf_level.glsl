@@ -5,6 +5,7 @@
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
+layout(constant_id = 5) const bool MUTUAL = true;  // the noisier of two pixels says what they tolerate, else the centre
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -21,7 +22,7 @@ const float LOG2_E = 1.44269504;
 
 struct Tap {
     vec4 light;  // and deviation; negative: nothing is seen
-    float luminance;
+    float luminance, luminanceScale;
     Surface surface;
     bool counts;
 };
@@ -34,6 +35,11 @@ struct Centre {
     float squares;
 };
 
+/// Of differences of luminance, for an exponent of 2.
+float luminanceScaleOf(float luminance, float deviation) {
+    return LOG2_E / (params.phiColor * deviation + SVGF_LUMINANCE_FLOOR * abs(luminance) + 1e-6);
+}
+
 /// Of a tap `from` the centre.
 float kernel(ivec2 from) {
     return WIDE ? B3[abs(from.x)] * B3[abs(from.y)] : TENT[abs(from.x)] * TENT[abs(from.y)];
@@ -42,7 +48,9 @@ float kernel(ivec2 from) {
 Tap loadTap(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const vec4 light = LOAD_HALF4(signal, inside);
-    return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
+    const float l = luminance(light.rgb);
+    const float scale = MUTUAL ? luminanceScaleOf(l, max(light.a, 0.0)) : 0.0;
+    return Tap(light, l, scale, surfaceAt(inside), at == inside && light.a >= 0.0);
 }
 
 void addVariance(inout vec2 sum, ivec2 at, float weight) {
@@ -72,9 +80,7 @@ Centre begin(ivec2 at) {
     centre.surface = centreOf(tap.surface, at);
     centre.light = tap.light;
     centre.luminance = tap.luminance;
-    const float tolerance =
-        params.phiColor * blurredDeviation(at, tap.light.a) + SVGF_LUMINANCE_FLOOR * abs(tap.luminance) + 1e-6;
-    centre.luminanceScale = LOG2_E / tolerance;
+    centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, tap.light.a));
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
@@ -82,8 +88,9 @@ Centre begin(ivec2 at) {
 }
 
 void addTo(inout Centre centre, Tap tap, ivec2 from) {
-    const float exponent = surfaceExponent(centre.surface, tap.surface, from) -
-                           abs(centre.luminance - tap.luminance) * centre.luminanceScale;
+    const float scale = MUTUAL ? min(centre.luminanceScale, tap.luminanceScale) : centre.luminanceScale;
+    const float exponent =
+        surfaceExponent(centre.surface, tap.surface, from) - abs(centre.luminance - tap.luminance) * scale;
     const float weight = tap.counts ? kernel(from) * exp2(exponent) : 0.0;
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
     const float deviation = weight * tap.light.a;

@@ -11,11 +11,12 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-LIMPID_CONST int SVGF_TILE = 8;             // pixels along an edge
-LIMPID_CONST float SVGF_YOUNG = 4.0;        // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_LAG_SIGMAS = 3.0;   // of noise that are no lag
-LIMPID_CONST float SVGF_LEAST_SLOPE = 0.05; // cosine: surfaces seen at a more grazing angle have this one's slope
-LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3; // of the distance: tolerated where a surface faces the viewer
+LIMPID_CONST int SVGF_TILE = 8;            // pixels along an edge
+LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_LAG_SIGMAS = 3.0;  // of noise that are no lag
+LIMPID_CONST float SVGF_LEAST_SLOPE =
+    0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
+LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // of the luminance: tolerated where there is no noise
 
 struct SvgfSizeParams {
@@ -50,7 +51,7 @@ struct SvgfFilterParams {
     CameraParams camera;
     uint width;
     uint height;
-    int step;           // pixels
+    int step;  // pixels
     float phiColor;
     float normalScale;  // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;   // log2(e) / phi_depth
