@@ -127,8 +127,8 @@ TEST_P(DenoiserSuite, ResizeAndResetStartAnew) {
 /// Both ends of the range, and one that is neither.
 std::vector<std::string> numbersOf(const ParamInfo& info) {
     const int least = static_cast<int>(std::ceil(info.minimum));
-    return {std::to_string(least), std::to_string(least + 1),
-            std::to_string(static_cast<int>(std::min(info.maximum, 1e6)))};
+    const int most = static_cast<int>(std::min(info.maximum, 1e6));
+    return {std::to_string(least), std::to_string(std::min(least + 1, most)), std::to_string(most)};
 }
 
 TEST_P(DenoiserSuite, EveryParameterMatters) {

@@ -28,13 +28,22 @@ DenoiserOutput recordAtrous(gpu::FrameGraph& graph, const DenoiserInput& input,
     return {filterAtrous(graph, input, {history.color, {}}, settings.atrous), history.cases};
 }
 
+DenoiserOutput recordSvgf(gpu::FrameGraph& graph, const DenoiserInput& input,
+                          const DenoiserSettings& settings) {
+    return {filterSvgf(graph, input, settings.svgf), {}};
+}
+
 constexpr std::array<std::string_view, 1> historyGroups{"history"};
 constexpr std::array<std::string_view, 2> atrousGroups{"history", "atrous"};
 
-constexpr std::array<Denoiser, 2> all{
+constexpr std::array<std::string_view, 1> svgfGroups{"svgf"};
+
+constexpr std::array<Denoiser, 3> all{
     Denoiser{"history", "each pixel's running mean follows its surface through camera and object motion",
              recordHistory, historyGroups, 8.0},
-    Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 8.0}};
+    Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 8.0},
+    Denoiser{"svgf", "spatiotemporal variance-guided filtering: blurs where and as much as there is noise",
+             recordSvgf, svgfGroups, 8.0}};
 
 }  // namespace
 

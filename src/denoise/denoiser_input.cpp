@@ -25,6 +25,9 @@ DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     input.specular = image("specular", frame.specular);
     input.emission = image("emission", frame.emission);
     input.albedo = image("albedo", frame.albedo);
+    input.albedoSpecular =
+        image("albedoSpecular", frame.albedoSpecular.empty() ? std::vector<float>(4 * frame.pixelCount())
+                                                             : frame.albedoSpecular);
     input.normal = image("normal", frame.normal);
     input.depth = image("depth", frame.depth);
     input.motion = image("motion", frame.motion);

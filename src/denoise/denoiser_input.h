@@ -13,7 +13,7 @@ namespace limpid::denoise {
 struct DenoiserInput {
     gpu::ImageHandle diffuse, specular;  ///< scattered light, cd/m^2, albedo multiplied in
     gpu::ImageHandle emission;           ///< what the camera sees directly
-    gpu::ImageHandle albedo;
+    gpu::ImageHandle albedo, albedoSpecular;
     gpu::ImageHandle normal, depth;
     gpu::ImageHandle motion, previousNormal;
     gpu::ImageHandle ids;  ///< rg32ui: instance, material; UINT32_MAX where nothing is seen

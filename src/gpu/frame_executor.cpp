@@ -91,8 +91,11 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
     const VkImageSubresourceRange range = wholeImage();
     for (size_t i = 0; i < frame.images.size(); ++i) {
         if (!frame.images[i].clear) continue;
-        const VkImage image = frameImages_[i]->image.image.get();
-        vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);
+        const Image& image = frameImages_[i]->image;
+        if (image.buffer)
+            vkCmdFillBuffer(commands, image.buffer->buffer.get(), 0, VK_WHOLE_SIZE, 0);
+        else
+            vkCmdClearColorImage(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);
         any = true;
     }
     if (!any) return;

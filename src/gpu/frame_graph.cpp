@@ -81,6 +81,7 @@ void FrameGraph::Impl::commitHistories() {
         }
         const RecordedImage& current = frame.images[recorded->second];
         state.format = current.key.format;
+        state.backing = current.key.backing;
         state.extent = current.extent();
         state.currentHalf = current.key.half;
         state.valid = current.written;
@@ -148,22 +149,23 @@ ImageHandle FrameGraph::transient(const std::string& name, Format format, Extent
     return impl_->addImage({.name = name, .key = {name, 0, format, extent.width, extent.height, backing}});
 }
 
-History FrameGraph::history(const std::string& name, Format format, Extent extent) {
+History FrameGraph::history(const std::string& name, Format format, Extent extent, Backing backing) {
     impl_->requireRecording();
     const std::string previousName = name + " (previous)";
     impl_->claimName(name);
     impl_->claimName(previousName);
     HistoryState& state = impl_->histories[name];
-    const bool valid = state.valid && state.format == format && state.extent == extent;
+    const bool valid =
+        state.valid && state.format == format && state.extent == extent && state.backing == backing;
     const uint32_t half = state.currentHalf;
     History result;
     result.valid = valid;
     result.previous = impl_->addImage({.name = previousName,
-                                       .key = {name, half, format, extent.width, extent.height},
+                                       .key = {name, half, format, extent.width, extent.height, backing},
                                        .role = RecordedImage::Role::Previous,
                                        .clear = !valid});
     result.current = impl_->addImage({.name = name,
-                                      .key = {name, half ^ 1, format, extent.width, extent.height},
+                                      .key = {name, half ^ 1, format, extent.width, extent.height, backing},
                                       .role = RecordedImage::Role::Current,
                                       .clear = !valid});
     impl_->recordedHistories[name] = impl_->indexOf(result.current);

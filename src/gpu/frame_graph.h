@@ -133,7 +133,7 @@ class FrameGraph {
     /// A pair that lives across frames. One call per frame and name. Not recording it in a frame drops it.
     /// `previous` can only be read; while the history is invalid it is zero. The history is valid in the next
     /// frame if this frame writes `current` and is executed.
-    History history(const std::string& name, Format format, Extent extent);
+    History history(const std::string& name, Format format, Extent extent, Backing backing = Backing::Image);
     /// From the next frame on, every history starts anew (scene cut, changed settings).
     void resetHistories();
 

@@ -106,6 +106,7 @@ struct Access {
 struct HistoryState {
     Format format{};
     Extent extent;
+    Backing backing = Backing::Image;
     uint32_t currentHalf = 0;  ///< which half the last executed frame wrote
     bool valid = false;
 };

@@ -177,6 +177,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                                        .specular = out.specular,
                                        .emission = out.emission,
                                        .albedo = out.albedo,
+                                       .albedoSpecular = out.albedoSpecular,
                                        .normal = out.normal,
                                        .depth = out.depth,
                                        .motion = out.motion,

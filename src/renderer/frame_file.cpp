@@ -106,6 +106,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     frame.specular = fourOf(file.get("specular", "RGB"));
     frame.emission = fourOf(file.get("emission", "RGB"));
     frame.albedo = fourOf(file.get("albedo", "RGB"));
+    if (has(file, "albedoSpecular", "RGB")) frame.albedoSpecular = fourOf(file.get("albedoSpecular", "RGB"));
     frame.normal = fourOf(file.get("normal", "XYZ"));
     frame.depth = depthOf(file.get("depth", "Z"));
     frame.motion = motionOf(file, frame.pixelCount());

@@ -37,6 +37,8 @@ const std::vector<ParamGroup>& paramGroups() {
             denoise::historyParams(), [](auto& s) -> auto& { return s.denoisers.history; }),
         groupOf(
             denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),
+        groupOf(
+            denoise::svgfParams(), [](auto& s) -> auto& { return s.denoisers.svgf; }),
     };
     return all;
 }

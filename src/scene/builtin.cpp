@@ -3,35 +3,13 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/builtin_lab.h"
+#include "scene/builtin_parts.h"
 #include "scene/camera.h"
 #include "scene/mesh_builder.h"
 
 namespace limpid::scene {
 namespace {
-
-Material lambertian(std::string name, const vec3& albedo) {
-    Material m;
-    m.name = std::move(name);
-    m.baseColor = vec4(albedo, 1.0f);
-    m.metallic = 0.0f;
-    m.specular = 0.0f;
-    return m;
-}
-
-Material emitter(std::string name, const vec3& albedo, const vec3& radiance) {
-    Material m = lambertian(std::move(name), albedo);
-    m.emission = radiance;
-    return m;
-}
-
-void addMesh(Scene& scene, Mesh mesh, int material) {
-    Instance instance;
-    instance.name = mesh.name;
-    instance.mesh = static_cast<int>(scene.meshes.size());
-    instance.material = material;
-    scene.meshes.push_back(std::move(mesh));
-    scene.instances.push_back(std::move(instance));
-}
 
 enum CornellSlot : uint16_t { White, Red, Green, Light };
 
@@ -63,28 +41,6 @@ Scene emptyCornell(std::string name) {
     scene.cameras[0].name = "cornell";
     return scene;
 }
-
-Material glossy(std::string name, const vec3& color, float metallic, float roughness) {
-    Material m;
-    m.name = std::move(name);
-    m.baseColor = vec4(color, 1.0f);
-    m.metallic = metallic;
-    m.roughness = roughness;
-    return m;
-}
-
-/// A small generator of fixed sequence, so that built-in scenes are the same everywhere.
-class Sequence {
-  public:
-    float next(float low, float high) {
-        state_ = state_ * 747796405u + 2891336453u;
-        const uint32_t word = ((state_ >> ((state_ >> 28) + 4u)) ^ state_) * 277803737u;
-        return low + (high - low) * static_cast<float>(((word >> 22) ^ word) >> 8) * 0x1p-24f;
-    }
-
-  private:
-    uint32_t state_ = 1;
-};
 
 }  // namespace
 
@@ -128,18 +84,11 @@ Scene cornellMovingScene() {
     addMesh(scene, room.take(), 0);
     MeshBuilder block("block");
     block.box({-0.08f, 0.0f, -0.08f}, {0.08f, 0.165f, 0.08f}, White);
-    addMesh(scene, block.take(), 0);
+    const int blockNode = addNode(scene, addMesh(scene, block.take(), 0));
     MeshBuilder lamp("lamp");
     lamp.box(vec3(-0.025f), vec3(0.025f), Light);
-    addMesh(scene, lamp.take(), 0);
+    const int lampNode = addNode(scene, addMesh(scene, lamp.take(), 0));
 
-    constexpr int blockNode = 0, lampNode = 1;
-    scene.rig.nodes.resize(2);
-    scene.rig.nodes[blockNode].name = "block";
-    scene.rig.nodes[lampNode].name = "lamp";
-    scene.rig.order = {blockNode, lampNode};
-    scene.instances[1].node = blockNode;
-    scene.instances[2].node = lampNode;
     const auto spline = [](int node, std::vector<float> positions) {
         Channel channel{node, AnimatedValue::Translation, Interpolation::CubicSpline, 3, {0, 1, 2, 3, 4}, {}};
         for (size_t i = 0; i < positions.size(); i += 3) {
@@ -158,11 +107,7 @@ Scene cornellMovingScene() {
                                              0.02f, 0.05f, 0.18f, 0.11f, 0.0f, 0.1f});
     const Channel swing = spline(lampNode, {-0.18f, 0.42f, 0.1f, 0.0f, 0.36f, 0.14f, 0.18f, 0.42f, 0.1f,  //
                                             0.0f, 0.36f, -0.02f, -0.18f, 0.42f, 0.1f});
-    scene.rig.clips = {{"moving", {slide, turn, swing}}};
-    const RigPose start = evaluate(scene.rig, &scene.rig.clips[0], 0.0);
-    for (Instance& instance : scene.instances) {
-        if (instance.node != none) instance.transform = start.toWorld[static_cast<size_t>(instance.node)];
-    }
+    addClip(scene, {"moving", {slide, turn, swing}});
     return scene;
 }
 
@@ -213,22 +158,46 @@ Scene furnaceScene(float albedo) {
     return scene;
 }
 
+namespace {
+
+struct Entry {
+    const char* name;
+    const char* help;
+    Scene (*make)();
+};
+
+constexpr Entry entries[] = {
+    {"cornell", "the Cornell box, true dimensions, diffuse, 36 triangles", cornellScene},
+    {"cornell-spheres", "the Cornell box with a glass, a mirror and a glossy sphere", cornellSpheresScene},
+    {"cornell-moving", "the Cornell box with a sliding block and a swinging light, 4 s", cornellMovingScene},
+    {"heavy", "about 300,000 triangles in a closed lit room, diffuse", heavyScene},
+    {"furnace", "a closed room where every surface emits 1 and reflects half: known brightness",
+     [] { return furnaceScene(); }},
+    {"lab-light", "a diffuse room whose only light slides along the ceiling until 1 s, then stays; 4 s",
+     labLightScene},
+    {"lab-switch", "the same room with two lights, of which one goes out at 1 s; 4 s", labSwitchScene},
+    {"lab-disocclusion", "a grille that moves fast before a textured wall and floor, 4 s",
+     labDisocclusionScene},
+    {"lab-mirror", "a picture seen directly and in a mirror, on a glossy floor", labMirrorScene},
+    {"lab-textures", "brick, checker, plaster, wood, bumps and uneven gloss, at grazing angles too",
+     labTexturesScene},
+    {"lab-lights", "a hall with 220 small coloured lights and diffuse and glossy blocks", labLightsScene},
+};
+
+}  // namespace
+
 std::vector<BuiltinInfo> builtinScenes() {
-    return {{"cornell", "the Cornell box, true dimensions, diffuse, 36 triangles"},
-            {"cornell-spheres", "the Cornell box with a glass, a mirror and a glossy sphere"},
-            {"cornell-moving", "the Cornell box with a sliding block and a swinging light, 4 s"},
-            {"heavy", "about 300,000 triangles in a closed lit room, diffuse"},
-            {"furnace", "a closed room where every surface emits 1 and reflects half: known brightness"}};
+    std::vector<BuiltinInfo> infos;
+    for (const Entry& entry : entries) infos.push_back({entry.name, entry.help});
+    return infos;
 }
 
 Scene builtinScene(std::string_view name) {
-    if (name == "cornell") return cornellScene();
-    if (name == "cornell-spheres") return cornellSpheresScene();
-    if (name == "cornell-moving") return cornellMovingScene();
-    if (name == "heavy") return heavyScene();
-    if (name == "furnace") return furnaceScene();
     std::string names;
-    for (const BuiltinInfo& info : builtinScenes()) names += " builtin:" + info.name;
+    for (const Entry& entry : entries) {
+        if (name == entry.name) return entry.make();
+        names += std::string(" builtin:") + entry.name;
+    }
     throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" +
                      names);
 }

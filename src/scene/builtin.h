@@ -32,5 +32,6 @@ Scene heavyScene();
 /// A closed Lambertian room of the given albedo with a box in it; every surface emits 1 on both sides. Paths
 /// of depth D see (1 - albedo^(D+1)) / (1 - albedo) everywhere.
 Scene furnaceScene(float albedo = 0.5f);
+// The laboratory's scenes are in builtin_lab.h.
 
 }  // namespace limpid::scene

@@ -36,16 +36,22 @@ MeshBuilder& MeshBuilder::quad(const vec3& a, const vec3& b, const vec3& c, cons
 }
 
 MeshBuilder& MeshBuilder::box(const vec3& lower, const vec3& upper, uint16_t slot, bool inside) {
+    return box(lower, upper, {slot, slot, slot, slot, slot, slot}, inside);
+}
+
+MeshBuilder& MeshBuilder::box(const vec3& lower, const vec3& upper, const std::array<uint16_t, 6>& slots,
+                              bool inside) {
     const auto corner = [&](int i) {
         return vec3(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z);
     };
     constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : faces) {
+    for (size_t side = 0; side < slots.size(); ++side) {
+        const auto& f = faces[side];
         if (inside) {
-            quad(corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0]), slot);
+            quad(corner(f[3]), corner(f[2]), corner(f[1]), corner(f[0]), slots[side]);
         } else {
-            quad(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3]), slot);
+            quad(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3]), slots[side]);
         }
     }
     return *this;
@@ -106,6 +112,26 @@ MeshBuilder& MeshBuilder::torus(const vec3& center, float radius, float tubeRadi
         }
     }
     return *this;
+}
+
+void addWallpaperCoordinates(Mesh& mesh) {
+    mesh.uv0.assign(mesh.positions.size(), vec2(0.0f));
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const vec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                   c = mesh.positions[mesh.indices[i + 2]];
+        const vec3 normal = glm::cross(b - a, c - a), size = glm::abs(normal);
+        for (size_t k = 0; k < 3; ++k) {
+            const vec3 p = mesh.positions[mesh.indices[i + k]];
+            vec2& uv = mesh.uv0[mesh.indices[i + k]];
+            if (size.y >= size.x && size.y >= size.z) {
+                uv = {p.x, normal.y > 0.0f ? p.z : -p.z};
+            } else if (size.x >= size.z) {
+                uv = {normal.x > 0.0f ? -p.z : p.z, -p.y};
+            } else {
+                uv = {normal.z > 0.0f ? p.x : -p.x, -p.y};
+            }
+        }
+    }
 }
 
 }  // namespace limpid::scene

@@ -1,6 +1,7 @@
 // Triangles by code, for the built-in scenes and for tests.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "scene/scene.h"
@@ -19,6 +20,8 @@ class MeshBuilder {
     MeshBuilder& quad(const vec3& a, const vec3& b, const vec3& c, const vec3& d, uint16_t slot = 0);
     /// Axis-aligned, fronts outside, or inside for a room.
     MeshBuilder& box(const vec3& lower, const vec3& upper, uint16_t slot = 0, bool inside = false);
+    /// The same with a slot for each side: -X, +X, -Y, +Y, -Z, +Z.
+    MeshBuilder& box(const vec3& lower, const vec3& upper, const std::array<uint16_t, 6>& slots, bool inside);
     /// A closed prism over a convex quad (counter-clockwise from above) from y = 0 to `height`.
     MeshBuilder& prism(const vec3& a, const vec3& b, const vec3& c, const vec3& d, float height,
                        uint16_t slot = 0);
@@ -38,5 +41,9 @@ class MeshBuilder {
     Mesh mesh_;
     bool withNormals_;
 };
+
+/// Sets uv0 as if every face were papered along its nearest axis, in metres: upright on walls, up the picture
+/// towards -Z on floors. For flat meshes whose faces share no vertices.
+void addWallpaperCoordinates(Mesh& mesh);
 
 }  // namespace limpid::scene

@@ -1,6 +1,6 @@
 // Images that a filter reads many times over: storage images, or texels in buffers (gpu::Backing) where the including
-// shader defines LIMPID_FILTER_BUFFERS. Declare with READ_* and WRITE_*, access with LOAD_* and STORE_*; the including
-// shader's `params` has the picture's `width`. HALF4: four halves. UINT2: two words.
+// shader defines LIMPID_FILTER_BUFFERS. Declare with READ_*, WRITE_* and UPDATE_* (both), access with LOAD_* and STORE_*;
+// the including shader's `params` has the picture's `width`. HALF4: four halves. UINT2: two words.
 #ifndef LIMPID_FILTER_IMAGE_GLSL
 #define LIMPID_FILTER_IMAGE_GLSL
 
@@ -29,11 +29,15 @@ uvec2 packHalf4(vec4 value) {
     layout(set = 0, binding = slot, scalar) readonly buffer name##Texels { uvec2 texels[]; } name
 #define WRITE_UINT2(slot, name) \
     layout(set = 0, binding = slot, scalar) writeonly buffer name##Texels { uvec2 texels[]; } name
+#define UPDATE_UINT2(slot, name) \
+    layout(set = 0, binding = slot, scalar) buffer name##Texels { uvec2 texels[]; } name
 #define LOAD_UINT2(name, at) name.texels[TEXEL_INDEX(at)]
 #define STORE_UINT2(name, at, value) name.texels[TEXEL_INDEX(at)] = value
 #define READ_HALF4(slot, name) READ_UINT2(slot, name)
 #define WRITE_HALF4(slot, name) WRITE_UINT2(slot, name)
+#define UPDATE_HALF4(slot, name) UPDATE_UINT2(slot, name)
 #define LOAD_HALF4(name, at) unpackHalf4(LOAD_UINT2(name, at))
+#define LOAD_HALF4_ALPHA(name, at) unpackHalf2x16(LOAD_UINT2(name, at).y).y
 #define STORE_HALF4(name, at, value) STORE_UINT2(name, at, packHalf4(value))
 
 #else
@@ -44,7 +48,9 @@ uvec2 packHalf4(vec4 value) {
 #define STORE_UINT2(name, at, value) imageStore(name, at, uvec4(value, 0u, 0u))
 #define READ_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform readonly image2D name
 #define WRITE_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform writeonly image2D name
+#define UPDATE_HALF4(slot, name) layout(set = 0, binding = slot, rgba16f) uniform image2D name
 #define LOAD_HALF4(name, at) imageLoad(name, at)
+#define LOAD_HALF4_ALPHA(name, at) imageLoad(name, at).a
 #define STORE_HALF4(name, at, value) imageStore(name, at, nearestHalf(value))
 
 #endif

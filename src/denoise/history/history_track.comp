@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 // History tracking: each pixel's running mean follows its surface point from frame to frame. docs/denoising.md has the
 // formulas; the idea is from D. Nehab et al., "Accelerating Real-Time Shading with Reverse Reprojection Caching", 2007.
-#include "denoise/guides.glsl"
 #include "denoise/history/history_params.h"
+#include "denoise/reprojection.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,9 +26,6 @@ layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D normalDepth;
 layout(set = 0, binding = 14, rgba32f) uniform writeonly image2D albedoId;
 layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D cases;
 
-/// Less of the four taps than this is no history: the rest is another surface.
-const float MIN_SHARE = 0.01;
-
 /// How a surface point must have looked in the previous frame.
 struct Expected {
     vec3 normal;
@@ -40,16 +37,6 @@ struct Taps {
     vec4 sum;  // of means (demodulated, if asked for) and counts
     float weight;
 };
-
-/// Neighbouring pixels of a tilted plane differ in distance; the tolerance leaves room for that.
-float depthTolerance(float expectedDepth, vec3 n, vec2 pixel) {
-    if (params.relative == 0u) return params.depthThreshold;
-    const vec3 v = viewVector(params.camera, pixelOnScreen(pixel, vec2(params.width, params.height)));
-    const float cosine = max(abs(dot(n, v)) * inversesqrt(dot(v, v)), 0.05);
-    const float tangent = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-    const float spread = params.camera.spread / (params.camera.orthographic != 0u ? expectedDepth : 1.0);
-    return expectedDepth * (params.depthThreshold + 1.5 * spread * tangent);
-}
 
 void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 last = ivec2(params.width, params.height) - 1;
@@ -107,23 +94,22 @@ void main() {
     const vec3 radiance = imageLoad(diffuse, at).rgb + imageLoad(specular, at).rgb;
     const vec3 n = unitNormal(imageLoad(normal, at));
     const float z = hitDistance(imageLoad(depth, at));
-    const vec4 moved = imageLoad(motion, at);
     const vec3 albedoNow = finiteOr(imageLoad(albedo, at).rgb, vec3(1.0));
     const bool hit = z > 0.0;
     // Exact in a float up to 2^24 instances; beyond, some share a number.
     const float id = hit ? float((imageLoad(ids, at).x + 1u) & 0xFFFFFFu) : 0.0;
 
-    const vec3 motionNow = moved.xyz / max(moved.w, 1e-20);
-    const vec2 position = vec2(pixel) + motionNow.xy;
-    const bool onScreen = moved.w > 0.0 && isFinite(motionNow) && all(greaterThanEqual(position, vec2(-0.5))) &&
-                          all(lessThan(position, vec2(params.width, params.height) - 0.5));
-    uint failure = !hit ? CASE_NOTHING_HIT : !onScreen ? CASE_OFF_SCREEN : CASE_TRACKED;
+    const vec2 size = vec2(params.width, params.height);
+    const Reprojection was = reprojectionOf(imageLoad(motion, at), vec2(pixel), size);
+    uint failure = !hit ? CASE_NOTHING_HIT : !was.onScreen ? CASE_OFF_SCREEN : CASE_TRACKED;
     vec4 before = vec4(0.0);
     if (failure == CASE_TRACKED) {
-        const float depthBefore = z + motionNow.z;
-        const Expected expected =
-            Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, depthTolerance(depthBefore, n, vec2(pixel)), id);
-        before = historyAt(position, expected, modulation(vec4(albedoNow, 0.0)));
+        const float depthBefore = z + was.depthChange;
+        const float tolerance =
+            params.relative == 0u ? params.depthThreshold
+                                  : depthTolerance(params.camera, depthBefore, n, vec2(pixel), size, params.depthThreshold);
+        const Expected expected = Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, id);
+        before = historyAt(was.position, expected, modulation(vec4(albedoNow, 0.0)));
         if (before.w < 0.0) failure = CASE_NO_VALID_TAP;
     }
     vec4 now = updated(before, radiance);

@@ -24,6 +24,7 @@ struct SvgfSettings {
     float firefly = 0.0f;
     int levels = 5;
     int historyLevel = 1;
+    bool wide = true;
     float phiColor = 4.0f;
     float phiNormal = 128.0f;
     float phiDepth = 1.0f;

@@ -1,0 +1,331 @@
+#include "denoise/svgf/svgf.h"
+
+#include <algorithm>
+#include <string>
+
+#include "denoise/svgf/svgf_params.h"
+#include "svgf_level.comp.h"
+#include "svgf_level_buffers.comp.h"
+#include "svgf_modulate.comp.h"
+#include "svgf_modulate_buffers.comp.h"
+#include "svgf_reproject.comp.h"
+#include "svgf_reproject_buffers.comp.h"
+#include "svgf_surfaces.comp.h"
+#include "svgf_surfaces_buffers.comp.h"
+#include "svgf_tiles.comp.h"
+#include "svgf_variance.comp.h"
+#include "svgf_variance_buffers.comp.h"
+
+namespace limpid::denoise {
+namespace {
+
+using gpu::Backing;
+using gpu::Extent;
+using gpu::Format;
+using gpu::FrameGraph;
+using gpu::History;
+using gpu::ImageHandle;
+
+/// The shaders take powers of 2.
+constexpr float log2e = 1.44269504f;
+
+/// Light that is filtered by itself: `first`, or the sum of two images.
+struct Signal {
+    std::string name;
+    ImageHandle light, otherLight, albedo, otherAlbedo;
+    bool isSum = false;
+};
+
+struct Surfaces {
+    History surfaces;  ///< two words: octahedral normal, distance (0: nothing seen)
+    History instances;
+};
+
+struct Accumulated {
+    ImageHandle color;    ///< half4: light, deviation of its luminance in one frame
+    ImageHandle moments;  ///< rgba32f: first, second, fast first, frames
+    History feedback;     ///< of colors; `current` is what the next frame reads
+};
+
+class Svgf {
+  public:
+    Svgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings)
+        : graph_(graph),
+          input_(input),
+          settings_(settings),
+          extent_(graph.extent(input.diffuse)),
+          buffers_(input.filters == Backing::Buffer) {}
+
+    ImageHandle record() {
+        const Surfaces surfaces = recordSurfaces();
+        if (!settings_.separate) {
+            const Signal joint{"joint",       input_.diffuse,        input_.specular,
+                               input_.albedo, input_.albedoSpecular, true};
+            const ImageHandle filtered = recordSignal(joint, surfaces);
+            return modulate(filtered, filtered);
+        }
+        const Signal diffuse{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo};
+        const Signal specular{"specular", input_.specular, input_.specular, input_.albedoSpecular,
+                              input_.albedoSpecular};
+        const ImageHandle filteredDiffuse = recordSignal(diffuse, surfaces);
+        return modulate(filteredDiffuse, recordSignal(specular, surfaces));
+    }
+
+  private:
+    const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
+        return buffers_ ? buffers : images;
+    }
+
+    Surfaces recordSurfaces() {
+        const Surfaces result{graph_.history("svgf/surfaces", Format::RG32Uint, extent_, input_.filters),
+                              graph_.history("svgf/ids", Format::R32Uint, extent_)};
+        const SvgfSizeParams params{extent_.width, extent_.height};
+        graph_.dispatch({.pass = "svgf/surfaces",
+                         .shader = choose(shaders::svgf_surfaces_comp, shaders::svgf_surfaces_buffers_comp),
+                         .bindings = {{"normal", input_.normal},
+                                      {"depth", input_.depth},
+                                      {"ids", input_.ids},
+                                      {"surfaces", result.surfaces.current},
+                                      {"instances", result.instances.current}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = extent_});
+        return result;
+    }
+
+    ImageHandle recordSignal(const Signal& signal, const Surfaces& surfaces) {
+        const Accumulated accumulated = reproject(signal, surfaces);
+        estimateVariance(signal, surfaces, accumulated);
+        ImageHandle filtered = accumulated.color;
+        for (int number = 1; number <= settings_.levels; ++number)
+            filtered = level(signal, surfaces, accumulated, filtered, number);
+        return filtered;
+    }
+
+    /// Of the filter's levels; 0: none.
+    int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
+
+    SvgfReprojectParams reprojectParams() const {
+        SvgfReprojectParams params{};
+        params.camera = input_.camera;
+        params.width = extent_.width;
+        params.height = extent_.height;
+        params.normalTest = settings_.normalTest;
+        params.depthTest = settings_.depthTest;
+        params.relative = settings_.relative;
+        params.search = settings_.search;
+        params.demodulate = settings_.demodulate;
+        params.alpha = settings_.alpha;
+        params.alphaMoments = settings_.alphaMoments;
+        params.alphaFast = settings_.alphaFast;
+        params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
+        params.firefly = settings_.firefly;
+        return params;
+    }
+
+    Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
+        const std::string name = "svgf/" + signal.name;
+        const Extent tileExtent{(extent_.width + SVGF_TILE - 1) / SVGF_TILE,
+                                (extent_.height + SVGF_TILE - 1) / SVGF_TILE};
+        const History feedback =
+            graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
+        const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
+        const History tiles = graph_.history(name + " tiles", Format::RGBA32Float, tileExtent);
+        const ImageHandle color =
+            fedBack() == 0
+                ? feedback.current
+                : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
+        const SvgfReprojectParams params = reprojectParams();
+        graph_.dispatch({.pass = "svgf/reproject " + signal.name,
+                         .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
+                         .bindings = {{"lightA", signal.light},
+                                      {"lightB", signal.otherLight},
+                                      {"albedoA", signal.albedo},
+                                      {"albedoB", signal.otherAlbedo},
+                                      {"motion", input_.motion},
+                                      {"previousNormal", input_.previousNormal},
+                                      {"surfaces", surfaces.surfaces.current},
+                                      {"instances", surfaces.instances.current},
+                                      {"surfacesBefore", surfaces.surfaces.previous},
+                                      {"instancesBefore", surfaces.instances.previous},
+                                      {"colorBefore", feedback.previous},
+                                      {"momentsBefore", moments.previous},
+                                      {"tilesBefore", tiles.previous},
+                                      {"color", color},
+                                      {"moments", moments.current}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u}},
+                         .extent = extent_});
+        recordTiles(signal, moments.current, tiles.current);
+        return {color, moments.current, feedback};
+    }
+
+    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady.
+    float steadyShare() const {
+        const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
+        const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
+        const float common = fast * slow / (fast + slow - fast * slow);
+        return (shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow));
+    }
+
+    void recordTiles(const Signal& signal, ImageHandle moments, ImageHandle tiles) {
+        const SvgfTilesParams params{extent_.width, extent_.height, steadyShare(), settings_.antilag};
+        graph_.dispatch({.pass = "svgf/tiles " + signal.name,
+                         .shader = shaders::svgf_tiles_comp,
+                         .bindings = {{"moments", moments}, {"tiles", tiles}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = graph_.extent(tiles)});
+    }
+
+    SvgfFilterParams filterParams(int step) const {
+        SvgfFilterParams params{};
+        params.camera = input_.camera;
+        params.width = extent_.width;
+        params.height = extent_.height;
+        params.step = step;
+        params.phiColor = settings_.phiColor;
+        params.normalScale = log2e * (settings_.position ? 1.0f / settings_.phiNormal : settings_.phiNormal);
+        params.depthScale = log2e / settings_.phiDepth;
+        return params;
+    }
+
+    std::vector<gpu::ConstantValue> filterConstants() const {
+        return {{"POSITION", settings_.position ? 1u : 0u}, {"ORTHOGRAPHIC", input_.camera.orthographic}};
+    }
+
+    void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
+        const SvgfFilterParams params = filterParams(1);
+        graph_.dispatch({.pass = "svgf/variance " + signal.name,
+                         .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
+                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                                      {"moments", accumulated.moments},
+                                      {"color", accumulated.color}},
+                         .params = gpu::paramsOf(params),
+                         .constants = filterConstants(),
+                         .extent = extent_});
+    }
+
+    /// Along one axis. An invocation filters 2x2 pixels that lie a step apart.
+    static uint32_t invocations(uint32_t pixels, int step) {
+        const uint32_t span = 2 * static_cast<uint32_t>(step);
+        return (pixels + span - 1) / span * static_cast<uint32_t>(step);
+    }
+
+    ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+                      ImageHandle before, int number) {
+        const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
+        const ImageHandle filtered =
+            number == fedBack() ? accumulated.feedback.current
+                                : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
+        const int step = 1 << (number - 1);
+        const SvgfFilterParams params = filterParams(step);
+        std::vector<gpu::ConstantValue> constants = filterConstants();
+        constants.push_back({"BLUR_VARIANCE", settings_.blurVariance ? 1u : 0u});
+        constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
+        graph_.dispatch({.pass = name,
+                         .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
+                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                                      {"signal", before},
+                                      {"filtered", filtered}},
+                         .params = gpu::paramsOf(params),
+                         .constants = constants,
+                         .extent = {invocations(extent_.width, step), invocations(extent_.height, step)}});
+        return filtered;
+    }
+
+    ImageHandle modulate(ImageHandle signal, ImageHandle otherSignal) {
+        const ImageHandle beauty = graph_.transient("svgf/beauty", Format::RGBA32Float, extent_);
+        const SvgfModulateParams params{extent_.width, extent_.height, settings_.demodulate ? 1u : 0u};
+        graph_.dispatch({.pass = "svgf/modulate",
+                         .shader = choose(shaders::svgf_modulate_comp, shaders::svgf_modulate_buffers_comp),
+                         .bindings = {{"signalA", signal},
+                                      {"signalB", otherSignal},
+                                      {"albedoA", input_.albedo},
+                                      {"albedoB", input_.albedoSpecular},
+                                      {"emission", input_.emission},
+                                      {"beauty", beauty}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"TWO_SIGNALS", settings_.separate ? 1u : 0u}},
+                         .extent = extent_});
+        return beauty;
+    }
+
+    FrameGraph& graph_;
+    const DenoiserInput& input_;
+    const SvgfSettings& settings_;
+    const Extent extent_;
+    const bool buffers_;
+};
+
+}  // namespace
+
+const ParamTable<SvgfSettings>& svgfParams() {
+    static const auto table = [] {
+        using S = SvgfSettings;
+        ParamTable<S> t("svgf");
+        t.add("separate", &S::separate,
+              "filter diffuse and specular light apart; off: their sum, in half the time");
+        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+        t.add(
+            "alpha", &S::alpha, 1e-4, 1.0, "",
+            "least weight of a frame in the running mean; lower is smoother, higher follows changes sooner");
+        t.add("alpha_moments", &S::alphaMoments, 1e-4, 1.0, "",
+              "... in the moments of the luminance, whence the variance");
+        t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "", "... in the fast mean that anti-lag compares with");
+        t.add("normal_test", &S::normalTest, -1.0, 1.0, "cosine",
+              "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
+              "expected one is above this");
+        t.add(
+            "depth_test", &S::depthTest, 0.0, 1e6, "of the distance",
+            "... and if its distance is off by less than this share of the expected one (without `relative`: "
+            "world units)");
+        t.add("relative", &S::relative,
+              "`depth_test` is relative to the distance, and makes room for tilted planes");
+        t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+        t.add("antilag", &S::antilag, 0.0, 1e6, "",
+              "history that is forgotten per relative change of light beyond noise; higher follows changes "
+              "sooner and is noisier; 0 is off");
+        t.add("firefly", &S::firefly, 0.0, 1e6, "deviations",
+              "samples brighter than their surroundings by more than this are clamped; lower loses energy, 0 "
+              "is off");
+        t.add("levels", &S::levels, 0, 10, "levels",
+              "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
+        t.add("history_level", &S::historyLevel, 0, 10, "levels",
+              "whose result is the next frame's history; higher is smoother and blurs over time");
+        t.add("wide", &S::wide, "5x5 taps a level; off: 3x3, half the reach in half the time");
+        t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations",
+              "tolerated difference of luminance; higher smooths over shadows");
+        t.add("phi_normal", &S::phiNormal, 1e-6, 1e9, "",
+              "sharpness of the tolerance of normals; lower smooths over edges (with `position`: tolerated "
+              "distance of normals; higher does)");
+        t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
+              "tolerated difference of distance, in units of the surface's own slope (with `position`: "
+              "tolerated distance of points, world units); higher smooths over steps");
+        t.add("blur_variance", &S::blurVariance, "average the variance over 3x3 pixels before it guides");
+        t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
+        t.preset("cis565", {{"separate", "off"},
+                            {"demodulate", "off"},
+                            {"alpha", "0.2"},
+                            {"alpha_moments", "0.2"},
+                            {"normal_test", "0.995"},
+                            {"depth_test", "0.1"},
+                            {"relative", "off"},
+                            {"antilag", "0"},
+                            {"firefly", "0"},
+                            {"levels", "5"},
+                            {"history_level", "1"},
+                            {"phi_color", "0.7"},
+                            {"phi_normal", "0.2"},
+                            {"phi_depth", "0.35"},
+                            {"position", "on"}});
+        return t;
+    }();
+    return table;
+}
+
+ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
+    return Svgf(graph, input, settings).record();
+}
+
+}  // namespace limpid::denoise

@@ -1,0 +1,132 @@
+// One level of the variance-guided a-trous filter. docs/denoising.md, SVGF, step 6.
+#extension GL_EXT_control_flow_attributes : require
+#include "denoise/svgf/svgf_params.h"
+#include "shaders/filter_image.glsl"
+
+layout(constant_id = 3) const bool BLUR_VARIANCE = true;
+layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    SvgfFilterParams params;
+};
+READ_UINT2(1, surfaces);
+READ_HALF4(2, signal);
+WRITE_HALF4(3, filtered);
+
+#include "denoise/svgf/svgf_weights.glsl"
+
+const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
+const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
+const float LOG2_E = 1.44269504;
+
+struct Tap {
+    vec4 light;  // and deviation; negative: nothing is seen
+    float luminance;
+    Surface surface;
+    bool counts;
+};
+
+struct Centre {
+    SurfaceCentre surface;
+    vec4 light;
+    float luminance, luminanceScale;
+    vec4 sum;  // of weighted light; of weights
+    float squares;
+};
+
+/// Of a tap `from` the centre.
+float kernel(ivec2 from) {
+    return WIDE ? B3[abs(from.x)] * B3[abs(from.y)] : TENT[abs(from.x)] * TENT[abs(from.y)];
+}
+
+Tap loadTap(ivec2 at) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const vec4 light = LOAD_HALF4(signal, inside);
+    return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
+}
+
+void addVariance(inout vec2 sum, ivec2 at, float weight) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const float deviation = LOAD_HALF4_ALPHA(signal, inside);
+    if (at == inside && deviation >= 0.0) sum += weight * vec2(deviation * deviation, 1.0);
+}
+
+/// A pixel's own variance is as noisy as its light: that of the 3x3 around it.
+float blurredDeviation(ivec2 at, float own) {
+    if (!BLUR_VARIANCE) return own;
+    vec2 sum = 4.0 * vec2(own * own, 1.0);
+    addVariance(sum, at + ivec2(-1, -1), 1.0);
+    addVariance(sum, at + ivec2(0, -1), 2.0);
+    addVariance(sum, at + ivec2(1, -1), 1.0);
+    addVariance(sum, at + ivec2(-1, 0), 2.0);
+    addVariance(sum, at + ivec2(1, 0), 2.0);
+    addVariance(sum, at + ivec2(-1, 1), 1.0);
+    addVariance(sum, at + ivec2(0, 1), 2.0);
+    addVariance(sum, at + ivec2(1, 1), 1.0);
+    return sqrt(sum.x / sum.y);
+}
+
+Centre begin(ivec2 at) {
+    const Tap tap = loadTap(at);
+    Centre centre;
+    centre.surface = centreOf(tap.surface, at);
+    centre.light = tap.light;
+    centre.luminance = tap.luminance;
+    const float tolerance =
+        params.phiColor * blurredDeviation(at, tap.light.a) + SVGF_LUMINANCE_FLOOR * abs(tap.luminance) + 1e-6;
+    centre.luminanceScale = LOG2_E / tolerance;
+    const float weight = kernel(ivec2(0));
+    centre.sum = weight * vec4(tap.light.rgb, 1.0);
+    centre.squares = weight * weight * tap.light.a * tap.light.a;
+    return centre;
+}
+
+void addTo(inout Centre centre, Tap tap, ivec2 from) {
+    const float exponent = surfaceExponent(centre.surface, tap.surface, from) -
+                           abs(centre.luminance - tap.luminance) * centre.luminanceScale;
+    const float weight = tap.counts ? kernel(from) * exp2(exponent) : 0.0;
+    centre.sum += weight * vec4(tap.light.rgb, 1.0);
+    const float deviation = weight * tap.light.a;
+    centre.squares += deviation * deviation;
+}
+
+void store(ivec2 at, Centre centre) {
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
+    STORE_HALF4(filtered, at, centre.light.a >= 0.0 ? result : centre.light);
+}
+
+// An invocation filters 2x2 pixels that lie a step apart, of whose 4 x 25 taps 36 are different.
+const ivec2 BLOCK = ivec2(2, 2);  // as in svgf.cpp
+const int COUNT = BLOCK.x * BLOCK.y;
+
+ivec2 inBlock(int number) {
+    return ivec2(number % BLOCK.x, number / BLOCK.x);
+}
+
+void main() {
+    const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy);
+    const ivec2 first = invocation / params.step * (BLOCK * params.step) + invocation % params.step;
+    if (first.x >= int(params.width) || first.y >= int(params.height)) return;
+    Centre centres[COUNT];
+    bool anySeen = false;
+    [[unroll]] for (int number = 0; number < COUNT; ++number) {
+        centres[number] = begin(first + params.step * inBlock(number));
+        anySeen = anySeen || centres[number].light.a >= 0.0;
+    }
+    if (anySeen) {
+        [[unroll]] for (int j = -2; j < BLOCK.y + 2; ++j) {
+            [[unroll]] for (int i = -2; i < BLOCK.x + 2; ++i) {
+                if (!WIDE && (i < -1 || i > BLOCK.x || j < -1 || j > BLOCK.y)) continue;
+                const Tap tap = loadTap(first + params.step * ivec2(i, j));
+                [[unroll]] for (int number = 0; number < COUNT; ++number) {
+                    const ivec2 from = ivec2(i, j) - inBlock(number);
+                    const int reach = max(abs(from.x), abs(from.y));
+                    if (reach <= (WIDE ? 2 : 1) && from != ivec2(0)) addTo(centres[number], tap, from);
+                }
+            }
+        }
+    }
+    [[unroll]] for (int number = 0; number < COUNT; ++number)
+        store(first + params.step * inBlock(number), centres[number]);
+}

@@ -1,0 +1,158 @@
+// Temporal accumulation of one signal: its color, and the first two moments of its luminance. docs/denoising.md, SVGF,
+// steps 2 and 3.
+#include "denoise/reprojection.glsl"
+#include "denoise/svgf/svgf_params.h"
+#include "shaders/filter_image.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, albedo likewise; else the first
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    SvgfReprojectParams params;
+};
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
+layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedoA;
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D albedoB;
+layout(set = 0, binding = 5, rgba32f) uniform readonly image2D motion;
+layout(set = 0, binding = 6, rgba32f) uniform readonly image2D previousNormal;
+READ_UINT2(7, surfaces);
+layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
+READ_UINT2(9, surfacesBefore);
+layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
+READ_HALF4(11, colorBefore);
+layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
+layout(set = 0, binding = 13, rgba32f) uniform readonly image2D tilesBefore;
+WRITE_HALF4(14, color);                                                // light without albedo | deviation, -1 if nothing is seen
+layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
+
+/// How a surface point must have looked in the previous frame.
+struct Expected {
+    vec3 normal;
+    float depth, tolerance;
+    uint instance;
+};
+
+struct Past {
+    vec3 color;
+    vec4 moments;
+};
+
+struct Taps {
+    Past sum;
+    float weight;
+};
+
+const Taps NO_TAPS = Taps(Past(vec3(0.0), vec4(0.0)), 0.0);
+
+void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const uvec2 surface = LOAD_UINT2(surfacesBefore, inside);
+    const float depth = uintBitsToFloat(surface.y);
+    const vec4 momentsThere = imageLoad(momentsBefore, inside);
+    const bool counts = at == inside && depth > 0.0 && momentsThere.w > 0.0 &&
+                        dot(expected.normal, decodeOctahedral(surface.x)) > params.normalTest &&
+                        abs(expected.depth - depth) < expected.tolerance &&
+                        imageLoad(instancesBefore, inside).x == expected.instance;
+    if (!counts || weight <= 0.0) return;
+    taps.sum.color += weight * LOAD_HALF4(colorBefore, inside).rgb;
+    taps.sum.moments += weight * momentsThere;
+    taps.weight += weight;
+}
+
+/// At `position` (pixels, minus one half) of the previous frame; all 0 if nothing fits.
+Past pastAt(vec2 position, Expected expected) {
+    const vec2 corner = floor(position), share = position - corner;
+    const ivec2 first = ivec2(corner), nearest = ivec2(floor(position + 0.5));
+    Taps taps = NO_TAPS;
+    addTap(taps, first, (1.0 - share.x) * (1.0 - share.y), expected);
+    addTap(taps, first + ivec2(1, 0), share.x * (1.0 - share.y), expected);
+    addTap(taps, first + ivec2(0, 1), (1.0 - share.x) * share.y, expected);
+    // The fourth tap and the search in one loop: CPUs run the body of any loop once, but only where a pixel searches
+    // more often.
+    ivec2 at = first + 1;
+    float weight = share.x * share.y;
+    int searched = 0;
+    bool more;
+    do {
+        addTap(taps, at, weight, expected);
+        const bool failed = taps.weight <= MIN_SHARE;
+        more = params.search != 0u && searched < 9 && (failed || searched > 0);
+        if (failed && searched == 0) taps = NO_TAPS;
+        at = nearest + ivec2(searched % 3, searched / 3) - 1;
+        weight = 1.0;
+        ++searched;
+    } while (more);
+    if (taps.weight <= 0.0) return NO_TAPS.sum;
+    return Past(taps.sum.color / taps.weight, taps.sum.moments / taps.weight);
+}
+
+vec4 tileTap(ivec2 at) {
+    return imageLoad(tilesBefore, clamp(at, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE));
+}
+
+/// Lag, mean and deviation around `position` (as above).
+vec4 tilesAt(vec2 position) {
+    const vec2 tile = (position + 0.5) / float(SVGF_TILE) - 0.5;
+    const vec2 corner = floor(tile), share = tile - corner;
+    const ivec2 first = ivec2(corner);
+    return mix(mix(tileTap(first), tileTap(first + ivec2(1, 0)), share.x),
+               mix(tileTap(first + ivec2(0, 1)), tileTap(first + 1), share.x), share.y);
+}
+
+vec3 demodulated(vec3 light, ivec2 at) {
+    vec4 albedo = imageLoad(albedoA, at);
+    if (SUM_OF_TWO) albedo += imageLoad(albedoB, at);
+    const vec3 x = finiteOr(light, vec3(0.0)) / (params.demodulate != 0u ? modulation(albedo) : vec3(1.0));
+    return clamp(x, -MAX_HALF, MAX_HALF);
+}
+
+/// Brighter than what the tiles around have ever shown by more than chance.
+vec3 withoutFirefly(vec3 x, float frames, vec4 tiles) {
+    const float limit = tiles.y + params.firefly * tiles.z;
+    const float l = luminance(x);
+    const bool firefly = params.firefly > 0.0 && frames > 0.0 && tiles.z > 0.0 && l > limit;
+    return firefly ? x * (limit / l) : x;
+}
+
+Past pastOf(ivec2 at, uvec2 surface, out vec4 tiles) {
+    tiles = vec4(0.0);
+    const vec2 size = vec2(params.width, params.height);
+    const Reprojection was = reprojectionOf(imageLoad(motion, at), vec2(at), size);
+    const float z = uintBitsToFloat(surface.y);
+    if (z <= 0.0 || !was.onScreen) return NO_TAPS.sum;
+    const float depthBefore = z + was.depthChange;
+    const float tolerance = params.relative == 0u ? params.depthTest
+                                                  : depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x),
+                                                                   vec2(at), size, params.depthTest);
+    tiles = tilesAt(was.position);
+    return pastAt(was.position,
+                  Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
+}
+
+Past accumulated(Past past, vec3 x) {
+    const float frames = min(past.moments.w + 1.0, params.longest);
+    const float l = luminance(x);
+    const vec3 alphas = max(vec3(params.alphaMoments, params.alphaMoments, params.alphaFast), 1.0 / frames);
+    return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)),
+                vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
+}
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    vec3 light = imageLoad(lightA, at).rgb;
+    if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
+    const vec3 x = demodulated(light, at);
+    const uvec2 surface = LOAD_UINT2(surfaces, at);
+    vec4 tiles;
+    Past now = pastOf(at, surface, tiles);
+    const float frames = now.moments.w;
+    now.moments.w *= 1.0 - tiles.x;
+    if (isFinite(light)) now = accumulated(now, withoutFirefly(x, frames, tiles));
+    const bool seen = uintBitsToFloat(surface.y) > 0.0;
+    const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
+    STORE_HALF4(color, at, seen ? vec4(now.color, min(deviation, MAX_HALF)) : vec4(x, -1.0));
+    imageStore(moments, at, seen ? now.moments : vec4(0.0));
+}

@@ -1,0 +1,42 @@
+// The deviation of pixels that have too little history for one of their own: from their neighbours' moments.
+// docs/denoising.md, SVGF, step 5.
+#include "denoise/svgf/svgf_params.h"
+#include "shaders/filter_image.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    SvgfFilterParams params;
+};
+READ_UINT2(1, surfaces);
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D moments;
+UPDATE_HALF4(3, color);
+
+#include "denoise/svgf/svgf_weights.glsl"
+
+const int RADIUS = 3;
+
+void addTap(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
+    const ivec2 there = at + from;
+    const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
+    const Surface other = surfaceAt(inside);
+    const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other, from));
+    if (inside == there && other.depth > 0.0) sum += weight * vec3(imageLoad(moments, inside).xy, 1.0);
+}
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const float frames = imageLoad(moments, at).w;
+    if (frames >= SVGF_YOUNG) return;
+    const Surface surface = surfaceAt(at);
+    if (surface.depth <= 0.0) return;
+    const SurfaceCentre centre = centreOf(surface, at);
+    vec3 sum = vec3(0.0);
+    for (int j = -RADIUS; j <= RADIUS; ++j) {
+        for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
+    }
+    const vec2 mean = sum.xy / sum.z;
+    const vec3 light = LOAD_HALF4(color, at).rgb;
+    STORE_HALF4(color, at, vec4(light, min(sqrt(max(mean.y - mean.x * mean.x, 0.0)), MAX_HALF)));
+}

@@ -1,0 +1,5 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// svgf_variance.glsl with gpu::Backing::Buffer.
+#define LIMPID_FILTER_BUFFERS
+#include "denoise/svgf/svgf_variance.glsl"
