@@ -42,6 +42,12 @@ struct Case {
     bool hasNans = false;  ///< and infinities, in radiance and albedo
 };
 
+SvgfSettings preset(const char* name) {
+    SvgfSettings settings;
+    if (!denoise::svgfParams().applyPreset(settings, name)) throw Error("there is no such preset");
+    return settings;
+}
+
 struct Signal {
     std::string name;
     SvgfSignal signal;
@@ -290,6 +296,7 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"PositionOrthographic",
                  {.cameraMoves = true, .orthographic = true},
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
+            Case{"Cis565", moving, preset("cis565")},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
             Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},
             Case{"Slow", moving, {.alpha = 0.05f, .alphaMoments = 0.1f, .alphaFast = 0.3f, .levels = 1}},
