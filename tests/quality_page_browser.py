@@ -228,10 +228,11 @@ def check_silence(browser, address):
 def test(browser, address):
     for domain in ('Page', 'Runtime', 'Network', 'Log'):
         browser.call(f'{domain}.enable')
-    browser.size(1200, 900)
+    browser.size(1200, 3000)  # nothing has to be scrolled to
     browser.call('Page.navigate', url=address)
     browser.evaluate('''new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))
-      .then(() => Promise.all([...document.images].map(image => image.decode())))''')
+      .then(() => Promise.allSettled([...document.images].map(image => image.decode())))''')
+    check_silence(browser, address)
     pictures = browser.evaluate('[...document.images].map(image => image.naturalWidth)')
     check(len(pictures) >= 4 and min(pictures) > 0, f'pictures: {pictures}')
     use_slider(browser)
@@ -251,7 +252,7 @@ def main():
         browser = Browser(program, profile)
         try:
             test(browser, address)
-        except AssertionError as fault:
+        except (AssertionError, RuntimeError) as fault:
             print(fault)
             return 1
         finally:

@@ -201,7 +201,7 @@ TEST(QualityReport, MethodsAreRankedByMeanFlip) {
     EXPECT_THAT(rankMethods({}), IsEmpty());
 }
 
-TEST(QualityReport, APageThatCannotBeWrittenLeavesTheOldOne) {
+TEST(QualityReport, APageIntoNoFolderIsAnError) {
     EXPECT_THROW(writeQualityPage("/no such folder/page.html", runOf()), OutputError);
 }
 

@@ -146,7 +146,7 @@ void printSequence(const MeasuredSequence& measured) {
                    image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
                    cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
                    cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
-                   cell(denoisingMs(method), 10, 3), cell(method.denoisingBytesPerPixel, 9, 0));
+                   cell(denoisingMs(method), 10, 3), cell(bytesPerPixel(method), 9, 0));
     }
 }
 

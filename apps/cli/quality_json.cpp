@@ -41,8 +41,7 @@ Json methodJson(const MethodQuality& method) {
     }
     object["median_ms"] = method.medianMs;
     object["denoising_ms"] = number(denoisingMs(method));
-    object["denoising_bytes_per_pixel"] =
-        method.denoisingBytesPerPixel > 0.0 ? Json(method.denoisingBytesPerPixel) : Json(nullptr);
+    object["denoising_bytes_per_pixel"] = number(bytesPerPixel(method));
     object["frames"] = Json::array();
     for (size_t i = 0; i < method.scores.size(); ++i) object["frames"].push_back(frameJson(method, i));
     return object;

@@ -50,7 +50,7 @@ MethodRank rankOf(const QualityRun& run, size_t index) {
         if (psnr && noisy) gain.add(*psnr - *noisy);
         flicker.add(meanOf(method, "flicker"));
         ms.add(denoisingMs(method));
-        if (method.denoisingBytesPerPixel > 0.0) bytes.add(method.denoisingBytesPerPixel);
+        bytes.add(bytesPerPixel(method));
         const bool best =
             std::ranges::none_of(methods, [&](const auto& m) { return flipOf(m) < flipOf(method); });
         if (best) rank.best.push_back(measured.sequence.name);
@@ -74,6 +74,10 @@ std::optional<double> meanOf(const MethodQuality& method, std::string_view metri
 
 std::optional<double> denoisingMs(const MethodQuality& method) {
     return method.denoisingMs.empty() ? std::nullopt : std::optional(median(method.denoisingMs));
+}
+
+std::optional<double> bytesPerPixel(const MethodQuality& method) {
+    return method.denoisingBytesPerPixel > 0.0 ? std::optional(method.denoisingBytesPerPixel) : std::nullopt;
 }
 
 std::vector<MethodRank> rankMethods(const QualityRun& run) {

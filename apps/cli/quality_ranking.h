@@ -25,6 +25,9 @@ std::vector<MethodRank> rankMethods(const QualityRun& run);
 /// The mean of a metric (image::sequenceMetrics) by name over a method's frames.
 std::optional<double> meanOf(const MethodQuality& method, std::string_view metric);
 
+/// denoisingBytesPerPixel; none for the noisy frames.
+std::optional<double> bytesPerPixel(const MethodQuality& method);
+
 /// The median over frames, of all denoising passes together; none for the noisy frames.
 std::optional<double> denoisingMs(const MethodQuality& method);
 
