@@ -71,6 +71,23 @@ function(limpid_shaders TARGET)
   target_include_directories(${TARGET} PUBLIC ${GENERATED})
 endfunction()
 
+# limpid_text(TARGET a.html ...): embeds files of the current folder in TARGET as `limpid::embedded::a_html`
+# (std::string_view), in the generated header "a.html.h".
+function(limpid_text TARGET)
+  set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+  foreach(SOURCE ${ARGN})
+    string(MAKE_C_IDENTIFIER ${SOURCE} SYMBOL)
+    add_custom_command(
+      OUTPUT ${GENERATED}/${SOURCE}.h
+      COMMAND ${CMAKE_COMMAND} -D INPUT=${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} -D OUTPUT=${GENERATED}/${SOURCE}.h
+              -D NAME=${SYMBOL} -P ${CMAKE_SOURCE_DIR}/cmake/embed_text.cmake
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} ${CMAKE_SOURCE_DIR}/cmake/embed_text.cmake
+      VERBATIM)
+    target_sources(${TARGET} PRIVATE ${GENERATED}/${SOURCE}.h)
+  endforeach()
+  target_include_directories(${TARGET} PRIVATE ${GENERATED})
+endfunction()
+
 # limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): a GoogleTest program; every case is a ctest test.
 function(limpid_test NAME)
   cmake_parse_arguments(ARG "" "LABELS" "SOURCES;DEPS" ${ARGN})

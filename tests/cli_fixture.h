@@ -29,9 +29,11 @@ class CliTest : public testing::Test {
     void TearDown() override { fs::remove_all(folder_); }
 
     static Result run(const std::string& arguments) {
-        const std::string command = std::string("'") + LIMPID_PROGRAM + "' " + arguments + " 2>&1";
+        return runProgram(std::string("'") + LIMPID_PROGRAM + "' " + arguments);
+    }
+    static Result runProgram(const std::string& command) {
         Result result;
-        FILE* pipe = ::popen(command.c_str(), "r");
+        FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
         std::array<char, 4096> buffer{};
         while (const size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
             result.output.append(buffer.data(), count);

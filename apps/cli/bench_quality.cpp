@@ -4,68 +4,17 @@
 #include <cmath>
 #include <optional>
 
-#include "bench.h"
 #include "image/flicker.h"
 #include "image/metrics.h"
 #include "image/tonemap.h"
-#include "progress.h"
+#include "pass_times.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/layers.h"
-#include "renderer/still.h"
 
 namespace limpid::cli {
 namespace {
 
 using image::Image;
-
-struct Reference {
-    Image picture;
-    image::Geometry geometry;
-    Image difference;  ///< of the two halves
-};
-
-Image rendered(ProgressiveStill& still, Moment moment, const RenderSettings& settings,
-               image::Geometry* geometry) {
-    still.update(std::move(moment), settings);
-    while (still.launch()) continue;
-    const RenderedLayers layers = still.download();
-    if (geometry)
-        *geometry =
-            image::geometryOf(toLayeredImage(layers, {"motion", "depth", "normal"}, image::Storage::Float));
-    return beautyOf(layers);
-}
-
-/// Two halves of independent samples: their mean is the reference, their difference tells its error.
-class ReferenceRenderer {
-  public:
-    ReferenceRenderer(gpu::Device& device, scene::GpuScene& scene, RenderSettings settings, uint64_t samples)
-        : first_(device, scene, samples / 2),
-          second_(device, scene, samples - samples / 2),
-          settings_(settings) {
-        settings_.pipeline = {};
-        settings_.samplesPerLaunch = 64;
-        settings_.layers = true;
-    }
-
-    Reference render(const Sequence& sequence, uint64_t frame) {
-        Reference reference;
-        settings_.seed = 1;  // its noise must not be the noise of what it judges
-        reference.picture =
-            rendered(first_, sequence.moment(frame, settings_.extent), settings_, &reference.geometry);
-        settings_.seed = 2;
-        const Image other = rendered(second_, sequence.moment(frame, settings_.extent), settings_, nullptr);
-        reference.difference = other;
-        for (size_t i = 0; i < other.pixels.size(); ++i) {
-            reference.difference.pixels[i] -= reference.picture.pixels[i];
-            reference.picture.pixels[i] = 0.5f * (reference.picture.pixels[i] + other.pixels[i]);
-        }
-        return reference;
-    }
-
-  private:
-    ProgressiveStill first_, second_;
-    RenderSettings settings_;
-};
 
 /// The halves differ by twice the error of their mean (RMS), as far as a screen shows it.
 double ownPsnr(const std::vector<Reference>& references, float stops) {
@@ -106,6 +55,7 @@ class Judge {
         before_ = std::move(c);
         method.scores.push_back(scores);
         method.last = std::move(picture);
+        method.lastError = before_->flipMap;
     }
 
   private:
@@ -130,11 +80,16 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
         renderer.render(sequence.moment(frame, extent));
         if (frame < frames.first) continue;
         times.add(sumByName(renderer.passTimes()));
+        double denoisingMs = 0.0;
+        for (const gpu::PassTime& pass : renderer.denoisingTimes()) denoisingMs += pass.milliseconds;
+        method.denoisingMs.push_back(denoisingMs);
         const RenderedLayers layers = renderer.download();
         judge.add(method, frame, beautyOf(layers));
         if (noisyJudge) noisyJudge->add(noisy, frame, noisyOf(layers));
     }
     method.medianMs = times.medians();
+    method.denoisingBytesPerPixel = static_cast<double>(renderer.denoisingBytes()) /
+                                    (static_cast<double>(extent.width) * static_cast<double>(extent.height));
     return method;
 }
 
@@ -142,16 +97,7 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
 
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
                                const std::vector<QualityMethod>& methods, const QualityFrames& frames,
-                               uint64_t referenceSamples, uint32_t samples) {
-    std::vector<Reference> references;
-    {
-        ReferenceRenderer renderer(device, scene, methods.front().settings, referenceSamples);
-        Progress progress("references", frames.count - frames.first);
-        for (uint64_t frame = frames.first; frame < frames.count; ++frame) {
-            references.push_back(renderer.render(sequence, frame));
-            progress.show(references.size());
-        }
-    }
+                               const std::vector<Reference>& references, uint32_t samples) {
     SequenceQuality quality;
     std::vector<std::optional<float>> measured;
     for (const Reference& reference : references)
@@ -159,7 +105,7 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     quality.exposure = image::sequenceExposure(measured);
     quality.referencePsnr = ownPsnr(references, quality.exposure);
     quality.reference = references.back().picture;
-    quality.methods.push_back({.name = "noisy", .scores = {}, .last = {}, .medianMs = {}});
+    quality.methods.emplace_back().name = "noisy";
     for (const QualityMethod& chosen : methods) {
         FrameRenderer renderer(device, scene, chosen.settings, samples);
         const Judge judge(references, frames.first, quality.exposure);

@@ -9,22 +9,22 @@
 
 #include "gpu/device.h"
 #include "image/frame_scores.h"
+#include "quality_reference.h"
 #include "renderer/sequence.h"
 #include "renderer/settings.h"
 
 namespace limpid::cli {
-
-/// Frames `first` to `count` - 1 are compared; those before fill the histories.
-struct QualityFrames {
-    uint64_t first = 16, count = 61;
-};
 
 /// The noisy frames, or what a pipeline made of them.
 struct MethodQuality {
     std::string name;
     std::vector<image::FrameScores> scores;
     image::Image last;                       ///< linear radiance
+    image::Image lastError;                  ///< its FLIP map
     std::map<std::string, double> medianMs;  ///< by pass; empty for the noisy frames
+    std::vector<double> denoisingMs;  ///< of the denoising passes, by compared frame; empty for noisy frames
+    /// Device memory of all images that the denoising passes write, with their histories; 0 for noisy frames.
+    double denoisingBytesPerPixel = 0.0;
 };
 
 struct SequenceQuality {
@@ -41,10 +41,10 @@ struct QualityMethod {
     RenderSettings settings;
 };
 
-/// Renders references of `referenceSamples` (at least 2) per pixel, and every method at `samples` per
-/// frame. Rays go through the pixels' centres in both.
+/// Judges every method, at `samples` per frame, by the references of `frames` (makeReferences). Rays go
+/// through the pixels' centres.
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
                                const std::vector<QualityMethod>& methods, const QualityFrames& frames,
-                               uint64_t referenceSamples, uint32_t samples);
+                               const std::vector<Reference>& references, uint32_t samples);
 
 }  // namespace limpid::cli

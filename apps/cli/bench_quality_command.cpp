@@ -1,6 +1,7 @@
 // limpid bench quality: how near denoised sequences come to converged ones, in numbers and pictures.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,27 +9,34 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/file.h"
+#include "base/log.h"
 #include "bench.h"
 #include "bench_quality.h"
+#include "command_text.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "quality_json.h"
+#include "quality_page.h"
+#include "quality_ranking.h"
+#include "quality_sequences.h"
 #include "renderer/parameters.h"
+#include "renderer/render_identity.h"
 #include "scene/camera_path.h"
 #include "scene/movement.h"
 
 namespace limpid::cli {
 namespace {
 
-using nlohmann::json;
-
 struct QualityOptions {
     DeviceChoice device;
     std::vector<std::string> scenes, pipelines, presets, assignments, variants;
-    std::string environment, cameraPath = "orbit", folder;
+    std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder;
     uint32_t width = 640, height = 360, samples = 1;
     uint64_t referenceSamples = 4096;
     QualityFrames frames;
-    bool json = false;
+    bool framesGiven = false;  ///< on the command line: then of every sequence
+    bool lab = false, quick = false, json = false;
 };
 
 /// Every pipeline as it is, and the last in every variant.
@@ -53,56 +61,113 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     return methods;
 }
 
-SequenceQuality measureScene(gpu::Device& device, const QualityOptions& o, const std::string& name) {
-    scene::Scene scene = loadChosenScene({name, o.environment, ""});
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
-    const scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(device, data, {chosenTracer(o.device, device), {}});
-    const SequenceTiming timing;
+std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
+    const QualitySequence common{
+        .cameraPath = o.cameraPath, .frames = o.frames, .environment = o.environment};
+    std::vector<QualitySequence> sequences;
+    for (const std::string& scene : o.scenes) {
+        sequences.push_back(common);
+        sequences.back().name = sceneStem(scene);
+        sequences.back().scene = scene;
+    }
+    if (o.lab) sequences.insert(sequences.end(), labSequences().begin(), labSequences().end());
+    if (!o.scenesFolder.empty()) {
+        for (QualitySequence& sequence : sequencesInFolder(o.scenesFolder, o.pathsFolder, common))
+            sequences.push_back(std::move(sequence));
+    }
+    for (QualitySequence& sequence : sequences) {
+        if (o.quick || o.framesGiven) sequence.frames = o.frames;
+    }
+    return sequences;
+}
+
+/// A sequence on the device.
+struct LoadedSequence {
+    scene::Scene scene;
+    scene::SceneData data;
+    std::unique_ptr<scene::GpuScene> gpu;
     std::optional<scene::CameraPath> path;
-    if (o.cameraPath != "none") {
-        path = scene::isBuiltinCameraPath(o.cameraPath)
-                   ? scene::builtinCameraPath(o.cameraPath, scene, scene.cameras.front(),
-                                              timing.timeOf(o.frames.count))
-                   : scene::loadCameraPath(o.cameraPath);
+    SequenceTiming timing;
+
+    Sequence frames() const { return {scene, data, scene.cameras.front(), path, timing}; }
+};
+
+/// What --quick leaves out.
+struct TooLarge : Error {
+    using Error::Error;
+};
+
+LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence) {
+    LoadedSequence loaded;
+    loaded.scene = loadChosenScene({sequence.scene, sequence.environment, ""});
+    const uint64_t triangles = loaded.scene.triangleCount();
+    if (o.quick && triangles >= quick::maxTriangles) {
+        throw TooLarge(
+            fmt::format("has {} triangles, and --quick takes less than {}", triangles, quick::maxTriangles));
     }
-    const Sequence sequence(scene, data, scene.cameras.front(), path, timing);
-    return measureQuality(device, gpuScene, sequence, methodsOf(o), o.frames, o.referenceSamples, o.samples);
-}
-
-/// Infinite where a frame equals its reference: JSON has no such number.
-json numberOrNull(std::optional<double> value) {
-    return value && std::isfinite(*value) ? json(*value) : json(nullptr);
-}
-
-json scoresJson(const MethodQuality& method) {
-    json object{{"method", method.name}, {"median_ms", method.medianMs}};
-    for (const image::Metric& metric : image::sequenceMetrics()) {
-        if (metric.name == "hdr_flip") continue;
-        const std::optional<image::Worst> worst = image::worstOf(metric, method.scores);
-        object[std::string(metric.name)] = {
-            {"mean", numberOrNull(image::meanOf(metric, method.scores))},
-            {"worst", numberOrNull(worst ? std::optional(worst->value) : std::nullopt)},
-            {"worst_frame", worst ? worst->frame : -1}};
+    if (!loaded.scene.rig.clips.empty()) scene::chooseClip(loaded.scene, "");
+    if (scene::isBuiltinCameraPath(sequence.cameraPath)) {
+        loaded.path =
+            scene::builtinCameraPath(sequence.cameraPath, loaded.scene, loaded.scene.cameras.front(),
+                                     loaded.timing.timeOf(sequence.frames.count));
+    } else if (sequence.cameraPath != "none") {
+        loaded.path = scene::loadCameraPath(sequence.cameraPath);
     }
-    return object;
+    loaded.data = scene::buildSceneData(loaded.scene);
+    loaded.gpu = std::make_unique<scene::GpuScene>(device, loaded.data,
+                                                   scene::TraceOptions{chosenTracer(o.device, device), {}});
+    return loaded;
 }
 
-void printScene(const std::string& scene, const SequenceQuality& quality) {
-    fmt::print("{} (reference: {:.1f} dB by itself)\n", scene, quality.referencePsnr);
-    double noisyPsnr = 0.0;
+MeasuredSequence measure(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence,
+                         LoadedSequence& loaded) {
+    const std::vector<QualityMethod> methods = methodsOf(o);
+    const Sequence frames = loaded.frames();
+    ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
+    if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
+    const std::vector<Reference> references = makeReferences(
+        device, *loaded.gpu, frames, methods.front().settings, sequence.frames, o.referenceSamples, files);
+    return {sequence, loaded.scene.triangleCount(),
+            measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
+}
+
+/// The numbers of one line: they may be absent, or infinite.
+std::string cell(std::optional<double> value, int width, int digits) {
+    return value ? fmt::format("{:>{}.{}f}", *value, width, digits) : fmt::format("{:>{}}", "-", width);
+}
+
+void printSequence(const MeasuredSequence& measured) {
+    const SequenceQuality& quality = measured.quality;
+    fmt::print("{} (reference: {:.1f} dB by itself)\n", measured.sequence.name, quality.referencePsnr);
+    const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
     for (const MethodQuality& method : quality.methods) {
-        std::vector<double> means;
-        for (const image::Metric& metric : image::sequenceMetrics())
-            means.push_back(image::meanOf(metric, method.scores).value_or(0.0));
-        if (&method == &quality.methods.front()) noisyPsnr = means[0];
-        double filterMs = 0.0;
-        for (const auto& [pass, ms] : method.medianMs) filterMs += pass == "pathtrace" ? 0.0 : ms;
-        fmt::print("  {:<10}{:>9.2f}{:>+8.2f}{:>9.2f}{:>9.4f}{:>10.5f}{:>9.4f}{:>10.5f}{:>10.3f}\n",
-                   method.name, means[0], means[0] - noisyPsnr,
-                   image::worstOf(image::sequenceMetrics()[0], method.scores)->value, means[1], means[2],
-                   means[3], means[5], filterMs);
+        const double psnr = meanOf(method, "psnr").value_or(0.0);
+        fmt::print("  {:<10}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
+                   image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
+                   cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
+                   cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
+                   cell(denoisingMs(method), 10, 3), cell(bytesPerPixel(method), 9, 0));
     }
+}
+
+void printRanking(const QualityRun& run) {
+    fmt::print("all {} sequences\n  {:<10}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}  best in\n", run.sequences.size(),
+               "method", "FLIP", "rank", "gain dB", "flicker", "filter ms", "B/pixel");
+    for (const MethodRank& rank : rankMethods(run)) {
+        std::string best;
+        for (const std::string& name : rank.best) best += (best.empty() ? "" : ", ") + name;
+        fmt::print("  {:<10}{:>9.4f}{:>8.2f}{}{}{}{}  {}\n", rank.name, rank.flip, rank.rank,
+                   cell(rank.gain, 9, 2), cell(rank.flicker, 10, 5), cell(rank.denoisingMs, 10, 3),
+                   cell(rank.bytesPerPixel, 9, 0), best);
+    }
+}
+
+void printHead(const QualityRun& run) {
+    fmt::print(
+        "{}, {}x{}, {} samples a frame, references of {}\n  {:<10}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
+        "{:>10}{:>9}\n",
+        run.device, run.extent.width, run.extent.height, run.samples, run.referenceSamples, "method",
+        "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker", "filter ms", "B/pixel");
 }
 
 /// Noisy, every method, reference, side by side.
@@ -121,43 +186,103 @@ void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& q
     image::writePng(file, image::toBytes(image::tonemap(all, quality.exposure)));
 }
 
-void run(const QualityOptions& o) {
-    if (o.frames.first >= o.frames.count) throw UsageError("--first: there are fewer frames");
+void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
+    log::warn("SKIPPED: {}: {}", sequence.name, why.what());
+    run.skipped.push_back({sequence.name, why.what()});
+}
+
+/// What has been measured goes into the page after each sequence: a run that ends early leaves the rest.
+void addSequence(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence,
+                 QualityRun& run) {
+    std::optional<LoadedSequence> loaded;
+    try {
+        loaded = load(device, o, sequence);
+    } catch (const TooLarge& error) {
+        return skip(sequence, error, run);
+    } catch (const Error& error) {
+        if (!sequence.optional) throw;
+        return skip(sequence, error, run);
+    }
+    run.sequences.push_back(measure(device, o, sequence, *loaded));
+    const MeasuredSequence& measured = run.sequences.back();
+    if (!o.json) printSequence(measured);
+    if (!o.folder.empty()) {
+        const std::filesystem::path folder(o.folder);
+        writeSideBySide(folder / ("quality." + sequence.name + ".png"), measured.quality);
+    }
+    if (!o.report.empty()) writeQualityPage(o.report, run);
+}
+
+void run(const QualityOptions& o, const std::string& command) {
     methodsOf(o);
+    const std::vector<QualitySequence> sequences = sequencesOf(o);
+    for (const QualitySequence& sequence : sequences) {
+        if (sequence.frames.first >= sequence.frames.count)
+            throw UsageError("--first: there are fewer frames");
+    }
+    if (!o.report.empty()) checkWritable(o.report);
+    for (const std::string& folder : {o.folder, o.referenceFolder}) {
+        if (!folder.empty()) std::filesystem::create_directories(folder);
+    }
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
-    if (!o.folder.empty()) std::filesystem::create_directories(o.folder);
-    if (!o.json) {
-        fmt::print(
-            "{}, {}x{}, {} samples a frame, frames {} to {}, references of {}\n  {:<10}{:>9}{:>8}{:>9}{:>9}"
-            "{:>10}{:>9}{:>10}{:>10}\n",
-            device->info().name, o.width, o.height, o.samples, o.frames.first, o.frames.count - 1,
-            o.referenceSamples, "method", "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker",
-            "filter ms");
+    QualityRun all{.version = LIMPID_VERSION,
+                   .command = command,
+                   .device = device->info().name,
+                   .driver = device->info().driver,
+                   .tracer = std::string(scene::toString(chosenTracer(o.device, *device))),
+                   .extent = {o.width, o.height},
+                   .samples = o.samples,
+                   .referenceSamples = o.referenceSamples};
+    if (!o.json) printHead(all);
+    for (const QualitySequence& sequence : sequences) addSequence(*device, o, sequence, all);
+    if (all.sequences.empty()) throw Error("no sequence could be measured");
+    if (!o.report.empty()) writeQualityPage(o.report, all);  // with what was skipped last
+    if (!o.json && all.sequences.size() > 1) printRanking(all);
+    if (o.json)
+        fmt::print("{}\n", qualityJson(all).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+/// What the user left open.
+void complete(QualityOptions& o, const CLI::App& command) {
+    const auto given = [&](const char* option) { return command.count(option) > 0; };
+    o.framesGiven = given("--frames") || given("--first");
+    if (o.quick) {
+        if (!given("--width")) o.width = quick::width;
+        if (!given("--height")) o.height = quick::height;
+        if (!given("--first")) o.frames.first = quick::frames.first;
+        if (!given("--frames")) o.frames.count = quick::frames.count;
+        if (!given("--reference-spp")) o.referenceSamples = quick::referenceSamples;
+        if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
     }
-    json scenes = json::array();
-    for (const std::string& name : o.scenes) {
-        const SequenceQuality quality = measureScene(*device, o, name);
-        if (!o.json) printScene(name, quality);
-        if (!o.folder.empty())
-            writeSideBySide(std::filesystem::path(o.folder) / ("quality." + sceneStem(name) + ".png"),
-                            quality);
-        json methods = json::array();
-        for (const MethodQuality& method : quality.methods) methods.push_back(scoresJson(method));
-        scenes.push_back({{"scene", name},
-                          {"exposure", quality.exposure},
-                          {"reference_psnr", numberOrNull(quality.referencePsnr)},
-                          {"methods", methods}});
-    }
-    if (!o.json) return;
-    const json object{{"device", device->info().name},
-                      {"width", o.width},
-                      {"height", o.height},
-                      {"samples", o.samples},
-                      {"reference_samples", o.referenceSamples},
-                      {"first_frame", o.frames.first},
-                      {"frames", o.frames.count},
-                      {"scenes", scenes}};
-    fmt::print("{}\n", object.dump(2));
+    if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
+    if (!o.pipelines.empty()) return;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) o.pipelines.emplace_back(denoiser.name);
+}
+
+void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
+    command.add_option("--scene", o->scenes, "Scenes (repeatable; builtin:cornell)");
+    command.add_flag("--lab", o->lab, "The fixed set of built-in sequences");
+    command.add_flag("--quick", o->quick,
+                     "Small enough for a CPU: 160x90, frames 6 to 8, references of 256 samples, scenes under "
+                     "1000 triangles; of --lab, unless scenes are named");
+    command.add_option("--scenes-folder", o->scenesFolder,
+                       "All glTF scenes in the folders of this one; those that cannot be loaded are skipped");
+    command.add_option("--paths-folder", o->pathsFolder,
+                       "Camera paths for these, NAME.json; those without take --camera-path");
+    command.add_option("--env", o->environment, "Environment map of --scene and --scenes-folder");
+    command.add_option("--camera-path", o->cameraPath,
+                       "Of --scene and --scenes-folder: orbit (default), dolly, shake, a file, or none");
+    command.add_option("--frames", o->frames.count, "Frames (61; --lab has its own)")
+        ->check(CLI::Range(1, 100000));
+    command.add_option("--first", o->frames.first, "First frame that is compared (16)")
+        ->check(CLI::Range(0, 100000));
+    command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
+    command.add_option("--reference-spp", o->referenceSamples, "Samples of the references (4096)")
+        ->check(CLI::Range(2, 1 << 24));
+    command.add_option("--reference-folder", o->referenceFolder,
+                       "Keeps the references there, and reads those that are there already");
+    command.add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
 }
 
 }  // namespace
@@ -166,32 +291,19 @@ void addQualityBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
-    command->add_option("--scene", o->scenes, "Scenes (repeatable; builtin:cornell)");
-    command->add_option("--env", o->environment, "Environment map of all of them");
+    addSequenceOptions(*command, o);
     command->add_option("--pipeline", o->pipelines, "Pipelines that denoise (repeatable; all of them)");
-    command->add_option("--camera-path", o->cameraPath, "orbit (default), dolly, shake, a file, or none");
-    command->add_option("--frames", o->frames.count, "Frames (61)")->check(CLI::Range(1, 100000));
-    command->add_option("--first", o->frames.first, "First frame that is compared (16)")
-        ->check(CLI::Range(0, 100000));
-    command->add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
-    command->add_option("--reference-spp", o->referenceSamples, "Samples of the references (4096)")
-        ->check(CLI::Range(2, 1 << 24));
-    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--variant", o->variants,
                         "The last pipeline once more with these parameters, by commas (repeatable)");
     command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
+    command->add_option("--report", o->report, "An HTML page with everything, pictures included");
     command->add_flag("--json", o->json, "One JSON object on stdout");
     addDeviceOptions(*command, o->device);
-    command->callback([o] {
-        if (o->scenes.empty()) o->scenes = {"builtin:cornell"};
-        if (o->pipelines.empty()) {
-            for (const denoise::Denoiser& denoiser : denoise::denoisers())
-                o->pipelines.emplace_back(denoiser.name);
-        }
-        run(*o);
+    command->callback([o, command] {
+        complete(*o, *command);
+        run(*o, "limpid bench " + commandText(*command));
     });
 }
 

@@ -260,6 +260,18 @@ const std::vector<RecordedPass>& FrameGraph::passes() const {
     return impl_->frame.passes;
 }
 
+uint64_t FrameGraph::bytesOfImagesWrittenFrom(size_t first) const {
+    std::set<std::string_view> written;
+    for (size_t i = first; i < impl_->frame.passes.size(); ++i)
+        written.insert(impl_->frame.passes[i].writes.begin(), impl_->frame.passes[i].writes.end());
+    uint64_t bytes = 0;
+    for (const RecordedImage& image : impl_->frame.images) {
+        if (!written.contains(image.name)) continue;
+        bytes += image.role == RecordedImage::Role::Current ? 2 * image.bytes() : image.bytes();
+    }
+    return bytes;
+}
+
 namespace {
 
 /// Images of the frame that one of the passes of this name touches; `names` says how.

@@ -164,6 +164,9 @@ class FrameGraph {
 
     /// What has been recorded since beginFrame().
     const std::vector<RecordedPass>& passes() const;
+    /// Device memory of the images that these passes write, those of passes() from `first` on: each image
+    /// once, and a history as the pair that it is.
+    uint64_t bytesOfImagesWrittenFrom(size_t first) const;
     /// Images that the pass writes, for --dump. Empty if there is no such pass.
     std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;
     /// The previous images of histories that the pass reads, for --dump too.

@@ -205,6 +205,21 @@ TEST_F(FrameGraphTest, TexelBuffersMustHaveTheShadersFormat) {
                 HasSubstr("'texels': is RGBA32Float in the shader, but texel buffer 'wrong' is R32Float"));
 }
 
+TEST_F(FrameGraphTest, WhatPassesWriteIsCountedOnceAndHistoriesTwice) {
+    constexpr uint64_t bytes = uint64_t{small.width} * small.height * 16;
+    const ImageHandle input = filled("input");
+    const ImageHandle b = graph.transient("b", rgba, small);
+    scale("first", input, b);
+    increment("again", b);
+    const History history = graph.history("history", rgba, small);
+    scale("keep", b, history.current);
+    graph.transient("never written", rgba, small);
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(3), 2 * bytes);
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(1), 3 * bytes);
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(0), 4 * bytes);
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(4), 0u);
+}
+
 TEST_F(FrameGraphTest, HistoriesBecomeValidAndSwap) {
     const History first = graph.history("h", rgba, small);
     EXPECT_FALSE(first.valid);

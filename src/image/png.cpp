@@ -75,24 +75,6 @@ void appendBytes(void* context, void* data, int size) {
     target->insert(target->end(), bytes, bytes + size);
 }
 
-std::vector<char> encodePng(const fs::path& path, const ByteImage& image) {
-    const uint64_t rowBytes = uint64_t{image.width} * image.components;
-    const bool right = (image.components == 3 || image.components == 4) && image.width > 0 &&
-                       image.height > 0 && image.pixels.size() == rowBytes * image.height;
-    if (!right) throw OutputError(path, "cannot be written: a PNG wants RGB or RGBA, and at least one pixel");
-    // stb_image_write counts in int.
-    if ((rowBytes + 1) * image.height > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
-        throw OutputError(
-            path, fmt::format("cannot be written: {}x{} is too large for PNG", image.width, image.height));
-    }
-    std::vector<char> bytes;
-    const int written = stbi_write_png_to_func(
-        appendBytes, &bytes, static_cast<int>(image.width), static_cast<int>(image.height),
-        static_cast<int>(image.components), image.pixels.data(), static_cast<int>(rowBytes));
-    if (!written) throw OutputError(path, "cannot be encoded as PNG");
-    return bytes;
-}
-
 }  // namespace
 
 ByteImage toBytes(const Image& encoded) {
@@ -106,9 +88,27 @@ ByteImage toBytes(const Image& encoded) {
     return image;
 }
 
+std::vector<char> encodePng(const ByteImage& image, const fs::path& name) {
+    const uint64_t rowBytes = uint64_t{image.width} * image.components;
+    const bool right = (image.components == 3 || image.components == 4) && image.width > 0 &&
+                       image.height > 0 && image.pixels.size() == rowBytes * image.height;
+    if (!right) throw OutputError(name, "cannot be written: a PNG wants RGB or RGBA, and at least one pixel");
+    // stb_image_write counts in int.
+    if ((rowBytes + 1) * image.height > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
+        throw OutputError(
+            name, fmt::format("cannot be written: {}x{} is too large for PNG", image.width, image.height));
+    }
+    std::vector<char> bytes;
+    const int written = stbi_write_png_to_func(
+        appendBytes, &bytes, static_cast<int>(image.width), static_cast<int>(image.height),
+        static_cast<int>(image.components), image.pixels.data(), static_cast<int>(rowBytes));
+    if (!written) throw OutputError(name, "cannot be encoded as PNG");
+    return bytes;
+}
+
 void writePng(const fs::path& path, const ByteImage& image) {
     checkWritable(path);
-    const std::vector<char> bytes = encodePng(path, image);
+    const std::vector<char> bytes = encodePng(image, path);
     writeAtomically(path, [&](const fs::path& temporary) {
         std::ofstream file(temporary, std::ios::binary);
         file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

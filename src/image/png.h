@@ -24,6 +24,9 @@ struct ByteImage {
 /// or 1, which becomes grey. Throws Error otherwise.
 ByteImage toBytes(const Image& encoded);
 
+/// The bytes of an 8-bit RGB or RGBA PNG. `name` stands for the file in messages. Throws OutputError.
+std::vector<char> encodePng(const ByteImage& image, const std::filesystem::path& name);
+
 /// Writes an 8-bit RGB or RGBA PNG, atomically. Throws OutputError.
 void writePng(const std::filesystem::path& path, const ByteImage& image);
 

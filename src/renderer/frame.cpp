@@ -185,6 +185,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                                        .ids = out.ids,
                                        .camera = input.camera,
                                        .filters = input.filters};
+    out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =
         settings.pipeline.denoiser->record(graph, frame, settings.denoisers);
     out.beauty = denoised.beauty;

@@ -1,7 +1,9 @@
 // The whole frame as one recipe.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "gpu/frame_graph.h"
 #include "passes/pathtrace/pathtrace.h"
@@ -31,6 +33,8 @@ struct FrameInput {
 struct FrameImages : PathtraceLayers {
     gpu::ImageHandle beauty;
     gpu::ImageHandle cases;  ///< denoise::HistoryImages::cases
+    /// From this pass of the graph on they are the denoiser's; none of pipelines that do not denoise.
+    std::optional<size_t> firstDenoisingPass;
 };
 
 /// Records one frame of settings.pipeline.

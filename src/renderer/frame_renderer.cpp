@@ -71,6 +71,17 @@ void FrameRenderer::launch(FrameInput input) {
     graph_.execute(device_);
 }
 
+std::vector<gpu::PassTime> FrameRenderer::denoisingTimes() {
+    std::vector<gpu::PassTime> times = passTimes();
+    const size_t others = std::min(images_.firstDenoisingPass.value_or(times.size()), times.size());
+    times.erase(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(others));
+    return times;
+}
+
+uint64_t FrameRenderer::denoisingBytes() const {
+    return images_.firstDenoisingPass ? graph_.bytesOfImagesWrittenFrom(*images_.firstDenoisingPass) : 0;
+}
+
 RenderedLayers FrameRenderer::download() {
     FrameImages wanted = images_;
     if (!settings_.layers && images_.beauty) {

@@ -36,6 +36,10 @@ class FrameRenderer {
     /// Zeros where the pipeline tracks no history.
     denoise::HistoryCounts historyCounts();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
+    /// The same of the denoiser's passes alone; empty where the pipeline has none.
+    std::vector<gpu::PassTime> denoisingTimes();
+    /// Device memory of the images that the denoiser's passes wrote in the last frame, with its histories.
+    uint64_t denoisingBytes() const;
     const gpu::FrameGraph& graph() const { return graph_; }
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
         return imagesOfPass(graph_, device_, pass);

@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""Opens a page of `limpid bench quality --report` in headless Chromium and uses it as a reader would: drags the
+divider, presses keys, touches, chooses pictures. Exit code 0: as it should be; 1: not; 77: there is no Chromium."""
+
+import base64
+import json
+import os
+import pathlib
+import re
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+NOT_TESTED = 77
+
+
+class Browser:
+    """Chromium and one page of it, by the DevTools protocol over a pair of pipes."""
+
+    def __init__(self, program, profile):
+        to_browser, self.output = os.pipe()
+        self.input, from_browser = os.pipe()
+
+        def place_pipes():
+            # Chromium reads commands from descriptor 3 and writes answers to 4.
+            reading, writing = os.dup(to_browser), os.dup(from_browser)
+            os.dup2(reading, 3)
+            os.dup2(writing, 4)
+
+        arguments = ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe', '--no-first-run',
+                     '--disable-background-networking', '--disable-component-update', '--disable-dev-shm-usage',
+                     '--force-device-scale-factor=1', f'--user-data-dir={profile}', 'about:blank']
+        self.process = subprocess.Popen([program, *arguments], preexec_fn=place_pipes, close_fds=False,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.rest = b''
+        self.number = 0
+        self.session = None
+        self.events = []
+        targets = self.call('Target.getTargets')['targetInfos']
+        page = next(target['targetId'] for target in targets if target['type'] == 'page')
+        self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
+
+    def message(self, deadline):
+        while b'\0' not in self.rest:
+            ready, _, _ = select.select([self.input], [], [], max(0, deadline - time.monotonic()))
+            data = os.read(self.input, 1 << 20) if ready else b''
+            if not data:
+                raise RuntimeError('the browser does not answer')
+            self.rest += data
+        text, self.rest = self.rest.split(b'\0', 1)
+        return json.loads(text)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        command = {'id': self.number, 'method': method, 'params': parameters}
+        if self.session:
+            command['sessionId'] = self.session
+        data = json.dumps(command).encode() + b'\0'
+        while data:
+            data = data[os.write(self.output, data):]
+        deadline = time.monotonic() + 60
+        while True:
+            message = self.message(deadline)
+            if message.get('id') == self.number:
+                if 'error' in message:
+                    raise RuntimeError(f'{method}: {message["error"]}')
+                return message['result']
+            self.events.append(message)
+
+    def evaluate(self, expression):
+        result = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
+        if 'exceptionDetails' in result:
+            raise RuntimeError(f'{expression}: {result["exceptionDetails"]}')
+        return result['result'].get('value')
+
+    def size(self, width, height):
+        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def mouse(self, kind, x, y, buttons):
+        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=1)
+
+    def drag(self, start, end):
+        self.mouse('mouseMoved', *start, 0)
+        self.mouse('mousePressed', *start, 1)
+        for step in range(1, 6):
+            self.mouse('mouseMoved', *(a + (b - a) * step / 5 for a, b in zip(start, end)), 1)
+        self.mouse('mouseReleased', *end, 0)
+
+    def touch(self, start, end):
+        self.call('Input.dispatchTouchEvent', type='touchStart', touchPoints=[{'x': start[0], 'y': start[1]}])
+        for step in range(1, 6):
+            x, y = (a + (b - a) * step / 5 for a, b in zip(start, end))
+            self.call('Input.dispatchTouchEvent', type='touchMove', touchPoints=[{'x': x, 'y': y}])
+        self.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
+
+    def key(self, name):
+        for kind in ('keyDown', 'keyUp'):
+            self.call('Input.dispatchKeyEvent', type=kind, key=name, code=name)
+
+    def picture(self, box):
+        clip = {'x': box['left'], 'y': box['top'], 'width': box['width'], 'height': box['height'], 'scale': 1}
+        return base64.b64decode(self.call('Page.captureScreenshot', format='png', clip=clip)['data'])
+
+    def close(self):
+        try:
+            self.session = None
+            self.call('Browser.close')
+            self.process.wait(20)
+        except (RuntimeError, OSError, subprocess.TimeoutExpired):
+            self.process.kill()
+            self.process.wait()
+        os.close(self.input)
+        os.close(self.output)
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+BOX = '''(() => {
+  const box = document.querySelector('.compare'), left = box.querySelector('.left');
+  const outer = box.getBoundingClientRect(), divider = box.querySelector('.divider').getBoundingClientRect();
+  return {left: outer.left, top: outer.top, width: outer.width, height: outer.height,
+          divider: divider.left + divider.width / 2 - outer.left, clip: getComputedStyle(left).clipPath,
+          now: Number(box.querySelector('.divider').getAttribute('aria-valuenow')),
+          first: left.currentSrc, second: box.querySelector('.right').currentSrc,
+          tags: [...box.querySelectorAll('.tag')].map(tag => tag.textContent)};
+})()'''
+
+
+def clipped_share(box):
+    """How much of the left picture the computed clip leaves, by its own numbers."""
+    numbers = re.search(r'inset\(0(?:px)? (.+?) 0(?:px)? 0(?:px)?\)|inset\(0(?:px)? (.+)\)', box['clip'])
+    check(numbers, f'the left picture is not clipped: {box["clip"]}')
+    right = next(group for group in numbers.groups() if group)
+    percents = [float(p) for p in re.findall(r'([\d.]+)%', right)]
+    hidden = percents[0] if len(percents) == 1 else percents[0] - percents[1]
+    return 1 - hidden / 100
+
+
+def check_cut(browser, share, how):
+    box = browser.evaluate(BOX)
+    check(abs(box['divider'] / box['width'] - share) < 0.01, f'{how}: the divider is at {box["divider"]} of {box["width"]}')
+    check(abs(clipped_share(box) - share) < 0.01, f'{how}: the clip is {box["clip"]}')
+    check(abs(box['now'] - 100 * share) <= 1, f'{how}: aria-valuenow is {box["now"]}')
+    return box
+
+
+def at(box, share):
+    return box['left'] + share * box['width'], box['top'] + box['height'] / 2
+
+
+def use_slider(browser):
+    box = check_cut(browser, 0.5, 'at first')
+    check(box['width'] > 100 and box['height'] > 50, f'the slider has no size: {box}')
+    check(box['first'] != box['second'], 'both sides show one picture')
+    before = browser.picture(box)
+    browser.drag(at(box, 0.5), at(box, 0.2))
+    moved = browser.picture(check_cut(browser, 0.2, 'dragged'))
+    check(moved != before, 'dragging changed no pixel')
+    browser.drag(at(box, 0.2), (box['left'] - 300, box['top'] + 5))
+    check_cut(browser, 0, 'dragged out of the picture')
+    for key, share in (('End', 1), ('Home', 0), ('ArrowRight', 0.01), ('PageUp', 0.11), ('ArrowLeft', 0.1)):
+        browser.key(key)
+        check_cut(browser, share, key)
+    browser.touch(at(box, 0.1), at(box, 0.7))
+    check_cut(browser, 0.7, 'touched')
+    browser.mouse('mouseMoved', *at(box, 0.3), 0)
+    check_cut(browser, 0.7, 'the mouse passing by')
+
+
+def use_choosers(browser):
+    names = browser.evaluate("[...document.querySelector('.bar select').options].map(o => o.textContent)")
+    check('noisy' in names and 'reference' in names, f'pictures to choose: {names}')
+    before = browser.evaluate(BOX)
+    browser.evaluate(f'''(() => {{
+      const select = document.querySelectorAll('.bar select')[1];
+      select.value = {names.index('reference')};
+      select.dispatchEvent(new Event('change'));
+      return Promise.all([...document.images].map(image => image.decode()));
+    }})()''')
+    after = browser.evaluate(BOX)
+    check(after['second'] != before['second'] and after['tags'][1] == 'reference', f'chosen: {after["tags"]}')
+    browser.evaluate("document.querySelector('.maps button').click()")
+    check(browser.evaluate(BOX)['tags'][1].startswith('error of'), 'an error map does not come into the slider')
+
+
+def use_plot(browser):
+    path = "document.querySelector('svg .line').getAttribute('d')"
+    before = browser.evaluate(path)
+    check(before.count('L') > 0, f'the plot has no line: {before}')
+    browser.evaluate('''(() => {
+      const select = document.querySelector('select[aria-label=Metric]');
+      select.value = 'flip';
+      select.dispatchEvent(new Event('change'));
+    })()''')
+    check(browser.evaluate(path) != before, 'another metric has the same line')
+
+
+def check_widths(browser):
+    for width in (1200, 390):
+        browser.size(width, 900)
+        inner = browser.evaluate('document.scrollingElement.scrollWidth')
+        check(inner <= width, f'at {width} pixels the page is {inner} wide')
+
+
+def check_silence(browser, address):
+    for event in browser.events:
+        method, parameters = event.get('method'), event.get('params', {})
+        if method == 'Network.requestWillBeSent':
+            target = parameters['request']['url']
+            check(target == address or target.startswith('data:'), f'the page asks for {target}')
+        check(method != 'Runtime.exceptionThrown', f'exception: {parameters}')
+        check(method != 'Runtime.consoleAPICalled' or parameters['type'] not in ('error', 'warning', 'assert'),
+              f'console: {parameters}')
+        check(method != 'Log.entryAdded' or parameters['entry']['level'] not in ('error', 'warning'),
+              f'log: {parameters}')
+    requests = [e for e in browser.events if e.get('method') == 'Network.requestWillBeSent']
+    check(requests, 'requests were not watched')
+
+
+def test(browser, address):
+    for domain in ('Page', 'Runtime', 'Network', 'Log'):
+        browser.call(f'{domain}.enable')
+    browser.size(1200, 3000)  # nothing has to be scrolled to
+    browser.call('Page.navigate', url=address)
+    browser.evaluate('''new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))
+      .then(() => Promise.allSettled([...document.images].map(image => image.decode())))''')
+    check_silence(browser, address)
+    pictures = browser.evaluate('[...document.images].map(image => image.naturalWidth)')
+    check(len(pictures) >= 4 and min(pictures) > 0, f'pictures: {pictures}')
+    use_slider(browser)
+    use_choosers(browser)
+    use_plot(browser)
+    check_widths(browser)
+    check_silence(browser, address)
+
+
+def main():
+    program = next(filter(None, map(shutil.which, ('chromium', 'chromium-browser', 'google-chrome'))), None)
+    if not program:
+        print('NOT TESTED: there is no Chromium on this machine (Debian: chromium)')
+        return NOT_TESTED
+    address = pathlib.Path(sys.argv[1]).resolve().as_uri()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(program, profile)
+        try:
+            test(browser, address)
+        except (AssertionError, RuntimeError) as fault:
+            print(fault)
+            return 1
+        finally:
+            browser.close()
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
