@@ -8,10 +8,10 @@ scripts/build.sh release -DLIMPID_TESTS=OFF
 
 mkdir -p out
 build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 320 --height 180 \
-    --frames 24 --first 20 --reference-spp 256 --out out | tee out/quality.txt
+    --frames 24 --first 20 --reference-spp 256 --out out --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 320 --height 180 \
     --spp 512 --out out | tee out/convergence.txt
 echo
-echo "Denoised: out/quality.*.png (noisy, history, a-trous, reference, side by side); the table: out/quality.txt"
+echo "Denoised: out/quality.*.png (noisy, history, a-trous, SVGF, reference, side by side); the table: out/quality.txt; a page to look around in: out/quality.html"
 echo "Converged: out/*spp.png (tone-mapped) and out/*spp.exr (linear); the table: out/convergence.txt"

@@ -92,7 +92,7 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     EXPECT_THAT(result.output, HasSubstr("the pipelines are path gbuffer ao history atrous"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline atrous --preset nice");
     EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.output, HasSubstr("the presets are course"));
+    EXPECT_THAT(result.output, HasSubstr("the presets are cis565 course paper"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline atrous --time-limit 3");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("are for --pipeline path"));

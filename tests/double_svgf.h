@@ -18,7 +18,7 @@ struct DoubleSvgfParams {
     double antilag = 2.0;
     double firefly = 0.0;  ///< 0: off
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
-    bool blurVariance = true, position = false;
+    bool blurVariance = true, wide = true, mutual = true, position = false;
 };
 
 /// What is filtered apart: `Joint` is the sum of the other two.

@@ -106,19 +106,24 @@ TEST_F(SvgfByHand, FirefliesAreScaledDown) {
 TEST_F(SvgfByHand, Signals) {
     set(frame.specular, 4 * middle, {1, 1, 1});
     frame.albedo[4 * middle] = 0.05f;
-    frame.albedo[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
     const auto x = [&](SvgfSignal signal, bool demodulate = true) {
         return svgfSample(frame, signal, middle, demodulate).x;
     };
-    EXPECT_LT(glm::distance(x(SvgfSignal::Diffuse), dvec3(20, 2, 4)), 1e-6);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Diffuse), dvec3(20, 4, 4)), 1e-6);
     EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(10)), 1e-6) << "no albedo is known";
-    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(30, 3, 6)), 1e-6);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(30, 6, 6)), 1e-6);
     EXPECT_EQ(x(SvgfSignal::Joint, false), dvec3(3));
     frame.albedoSpecular.assign(100, 0.25f);
     EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(4)), 1e-6);
-    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(10, 3, 4)), 1e-6);
+    EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(10, 4, 4)), 1e-6);
     set(frame.diffuse, 4 * middle, {1e30f, -1e30f, 1});
     EXPECT_EQ(x(SvgfSignal::Diffuse), dvec3(65504, -65504, 2));
+    frame.albedo[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(x(SvgfSignal::Diffuse).z, 1.0) << "an albedo with a NaN is none";
+    frame.albedo[4 * middle + 1] = 1e9f;
+    EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Diffuse, std::vector<dvec4>(25, dvec4(1))}}, true)[middle].y,
+              65504.0);
+    frame.albedo[4 * middle + 1] = 1.0f;
     frame.specular[4 * middle] = std::numeric_limits<float>::infinity();
     EXPECT_FALSE(svgfSample(frame, SvgfSignal::Diffuse, middle, true).rejected);
     EXPECT_TRUE(svgfSample(frame, SvgfSignal::Joint, middle, true).rejected);
@@ -196,10 +201,19 @@ TEST_F(SvgfRow, VarianceOfAWeightedMean) {
 TEST_F(SvgfRow, Color) {
     params.phiColor = 0.5;
     params.blurVariance = false;
+    expectWeight(std::exp(-0.2126 / (0.5 * 0.6 + 0.001 * 1.2126 + 1e-6)));
+    params.mutual = false;
     expectWeight(std::exp(-0.2126 / (0.5 * 0.3 + 0.001 + 1e-6)));
     params.blurVariance = true;
     const double g = (4 * 0.09 + 2 * 0.36) / 6;
     expectWeight(std::exp(-0.2126 / (0.5 * std::sqrt(g) + 0.001 + 1e-6)));
+}
+
+TEST_F(SvgfRow, NarrowKernel) {
+    params.wide = false;
+    const dvec4 result = svgfLevel(frame, surfaces, color, 0, params)[1];
+    EXPECT_NEAR(result.x, (4.0 * 1 + 2.0 * 2) / 6.0, 1e-9);
+    EXPECT_NEAR(result.w, std::hypot(4.0 * 0.3, 2.0 * 0.6) / 6.0, 1e-9);
 }
 
 TEST_F(SvgfRow, Normals) {

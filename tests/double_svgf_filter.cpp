@@ -76,17 +76,19 @@ class Level {
     }
 
     dvec4 at(size_t p) const {
-        constexpr std::array<double, 5> spline{1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
+        constexpr std::array<double, 5> b3{1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
+        constexpr std::array<double, 5> tent{0.0, 1.0 / 4, 2.0 / 4, 1.0 / 4, 0.0};
+        const std::array<double, 5>& spline = params_.wide ? b3 : tent;
         if (!neighbours_.sees(p)) return color_[p];
         const double l = luminances_[p];
-        const double tolerance = params_.phiColor * std::sqrt(guide(p)) + 0.001 * l + 1e-6;
+        const double own = tolerance(l, std::sqrt(guide(p)));
         dvec3 sum(0.0);
         double variance = 0.0, weights = 0.0;
         neighbours_.around(p, step_, 2, [&](size_t q, int i, int j) {
             double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)];
             if (p != q) {
                 w *= neighbours_.weight(p, q, static_cast<double>(step_) * dvec2(i, j)) *
-                     std::exp(-std::abs(l - luminances_[q]) / tolerance);
+                     std::exp(-std::abs(l - luminances_[q]) / std::max(own, toleranceOfTap(q)));
             }
             sum += w * dvec3(color_[q]);
             variance += w * w * color_[q].w * color_[q].w;
@@ -96,6 +98,13 @@ class Level {
     }
 
   private:
+    double tolerance(double luminance, double deviation) const {
+        return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
+    }
+    double toleranceOfTap(size_t q) const {
+        return params_.mutual ? tolerance(luminances_[q], color_[q].w) : 0.0;
+    }
+
     /// g
     double guide(size_t p) const {
         if (!params_.blurVariance) return color_[p].w * color_[p].w;

@@ -27,10 +27,8 @@ dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, bool 
     dvec3 a(0.0);
     if (signal != SvgfSignal::Specular) a += pixels.albedo(p);
     if (signal != SvgfSignal::Diffuse) a += pixels.albedoSpecular(p);
-    for (int i = 0; i < 3; ++i) {
-        if (!std::isfinite(a[i])) a[i] = 1.0;
-    }
-    return modulation(a);
+    if (!isFiniteInFloat(a)) return dvec3(1.0);
+    return glm::min(modulation(a), dvec3(largestHalf));
 }
 
 std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t count) {

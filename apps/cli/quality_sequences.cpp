@@ -37,6 +37,12 @@ const std::vector<QualitySequence>& labSequences() {
         {"cornell-spheres", "builtin:cornell-spheres", "orbit", {16, 61}},
         {"cornell-moving", "builtin:cornell-moving", "orbit", {16, 61}},
         {"heavy", "builtin:heavy", "dolly", {16, 61}},
+        {"moving-light", "builtin:lab-light", "none", {16, 61}},
+        {"light-goes-out", "builtin:lab-switch", "none", {16, 61}},
+        {"disocclusion", "builtin:lab-disocclusion", "shake", {16, 61}},
+        {"mirror", "builtin:lab-mirror", "orbit", {16, 61}},
+        {"textures", "builtin:lab-textures", "dolly", {16, 61}},
+        {"many-lights", "builtin:lab-lights", "dolly", {16, 61}},
     };
     return sequences;
 }

@@ -308,6 +308,12 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "the noisier of two pixels decides what they tolerate of each other; off: the one that is "
               "filtered, which rejects bright samples and darkens the picture");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
+        t.preset("paper", {{"alpha", "0.2"},
+                           {"alpha_moments", "0.2"},
+                           {"antilag", "0"},
+                           {"firefly", "0"},
+                           {"history_level", "1"},
+                           {"mutual", "off"}});
         t.preset("cis565", {{"separate", "off"},
                             {"demodulate", "off"},
                             {"alpha", "0.2"},

@@ -13,17 +13,17 @@ namespace limpid::denoise {
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
-    float alpha = 0.2f;
+    float alpha = 0.15f;
     float alphaMoments = 0.2f;
     float alphaFast = 0.5f;
     float normalTest = 0.95f;
     float depthTest = 0.02f;
     bool relative = true;
     bool search = true;
-    float antilag = 2.0f;
+    float antilag = 16.0f;
     float firefly = 0.0f;
     int levels = 5;
-    int historyLevel = 1;
+    int historyLevel = 0;
     bool wide = true;
     float phiColor = 4.0f;
     float phiNormal = 128.0f;
