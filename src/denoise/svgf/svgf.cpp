@@ -309,6 +309,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "filtered, which rejects bright samples and darkens the picture");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("paper", {{"alpha", "0.2"},
+                           {"wide", "on"},
                            {"alpha_moments", "0.2"},
                            {"antilag", "0"},
                            {"firefly", "0"},

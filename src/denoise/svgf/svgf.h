@@ -24,7 +24,7 @@ struct SvgfSettings {
     float firefly = 0.0f;
     int levels = 5;
     int historyLevel = 0;
-    bool wide = true;
+    bool wide = false;
     float phiColor = 4.0f;
     float phiNormal = 128.0f;
     float phiDepth = 1.0f;

@@ -29,10 +29,10 @@ struct Tap {
 
 struct Centre {
     SurfaceCentre surface;
-    vec4 light;
     float luminance, luminanceScale;
     vec4 sum;  // of weighted light; of weights
     float squares;
+    bool seen;
 };
 
 /// Of differences of luminance, for an exponent of 2.
@@ -78,7 +78,7 @@ Centre begin(ivec2 at) {
     const Tap tap = loadTap(at);
     Centre centre;
     centre.surface = centreOf(tap.surface, at);
-    centre.light = tap.light;
+    centre.seen = tap.counts;
     centre.luminance = tap.luminance;
     centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, tap.light.a));
     const float weight = kernel(ivec2(0));
@@ -100,10 +100,10 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
     const vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
-    STORE_HALF4(filtered, at, centre.light.a >= 0.0 ? result : centre.light);
+    STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 
-// An invocation filters 2x2 pixels that lie a step apart, of whose 4 x 25 taps 36 are different.
+// An invocation filters 2x2 pixels that lie a step apart, of whose 4 x 25 (4 x 9) taps 36 (16) are different.
 const ivec2 BLOCK = ivec2(2, 2);  // as in svgf.cpp
 const int COUNT = BLOCK.x * BLOCK.y;
 
@@ -119,7 +119,7 @@ void main() {
     bool anySeen = false;
     [[unroll]] for (int number = 0; number < COUNT; ++number) {
         centres[number] = begin(first + params.step * inBlock(number));
-        anySeen = anySeen || centres[number].light.a >= 0.0;
+        anySeen = anySeen || centres[number].seen;
     }
     if (anySeen) {
         [[unroll]] for (int j = -2; j < BLOCK.y + 2; ++j) {

@@ -12,6 +12,9 @@ namespace limpid::denoise {
 #endif
 
 LIMPID_CONST int SVGF_TILE = 8;            // pixels along an edge
+// In place of a deviation.
+LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
+LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
 LIMPID_CONST float SVGF_LAG_SIGMAS = 3.0;  // of noise that are no lag
 LIMPID_CONST float SVGF_LEAST_SLOPE =

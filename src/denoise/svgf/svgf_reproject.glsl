@@ -24,7 +24,7 @@ layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
 READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
 layout(set = 0, binding = 13, rgba32f) uniform readonly image2D tilesBefore;
-WRITE_HALF4(14, color);                                                // light without albedo | deviation, -1 if nothing is seen
+WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
 
 /// How a surface point must have looked in the previous frame.
@@ -152,7 +152,8 @@ void main() {
     now.moments.w *= 1.0 - tiles.x;
     if (isFinite(light)) now = accumulated(now, withoutFirefly(x, frames, tiles));
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
-    const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
-    STORE_HALF4(color, at, seen ? vec4(now.color, min(deviation, MAX_HALF)) : vec4(x, -1.0));
+    const float deviation = min(sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0)), MAX_HALF);
+    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : deviation;
+    STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
     imageStore(moments, at, seen ? now.moments : vec4(0.0));
 }

@@ -18,11 +18,11 @@ struct Sums {
 };
 
 void add(inout Sums sums, vec4 m) {
-    if (m.w < 2.0) return;
-    sums.lag += m.z - m.x;
-    sums.noise += max(m.y - m.x * m.x, 0.0);
-    sums.light += max(m.z, m.x);
-    sums.moments += vec3(m.xy, 1.0);
+    const float counts = m.w >= 2.0 ? 1.0 : 0.0;
+    sums.lag += counts * (m.z - m.x);
+    sums.noise += counts * max(m.y - m.x * m.x, 0.0);
+    sums.light += counts * max(m.z, m.x);
+    sums.moments += counts * vec3(m.xy, 1.0);
 }
 
 void main() {
@@ -34,7 +34,8 @@ void main() {
     for (int j = 0; j < SVGF_TILE; ++j) {
         for (int i = 0; i < SVGF_TILE; ++i) {
             const ivec2 at = first + ivec2(i, j);
-            add(sums, all(lessThan(at, size)) ? imageLoad(moments, at) : vec4(0.0));
+            const vec4 m = imageLoad(moments, min(at, size - 1));
+            add(sums, all(lessThan(at, size)) ? m : vec4(0.0));
         }
     }
     const float excess = max(abs(sums.lag) - SVGF_LAG_SIGMAS * sqrt(params.steadyShare * sums.noise), 0.0);

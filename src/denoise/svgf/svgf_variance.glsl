@@ -3,8 +3,6 @@
 #include "denoise/svgf/svgf_params.h"
 #include "shaders/filter_image.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
 };
@@ -24,14 +22,12 @@ void addTap(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
     if (inside == there && other.depth > 0.0) sum += weight * vec3(imageLoad(moments, inside).xy, 1.0);
 }
 
-void main() {
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    const float frames = imageLoad(moments, at).w;
-    if (frames >= SVGF_YOUNG) return;
-    const Surface surface = surfaceAt(at);
-    if (surface.depth <= 0.0) return;
-    const SurfaceCentre centre = centreOf(surface, at);
+bool isYoung(ivec2 at) {
+    return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
+}
+
+void estimate(ivec2 at) {
+    const SurfaceCentre centre = centreOf(surfaceAt(at), at);
     vec3 sum = vec3(0.0);
     for (int j = -RADIUS; j <= RADIUS; ++j) {
         for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
