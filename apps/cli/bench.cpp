@@ -250,6 +250,7 @@ void addBenchCommand(CLI::App& app) {
     });
     addDenoiseBench(*bench);
     addQualityBench(*bench);
+    addSvgfBench(*bench);
 }
 
 }  // namespace limpid::cli

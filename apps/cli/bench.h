@@ -15,5 +15,6 @@ std::string sceneStem(const std::string& scene);
 
 void addDenoiseBench(CLI::App& bench);
 void addQualityBench(CLI::App& bench);
+void addSvgfBench(CLI::App& bench);
 
 }  // namespace limpid::cli

@@ -6,14 +6,13 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "bench.h"
 #include "bench_copy.comp.h"
-#include "renderer/frame_renderer.h"
+#include "bench_scene.h"
 #include "renderer/parameters.h"
-#include "renderer/sequence.h"
-#include "scene/camera_path.h"
 
 namespace limpid::cli {
 namespace {
@@ -27,11 +26,6 @@ struct DenoiseBench {
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
     std::string filters = "auto";
-};
-
-struct PassCost {
-    std::vector<double> milliseconds;  ///< by frame
-    uint64_t bytes = 0;                ///< of a frame
 };
 
 /// Bytes per second of a copy between images larger than any cache.
@@ -65,26 +59,10 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
-    scene::Scene scene = loadChosenScene({o.scene, "", ""});
-    const scene::SceneData data = scene::buildSceneData(scene);
-    scene::GpuScene gpuScene(device, data, {chosenTracer(o.device, device), {}});
-    const SequenceTiming timing;
-    const double seconds = timing.timeOf(uint64_t{o.warmup} + o.frames);
-    const Sequence sequence(scene, data, scene.cameras.front(),
-                            scene::builtinCameraPath("shake", scene, scene.cameras.front(), seconds), timing);
-    FrameRenderer renderer(device, gpuScene, settings, 1);
-    if (o.filters != "auto")
-        renderer.setFilterBacking(o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer);
-    std::map<std::string, PassCost> costs;
-    for (uint64_t frame = 0; frame < uint64_t{o.warmup} + o.frames; ++frame) {
-        renderer.render(sequence.moment(frame, settings.extent));
-        const std::vector<gpu::PassTime> times = renderer.passTimes();
-        if (frame < o.warmup) continue;
-        for (const auto& [name, milliseconds] : sumByName(times))
-            costs[name].milliseconds.push_back(milliseconds);
-    }
-    for (const gpu::RecordedPass& pass : renderer.graph().passes()) costs[pass.name].bytes += pass.imageBytes;
-    return costs;
+    BenchScene scene(device, chosenTracer(o.device, device), o.scene);
+    std::optional<gpu::Backing> filters;
+    if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
+    return scene.measure(settings, o.warmup, o.frames, filters);
 }
 
 void run(const DenoiseBench& o) {
@@ -98,7 +76,7 @@ void run(const DenoiseBench& o) {
     }
     for (auto& [name, cost] : measure(*device, o)) {
         const double ms = median(cost.milliseconds);
-        const double least = *std::min_element(cost.milliseconds.begin(), cost.milliseconds.end());
+        const double least = *std::ranges::min_element(cost.milliseconds);
         const double rate = static_cast<double>(cost.bytes) / (ms * 1e-3);
         passes.push_back({{"pass", name},
                           {"ms_median", ms},

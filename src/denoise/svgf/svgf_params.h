@@ -11,7 +11,7 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-LIMPID_CONST int SVGF_TILE = 8;            // pixels along an edge
+LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
 // In place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
