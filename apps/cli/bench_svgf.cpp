@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "bench.h"
 #include "bench_scene.h"
@@ -112,7 +113,10 @@ struct Measured {
 
 void writeText(const std::filesystem::path& file, const std::string& text) {
     writeAtomically(file, [&](const std::filesystem::path& temporary) {
-        std::ofstream(temporary, std::ios::binary) << text;
+        std::ofstream stream(temporary, std::ios::binary);
+        stream << text;
+        stream.close();
+        if (!stream) throw OutputError(file, "cannot be written: the disk may be full");
     });
 }
 

@@ -20,7 +20,6 @@ class PassTimes {
   public:
     void add(const std::map<std::string, double>& frame);
     std::map<std::string, double> medians() const;
-    const std::map<std::string, std::vector<double>>& all() const { return times_; }
 
   private:
     std::map<std::string, std::vector<double>> times_;
