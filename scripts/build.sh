@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# build.sh PRESET [CMAKE OPTION ...]: configures and builds a preset of CMakePresets.json.
+# build.sh PRESET[:TARGET] [CMAKE OPTION ...]: configures and builds a preset of CMakePresets.json, all or one target.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-preset=$1
+preset=${1%%:*}
+target=${1#"$preset"}
 shift
 cmake --preset "$preset" "$@" >/dev/null
-cmake --build --preset "$preset"
+cmake --build --preset "$preset" ${target:+--target "${target#:}"}

@@ -36,6 +36,8 @@ class Judge {
   public:
     Judge(const std::vector<Reference>& references, uint64_t first, float stops)
         : references_(references), first_(first), stops_(stops) {}
+    Judge(const Judge&) = delete;
+    Judge& operator=(const Judge&) = delete;
 
     void add(MethodQuality& method, uint64_t frame, Image picture) {
         const Reference& reference = references_[frame - first_];
@@ -70,10 +72,17 @@ Image noisyOf(RenderedLayers layers) {
     return beautyOf(layers);
 }
 
-/// Runs a pipeline; with `noisyJudge`, its input is scored too.
+/// What a run of frames is held against.
+struct Truth {
+    const std::vector<Reference>& references;
+    float exposure;  ///< Stops.
+};
+
+/// Runs a pipeline; with `noisy`, its input is scored too, into there.
 MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Extent extent,
-                      const QualityFrames& frames, Judge judge, std::optional<Judge> noisyJudge,
-                      MethodQuality& noisy) {
+                      const QualityFrames& frames, const Truth& truth, MethodQuality* noisy) {
+    Judge judge(truth.references, frames.first, truth.exposure);
+    Judge noisyJudge(truth.references, frames.first, truth.exposure);
     MethodQuality method;
     PassTimes times;
     for (uint64_t frame = 0; frame < frames.count; ++frame) {
@@ -85,7 +94,7 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
         method.denoisingMs.push_back(denoisingMs);
         const RenderedLayers layers = renderer.download();
         judge.add(method, frame, beautyOf(layers));
-        if (noisyJudge) noisyJudge->add(noisy, frame, noisyOf(layers));
+        if (noisy) noisyJudge.add(*noisy, frame, noisyOf(layers));
     }
     method.medianMs = times.medians();
     method.denoisingBytesPerPixel = static_cast<double>(renderer.denoisingBytes()) /
@@ -108,10 +117,10 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     quality.methods.emplace_back().name = "noisy";
     for (const QualityMethod& chosen : methods) {
         FrameRenderer renderer(device, scene, chosen.settings, samples);
-        const Judge judge(references, frames.first, quality.exposure);
         const bool first = quality.methods.size() == 1;
-        MethodQuality method = measure(renderer, sequence, chosen.settings.extent, frames, judge,
-                                       first ? std::optional(judge) : std::nullopt, quality.methods.front());
+        MethodQuality method =
+            measure(renderer, sequence, chosen.settings.extent, frames, {references, quality.exposure},
+                    first ? &quality.methods.front() : nullptr);
         method.name = chosen.name;
         quality.methods.push_back(std::move(method));
     }
