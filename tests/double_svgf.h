@@ -16,9 +16,8 @@ struct DoubleSvgfParams {
     double normalTest = 0.95, depthTest = 0.02;
     bool relative = true, search = true;
     double antilag = 2.0;
-    double firefly = 0.0;  ///< 0: off
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
-    bool blurVariance = true, wide = true, mutual = true, position = false;
+    bool blurVariance = true, boost = true, wide = true, mutual = true, position = false;
 };
 
 /// What is filtered apart: `Joint` is the sum of the other two.
@@ -41,7 +40,7 @@ struct SvgfHistory {
     SvgfSurfaces surfaces;
     std::vector<dvec4> color;    ///< c; the fourth is not read
     std::vector<dvec4> moments;  ///< m1, m2, f, N
-    std::vector<dvec4> tiles;    ///< lag, u, d, 0
+    std::vector<double> tiles;   ///< lag
 };
 
 struct SvgfPixel {
@@ -83,9 +82,9 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
 /// k of step 4: the variance of f - m1 under steady light, as a share of E[m2 - m1^2].
 double svgfSteadyShare(const DoubleSvgfParams& params);
 
-/// Step 4. Tiles are 8x8 pixels, row 0 first; `error` bounds what float32 does to each component.
+/// Step 4. Tiles are 8x8 pixels, row 0 first; `error` bounds what float32 does to each one's lag.
 struct SvgfTiles {
-    std::vector<dvec4> tiles, error;
+    std::vector<double> tiles, error;
 };
 SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
                     const DoubleSvgfParams& params);
@@ -93,7 +92,8 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
 /// zx and zy of step 6.
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance);
 
-/// Step 5. `color`: of step 3. `error` bounds what float32 may make of each pixel's sigma^2.
+/// Step 5. `color`: of step 3. `error` bounds what float32 may make of each pixel's sigma^2; it is infinite
+/// where all weights are so small that float32 may not hold them.
 struct SvgfVariance {
     std::vector<dvec4> color;
     std::vector<double> error;

@@ -24,7 +24,7 @@ class SvgfByHand : public testing::Test {
         before.surfaces = svgfSurfaces(frame);
         before.color.assign(25, dvec4(1, 2, 3, nan));
         before.moments.assign(25, dvec4(1, 3, 2, 2));
-        before.tiles.assign(1, dvec4(0.0));
+        before.tiles.assign(1, 0.0);
     }
 
     static void set(std::vector<float>& layer, size_t at, const vec3& value) {
@@ -78,29 +78,14 @@ TEST_F(SvgfByHand, ATapNeedsALength) {
 }
 
 TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
-    before.tiles[0].x = 0.75;  // half a frame is left, and then one and a half
+    before.tiles[0] = 0.75;  // half a frame is left, and then one and a half
     const double a = 1 / 1.5;
     expect(dvec3(1 + 3 * a, 2 + 2 * a, 3 + a), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
     frame.diffuse[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
     expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 0.5));
     frame.diffuse[4 * middle + 1] = 2.0f;
-    before.tiles[0].x = 1.0;
+    before.tiles[0] = 1.0;
     expect(dvec3(4), dvec4(4, 16, 4, 1));
-}
-
-TEST_F(SvgfByHand, FirefliesAreScaledDown) {
-    before.tiles[0] = dvec4(0, 0.5, 0.25, 0);
-    params.firefly = 2.0;  // the luminance becomes 1
-    expect(dvec3(1, 5.0 / 3, 7.0 / 3), dvec4(1, 3 - 2.0 / 3, 1.5, 3));
-    set(frame.diffuse, 4 * middle, {2, 0, 0});  // a luminance of 0.8504; the hue stays
-    params.firefly = 1.0;
-    const double most = 0.75;
-    const dvec3 x(most / 0.2126, 0, 0);
-    expect(dvec3(1, 2, 3) + (x - dvec3(1, 2, 3)) / 3.0,
-           dvec4(1 + (most - 1) / 3, 3 + (most * most - 3) / 3, 2 + (most - 2) * 0.5, 3));
-    before.tiles[0].z = 0.0;  // no deviation is known
-    const double l = 4 * 0.2126;
-    expect(dvec3(2, 4.0 / 3, 2), dvec4(1 + (l - 1) / 3, 3 + (l * l - 3) / 3, 2 + (l - 2) * 0.5, 3));
 }
 
 TEST_F(SvgfByHand, Signals) {
@@ -135,7 +120,7 @@ TEST_F(SvgfByHand, Signals) {
     EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Joint, light}}, false)[middle], dvec4(1.5, 2.5, 3.5, 1));
 }
 
-TEST(SvgfTilesByHand, ChangeNoiseAndDeviation) {
+TEST(SvgfTilesByHand, ChangeBeyondNoise) {
     // Nine columns: the second tile is a column of pixels.
     const HostFrame frame = frontalPlane(9, 8);
     // One third frame three times as bright as those before it.
@@ -145,18 +130,18 @@ TEST(SvgfTilesByHand, ChangeNoiseAndDeviation) {
     const double lag = 2.0 * (64 * 0.6 - 3.0 * std::sqrt(64 * 0.125 * 0.64)) / (64 * 2.0);
     SvgfTiles tiles = svgfTiles(frame, moments, params);
     ASSERT_EQ(tiles.tiles.size(), 2u);
-    EXPECT_LT(glm::distance(tiles.tiles[0], dvec4(lag, 1.4, 0.8, 0)), 1e-12);
+    EXPECT_NEAR(tiles.tiles[0], lag, 1e-12);
     // With fewer pixels the same deviation may be noise.
     const double thinLag = 2.0 * (8 * 0.6 - 3.0 * std::sqrt(8 * 0.125 * 0.64)) / (8 * 2.0);
-    EXPECT_LT(glm::distance(tiles.tiles[1], dvec4(thinLag, 1.4, 0.8, 0)), 1e-12);
-    for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 1, 1.9) : dvec4(1, 2, 1.1, 2);
+    EXPECT_NEAR(tiles.tiles[1], thinLag, 1e-12);
+    for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 9, 1.9) : dvec4(1, 2, 1.1, 2);
     tiles = svgfTiles(frame, moments, params);
-    EXPECT_EQ(tiles.tiles[1], dvec4(0)) << "too young";
-    EXPECT_LT(glm::distance(tiles.tiles[0], dvec4(0, 1, 1, 0)), 1e-12) << "3 sqrt(64 / 8) exceeds 6.4";
+    EXPECT_EQ(tiles.tiles[1], 0.0) << "too young";
+    EXPECT_EQ(tiles.tiles[0], 0.0) << "3 sqrt(64 / 8) exceeds 6.4";
     moments.assign(72, dvec4(1, 1, 9, 5));
-    EXPECT_EQ(svgfTiles(frame, moments, {.antilag = 10.0}).tiles[0].x, 1.0);
+    EXPECT_EQ(svgfTiles(frame, moments, {.antilag = 10.0}).tiles[0], 1.0);
     moments.assign(72, dvec4(0, 0, 0, 5));
-    EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], dvec4(0));
+    EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
 }
 
 /// A row of sixteen pixels and two tiles, whose middles are at 4 and 12.
@@ -165,7 +150,7 @@ TEST(SvgfTilesByHand, TheNextFrameReadsThemBilinearly) {
     SvgfHistory before{16, 1, svgfSurfaces(frame), {}, {}, {}};
     before.color.assign(16, dvec4(0));
     before.moments.assign(16, dvec4(0, 0, 0, 3));
-    before.tiles = {dvec4(0), dvec4(0.8, 0, 0, 0)};
+    before.tiles = {0.0, 0.8};
     const SvgfAccumulated result = svgfAccumulate(frame, SvgfSignal::Joint, before, {});
     for (size_t p = 0; p < 16; ++p) {
         const double lag = 0.8 * glm::clamp((static_cast<double>(p) + 0.5 - 4.0) / 8.0, 0.0, 1.0);
@@ -248,6 +233,7 @@ TEST_F(SvgfRow, Positions) {
 }
 
 TEST_F(SvgfRow, YoungPixels) {
+    params.boost = false;
     const std::vector<dvec4> moments{{7, 90, 0, 0}, {1, 2, 0, 3.5}, {2, 7, 0, 4}};
     surfaces.distance[2] = 2.003;
     const double w = std::exp(-1.5), m1 = (1 + 2 * w) / (1 + w), m2 = (2 + 7 * w) / (1 + w);
@@ -255,6 +241,58 @@ TEST_F(SvgfRow, YoungPixels) {
     EXPECT_LT(glm::distance(young[1], dvec4(1, 1, 1, std::sqrt(m2 - m1 * m1))), 1e-9);
     EXPECT_EQ(young[0], color[0]);
     EXPECT_EQ(young[2], color[2]);
+}
+
+TEST_F(SvgfRow, TheYoungerTheMoreNoiseIsExpected) {
+    surfaces.distance[2] = 0.0;
+    std::vector<dvec4> moments{dvec4(0), {3, 25, 0, 0}, dvec4(0)};  // a deviation of 4
+    const auto young = [&](double n) {
+        moments[1].w = n;
+        return svgfYoungVariance(frame, surfaces, color, moments, params);
+    };
+    const double error = 49 * 0x1p-24 * 25.0;
+    for (const double n : {1.0, 2.0, 2.5, 3.0, 3.75}) {
+        EXPECT_NEAR(young(n).color[1].w, 8.0 / std::sqrt(n), 1e-12) << n;
+        EXPECT_NEAR(young(n).error[1], 4.0 / n * error, 1e-12) << n;
+    }
+    EXPECT_NEAR(young(0.25).color[1].w, 8.0, 1e-12) << "less than one frame is one";
+    EXPECT_EQ(young(4.0).color[1], color[1]) << "not young";
+    moments[1].y = 1e9;
+    EXPECT_NEAR(young(1.0).color[1].w, 2.0 * std::sqrt(1e9 - 9.0), 1e-6);
+    moments[1].y = 2e9;
+    EXPECT_EQ(young(1.0).color[1].w, 65504.0) << "44721 before";
+    params.boost = false;
+    moments[1].y = 25.0;
+    for (const double n : {0.5, 1.0, 2.0, 3.0}) {
+        EXPECT_NEAR(young(n).color[1].w, 4.0, 1e-12) << n;
+        EXPECT_NEAR(young(n).error[1], error, 1e-12) << n;
+    }
+}
+
+TEST_F(SvgfRow, YoungPixelsLeaveOutThoseWithoutAHistory) {
+    surfaces.distance[2] = 2.003;
+    std::vector<dvec4> moments{dvec4(0), {3, 25, 0, 1}, {90, 9000, 0, 0}};
+    const auto sigma = [&](size_t p) {
+        return svgfYoungVariance(frame, surfaces, color, moments, params).color[p].w;
+    };
+    EXPECT_NEAR(sigma(1), 8.0, 1e-12) << "the centre alone";
+    EXPECT_NEAR(sigma(2), 8.0, 1e-12) << "the neighbour alone, however small its weight";
+    moments[2] = {5, 29, 0, 0.5};  // a deviation of 2
+    moments[1].w = 0.0;
+    EXPECT_NEAR(sigma(1), 4.0, 1e-12);
+    moments[2].w = 0.0;
+    EXPECT_EQ(sigma(1), 0.0);
+    EXPECT_EQ(sigma(2), 0.0);
+    params.boost = false;
+    EXPECT_EQ(sigma(1), 0.0);
+}
+
+TEST_F(SvgfRow, WeightsThatFloatsMayLoseAreNotCompared) {
+    surfaces.distance[2] = 2.2;  // exp(-100)
+    const std::vector<dvec4> moments{dvec4(0), dvec4(0), {3, 25, 0, 1}};
+    const std::vector<double> error = svgfYoungVariance(frame, surfaces, color, moments, params).error;
+    EXPECT_TRUE(std::isinf(error[1]));
+    EXPECT_FALSE(std::isinf(error[2]));
 }
 
 }  // namespace

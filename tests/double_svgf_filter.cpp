@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "double_svgf.h"
 
@@ -10,6 +11,9 @@ namespace {
 
 constexpr double leastCosine = 0.05;  // steeper surfaces have this one's slope
 constexpr double youngFrames = 4.0;
+constexpr double largestHalf = 65504.0;
+/// Sums of weights below this may be lost in float32.
+constexpr double leastWeights = 1e-30;
 
 /// The picture's pixels by their coordinates, and the weights that surfaces give them.
 class Neighbours {
@@ -124,6 +128,32 @@ class Level {
     std::vector<double> luminances_;
 };
 
+/// sigma, and what float32 may make of its square.
+struct Deviation {
+    double sigma, error;
+};
+
+/// That of the light of those around p that have a history.
+Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
+    dvec2 sum(0.0);
+    double weights = 0.0;
+    bool found = false;
+    neighbours.around(p, 1, 3, [&](size_t q, int i, int j) {
+        if (moments[q].w <= 0.0) return;
+        const double w = neighbours.weight(p, q, dvec2(i, j));
+        sum += w * dvec2(moments[q]);
+        weights += w;
+        found = true;
+    });
+    if (!found) return {0.0, 0.0};
+    if (weights < leastWeights) return {0.0, std::numeric_limits<double>::infinity()};
+    const dvec2 mean = sum / weights;
+    // As many roundings as there are neighbours. Without the centre, whose weight is 1, the others may all be
+    // small, and then the rounding of their exponents counts too.
+    const double rounding = 49 * 0x1p-24 + 2e-6 * std::max(-std::log(weights), 0.0);
+    return {svgfDeviation(mean.x, mean.y), rounding * mean.y};
+}
+
 }  // namespace
 
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance) {
@@ -148,17 +178,12 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
     const Neighbours neighbours(frame, surfaces, params);
     SvgfVariance result{color, std::vector<double>(frame.pixelCount(), 0.0)};
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        if (!neighbours.sees(p) || moments[p].w >= youngFrames) continue;
-        dvec2 sum(0.0);
-        double weights = 0.0;
-        neighbours.around(p, 1, 3, [&](size_t q, int i, int j) {
-            const double w = neighbours.weight(p, q, dvec2(i, j));
-            sum += w * dvec2(moments[q]);
-            weights += w;
-        });
-        const dvec2 mean = sum / weights;
-        result.color[p].w = svgfDeviation(mean.x, mean.y);
-        result.error[p] = 49 * 0x1p-24 * mean.y;  // as many roundings as there are neighbours
+        const double n = moments[p].w;
+        if (!neighbours.sees(p) || n >= youngFrames) continue;
+        const Deviation around = deviationAround(neighbours, p, moments);
+        const double boost = params.boost ? 2.0 / std::sqrt(std::max(n, 1.0)) : 1.0;
+        result.color[p].w = std::min(boost * around.sigma, largestHalf);
+        result.error[p] = boost * boost * around.error;
     }
     return result;
 }

@@ -67,17 +67,13 @@ class Accumulator {
 
   private:
     struct Old {
-        Resampled color, moments, tile;
-    };
-    /// The new sample, with the slopes that the previous frame's tiles give it.
-    struct New {
-        dvec3 x, slope;
+        Resampled color, moments;
+        Sloped lag{0.0, 0.0};
     };
     Old find(size_t p, SvgfPixel& pixel) const;
-    Resampled tileAt(const dvec2& s) const;
-    New withoutFireflies(const dvec3& x, const Old& old, Decision& decision) const;
+    Sloped lagAt(const dvec2& s) const;
     Sloped shortened(const Old& old) const;
-    void update(const New& sample, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
+    void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
     SvgfSignal signal_;
@@ -89,7 +85,7 @@ class Accumulator {
 };
 
 /// Bilinear at s / 8 - 0.5 with coordinates clamped.
-Resampled Accumulator::tileAt(const dvec2& s) const {
+Sloped Accumulator::lagAt(const dvec2& s) const {
     const dvec2 last(static_cast<double>(tilesAlong(frame_.width)) - 1.0,
                      static_cast<double>(tilesAlong(frame_.height)) - 1.0);
     const dvec2 f = s / double{tileEdge} - 0.5, first = glm::floor(f), fraction = f - first;
@@ -103,9 +99,8 @@ Resampled Accumulator::tileAt(const dvec2& s) const {
                 {static_cast<size_t>(at.y) * tilesAlong(frame_.width) + static_cast<size_t>(at.x), weight});
         }
     }
-    Resampled tile = resample(taps, [&](size_t q) { return previous_.tiles[q]; });
-    tile.slope /= double{tileEdge};
-    return tile;
+    const Resampled lag = resample(taps, [&](size_t q) { return dvec4(previous_.tiles[q]); });
+    return {lag.mean.x, lag.slope.x / double{tileEdge}};
 }
 
 Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
@@ -115,54 +110,41 @@ Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     pixel.doubtful = decision.doubtful();
     if (found.failure != 0) return {};
     return {resample(found, [&](size_t q) { return previous_.color[q]; }),
-            resample(found, [&](size_t q) { return previous_.moments[q]; }), tileAt(found.position)};
-}
-
-Accumulator::New Accumulator::withoutFireflies(const dvec3& x, const Old& old, Decision& decision) const {
-    const double u = old.tile.mean.y, d = old.tile.mean.z;
-    if (params_.firefly <= 0.0 || old.moments.mean.w <= 0.0) return {x, dvec3(0.0)};
-    const double most = u + params_.firefly * d;
-    // Elsewhere float32's error of a threshold changes the result as little as it changes the threshold.
-    if (luminance(x) > u && old.tile.slope.z > 0.0) decision.near(d, 0.0, 1e-4 * old.tile.slope.z);
-    if (d <= 0.0 || luminance(x) <= most) return {x, dvec3(0.0)};
-    const dvec3 hue = x / luminance(x);
-    return {most * hue, glm::abs(hue) * (old.tile.slope.y + params_.firefly * old.tile.slope.z)};
+            resample(found, [&](size_t q) { return previous_.moments[q]; }), lagAt(found.position)};
 }
 
 /// N after anti-lag.
 Sloped Accumulator::shortened(const Old& old) const {
-    const double n = old.moments.mean.w, kept = 1.0 - old.tile.mean.x;
-    return {n * kept, old.moments.slope.w * kept + n * old.tile.slope.x};
+    const double n = old.moments.mean.w, kept = 1.0 - old.lag.value;
+    return {n * kept, old.moments.slope.w * kept + n * old.lag.slope};
 }
 
-void Accumulator::update(const New& sample, const Old& old, dvec4& color, dvec4& moments,
+void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments,
                          SvgfPixel& pixel) const {
     const Sloped kept = shortened(old);
     const double longest = std::max(shortestHistory, 1.0 / std::min(params_.alpha, params_.alphaMoments));
     const double n = std::min(kept.value + 1.0, longest);
-    const auto blend = [&](const Sloped& was, const Sloped& is, double alpha) {
+    const auto blend = [&](const Sloped& was, double is, double alpha) {
         const double share = std::max(alpha, 1.0 / n);
         const double shareSlope = kept.slope / (n * n);
-        return Sloped{
-            was.value + (is.value - was.value) * share,
-            was.slope * (1.0 - share) + is.slope * share + std::abs(is.value - was.value) * shareSlope};
+        return Sloped{was.value + (is - was.value) * share,
+                      was.slope * (1.0 - share) + std::abs(is - was.value) * shareSlope};
     };
     for (int i = 0; i < 3; ++i) {
-        const Sloped c =
-            blend({old.color.mean[i], old.color.slope[i]}, {sample.x[i], sample.slope[i]}, params_.alpha);
+        const Sloped c = blend({old.color.mean[i], old.color.slope[i]}, x[i], params_.alpha);
         color[i] = c.value;
         pixel.colorSlope[i] = c.slope;
-        pixel.colorOperands[i] = std::max(std::abs(old.color.mean[i]), std::abs(sample.x[i]));
+        pixel.colorOperands[i] = std::max(std::abs(old.color.mean[i]), std::abs(x[i]));
     }
-    const double l = luminance(sample.x), lSlope = luminance(sample.slope);
-    const std::array<Sloped, 3> values{{{l, lSlope}, {l * l, 2.0 * std::abs(l) * lSlope}, {l, lSlope}}};
+    const double l = luminance(x);
+    const std::array<double, 3> values{l, l * l, l};
     const std::array<double, 3> alphas{params_.alphaMoments, params_.alphaMoments, params_.alphaFast};
     for (int i = 0; i < 3; ++i) {
         const auto at = static_cast<size_t>(i);
         const Sloped m = blend({old.moments.mean[i], old.moments.slope[i]}, values[at], alphas[at]);
         moments[i] = m.value;
         pixel.momentsSlope[i] = m.slope;
-        pixel.momentsOperands[i] = std::max(std::abs(old.moments.mean[i]), std::abs(values[at].value));
+        pixel.momentsOperands[i] = std::max(std::abs(old.moments.mean[i]), std::abs(values[at]));
     }
     moments.w = n;
     pixel.momentsSlope.w = kept.slope;
@@ -186,9 +168,7 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
         pixel.colorSlope = old.color.slope;
         pixel.momentsSlope = dvec4(dvec3(old.moments.slope), kept.slope);
     } else {
-        Decision decision;
-        update(withoutFireflies(sample.x, old, decision), old, color, moments, pixel);
-        pixel.doubtful = pixel.doubtful || decision.doubtful();
+        update(sample.x, old, color, moments, pixel);
     }
     color = glm::clamp(color, -largestHalf, largestHalf);
     color.w = svgfDeviation(moments.x, moments.y);
@@ -197,17 +177,15 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
 
 /// Sums over one tile.
 struct TileSums {
-    double lag = 0.0, variance = 0.0, size = 0.0, m1 = 0.0, m2 = 0.0, count = 0.0;
-    double magnitude = 0.0;  ///< of what `lag` is the sum of
+    double lag = 0.0, variance = 0.0, size = 0.0;
+    double lagMagnitude = 0.0, m2 = 0.0;  ///< of what `lag` and `variance` are the sums of
 
     void add(const dvec4& moments) {
         lag += moments.z - moments.x;
         variance += std::max(moments.y - moments.x * moments.x, 0.0);
         size += std::max(moments.z, moments.x);
-        m1 += moments.x;
+        lagMagnitude += std::abs(moments.z) + std::abs(moments.x);
         m2 += moments.y;
-        count += 1.0;
-        magnitude += std::abs(moments.z) + std::abs(moments.x);
     }
 };
 
@@ -276,21 +254,17 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
     const double rounding = 64 * 0x1p-24;  // of a sum of 64 numbers
     SvgfTiles result;
     for (const TileSums& s : sums) {
-        if (s.count == 0.0) {
-            result.tiles.emplace_back(0.0);
-            result.error.emplace_back(0.0);
+        if (s.size == 0.0) {
+            result.tiles.push_back(0.0);
+            result.error.push_back(0.0);
             continue;
         }
         const double noise = std::sqrt(k * s.variance), excess = std::abs(s.lag) - 3.0 * noise;
-        const double lag =
-            s.size == 0.0 ? 0.0 : std::min(1.0, params.antilag * std::max(excess, 0.0) / s.size);
-        const double u = s.m1 / s.count, variance = s.m2 / s.count - u * u;
-        result.tiles.emplace_back(lag, u, std::sqrt(std::max(variance, 0.0)), 0.0);
+        const double lag = std::min(1.0, params.antilag * std::max(excess, 0.0) / s.size);
         const double excessError =
-            rounding * s.magnitude + 3.0 * rootError(k * s.variance, k * rounding * s.m2);
-        result.error.emplace_back(s.size == 0.0 ? 0.0 : params.antilag * excessError / s.size + 1e-5 * lag,
-                                  1e-5 * std::abs(u),
-                                  rootError(std::max(variance, 0.0), rounding * s.m2 / s.count), 0.0);
+            rounding * s.lagMagnitude + 3.0 * rootError(k * s.variance, k * rounding * s.m2);
+        result.tiles.push_back(lag);
+        result.error.push_back(params.antilag * excessError / s.size + 1e-5 * lag);
     }
     return result;
 }

@@ -102,6 +102,15 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     return b;
 }
 
+/// True if light is reflected in one direction and goes nowhere else.
+bool isPerfectMirror(Bsdf b) {
+    if (!HAS_SPECULAR) return false;
+    if (HAS_CLEARCOAT) {
+        if (b.clearcoat.weight > 0.0) return false;
+    }
+    return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
+}
+
 /// True if wi leaves on the side of the true surface that it leaves on at the shading normal.
 bool sidesAgree(Bsdf b, vec3 wi) {
     return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;

@@ -119,7 +119,6 @@ class Svgf {
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
-        params.firefly = settings_.firefly;
         return params;
     }
 
@@ -130,7 +129,7 @@ class Svgf {
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
-        const History tiles = graph_.history(name + " tiles", Format::RGBA32Float, tileExtent);
+        const History tiles = graph_.history(name + " tiles", Format::R32Float, tileExtent);
         const ImageHandle color =
             fedBack() == 0
                 ? feedback.current
@@ -196,13 +195,15 @@ class Svgf {
 
     void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
         const SvgfFilterParams params = filterParams(1);
+        std::vector<gpu::ConstantValue> constants = filterConstants();
+        constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
                                       {"moments", accumulated.moments},
                                       {"color", accumulated.color}},
                          .params = gpu::paramsOf(params),
-                         .constants = filterConstants(),
+                         .constants = constants,
                          .extent = extent_});
     }
 
@@ -287,9 +288,6 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("antilag", &S::antilag, 0.0, 1e6, "",
               "history that is forgotten per relative change of light beyond noise; higher follows changes "
               "sooner and is noisier; 0 is off");
-        t.add("firefly", &S::firefly, 0.0, 1e6, "deviations",
-              "samples brighter than their surroundings by more than this are clamped; lower loses energy, 0 "
-              "is off");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
@@ -304,6 +302,8 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "tolerated difference of distance, in units of the surface's own slope (with `position`: "
               "tolerated distance of points, world units); higher smooths over steps");
         t.add("blur_variance", &S::blurVariance, "average the variance over 3x3 pixels before it guides");
+        t.add("boost", &S::boost,
+              "the shorter the history of a pixel seen for under 4 frames, the more noise is expected of it");
         t.add("mutual", &S::mutual,
               "the noisier of two pixels decides what they tolerate of each other; off: the one that is "
               "filtered, which rejects bright samples and darkens the picture");
@@ -312,8 +312,8 @@ const ParamTable<SvgfSettings>& svgfParams() {
                            {"wide", "on"},
                            {"alpha_moments", "0.2"},
                            {"antilag", "0"},
-                           {"firefly", "0"},
                            {"history_level", "1"},
+                           {"boost", "off"},
                            {"mutual", "off"}});
         t.preset("cis565", {{"separate", "off"},
                             {"demodulate", "off"},
@@ -323,13 +323,13 @@ const ParamTable<SvgfSettings>& svgfParams() {
                             {"depth_test", "0.1"},
                             {"relative", "off"},
                             {"antilag", "0"},
-                            {"firefly", "0"},
                             {"levels", "5"},
                             {"history_level", "1"},
                             {"wide", "on"},
                             {"phi_color", "0.7"},
                             {"phi_normal", "0.2"},
                             {"phi_depth", "0.35"},
+                            {"boost", "off"},
                             {"mutual", "off"},
                             {"position", "on"}});
         return t;

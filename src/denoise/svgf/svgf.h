@@ -21,7 +21,6 @@ struct SvgfSettings {
     bool relative = true;
     bool search = true;
     float antilag = 16.0f;
-    float firefly = 0.0f;
     int levels = 5;
     int historyLevel = 0;
     bool wide = false;
@@ -29,6 +28,7 @@ struct SvgfSettings {
     float phiNormal = 128.0f;
     float phiDepth = 1.0f;
     bool blurVariance = true;
+    bool boost = true;
     bool mutual = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;

@@ -40,7 +40,6 @@ struct SvgfReprojectParams {
     float alphaMoments;
     float alphaFast;
     float longest;  // frames
-    float firefly;  // deviations; 0: off
 };
 
 struct SvgfTilesParams {

@@ -23,7 +23,7 @@ READ_UINT2(9, surfacesBefore);
 layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
 READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
-layout(set = 0, binding = 13, rgba32f) uniform readonly image2D tilesBefore;
+layout(set = 0, binding = 13, r32f) uniform readonly image2D tilesBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
 
@@ -88,12 +88,12 @@ Past pastAt(vec2 position, Expected expected) {
     return Past(taps.sum.color / taps.weight, taps.sum.moments / taps.weight);
 }
 
-vec4 tileTap(ivec2 at) {
-    return imageLoad(tilesBefore, clamp(at, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE));
+float tileTap(ivec2 at) {
+    return imageLoad(tilesBefore, clamp(at, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE)).x;
 }
 
-/// Lag, mean and deviation around `position` (as above).
-vec4 tilesAt(vec2 position) {
+/// Around `position` (as above).
+float lagAt(vec2 position) {
     const vec2 tile = (position + 0.5) / float(SVGF_TILE) - 0.5;
     const vec2 corner = floor(tile), share = tile - corner;
     const ivec2 first = ivec2(corner);
@@ -108,16 +108,8 @@ vec3 demodulated(vec3 light, ivec2 at) {
     return clamp(x, -MAX_HALF, MAX_HALF);
 }
 
-/// Brighter than what the tiles around have ever shown by more than chance.
-vec3 withoutFirefly(vec3 x, float frames, vec4 tiles) {
-    const float limit = tiles.y + params.firefly * tiles.z;
-    const float l = luminance(x);
-    const bool firefly = params.firefly > 0.0 && frames > 0.0 && tiles.z > 0.0 && l > limit;
-    return firefly ? x * (limit / l) : x;
-}
-
-Past pastOf(ivec2 at, uvec2 surface, out vec4 tiles) {
-    tiles = vec4(0.0);
+/// Of the history that is left after anti-lag.
+Past pastOf(ivec2 at, uvec2 surface) {
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(imageLoad(motion, at), vec2(at), size);
     const float z = uintBitsToFloat(surface.y);
@@ -126,9 +118,10 @@ Past pastOf(ivec2 at, uvec2 surface, out vec4 tiles) {
     const float tolerance = params.relative == 0u ? params.depthTest
                                                   : depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x),
                                                                    vec2(at), size, params.depthTest);
-    tiles = tilesAt(was.position);
-    return pastAt(was.position,
-                  Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
+    Past past = pastAt(was.position, Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance,
+                                              imageLoad(instances, at).x));
+    past.moments.w *= 1.0 - lagAt(was.position);
+    return past;
 }
 
 Past accumulated(Past past, vec3 x) {
@@ -146,11 +139,8 @@ void main() {
     if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
     const vec3 x = demodulated(light, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
-    vec4 tiles;
-    Past now = pastOf(at, surface, tiles);
-    const float frames = now.moments.w;
-    now.moments.w *= 1.0 - tiles.x;
-    if (isFinite(light)) now = accumulated(now, withoutFirefly(x, frames, tiles));
+    Past now = pastOf(at, surface);
+    if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
     const float deviation = min(sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0)), MAX_HALF);
     const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : deviation;

@@ -12,6 +12,8 @@ UPDATE_HALF4(3, color);
 
 #include "denoise/svgf/svgf_weights.glsl"
 
+layout(constant_id = 3) const bool BOOST = true;  // the shorter the history, the noisier its mean
+
 const int RADIUS = 3;
 
 void addTap(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
@@ -19,7 +21,8 @@ void addTap(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
     const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
     const Surface other = surfaceAt(inside);
     const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other, from));
-    if (inside == there && other.depth > 0.0) sum += weight * vec3(imageLoad(moments, inside).xy, 1.0);
+    const vec4 m = imageLoad(moments, inside);
+    if (inside == there && m.w > 0.0) sum += weight * vec3(m.xy, 1.0);
 }
 
 bool isYoung(ivec2 at) {
@@ -32,7 +35,8 @@ void estimate(ivec2 at) {
     for (int j = -RADIUS; j <= RADIUS; ++j) {
         for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
     }
-    const vec2 mean = sum.xy / sum.z;
+    const vec2 mean = sum.xy / max(sum.z, 1e-30);
+    const float boost = BOOST ? 2.0 * inversesqrt(max(imageLoad(moments, at).w, 1.0)) : 1.0;
     const vec3 light = LOAD_HALF4(color, at).rgb;
-    STORE_HALF4(color, at, vec4(light, min(sqrt(max(mean.y - mean.x * mean.x, 0.0)), MAX_HALF)));
+    STORE_HALF4(color, at, vec4(light, min(boost * sqrt(max(mean.y - mean.x * mean.x, 0.0)), MAX_HALF)));
 }

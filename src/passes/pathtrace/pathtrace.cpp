@@ -24,6 +24,7 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     params.maxDepth = static_cast<uint>(settings.maxDepth);
     params.rouletteDepth = static_cast<uint>(settings.rouletteDepth);
     params.fireflyClamp = settings.fireflyClamp;
+    params.throughMirrors = settings.throughMirrors;
     return params;
 }
 
@@ -50,6 +51,9 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
               "biased: indirect samples brighter than this are dimmed to it; 0 is off");
         t.add("sampler_tea", &S::samplerTea,
               "the seed document's generator (24 low bits of an LCG) instead of PCG");
+        t.add("through_mirrors", &S::throughMirrors,
+              "layers of a perfect mirror are those of what it shows, so that denoisers see through it as "
+              "through a window; off: its own");
         return t;
     }();
     return table;

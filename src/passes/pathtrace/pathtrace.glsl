@@ -4,9 +4,9 @@
 // The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
 // and a dozen registers are free for traversal.
 #include "passes/pathtrace/pathtrace_params.h"
-#include "shaders/first_hit.glsl"
 #include "shaders/lights.glsl"
 #include "shaders/medium.glsl"
+#include "shaders/mirror.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
@@ -33,15 +33,16 @@ struct Path {
     vec3 medium;  // absorption of the body that the path is in, per unit of length
     PathRadiance radiance;
     uint rays;
+    uint primary;  // the vertex that the layers are of: 0, or 1 behind a mirror
 };
 
-/// Adds what a path finds at vertex `depth`; depth 0 is the emission layer.
+/// Adds what a path finds at vertex `depth`. What is found at the primary vertex is the emission layer.
 void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
     const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
     const vec3 found = clampFirefly(path.throughput * radiance * weight, max(depth, 1u) - 1u);
     if (!SPLIT_LOBES) {
         path.radiance.diffuse += found;
-    } else if (depth == 0u) {
+    } else if (depth <= path.primary) {
         path.radiance.emission += found;
     } else {
         path.radiance.diffuse += found * path.diffuseShare;
@@ -70,7 +71,7 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     if (!SPLIT_LOBES) {
         diffuse += specular;
         specular = vec3(0.0);
-    } else if (depth > 0u) {
+    } else if (depth > path.primary) {
         const vec3 sum = diffuse + specular;
         diffuse = sum * path.diffuseShare;
         specular = sum - diffuse;
@@ -89,7 +90,7 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
     const BsdfSample next = sampleBsdf(bsdf, rng);
     if (!next.valid) return false;
     const vec3 value = next.value.diffuse + next.value.specular;
-    if (SPLIT_LOBES && depth == 0u) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
+    if (SPLIT_LOBES && depth == path.primary) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
     path.throughput *= value / next.value.pdf;
     path.bsdfPdf = next.value.pdf;
     path.delta = next.delta;
@@ -106,15 +107,17 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view.camera);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u);
     float spread = cone.spread;
     first = noHit(ray.direction);
     float traveled = 0.0;
     uint culled = 0u;
+    Mirror mirror;
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
         ++path.rays;
         const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
         if (!isHit(hit)) {
+            if (depth == 1u && path.primary == 1u) first = shownBy(mirror, noHit(path.ray.direction), path.throughput);
             addEnvironment(path, depth);
             break;
         }
@@ -124,15 +127,16 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
-        if (depth == 0u) {
-            traveled += hit.t;
-            if (passesBack(surface, culled, path.ray.origin)) {
-                --depth;
-                continue;
-            }
+        if (depth <= path.primary) traveled += hit.t;
+        if (depth == 0u && passesBack(surface, culled, path.ray.origin)) {
+            --depth;
+            continue;
+        }
+        if (depth == path.primary) {
             PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
             if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
             first = firstHitOf(surface, bsdf, traveled, previous);
+            if (depth == 1u) first = shownBy(mirror, first, path.throughput);
         }
         if (surface.emission != vec3(0.0)) {
             const float density =
@@ -142,6 +146,10 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         if (depth == params.maxDepth || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
+        if (SPLIT_LOBES && depth == 0u && params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
+            mirror = Mirror(surface.position, surface.normal, first.previous);
+            path.primary = 1u;
+        }
         // A rough bounce blurs what lies behind it: a wider cone reads coarser mip levels.
         if (HAS_TEXTURES && !path.delta) spread = max(spread, 0.1);
     }

@@ -15,6 +15,7 @@ struct PathtraceSettings {
     int rouletteDepth = 3;
     float fireflyClamp = 0.0f;
     bool samplerTea = false;
+    bool throughMirrors = true;
     bool operator==(const PathtraceSettings&) const = default;
 };
 const ParamTable<PathtraceSettings>& pathtraceParams();

@@ -17,6 +17,7 @@ struct PathtraceParams {
     uint maxDepth;
     uint rouletteDepth;
     float fireflyClamp;  // 0: off
+    uint throughMirrors;
 };
 
 #ifdef __cplusplus
