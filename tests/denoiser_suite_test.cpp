@@ -90,7 +90,7 @@ TEST_P(DenoiserSuite, NoNanGoesInOrComesOut) {
         size_t at = 5 + static_cast<size_t>(number);
         for (auto* layer :
              {&frame.diffuse, &frame.specular, &frame.emission, &frame.albedo, &frame.albedoSpecular,
-              &frame.normal, &frame.depth, &frame.motion, &frame.previousNormal}) {
+              &frame.normal, &frame.depth, &frame.motion, &frame.reflectionMotion, &frame.previousNormal}) {
             for (const float value : bad) {
                 if (layer == &frame.emission && value == bad[3]) continue;  // it passes by as it is
                 (*layer)[at % layer->size()] = value;

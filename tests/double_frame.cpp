@@ -1,5 +1,6 @@
 #include "double_frame.h"
 
+#include <cmath>
 #include <limits>
 
 namespace limpid::test {
@@ -52,6 +53,14 @@ std::optional<dvec3> DoubleFrame::motion(size_t p) const {
     const float validShare = frame_.motion[4 * p + 3];
     if (validShare == 0.0f) return std::nullopt;
     return xyz(frame_.motion, p) / double{validShare};
+}
+
+std::optional<dvec3> DoubleFrame::reflectionMotion(size_t p) const {
+    if (frame_.reflectionMotion.empty()) return std::nullopt;
+    const float validShare = frame_.reflectionMotion[4 * p + 3];
+    if (validShare == 0.0f || !std::isfinite(validShare)) return std::nullopt;
+    const dvec3 r = xyz(frame_.reflectionMotion, p) / double{validShare};
+    return isFiniteInFloat(r) ? std::optional(r) : std::nullopt;
 }
 
 double DoubleFrame::id(size_t p) const {

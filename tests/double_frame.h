@@ -26,11 +26,12 @@ class DoubleFrame {
     dvec3 albedo(size_t p) const;
     dvec3 albedoSpecular(size_t p) const;  ///< 0 where the frame has none
     bool hit(size_t p) const { return frame_.depth[4 * p + 1] > 0.0f; }
-    double distance(size_t p) const;              ///< z; 0 where nothing is seen
-    dvec3 normal(size_t p) const;                 ///< n; 0 where nothing is seen
-    dvec3 previousNormal(size_t p) const;         ///< n'
-    std::optional<dvec3> motion(size_t p) const;  ///< m; nothing where it is invalid
-    double id(size_t p) const;                    ///< instance number + 1; 0 where nothing is seen
+    double distance(size_t p) const;                        ///< z; 0 where nothing is seen
+    dvec3 normal(size_t p) const;                           ///< n; 0 where nothing is seen
+    dvec3 previousNormal(size_t p) const;                   ///< n'
+    std::optional<dvec3> motion(size_t p) const;            ///< m; nothing where it is invalid
+    std::optional<dvec3> reflectionMotion(size_t p) const;  ///< r, likewise
+    double id(size_t p) const;                              ///< instance number + 1; 0 where nothing is seen
 
     /// (x, y) of the pixel's centre in [-1, 1]^2, y up.
     dvec2 screen(size_t p) const;

@@ -111,9 +111,8 @@ std::vector<Tap> Reprojector::searchedTaps(const Expected& expected, const dvec2
     return taps;
 }
 
-Reprojection Reprojector::find(size_t p, Decision& decision) const {
+Reprojection Reprojector::find(size_t p, const std::optional<dvec3>& motion, Decision& decision) const {
     if (!frame_.hit(p)) return {1, {}, {}};
-    const std::optional<dvec3> motion = frame_.motion(p);
     if (!motion) return {2, {}, {}};
     const auto columns = static_cast<size_t>(size_.x);
     const dvec2 pixel(static_cast<double>(p % columns), static_cast<double>(p / columns));

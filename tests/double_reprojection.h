@@ -2,6 +2,7 @@
 // tracking in docs/denoising.md and nothing else. The oracles of the denoisers with a history share it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "double_frame.h"
@@ -52,7 +53,9 @@ class Reprojector {
     /// `previous`: as many pixels as the frame has. All arguments must outlive it.
     Reprojector(const denoise::HostFrame& frame, const std::vector<PreviousSurface>& previous,
                 const ReprojectionParams& params);
-    Reprojection find(size_t p, Decision& decision) const;
+    Reprojection find(size_t p, Decision& decision) const { return find(p, frame_.motion(p), decision); }
+    /// With another motion than the frame's, or none.
+    Reprojection find(size_t p, const std::optional<dvec3>& motion, Decision& decision) const;
 
   private:
     struct Expected;

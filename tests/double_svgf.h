@@ -15,6 +15,7 @@ struct DoubleSvgfParams {
     double alpha = 0.2, alphaMoments = 0.2, alphaFast = 0.5;
     double normalTest = 0.95, depthTest = 0.02;
     bool relative = true, search = true;
+    bool reflections = true;
     double antilag = 2.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     bool blurVariance = true, boost = true, wide = true, mutual = true, position = false;
@@ -44,8 +45,9 @@ struct SvgfHistory {
 };
 
 struct SvgfPixel {
-    int failure = 0;        ///< 0: history was found; else the failure case of history tracking
-    bool rejected = false;  ///< the sample has a NaN or an infinity
+    int failure = 0;         ///< 0: history was found; else the failure case of history tracking
+    bool reflected = false;  ///< the history is that of where the reflection was
+    bool rejected = false;   ///< the sample has a NaN or an infinity
     /// A decision was so close that float32 may take the other one: compare nothing here.
     bool doubtful = false;
     /// By how much the results change at most if the back-projected position s is off by one pixel.

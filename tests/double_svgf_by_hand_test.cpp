@@ -1,6 +1,7 @@
 // The oracle of SVGF, by numbers that were computed by hand.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -120,6 +121,89 @@ TEST_F(SvgfByHand, Signals) {
     EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Joint, light}}, false)[middle], dvec4(1.5, 2.5, 3.5, 1));
 }
 
+/// Old colors are the positions of their pixels, and no sample counts: what is found says where.
+class SvgfReflectionsByHand : public SvgfByHand {
+  protected:
+    SvgfReflectionsByHand() {
+        frame.reflectionMotion.assign(100, 0.0f);
+        frame.diffuse.assign(100, std::numeric_limits<float>::quiet_NaN());
+        frame.specular = frame.diffuse;
+        for (size_t q = 0; q < 25; ++q)
+            before.color[q] = {static_cast<double>(q % 5) + 0.5, static_cast<double>(q / 5) + 0.5, 1, nan};
+    }
+
+    void reflect(size_t p, const vec3& r, float w = 1.0f) {
+        set(frame.reflectionMotion, 4 * p, w * r);
+        frame.reflectionMotion[4 * p + 3] = w;
+    }
+    void expectAt(const dvec2& s, size_t p = middle, SvgfSignal signal = SvgfSignal::Specular) const {
+        const SvgfAccumulated result = svgfAccumulate(frame, signal, before, params);
+        EXPECT_LT(glm::distance(dvec3(result.color[p]), dvec3(s, 1)), 1e-6);
+        EXPECT_FALSE(result.pixels[p].doubtful);
+    }
+
+    static constexpr dvec2 byMotion{2.75, 3};
+};
+
+TEST_F(SvgfReflectionsByHand, ReplaceTheMotionOfSpecularLight) {
+    expectAt(byMotion);
+    reflect(middle, {-1, -0.75f, 0.01f});
+    expectAt({1.5, 1.75});
+    expectAt(byMotion, middle, SvgfSignal::Diffuse);
+    expectAt(byMotion, middle, SvgfSignal::Joint);
+    params.reflections = false;
+    expectAt(byMotion);
+    params.reflections = true;
+    reflect(middle, {-1, -0.75f, 0.01f}, 0.5f);
+    expectAt({1.5, 1.75});
+    frame.motion[4 * middle + 3] = 0.0f;
+    expectAt({1.5, 1.75});
+    frame.motion[4 * middle + 3] = 1.0f;
+    frame.reflectionMotion.clear();
+    expectAt(byMotion);
+}
+
+TEST_F(SvgfReflectionsByHand, MeanOfNinePixels) {
+    reflect(6, {-1, -1, 0});
+    reflect(18, {0.5f, 0.5f, 0}, 0.25f);  // weighs as much
+    for (const size_t other : {7, 8, 11, 13, 16, 17, 0, 10, 14, 24}) reflect(other, {1, 1, 0});
+    frame.ids[2 * 7] = 3;
+    for (size_t i = 0; i < 4; ++i)  // 8, 11, 16, 17
+        frame.reflectionMotion[4 * std::array<size_t, 4>{8, 11, 16, 17}[i] + i] =
+            i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+    frame.reflectionMotion[4 * 13 + 3] = 0.0f;
+    expectAt({2.25, 2.25});
+}
+
+TEST_F(SvgfReflectionsByHand, MeanAtTheEdgesOfThePicture) {
+    for (const size_t other : {0, 4, 9, 14, 19, 23}) reflect(other, {0, 2, 0});  // 4, 9, 14: of other rows
+    frame.ids[0] = 3;
+    reflect(5, {1, 0, 0});
+    expectAt({1.5, 1.5}, 5);
+    reflect(24, {-2, -4, 0});
+    frame.ids[2 * 19] = frame.ids[2 * 23] = 3;
+    expectAt({2.5, 0.5}, 24);
+}
+
+TEST_F(SvgfReflectionsByHand, WhereTheyLeadNowhereTheMotionLeads) {
+    reflect(middle, {-3, 0, 0});  // outside
+    expectAt(byMotion);
+    reflect(middle, {-1, -0.75f, 1});  // too far away
+    expectAt(byMotion);
+    frame.motion[4 * middle + 3] = 0.0f;
+    EXPECT_EQ(svgfAccumulate(frame, SvgfSignal::Specular, before, params).color[middle], dvec4(0));
+    frame.motion[4 * middle + 3] = 1.0f;
+    reflect(middle, {-1, -0.75f, 0});
+    before.moments[6].w = before.moments[11].w = 0.0;  // all the taps, but not all of the nine pixels
+    expectAt({1.5, 9.5 / 7});
+    params.search = false;
+    expectAt(byMotion);
+    reflect(middle, {2.5f, 0, 0});
+    EXPECT_TRUE(svgfAccumulate(frame, SvgfSignal::Specular, before, params).pixels[middle].doubtful)
+        << "on the edge of the picture";
+    expectAt(byMotion, middle, SvgfSignal::Diffuse);
+}
+
 TEST(SvgfTilesByHand, ChangeBeyondNoise) {
     // Nine columns: the second tile is a column of pixels.
     const HostFrame frame = frontalPlane(9, 8);
@@ -156,6 +240,18 @@ TEST(SvgfTilesByHand, TheNextFrameReadsThemBilinearly) {
         const double lag = 0.8 * glm::clamp((static_cast<double>(p) + 0.5 - 4.0) / 8.0, 0.0, 1.0);
         EXPECT_NEAR(result.moments[p].w, 3.0 * (1.0 - lag) + 1.0, 1e-12) << p;
     }
+}
+
+TEST(SvgfTilesByHand, ReflectionsReadThemWhereTheyWere) {
+    HostFrame frame = frontalPlane(16, 1);
+    SvgfHistory before{16, 1, svgfSurfaces(frame), {}, {}, {}};
+    before.color.assign(16, dvec4(0));
+    before.moments.assign(16, dvec4(0, 0, 0, 3));
+    before.tiles = {0.0, 0.8};
+    frame.reflectionMotion.assign(64, 0.0f);
+    frame.reflectionMotion[0] = 8.0f;
+    frame.reflectionMotion[3] = 1.0f;
+    EXPECT_NEAR(svgfAccumulate(frame, SvgfSignal::Specular, before, {}).moments[0].w, 3.0 * 0.55 + 1.0, 1e-6);
 }
 
 /// Three pixels in a row; the rays through them are (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "double_atrous.h"
 #include "double_reprojection.h"
@@ -70,6 +71,8 @@ class Accumulator {
         Resampled color, moments;
         Sloped lag{0.0, 0.0};
     };
+    std::optional<dvec3> reflectionMotion(size_t p) const;
+    Reprojection reproject(size_t p, SvgfPixel& pixel) const;
     Old find(size_t p, SvgfPixel& pixel) const;
     Sloped lagAt(const dvec2& s) const;
     Sloped shortened(const Old& old) const;
@@ -103,11 +106,41 @@ Sloped Accumulator::lagAt(const dvec2& s) const {
     return {lag.mean.x, lag.slope.x / double{tileEdge}};
 }
 
-Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
+/// The mean of r around p; nothing where no pixel has one.
+std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
+    const DoubleFrame pixels(frame_);
+    const size_t x = p % frame_.width, y = p / frame_.width;
+    dvec3 sum(0.0);
+    double count = 0.0;
+    for (size_t j = y - std::min<size_t>(y, 1); j <= y + 1 && j < frame_.height; ++j) {
+        for (size_t i = x - std::min<size_t>(x, 1); i <= x + 1 && i < frame_.width; ++i) {
+            const size_t q = j * frame_.width + i;
+            const std::optional<dvec3> r = pixels.reflectionMotion(q);
+            if (!r || pixels.id(q) != pixels.id(p)) continue;
+            sum += *r;
+            count += 1.0;
+        }
+    }
+    return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// One decision for both lookups: where float32 may find something by r, it may not get to m, and the other
+/// way round. Its mean of r is off by some 1e-6 of r at most; in the picture that is less than s = p + 0.5 +
+/// r itself is rounded by, so the margins for s hold for both.
+Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
     Decision decision;
-    const Reprojection found = reprojector_.find(p, decision);
+    Reprojection found{2, {}, {}};
+    if (params_.reflections && signal_ == SvgfSignal::Specular)
+        found = reprojector_.find(p, reflectionMotion(p), decision);
+    pixel.reflected = found.failure == 0;
+    if (!pixel.reflected) found = reprojector_.find(p, decision);
     pixel.failure = found.failure;
     pixel.doubtful = decision.doubtful();
+    return found;
+}
+
+Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
+    const Reprojection found = reproject(p, pixel);
     if (found.failure != 0) return {};
     return {resample(found, [&](size_t q) { return previous_.color[q]; }),
             resample(found, [&](size_t q) { return previous_.moments[q]; }), lagAt(found.position)};

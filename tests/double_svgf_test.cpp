@@ -18,11 +18,12 @@ constexpr SvgfSignal joint = SvgfSignal::Joint;
 /// Frames of one sequence, one after the other, with the first level fed back.
 class Sequence {
   public:
-    explicit Sequence(const DoubleSvgfParams& params = {}) : params_(params) {}
+    explicit Sequence(const DoubleSvgfParams& params = {}, SvgfSignal signal = joint)
+        : params_(params), signal_(signal) {}
 
     /// Nothing is filtered.
     SvgfAccumulated accumulate(const HostFrame& frame) {
-        SvgfAccumulated result = svgfAccumulate(frame, joint, history, params_);
+        SvgfAccumulated result = svgfAccumulate(frame, signal_, history, params_);
         history = {frame.width,  frame.height,   svgfSurfaces(frame),
                    result.color, result.moments, svgfTiles(frame, result.moments, params_).tiles};
         return result;
@@ -39,6 +40,7 @@ class Sequence {
 
   private:
     DoubleSvgfParams params_;
+    SvgfSignal signal_;
 };
 
 /// A plane in light of mean `mean`, uniform from 0 to twice as much.
@@ -218,25 +220,34 @@ TEST(DoubleSvgf, TheScaleOfTheSceneDoesNotMatter) {
     }
 }
 
-TEST(DoubleSvgf, SlopeAndDoubtCoverErrorsOfPosition) {
+/// Of both motions, which are off by `error` pixels.
+HostFrame displaced(HostFrame frame, float error) {
+    for (auto* layer : {&frame.motion, &frame.reflectionMotion}) {
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            (*layer)[4 * p] += error * (*layer)[4 * p + 3];
+            (*layer)[4 * p + 1] -= error * (*layer)[4 * p + 3];
+        }
+    }
+    return frame;
+}
+
+class DoubleSvgfSignal : public testing::TestWithParam<SvgfSignal> {};
+
+TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
     const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
     const DoubleSvgfParams params{.antilag = 4.0};
-    Sequence sequence(params);
+    Sequence sequence(params, GetParam());
     for (int number = 0; number < 5; ++number) sequence.next(scene.frame(number, width, height, 1));
-    const HostFrame frame = scene.frame(5, width, height, 1);
-    HostFrame off = frame;
-    for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        off.motion[4 * p] += 2e-4f;
-        off.motion[4 * p + 1] -= 2e-4f;
-    }
-    const SvgfAccumulated a = svgfAccumulate(frame, joint, sequence.history, params);
-    const SvgfAccumulated b = svgfAccumulate(off, joint, sequence.history, params);
+    const HostFrame frame = scene.frame(5, width, height, 1), off = displaced(frame, 2e-4f);
+    const SvgfAccumulated a = svgfAccumulate(frame, GetParam(), sequence.history, params);
+    const SvgfAccumulated b = svgfAccumulate(off, GetParam(), sequence.history, params);
     size_t compared = 0, outside = 0;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const SvgfPixel& pixel = a.pixels[p];
         if (pixel.doubtful) continue;
         ++compared;
         ASSERT_EQ(pixel.failure, b.pixels[p].failure);
+        ASSERT_EQ(pixel.reflected, b.pixels[p].reflected);
         const auto exceeds = [](const dvec4& x, const dvec4& y, const dvec4& slope) {
             return glm::any(glm::greaterThan(glm::abs(x - y), 1.1 * 2e-4 * slope + 1e-9));
         };
@@ -246,6 +257,32 @@ TEST(DoubleSvgf, SlopeAndDoubtCoverErrorsOfPosition) {
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
     // Where s passes a pixel's centre, taps that the slope does not know come in.
     EXPECT_LT(outside, compared / 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, DoubleSvgfSignal, testing::Values(joint, SvgfSignal::Specular));
+
+/// Else the comparison with the shaders would not say much of either.
+TEST(DoubleSvgf, SyntheticFramesLeadToReflectionsAndBack) {
+    for (const SyntheticOptions& options :
+         {SyntheticOptions{}, SyntheticOptions{.cameraMoves = true, .objectMoves = true},
+          SyntheticOptions{.cameraMoves = true, .orthographic = true, .scale = 1024.0}}) {
+        const SyntheticScene scene(options);
+        Sequence sequence({}, SvgfSignal::Specular);
+        sequence.accumulate(scene.frame(0, width, height, 1));
+        const HostFrame frame = scene.frame(1, width, height, 1);
+        double hits = 0.0, reflected = 0.0, fellBack = 0.0, doubtful = 0.0;
+        const SvgfAccumulated result = sequence.accumulate(frame);
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            const SvgfPixel& pixel = result.pixels[p];
+            hits += pixel.failure != 1;
+            reflected += pixel.reflected;
+            fellBack += isFloor(frame, p) && pixel.failure == 0 && !pixel.reflected;
+            doubtful += pixel.doubtful;
+        }
+        EXPECT_GT(reflected, 0.2 * hits);
+        EXPECT_GT(fellBack, 0.01 * hits);
+        EXPECT_LT(doubtful, 0.001 * hits);
+    }
 }
 
 }  // namespace

@@ -67,6 +67,9 @@ scene::Scene veiledSpheres() {
     return scene;
 }
 
+/// The G-buffer does not look through mirrors.
+const PathtraceSettings ownLayers{.throughMirrors = false};
+
 class GBufferTest : public PassTest {
   protected:
     struct Both {
@@ -75,7 +78,7 @@ class GBufferTest : public PassTest {
     };
 
     /// Both passes in one frame.
-    Both lookBothWays(Stage& stage, const CameraLaunch& launch, const PathtraceSettings& settings = {},
+    Both lookBothWays(Stage& stage, const CameraLaunch& launch, const PathtraceSettings& settings = ownLayers,
                       const scene::SceneFrame* moved = nullptr) {
         stage.graph.beginFrame();
         if (moved) deform(stage.graph, stage.scene, *moved);
@@ -138,7 +141,7 @@ class GBufferTest : public PassTest {
         launch.camera = moment.camera;
         launch.previousCamera = moment.previousCamera.value();
         launch.hasPrevious = true;
-        const Both both = lookBothWays(stage, launch, {}, &moment.scene.value());
+        const Both both = lookBothWays(stage, launch, ownLayers, &moment.scene.value());
         expectSameLayers(stage, both, scene.name);
         size_t moved = 0;
         for (const vec4& motion : pixels(stage, both.seen.motion))

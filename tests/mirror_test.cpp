@@ -185,6 +185,31 @@ TEST_F(MirrorTest, LayersAreTheMirrorsOwnWhereItIsRoughOrNotLookedThrough) {
     }
 }
 
+TEST_F(MirrorTest, ReflectionsMoveAsWhatTheMirrorShows) {
+    const scene::Scene scene = mirrorScene(0.0f);
+    const RenderedLayers through = layersOf(scene, true), own = layersOf(scene, false);
+    const double before = mirrorZ() - mirrorVelocity.z / framesPerSecond;
+    size_t seen = 0;
+    for (size_t p = 0; p < size_t{extent.width} * extent.height; ++p) {
+        const float *reflection = &own.reflectionMotion[4 * p], *motion = &through.motion[4 * p];
+        if (own.ids[2 * p] != mirror) {
+            ASSERT_EQ(reflection[3], 0.0f) << "nothing else is smooth";
+            continue;
+        }
+        ++seen;
+        ASSERT_EQ(reflection[3], motion[3]);
+        EXPECT_NEAR(reflection[0], motion[0], 0.01f);
+        EXPECT_NEAR(reflection[1], motion[1], 0.01f);
+        const CameraParams& camera = *moment_.previousCamera;
+        const dvec2 at = centreOf(p, extent) + dvec2(double{reflection[0]}, double{reflection[1]});
+        const dvec3 ray = directionAt(camera, extent, at);
+        const double distance = (before - double{camera.origin.z}) / ray.z;
+        EXPECT_NEAR(double{reflection[2]}, distance - double{own.depth[4 * p]}, 1e-3);
+        if (HasFailure()) FAIL() << "pixel " << p % extent.width << ", " << p / extent.width;
+    }
+    EXPECT_GT(seen, 1000u);
+}
+
 /// The picture of lab-mirror and its reflection, in frames of one sample while the camera moves.
 class MirroredPictureTest : public RenderTest {
   protected:

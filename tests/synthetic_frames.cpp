@@ -1,11 +1,15 @@
 #include "synthetic_frames.h"
 
 #include <cmath>
+#include <limits>
 
 #include "synthetic_geometry.h"
 
 namespace limpid::test {
 namespace {
+
+/// Of what surfaces show, behind them.
+constexpr double reflectionDepth = 2.0;
 
 /// Without noise.
 struct Shading {
@@ -76,6 +80,9 @@ class CounterNoise {
         return 2.0 * std::exp(normal - 0.5);
     }
 
+    /// Uniform, and independent of the factors.
+    double choice(uint64_t pixel) const { return uniform((uint64_t{1} << 40) + pixel); }
+
   private:
     double uniform(uint64_t counter) const {
         const uint64_t bits = mix64(key_ + (counter + 1) * 0x9e3779b97f4a7c15u);
@@ -96,9 +103,11 @@ class Moments {
     Moments(const SyntheticOptions& options, int number, uint32_t width, uint32_t height)
         : camera(cameraOf(options, number, width, height)),
           view(camera, options.scale, width, height),
-          previousView(cameraOf(options, number - 1, width, height), options.scale, width, height),
+          previousCamera(cameraOf(options, number - 1, width, height)),
+          previousView(previousCamera, options.scale, width, height),
           options_(options),
-          number_(number) {}
+          number_(number),
+          width_(width) {}
 
     SyntheticHit intersect(const SyntheticRay& ray) const {
         return intersectSynthetic(ray, number_, options_.objectMoves);
@@ -117,12 +126,52 @@ class Moments {
         append(layer, dvec3(was->pixel - is->pixel, options_.scale * (was->distance - is->distance)), 1.0);
     }
 
+    /// As if the hit's plane showed a point behind it that does not move: its pixel moves as the point does,
+    /// its distance as that of the plane in its pixel. `choice` in (0, 1) says what is wrong with it.
+    void appendReflectionMotion(std::vector<float>& layer, const SyntheticHit& hit, const SyntheticRay& ray,
+                                double choice) const {
+        if (number_ == 0 || !reflects(hit) || choice < 0.4) return append(layer, dvec3(0.0));
+        const dvec3 shown = ray.origin + (hit.distance + reflectionDepth) * ray.direction;
+        const auto is = view.project(shown), was = previousView.project(shown);
+        if (!is || !was) return append(layer, dvec3(0.0));
+        const double moved = was->distance - depthBehindPlane(shown, hit) - hit.distance;
+        appendFlawed(layer, dvec3(was->pixel - is->pixel, options_.scale * moved), choice);
+    }
+
     const CameraParams camera;
-    const SyntheticView view, previousView;
+    const SyntheticView view;
+    const CameraParams previousCamera;
+    const SyntheticView previousView;
 
   private:
     static CameraParams cameraOf(const SyntheticOptions& o, int number, uint32_t width, uint32_t height) {
         return syntheticCamera(number, o.cameraMoves, o.orthographic, o.scale, width, height);
+    }
+    static bool reflects(const SyntheticHit& hit) {
+        return hit.any() && hit.instance != SyntheticScene::Wall && hit.instance != SyntheticScene::Emitter;
+    }
+    /// How far behind the hit's previous plane the previous camera saw a point.
+    double depthBehindPlane(const dvec3& point, const SyntheticHit& hit) const {
+        const dvec3 eye = dvec3(previousCamera.origin) / options_.scale;
+        const dvec3 along =
+            glm::normalize(options_.orthographic ? dvec3(previousCamera.forward) : point - eye);
+        const dvec3 n = previousNormal(hit);
+        return glm::dot(n, point - pose(hit, 1).toWorld(hit.point)) / glm::dot(n, along);
+    }
+    /// Most are right, some of them of half a share. What is wrong in x stays outside the picture, and in z
+    /// too far away, in a mean of nine.
+    void appendFlawed(std::vector<float>& layer, dvec3 r, double choice) const {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        if (choice < 0.5) return append(layer, 0.5 * r, 0.5);
+        if (choice < 0.51)
+            r.x = std::numeric_limits<double>::quiet_NaN();
+        else if (choice < 0.52)
+            r.z = -infinity;
+        else if (choice < 0.525)
+            r.x += 16.0 * width_;
+        else if (choice < 0.53)
+            r.z += 9.0 * options_.scale;
+        append(layer, r, 1.0);
     }
     SyntheticPose pose(const SyntheticHit& hit, int framesAgo) const {
         return syntheticPose(hit.instance, number_ - framesAgo, options_.objectMoves);
@@ -130,6 +179,7 @@ class Moments {
 
     const SyntheticOptions& options_;
     int number_;
+    uint32_t width_;
 };
 
 }  // namespace
@@ -154,6 +204,7 @@ denoise::HostFrame SyntheticScene::frame(int number, uint32_t width, uint32_t he
         append(frame.previousNormal, moments.previousNormal(hit));
         append(frame.depth, hit.any() ? dvec3(options_.scale * hit.distance, 1.0, 0.0) : dvec3(0.0));
         moments.appendMotion(frame.motion, hit, ray);
+        moments.appendReflectionMotion(frame.reflectionMotion, hit, ray, noise.choice(p));
         frame.ids.insert(frame.ids.end(), {hit.instance, hit.instance});
     }
     return frame;

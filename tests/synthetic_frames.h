@@ -27,6 +27,7 @@ class SyntheticScene {
 
     /// Frames are numbered from 0, which has no previous one. Every layer is rounded to float32 once. The
     /// same arguments give the same frame; other seeds give independent noise.
+    /// `reflectionMotion` is patchy, and partly wrong: of all but the wall and the emitter.
     denoise::HostFrame frame(int number, uint32_t width, uint32_t height, uint32_t seed) const;
 
     /// The noise-free beauty: four floats a pixel, alpha 1. The light on a surface point is the same in each

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -36,10 +37,28 @@ struct QualityOptions {
     uint64_t referenceSamples = 4096;
     QualityFrames frames;
     bool framesGiven = false;  ///< on the command line: then of every sequence
-    bool lab = false, quick = false, json = false;
+    bool lab = false, quick = false, json = false, steps = false;
 };
 
-/// Every pipeline as it is, and the last in every variant.
+/// SVGF as others have it, and without each thing that Limpid adds to the paper.
+constexpr std::array svgfSteps{"preset=paper",      "preset=cis565",        "svgf.antilag=0",
+                               "svgf.mutual=off",   "svgf.boost=off",       "svgf.wide=on",
+                               "svgf.separate=off", "svgf.reflections=off", "pathtrace.through_mirrors=off"};
+
+/// `texts` by commas: group.name=value, or preset=name.
+QualityMethod variantOf(RenderSettings settings, const std::string& texts) {
+    constexpr std::string_view preset = "preset=";
+    std::istringstream words(texts);
+    for (std::string text; std::getline(words, text, ',');) {
+        if (text.starts_with(preset))
+            applyPreset(settings, text.substr(preset.size()));
+        else
+            assign(settings, text);
+    }
+    return {texts, settings};
+}
+
+/// Every pipeline as it is, the last in every variant, and SVGF's steps.
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
@@ -52,12 +71,10 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
         common.pipeline = parsePipeline(pipeline);
         methods.push_back({pipeline, common});
     }
-    for (const std::string& variant : o.variants) {
-        QualityMethod method{variant, common};
-        std::istringstream words(variant);
-        for (std::string text; std::getline(words, text, ',');) assign(method.settings, text);
-        methods.push_back(std::move(method));
-    }
+    for (const std::string& variant : o.variants) methods.push_back(variantOf(common, variant));
+    if (!o.steps) return methods;
+    common.pipeline = parsePipeline("svgf");
+    for (const char* step : svgfSteps) methods.push_back(variantOf(common, step));
     return methods;
 }
 
@@ -296,7 +313,9 @@ void addQualityBench(CLI::App& bench) {
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--variant", o->variants,
-                        "The last pipeline once more with these parameters, by commas (repeatable)");
+                        "The last pipeline once more with these parameters, or preset=NAME, by commas "
+                        "(repeatable)");
+    command->add_flag("--steps", o->steps, "SVGF's presets, and SVGF without each step beyond its paper");
     command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
     command->add_option("--report", o->report, "An HTML page with everything, pictures included");
     command->add_flag("--json", o->json, "One JSON object on stdout");

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "bench.h"
 #include "bench_scene.h"
@@ -111,19 +109,11 @@ struct Measured {
     std::vector<Stages> levels;
 };
 
-void writeText(const std::filesystem::path& file, const std::string& text) {
-    writeAtomically(file, [&](const std::filesystem::path& temporary) {
-        std::ofstream stream(temporary, std::ios::binary);
-        stream << text;
-        stream.close();
-        if (!stream) throw OutputError(file, "cannot be written: the disk may be full");
-    });
-}
-
 void writePlots(const SvgfBench& o, const Measured& m) {
     const std::filesystem::path folder(o.folder);
     std::filesystem::create_directories(folder);
-    writeText(folder / "svgf.stages.svg", barPlot("Time per stage, " + o.scene, "ms", m.stages.bars));
+    writeTextAtomically(folder / "svgf.stages.svg",
+                        barPlot("Time per stage, " + o.scene, "ms", m.stages.bars));
     PlotLine tracing{"path tracing", {}}, filtering{"SVGF", {}}, levels{"SVGF", {}};
     for (const OfScene& scene : m.scenes) {
         const auto triangles = static_cast<double>(scene.triangles);
@@ -132,9 +122,10 @@ void writePlots(const SvgfBench& o, const Measured& m) {
     }
     for (size_t i = 0; i < m.levels.size(); ++i)
         levels.points.push_back({static_cast<double>(i + 1), m.levels[i].filtering()});
-    writeText(folder / "svgf.triangles.svg",
-              linePlot("Time against triangles", {"triangles", "ms", true}, {tracing, filtering}));
-    writeText(folder / "svgf.levels.svg", linePlot("Time against levels", {"levels", "ms"}, {levels}));
+    writeTextAtomically(folder / "svgf.triangles.svg",
+                        linePlot("Time against triangles", {"triangles", "ms", true}, {tracing, filtering}));
+    writeTextAtomically(folder / "svgf.levels.svg",
+                        linePlot("Time against levels", {"levels", "ms"}, {levels}));
 }
 
 void print(const SvgfBench& o, const std::string& device, const Measured& m) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -90,13 +89,7 @@ std::string qualityPage(const QualityRun& run) {
 }
 
 void writeQualityPage(const std::filesystem::path& file, const QualityRun& run) {
-    const std::string page = qualityPage(run);
-    writeAtomically(file, [&](const std::filesystem::path& temporary) {
-        std::ofstream stream(temporary, std::ios::binary);
-        stream << page;
-        stream.close();
-        if (!stream) throw OutputError(file, "cannot be written: the disk may be full");
-    });
+    writeTextAtomically(file, qualityPage(run));
 }
 
 }  // namespace limpid::cli

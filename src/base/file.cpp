@@ -112,4 +112,13 @@ void writeAtomically(const fs::path& path, const std::function<void(const fs::pa
     }
 }
 
+void writeTextAtomically(const fs::path& path, std::string_view text) {
+    writeAtomically(path, [&](const fs::path& temporary) {
+        std::ofstream stream(temporary, std::ios::binary);
+        stream << text;
+        stream.close();
+        if (!stream) throw OutputError(path, "cannot be written: the disk may be full");
+    });
+}
+
 }  // namespace limpid

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 namespace limpid {
@@ -18,6 +19,9 @@ std::vector<std::byte> readFile(const std::filesystem::path& path, uint64_t maxB
 /// directory or its folder does not exist.
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Writes all of `text` so. Throws OutputError, as on a full disk.
+void writeTextAtomically(const std::filesystem::path& path, std::string_view text);
 
 /// Removes the temporaries of earlier writeAtomically(path) calls whose process was killed. No other process
 /// may be writing `path`. What cannot be removed stays.

@@ -43,6 +43,9 @@ TEST_F(FileTest, ReplacesAnOutputOnlyWhenTheWriterSucceeds) {
     writeAtomically(out, [](const fs::path& temporary) { put(temporary, "new"); });
     EXPECT_EQ(get(out), "new");
     EXPECT_EQ(files(), 1u);
+    writeTextAtomically(out, "text\n");
+    EXPECT_EQ(get(out), "text\n");
+    EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(FileTest, RefusesADirectoryAndAMissingFolderBeforeTheWriterRuns) {

@@ -25,12 +25,14 @@ DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     input.specular = image("specular", frame.specular);
     input.emission = image("emission", frame.emission);
     input.albedo = image("albedo", frame.albedo);
-    input.albedoSpecular =
-        image("albedoSpecular", frame.albedoSpecular.empty() ? std::vector<float>(4 * frame.pixelCount())
-                                                             : frame.albedoSpecular);
+    const auto optionalImage = [&](const char* name, const std::vector<float>& pixels) {
+        return image(name, pixels.empty() ? std::vector<float>(4 * frame.pixelCount()) : pixels);
+    };
+    input.albedoSpecular = optionalImage("albedoSpecular", frame.albedoSpecular);
     input.normal = image("normal", frame.normal);
     input.depth = image("depth", frame.depth);
     input.motion = image("motion", frame.motion);
+    input.reflectionMotion = optionalImage("reflectionMotion", frame.reflectionMotion);
     input.previousNormal = image("previous_normal", frame.previousNormal);
     if (frame.ids.size() != 2 * frame.pixelCount())
         throw Error("the frame's image 'ids' has another size than the frame");

@@ -15,7 +15,7 @@ struct DenoiserInput {
     gpu::ImageHandle emission;           ///< what the camera sees directly
     gpu::ImageHandle albedo, albedoSpecular;
     gpu::ImageHandle normal, depth;
-    gpu::ImageHandle motion, previousNormal;
+    gpu::ImageHandle motion, reflectionMotion, previousNormal;
     gpu::ImageHandle ids;  ///< rg32ui: instance, material; UINT32_MAX where nothing is seen
     CameraParams camera{};
     gpu::Backing filters = gpu::Backing::Image;  ///< filterBacking(device)

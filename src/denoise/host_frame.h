@@ -17,10 +17,11 @@ struct HostFrame {
     std::vector<float> albedo;                       ///< the fourth is not read
     std::vector<float> albedoSpecular;               ///< as albedo; empty: zeros
     std::vector<float> normal;                       ///< world space, facing the viewer; 0 at a miss
-    std::vector<float> depth;           ///< x: distance from the eye times y; y: share of hits (0 or 1)
-    std::vector<float> motion;          ///< xyz times w; w: share of valid samples (0 or 1)
-    std::vector<float> previousNormal;  ///< of the same surface points in the previous frame
-    std::vector<uint32_t> ids;          ///< two a pixel: instance, material; UINT32_MAX at a miss
+    std::vector<float> depth;             ///< x: distance from the eye times y; y: share of hits (0 or 1)
+    std::vector<float> motion;            ///< xyz times w; w: share of valid samples (0 or 1)
+    std::vector<float> reflectionMotion;  ///< likewise, of what the surface reflects; empty: zeros
+    std::vector<float> previousNormal;    ///< of the same surface points in the previous frame
+    std::vector<uint32_t> ids;            ///< two a pixel: instance, material; UINT32_MAX at a miss
     CameraParams camera{};
 
     size_t pixelCount() const { return size_t{width} * height; }

@@ -23,7 +23,7 @@ constexpr LayerKind beautyAlone{"beauty", 3, VarianceOf::Nothing, &Images::beaut
 
 // The first three are what beauty is made of.
 constexpr size_t partsOfBeauty = 3;
-constexpr std::array<LayerKind, 9> kinds{{
+constexpr std::array<LayerKind, 10> kinds{{
     {"diffuse", 3, VarianceOf::Luminance, &Images::diffuse, &Layers::diffuse},
     {"specular", 3, VarianceOf::Luminance, &Images::specular, &Layers::specular},
     {"emission", 3, VarianceOf::Nothing, &Images::emission, &Layers::emission},
@@ -33,6 +33,7 @@ constexpr std::array<LayerKind, 9> kinds{{
     {"prevNormal", 3, VarianceOf::Nothing, &Images::previousNormal, &Layers::previousNormal},
     {"depth", 2, VarianceOf::FirstComponent, &Images::depth, &Layers::depth},
     {"motion", 4, VarianceOf::Nothing, &Images::motion, &Layers::motion},
+    {"reflectionMotion", 4, VarianceOf::Nothing, &Images::reflectionMotion, &Layers::reflectionMotion},
 }};
 
 std::vector<LayerSums> layersFor(const std::vector<std::string>& names) {

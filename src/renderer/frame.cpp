@@ -45,7 +45,7 @@ struct MeanLayer {
     const char* name;
     VarianceOf varianceOf;
 };
-constexpr std::array<MeanLayer, 9> meanLayers{{
+constexpr std::array<MeanLayer, 10> meanLayers{{
     {&PathtraceLayers::diffuse, "diffuse", VarianceOf::Luminance},
     {&PathtraceLayers::specular, "specular", VarianceOf::Luminance},
     {&PathtraceLayers::emission, "emission", VarianceOf::Luminance},
@@ -55,6 +55,7 @@ constexpr std::array<MeanLayer, 9> meanLayers{{
     {&PathtraceLayers::previousNormal, "previousNormal", VarianceOf::Nothing},
     {&PathtraceLayers::depth, "depth", VarianceOf::FirstComponent},
     {&PathtraceLayers::motion, "motion", VarianceOf::Nothing},
+    {&PathtraceLayers::reflectionMotion, "reflectionMotion", VarianceOf::Nothing},
 }};
 
 /// The path tracer alone: running means over frames.
@@ -181,6 +182,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                                        .normal = out.normal,
                                        .depth = out.depth,
                                        .motion = out.motion,
+                                       .reflectionMotion = out.reflectionMotion,
                                        .previousNormal = out.previousNormal,
                                        .ids = out.ids,
                                        .camera = input.camera,

@@ -70,10 +70,11 @@ std::vector<float> depthOf(const Image& distances) {
     return result;
 }
 
-std::vector<float> motionOf(const LayeredImage& file, size_t pixels) {
+/// All invalid if there is no such layer.
+std::vector<float> motionOf(const LayeredImage& file, const char* layer, size_t pixels) {
     std::vector<float> result(4 * pixels);
-    if (!has(file, "motion", "XYZ")) return result;
-    const Image motion = file.get("motion", "XYZ");
+    if (!has(file, layer, "XYZ")) return result;
+    const Image motion = file.get(layer, "XYZ");
     for (size_t p = 0; p < pixels; ++p) {
         const float* m = &motion.pixels[3 * p];
         if (!image::validMotion(m[0], m[1]) || !std::isfinite(m[2])) continue;
@@ -109,7 +110,8 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     if (has(file, "albedoSpecular", "RGB")) frame.albedoSpecular = fourOf(file.get("albedoSpecular", "RGB"));
     frame.normal = fourOf(file.get("normal", "XYZ"));
     frame.depth = depthOf(file.get("depth", "Z"));
-    frame.motion = motionOf(file, frame.pixelCount());
+    frame.motion = motionOf(file, "motion", frame.pixelCount());
+    frame.reflectionMotion = motionOf(file, "reflectionMotion", frame.pixelCount());
     if (has(file, "prevNormal", "XYZ")) {
         frame.previousNormal = fourOf(file.get("prevNormal", "XYZ"));
     } else {

@@ -59,8 +59,8 @@ Image idImage(const RenderedLayers& layers) {
 
 const std::vector<std::string>& layerNames() {
     static const std::vector<std::string> names{
-        "beauty",     "diffuse", "specular", "emission", "albedo",   "albedoSpecular", "normal",
-        "prevNormal", "depth",   "motion",   "id",       "variance", "samples"};
+        "beauty",     "diffuse", "specular", "emission",         "albedo", "albedoSpecular", "normal",
+        "prevNormal", "depth",   "motion",   "reflectionMotion", "id",     "variance",       "samples"};
     return names;
 }
 
@@ -119,9 +119,12 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     }
     if (wants("depth"))
         out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
-    if (wants("motion"))
-        out.add("motion", "XYZ", perValidSample(layers.motion, extent, 3, 3, image::invalidMotion),
-                Storage::Float);
+    const auto addMotion = [&](const char* name, const std::vector<float>& texels) {
+        if (!wants(name) || texels.empty()) return;
+        out.add(name, "XYZ", perValidSample(texels, extent, 3, 3, image::invalidMotion), Storage::Float);
+    };
+    addMotion("motion", layers.motion);
+    addMotion("reflectionMotion", layers.reflectionMotion);
     if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
     if (wants("samples")) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));

@@ -17,7 +17,7 @@ struct RenderedLayers {
     gpu::Extent extent;
     uint64_t samples = 0;
     std::vector<float> beauty, diffuse, specular, emission, albedo, albedoSpecular, normal, previousNormal,
-        depth, motion;
+        depth, motion, reflectionMotion;
     std::vector<uint32_t> ids;  ///< instance and material, two a pixel
 };
 

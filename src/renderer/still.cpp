@@ -76,6 +76,7 @@ RenderedLayers downloadLayers(gpu::FrameGraph& graph, gpu::Device& device, const
     layers.normal = get(images.normal);
     layers.depth = get(images.depth);
     layers.motion = get(images.motion);
+    layers.reflectionMotion = get(images.reflectionMotion);
     layers.previousNormal = get(images.previousNormal);
     if (images.ids) layers.ids = graph.downloadUint(device, images.ids);
     return layers;

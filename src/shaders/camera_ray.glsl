@@ -13,12 +13,15 @@ vec2 subpixel(ViewParams view, uint sampleIndex, inout uint rng) {
     return view.frame == 0u && sampleIndex == 0u ? vec2(0.5) : u;
 }
 
-Ray cameraRay(ViewParams view, vec2 pixel) {
-    const CameraParams camera = view.camera;
-    const vec2 p = vec2(2.0, -2.0) * pixel / vec2(view.width, view.height) + vec2(-1.0, 1.0);
+Ray cameraRay(CameraParams camera, vec2 size, vec2 pixel) {
+    const vec2 p = vec2(2.0, -2.0) * pixel / size + vec2(-1.0, 1.0);
     const vec3 offset = p.x * camera.right + p.y * camera.up;
     if (camera.orthographic != 0u) return Ray(camera.origin + offset, camera.forward, INFINITE_DISTANCE);
     return Ray(camera.origin, normalize(camera.forward + offset), INFINITE_DISTANCE);
+}
+
+Ray cameraRay(ViewParams view, vec2 pixel) {
+    return cameraRay(view.camera, vec2(view.width, view.height), pixel);
 }
 
 /// A pixel's footprint, for texture levels: its width at the eye and what that grows by with distance.

@@ -16,16 +16,17 @@ struct FirstHit {
     float depth;
     uvec2 ids;                // instance, material
     PreviousPoint previous;  // the same point in the previous frame
+    vec4 reflectionMotion;   // shaders/reflection.glsl; 0: unknown
 };
 
 FirstHit noHit(vec3 direction) {
     return FirstHit(false, direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE),
-                    PreviousPoint(direction, vec3(0.0)));
+                    PreviousPoint(direction, vec3(0.0)), vec4(0.0));
 }
 
 FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth, PreviousPoint previous) {
     return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
-                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous);
+                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous, vec4(0.0));
 }
 
 /// glTF: the back of a single-sided material is not seen. It still blocks light. True if a camera ray goes on behind it,

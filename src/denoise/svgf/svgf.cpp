@@ -33,7 +33,7 @@ constexpr float log2e = 1.44269504f;
 struct Signal {
     std::string name;
     ImageHandle light, otherLight, albedo, otherAlbedo;
-    bool isSum = false;
+    bool isSum = false, reflects = false;
 };
 
 struct Surfaces {
@@ -65,8 +65,9 @@ class Svgf {
             return modulate(filtered, filtered);
         }
         const Signal diffuse{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo};
-        const Signal specular{"specular", input_.specular, input_.specular, input_.albedoSpecular,
-                              input_.albedoSpecular};
+        const Signal specular{
+            "specular", input_.specular,      input_.specular, input_.albedoSpecular, input_.albedoSpecular,
+            false,      settings_.reflections};
         const ImageHandle filteredDiffuse = recordSignal(diffuse, surfaces);
         return modulate(filteredDiffuse, recordSignal(specular, surfaces));
     }
@@ -142,6 +143,7 @@ class Svgf {
                                       {"albedoA", signal.albedo},
                                       {"albedoB", signal.otherAlbedo},
                                       {"motion", input_.motion},
+                                      {"reflectionMotion", input_.reflectionMotion},
                                       {"previousNormal", input_.previousNormal},
                                       {"surfaces", surfaces.surfaces.current},
                                       {"instances", surfaces.instances.current},
@@ -153,7 +155,8 @@ class Svgf {
                                       {"color", color},
                                       {"moments", moments.current}},
                          .params = gpu::paramsOf(params),
-                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u}},
+                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
+                                       {"REFLECTIONS", signal.reflects ? 1u : 0u}},
                          .extent = extent_});
         recordTiles(signal, moments.current, tiles.current);
         return {color, moments.current, feedback};
@@ -285,6 +288,9 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("relative", &S::relative,
               "`depth_test` is relative to the distance, and makes room for tilted planes");
         t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+        t.add("reflections", &S::reflections,
+              "of specular light that is filtered apart: look for its history where the reflection was, not "
+              "the surface");
         t.add("antilag", &S::antilag, 0.0, 1e6, "",
               "history that is forgotten per relative change of light beyond noise; higher follows changes "
               "sooner and is noisier; 0 is off");
@@ -309,6 +315,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "filtered, which rejects bright samples and darkens the picture");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("paper", {{"alpha", "0.2"},
+                           {"reflections", "off"},
                            {"wide", "on"},
                            {"alpha_moments", "0.2"},
                            {"antilag", "0"},

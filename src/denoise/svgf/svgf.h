@@ -20,6 +20,7 @@ struct SvgfSettings {
     float depthTest = 0.02f;
     bool relative = true;
     bool search = true;
+    bool reflections = true;
     float antilag = 16.0f;
     int levels = 5;
     int historyLevel = 0;

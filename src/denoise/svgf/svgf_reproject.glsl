@@ -8,6 +8,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, albedo likewise; else the first
 
+layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
+
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
 };
@@ -17,6 +19,7 @@ layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedoA;
 layout(set = 0, binding = 4, rgba32f) uniform readonly image2D albedoB;
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D motion;
 layout(set = 0, binding = 6, rgba32f) uniform readonly image2D previousNormal;
+layout(set = 0, binding = 16, rgba32f) uniform readonly image2D reflectionMotion;
 READ_UINT2(7, surfaces);
 layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
 READ_UINT2(9, surfacesBefore);
@@ -108,20 +111,38 @@ vec3 demodulated(vec3 light, ivec2 at) {
     return clamp(x, -MAX_HALF, MAX_HALF);
 }
 
-/// Of the history that is left after anti-lag.
-Past pastOf(ivec2 at, uvec2 surface) {
+/// `moved` as in the `motion` image. `kept`: the share of its length that anti-lag leaves.
+Past pastOf(ivec2 at, uvec2 surface, vec4 moved, out float kept) {
+    kept = 1.0;
     const vec2 size = vec2(params.width, params.height);
-    const Reprojection was = reprojectionOf(imageLoad(motion, at), vec2(at), size);
+    const Reprojection was = reprojectionOf(moved, vec2(at), size);
     const float z = uintBitsToFloat(surface.y);
     if (z <= 0.0 || !was.onScreen) return NO_TAPS.sum;
     const float depthBefore = z + was.depthChange;
     const float tolerance = params.relative == 0u ? params.depthTest
                                                   : depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x),
                                                                    vec2(at), size, params.depthTest);
-    Past past = pastAt(was.position, Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance,
-                                              imageLoad(instances, at).x));
-    past.moments.w *= 1.0 - lagAt(was.position);
-    return past;
+    kept = 1.0 - lagAt(was.position);
+    return pastAt(was.position,
+                  Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
+}
+
+/// The mean over the 3x3 pixels around that show the same thing: each followed one ray, or none.
+vec4 reflectionMotionAt(ivec2 at) {
+    const uint own = imageLoad(instances, at).x;
+    vec4 sum = vec4(0.0);
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+            const ivec2 there = at + ivec2(i, j);
+            const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
+            const vec4 moved = imageLoad(reflectionMotion, inside);
+            const vec3 motionThere = moved.xyz / max(moved.w, 1e-20);
+            const bool valid = moved.w > 0.0 && isFinite(vec3(moved.w)) && isFinite(motionThere);
+            if (inside == there && valid && imageLoad(instances, inside).x == own)
+                sum += vec4(motionThere, 1.0);
+        }
+    }
+    return sum;
 }
 
 Past accumulated(Past past, vec3 x) {
@@ -139,7 +160,11 @@ void main() {
     if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
     const vec3 x = demodulated(light, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
-    Past now = pastOf(at, surface);
+    Past now = NO_TAPS.sum;
+    float kept;
+    if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at), kept);
+    if (now.moments.w <= 0.0) now = pastOf(at, surface, imageLoad(motion, at), kept);
+    now.moments.w *= kept;
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
     const float deviation = min(sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0)), MAX_HALF);

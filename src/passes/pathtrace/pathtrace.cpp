@@ -81,6 +81,7 @@ PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix
     layers.normal = image("normal");
     layers.depth = image("depth");
     layers.motion = image("motion");
+    layers.reflectionMotion = image("reflectionMotion");
     layers.previousNormal = image("previousNormal");
     layers.ids = graph.transient(prefix + "ids", Format::RG32Uint, extent);
     return layers;
@@ -97,6 +98,7 @@ void pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene, const Path
               {"normal", into.normal},
               {"depth", into.depth},
               {"motion", into.motion},
+              {"reflectionMotion", into.reflectionMotion},
               {"previousNormal", into.previousNormal},
               {"ids", into.ids},
               {"countersBefore", countersBefore},

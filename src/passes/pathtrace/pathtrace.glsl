@@ -6,7 +6,7 @@
 #include "passes/pathtrace/pathtrace_params.h"
 #include "shaders/lights.glsl"
 #include "shaders/medium.glsl"
-#include "shaders/mirror.glsl"
+#include "shaders/reflection.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
@@ -113,11 +113,15 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
     float traveled = 0.0;
     uint culled = 0u;
     Mirror mirror;
+    float reflection = 0.0;  // share of reflectionShare(), while the first reflected ray is followed
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
         ++path.rays;
         const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
         if (!isHit(hit)) {
-            if (depth == 1u && path.primary == 1u) first = shownBy(mirror, noHit(path.ray.direction), path.throughput);
+            const FirstHit sky = noHit(path.ray.direction);
+            if (depth == 1u && path.primary == 1u) first = shownBy(mirror, sky, path.throughput);
+            if (depth == 1u && reflection > 0.0)
+                first.reflectionMotion = reflectionMotionOf(mirror, sky, reflection, first, params.view);
             addEnvironment(path, depth);
             break;
         }
@@ -137,6 +141,12 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
             if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
             first = firstHitOf(surface, bsdf, traveled, previous);
             if (depth == 1u) first = shownBy(mirror, first, path.throughput);
+        } else if (depth == 1u && reflection > 0.0) {
+            FirstHit seen = noHit(path.ray.direction);
+            seen.hit = true;
+            seen.position = surface.position;
+            seen.previous = previousPoint(hit, surface, params.scene);
+            first.reflectionMotion = reflectionMotionOf(mirror, seen, reflection, first, params.view);
         }
         if (surface.emission != vec3(0.0)) {
             const float density =
@@ -146,9 +156,15 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         if (depth == params.maxDepth || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
-        if (SPLIT_LOBES && depth == 0u && params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
+        if (SPLIT_LOBES && depth == 0u) {
             mirror = Mirror(surface.position, surface.normal, first.previous);
-            path.primary = 1u;
+            const bool reflected =
+                luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0;
+            if (reflected) reflection = reflectionShare(surface);
+            if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
+                path.primary = 1u;
+                reflection = 0.0;
+            }
         }
         // A rough bounce blurs what lies behind it: a wider cone reads coarser mip levels.
         if (HAS_TEXTURES && !path.delta) spread = max(spread, 0.1);

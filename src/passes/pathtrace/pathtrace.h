@@ -31,7 +31,8 @@ struct PathtraceLayers {
     gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal;
     gpu::ImageHandle depth;   ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
     gpu::ImageHandle motion;  ///< xyz: motion, invalid as 0; a: share of valid samples
-    gpu::ImageHandle previousNormal;  ///< xyz: of the same points in the previous frame
+    gpu::ImageHandle reflectionMotion;  ///< as motion, of what smooth surfaces reflect (docs/layers.md)
+    gpu::ImageHandle previousNormal;    ///< xyz: of the same points in the previous frame
     gpu::ImageHandle ids;       ///< rg32ui: instance, material of the first sample; layout::NONE at a miss
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };

@@ -12,6 +12,7 @@ layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D normal;
 layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 of misses | hits | 0
 layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their number, by samples
 layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
+layout(set = 0, binding = 33, rgba32f) uniform writeonly image2D reflectionMotion;  // likewise
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
 layout(set = 0, binding = 30, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
@@ -38,7 +39,7 @@ void tracePixel(uvec2 pixel) {
     uint rays = 0u, rejected = 0u;
     vec4 diffuseMoments = vec4(0.0), specularMoments = vec4(0.0), emissionMoments = vec4(0.0);
     vec4 albedoMoments = vec4(0.0), albedoSpecularMoments = vec4(0.0), normalMoments = vec4(0.0);
-    vec4 depthMoments = vec4(0.0), motionSum = vec4(0.0);
+    vec4 depthMoments = vec4(0.0), motionSum = vec4(0.0), reflectionMotionSum = vec4(0.0);
     vec3 previousNormalSum = vec3(0.0);
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
@@ -57,6 +58,7 @@ void tracePixel(uvec2 pixel) {
         accumulateVector(normalMoments, first.normal, count);
         accumulate(depthMoments, vec3(first.depth, first.hit ? 1.0 : 0.0, 0.0), vec3(1.0, 0.0, 0.0), count);
         motionSum += motionOf(first, params.view);
+        reflectionMotionSum += first.reflectionMotion;
         previousNormalSum += first.previous.normal;
         if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     }
@@ -69,6 +71,7 @@ void tracePixel(uvec2 pixel) {
     imageStore(normal, at, normalMoments * perSample);
     imageStore(depth, at, depthMoments * perSample);
     imageStore(motion, at, motionSum / float(params.samples));
+    imageStore(reflectionMotion, at, reflectionMotionSum / float(params.samples));
     imageStore(previousNormal, at, vec4(previousNormalSum / float(params.samples), 0.0));
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));
 }
