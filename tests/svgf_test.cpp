@@ -395,5 +395,22 @@ TEST_F(SvgfVarianceTest, TheDeviationIsThatOfTheNoise) {
     }
 }
 
+using SvgfMemoryTest = DenoiseTest;
+
+TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
+    const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
+    ASSERT_NE(method, nullptr);
+    constexpr uint32_t columns = 64, rows = 40;
+    const HostFrame frame = SyntheticScene({}).frame(0, columns, rows, 0);
+    for (const bool separate : {false, true}) {
+        DenoiserSettings settings;
+        settings.svgf.separate = separate;
+        denoise(*method, frame, settings);
+        const double bytes =
+            static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
+        EXPECT_EQ(bytes, separate ? 216.25 : 128.125);
+    }
+}
+
 }  // namespace
 }  // namespace limpid::test

@@ -37,7 +37,7 @@ struct QualityOptions {
     uint64_t referenceSamples = 4096;
     QualityFrames frames;
     bool framesGiven = false;  ///< on the command line: then of every sequence
-    bool lab = false, quick = false, json = false, steps = false;
+    bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
 };
 
 /// SVGF as others have it, and without each thing that Limpid adds to the paper.
@@ -62,7 +62,7 @@ QualityMethod variantOf(RenderSettings settings, const std::string& texts) {
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
-    common.jitter = Jitter::Off;
+    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;
     common.layers = true;  // the noisy frames are judged too
     for (const std::string& preset : o.presets) applyPreset(common, preset);
     for (const std::string& text : o.assignments) assign(common, text);
@@ -296,6 +296,10 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
     command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
     command.add_option("--reference-spp", o->referenceSamples, "Samples of the references (4096)")
         ->check(CLI::Range(2, 1 << 24));
+    command.add_flag(
+        "--smooth-edges", o->smoothEdges,
+        "Rays go through another point of their pixels in each frame, and references are means over the "
+        "pixels; otherwise all go through the centres");
     command.add_option("--reference-folder", o->referenceFolder,
                        "Keeps the references there, and reads those that are there already");
     command.add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));

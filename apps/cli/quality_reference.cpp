@@ -37,6 +37,7 @@ class ReferenceRenderer {
         settings_.pipeline = {};
         settings_.samplesPerLaunch = 64;
         settings_.layers = true;
+        if (settings_.jitter == Jitter::Frame) settings_.jitter = Jitter::Pixel;
     }
 
     LayeredImage render(const Sequence& sequence, uint64_t frame) {
@@ -79,6 +80,7 @@ uint64_t identityOf(const ReferenceFiles& files, const Sequence& sequence, const
     const ParamTable<PathtraceSettings>& table = pathtraceParams();
     for (size_t i = 0; i < table.infos().size(); ++i)
         hash.add(toString(table.get(settings.pathtrace, i)) + "\n");
+    if (settings.jitter != Jitter::Off) hash.add("means over the pixels\n");
     return hash.value();
 }
 

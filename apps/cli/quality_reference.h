@@ -32,10 +32,10 @@ struct ReferenceFiles {
     uint64_t sceneHash = 0;        ///< renderer/render_identity.h
 };
 
-/// The references of `frames`, in order, of `samples` (at least 2) per pixel through the pixels' centres. A
-/// file's name says the sequence, size, samples, frame, and by a hash the scene's content, the camera and the
-/// path tracer's parameters: a file of that name is read instead of rendered, and written where there is
-/// none. Throws InputError if a file is damaged or is not what its name says.
+/// The references of `frames`, in order, of `samples` (at least 2) per pixel, through the pixels' centres
+/// with Jitter::Off. A file's name says the sequence, size, samples, frame, and by a hash the scene's
+/// content, the camera and the path tracer's parameters: a file of that name is read instead of rendered, and
+/// written where there is none. Throws InputError if a file is damaged or is not what its name says.
 std::vector<Reference> makeReferences(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
                                       const RenderSettings& settings, const QualityFrames& frames,
                                       uint64_t samples, const ReferenceFiles& files);

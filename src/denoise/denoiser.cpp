@@ -10,8 +10,9 @@ namespace {
 
 DenoiserOutput composed(gpu::FrameGraph& graph, const DenoiserInput& input, const HistoryImages& history,
                         const DenoiserSettings& settings) {
-    return {compose(graph, history.color, input.emission, history.cases, settings.history.showCases),
-            history.cases};
+    const bool showCases = settings.history.showCases;
+    const gpu::ImageHandle beauty = compose(graph, history.color, input.emission, history.cases, showCases);
+    return {showCases ? beauty : antialias(graph, input, beauty, settings.taa), history.cases};
 }
 
 DenoiserOutput recordHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
@@ -22,21 +23,24 @@ DenoiserOutput recordHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
 DenoiserOutput recordAtrous(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const DenoiserSettings& settings) {
     if (!settings.atrous.history)
-        return {filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous), {}};
+        return {antialias(graph, input,
+                          filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous),
+                          settings.taa),
+                {}};
     const HistoryImages history = trackHistory(graph, input, settings.history);
     if (settings.history.showCases) return composed(graph, input, history, settings);
-    return {filterAtrous(graph, input, {history.color, {}}, settings.atrous), history.cases};
+    const gpu::ImageHandle filtered = filterAtrous(graph, input, {history.color, {}}, settings.atrous);
+    return {antialias(graph, input, filtered, settings.taa), history.cases};
 }
 
 DenoiserOutput recordSvgf(gpu::FrameGraph& graph, const DenoiserInput& input,
                           const DenoiserSettings& settings) {
-    return {filterSvgf(graph, input, settings.svgf), {}};
+    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
 }
 
-constexpr std::array<std::string_view, 1> historyGroups{"history"};
-constexpr std::array<std::string_view, 2> atrousGroups{"history", "atrous"};
-
-constexpr std::array<std::string_view, 1> svgfGroups{"svgf"};
+constexpr std::array<std::string_view, 2> historyGroups{"history", "taa"};
+constexpr std::array<std::string_view, 3> atrousGroups{"history", "atrous", "taa"};
+constexpr std::array<std::string_view, 2> svgfGroups{"svgf", "taa"};
 
 constexpr std::array<Denoiser, 3> all{
     Denoiser{"history", "each pixel's running mean follows its surface through camera and object motion",

@@ -18,6 +18,7 @@
 #include "denoise/denoiser_input.h"
 #include "denoise/history/history.h"
 #include "denoise/svgf/svgf.h"
+#include "denoise/taa/taa.h"
 
 namespace limpid::denoise {
 
@@ -26,6 +27,7 @@ struct DenoiserSettings {
     HistorySettings history;
     AtrousSettings atrous;
     SvgfSettings svgf;
+    TaaSettings taa;
     bool operator==(const DenoiserSettings&) const = default;
 };
 

@@ -39,6 +39,8 @@ const std::vector<ParamGroup>& paramGroups() {
             denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),
         groupOf(
             denoise::svgfParams(), [](auto& s) -> auto& { return s.denoisers.svgf; }),
+        groupOf(
+            denoise::taaParams(), [](auto& s) -> auto& { return s.denoisers.taa; }),
     };
     return all;
 }

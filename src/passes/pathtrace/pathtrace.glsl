@@ -104,24 +104,63 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
     return path.throughput != vec3(0.0);
 }
 
+/// What the layers are told of: the camera ray's hit, or what a perfect mirror shows there, and how reflections move.
+struct FirstSight {
+    FirstHit hit;
+    float traveled;
+    Mirror mirror;     // where the camera ray hit, once it has been scattered
+    float reflection;  // reflectionShare(), if the scattered ray tells of a reflection
+};
+
+void missed(inout FirstSight sight, Path path, uint depth) {
+    if (depth != 1u) return;
+    const FirstHit sky = noHit(path.ray.direction);
+    if (path.primary == 1u) sight.hit = shownBy(sight.mirror, sky, path.throughput);
+    if (sight.reflection > 0.0)
+        sight.hit.reflectionMotion =
+            reflectionMotionOf(sight.mirror, sky, sight.reflection, sight.hit, params.view);
+}
+
+void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
+    if (depth == path.primary) {
+        PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
+        if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
+        sight.hit = firstHitOf(surface, bsdf, sight.traveled, previous);
+        if (depth == 1u) sight.hit = shownBy(sight.mirror, sight.hit, path.throughput);
+    } else if (depth == 1u && sight.reflection > 0.0) {
+        FirstHit seen = noHit(path.ray.direction);
+        seen.hit = true;
+        seen.position = surface.position;
+        seen.previous = previousPoint(hit, surface, params.scene);
+        sight.hit.reflectionMotion =
+            reflectionMotionOf(sight.mirror, seen, sight.reflection, sight.hit, params.view);
+    }
+}
+
+/// Where the camera ray was scattered.
+void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bsdf) {
+    sight.mirror = Mirror(surface.position, surface.normal, sight.hit.previous);
+    if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
+        path.primary = 1u;
+    } else if (luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0) {
+        sight.reflection = reflectionShare(surface);
+    }
+}
+
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view.camera);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, cone.width, vec3(0.0),
                      PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u);
     float spread = cone.spread;
-    first = noHit(ray.direction);
-    float traveled = 0.0;
+    FirstSight sight;
+    sight.hit = noHit(ray.direction);
+    sight.traveled = sight.reflection = 0.0;
     uint culled = 0u;
-    Mirror mirror;
-    float reflection = 0.0;  // share of reflectionShare(), while the first reflected ray is followed
     for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
         ++path.rays;
         const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
         if (!isHit(hit)) {
-            const FirstHit sky = noHit(path.ray.direction);
-            if (depth == 1u && path.primary == 1u) first = shownBy(mirror, sky, path.throughput);
-            if (depth == 1u && reflection > 0.0)
-                first.reflectionMotion = reflectionMotionOf(mirror, sky, reflection, first, params.view);
+            missed(sight, path, depth);
             addEnvironment(path, depth);
             break;
         }
@@ -131,23 +170,12 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
-        if (depth <= path.primary) traveled += hit.t;
+        if (depth <= path.primary) sight.traveled += hit.t;
         if (depth == 0u && passesBack(surface, culled, path.ray.origin)) {
             --depth;
             continue;
         }
-        if (depth == path.primary) {
-            PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
-            if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
-            first = firstHitOf(surface, bsdf, traveled, previous);
-            if (depth == 1u) first = shownBy(mirror, first, path.throughput);
-        } else if (depth == 1u && reflection > 0.0) {
-            FirstHit seen = noHit(path.ray.direction);
-            seen.hit = true;
-            seen.position = surface.position;
-            seen.previous = previousPoint(hit, surface, params.scene);
-            first.reflectionMotion = reflectionMotionOf(mirror, seen, reflection, first, params.view);
-        }
+        met(sight, path, hit, surface, bsdf, depth);
         if (surface.emission != vec3(0.0)) {
             const float density =
                 HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;
@@ -156,19 +184,11 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         if (depth == params.maxDepth || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
-        if (SPLIT_LOBES && depth == 0u) {
-            mirror = Mirror(surface.position, surface.normal, first.previous);
-            const bool reflected =
-                luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0;
-            if (reflected) reflection = reflectionShare(surface);
-            if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
-                path.primary = 1u;
-                reflection = 0.0;
-            }
-        }
+        if (SPLIT_LOBES && depth == 0u) scattered(sight, path, surface, bsdf);
         // A rough bounce blurs what lies behind it: a wider cone reads coarser mip levels.
         if (HAS_TEXTURES && !path.delta) spread = max(spread, 0.1);
     }
+    first = sight.hit;
     rays += path.rays;
     return path.radiance;
 }
