@@ -17,6 +17,9 @@ READ_HALF4(4, before);  // mean, frames in it
 WRITE_HALF4(5, after);
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
 
+/// Of the 3x3 pixels around: what the past may differ from their mean by.
+const float MAX_DEVIATIONS = 1.25;
+
 /// Bright pixels weigh less, as a screen will show them; luma and two chromas.
 vec3 encode(vec3 c) {
     const vec3 shown = c / (1.0 + luminance(c));
@@ -80,7 +83,7 @@ vec4 pastAt(vec2 position) {
 /// Moved towards the mean until it is as near as neighbours are.
 vec3 clipped(vec3 past, Neighbourhood near) {
     const vec3 off = past - near.mean;
-    const vec3 excess = abs(off) / max(TAA_DEVIATIONS * near.deviation, vec3(1e-6));
+    const vec3 excess = abs(off) / max(MAX_DEVIATIONS * near.deviation, vec3(1e-6));
     return near.mean + off / max(max(excess.x, max(excess.y, excess.z)), 1.0);
 }
 

@@ -13,8 +13,7 @@ const ParamTable<TaaSettings>& taaParams() {
         ParamTable<TaaSettings> t("taa");
         t.add("frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
               "that the picture is a mean over, for smooth edges with --jitter frame; more is smoother and "
-              "softer; 1 "
-              "is off");
+              "softer, 1 is off");
         return t;
     }();
     return table;
