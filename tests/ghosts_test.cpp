@@ -5,12 +5,8 @@
 #include <map>
 
 #include "base/log.h"
-#include "render_fixture.h"
-#include "renderer/frame_renderer.h"
-#include "renderer/sequence.h"
 #include "scene/builtin.h"
-#include "scene/movement.h"
-#include "scene/prepare.h"
+#include "sequence_fixture.h"
 
 namespace limpid::test {
 namespace {
@@ -25,17 +21,12 @@ struct Regions {
     std::vector<bool> swept, elsewhere;
 };
 
-class GhostsTest : public RenderTest {
+class GhostsTest : public SequenceTest {
   protected:
     void SetUp() override {
         RenderTest::SetUp();
         if (IsSkipped()) return;
-        scene_ = scene::cornellMovingScene();
-        scene::prepare(scene_);
-        scene::chooseClip(scene_, "");
-        data_ = scene::buildSceneData(scene_);
-        gpuScene_.emplace(device(), data_);
-        sequence_.emplace(scene_, data_, scene_.cameras.at(0), std::nullopt, SequenceTiming{});
+        load(scene::cornellMovingScene());
     }
 
     RenderSettings settings(const Pipeline& pipeline, uint32_t seed) const {
@@ -92,20 +83,6 @@ class GhostsTest : public RenderTest {
         }
         return result;
     }
-
-    image::Image reference() {
-        RenderSettings path = settings({}, 1000);
-        path.samplesPerLaunch = 4;
-        ProgressiveStill still(device(), *gpuScene_, 2048);
-        still.update(sequence_->moment(lastFrame, extent), path);
-        while (still.launch()) continue;
-        return beautyOf(still.download());
-    }
-
-    scene::Scene scene_;
-    scene::SceneData data_;
-    std::optional<scene::GpuScene> gpuScene_;
-    std::optional<Sequence> sequence_;
 };
 
 /// Mean over the region of (mean - truth)^2 less the mean's own variance.
@@ -134,7 +111,7 @@ TEST_F(GhostsTest, WhereAnObjectHasBeenThePictureIsAsRightAsElsewhere) {
     };
     ASSERT_GT(sizeOf(found.swept), 100);
     ASSERT_GT(sizeOf(found.elsewhere), 100);
-    const image::Image truth = reference();
+    const image::Image truth = reference(lastFrame, settings({}, 0), 2048);
     for (const denoise::Denoiser& method : denoise::denoisers()) {
         std::vector<std::vector<float>> pictures;
         for (uint32_t seed = 1; seed <= seeds; ++seed)

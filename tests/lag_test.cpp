@@ -6,12 +6,8 @@
 
 #include "image/metrics.h"
 #include "image/tonemap.h"
-#include "render_fixture.h"
-#include "renderer/frame_renderer.h"
-#include "renderer/sequence.h"
 #include "scene/builtin_lab.h"
-#include "scene/movement.h"
-#include "scene/prepare.h"
+#include "sequence_fixture.h"
 
 namespace limpid::test {
 namespace {
@@ -22,34 +18,18 @@ constexpr auto stop = static_cast<uint64_t>(framesPerSecond * double{scene::labC
 constexpr uint64_t allowed = 8, steadyFrom = stop + 40, end = stop + 56;  // frames
 constexpr uint32_t seeds = 2;
 
-class LagTest : public RenderTest {
+class LagTest : public SequenceTest {
   protected:
     void SetUp() override {
         RenderTest::SetUp();
         if (IsSkipped()) return;
-        scene_ = scene::labLightScene();
-        scene::prepare(scene_);
-        scene::chooseClip(scene_, "");
-        data_ = scene::buildSceneData(scene_);
-        gpuScene_.emplace(device(), data_);
-        sequence_.emplace(scene_, data_, scene_.cameras.at(0), std::nullopt,
-                          SequenceTiming{.framesPerSecond = framesPerSecond});
+        load(scene::labLightScene(), {.framesPerSecond = framesPerSecond});
     }
 
     static RenderSettings settings(uint32_t seed) {
         RenderSettings result = centred(extent.width, extent.height, 8);
         result.seed = seed;
         return result;
-    }
-
-    /// Of every frame after the light has stopped: the camera stands still.
-    image::Image reference() {
-        RenderSettings path = settings(1000);
-        path.samplesPerLaunch = 16;
-        ProgressiveStill still(device(), *gpuScene_, 1024);
-        still.update(sequence_->moment(end, extent), path);
-        while (still.launch()) continue;
-        return beautyOf(still.download());
     }
 
     /// Mean squared error of what a screen shows, from the frame on in which the light has stopped.
@@ -66,15 +46,11 @@ class LagTest : public RenderTest {
         }
         return result;
     }
-
-    scene::Scene scene_;
-    scene::SceneData data_;
-    std::optional<scene::GpuScene> gpuScene_;
-    std::optional<Sequence> sequence_;
 };
 
 TEST_F(LagTest, SvgfHasFollowedALightWithinEightFrames) {
-    const image::Image truth = reference();
+    // Of every frame after the light has stopped: the camera stands still.
+    const image::Image truth = reference(end, settings(0), 1024);
     std::vector<double> mean(end - stop);
     for (uint32_t seed = 1; seed <= seeds; ++seed) {
         RenderSettings chosen = settings(seed);

@@ -6,14 +6,10 @@
 
 #include "image/metrics.h"
 #include "image/tonemap.h"
-#include "render_fixture.h"
-#include "renderer/frame_renderer.h"
-#include "renderer/sequence.h"
 #include "scene/builtin.h"
 #include "scene/builtin_lab.h"
 #include "scene/builtin_parts.h"
-#include "scene/movement.h"
-#include "scene/prepare.h"
+#include "sequence_fixture.h"
 
 namespace limpid::test {
 namespace {
@@ -211,7 +207,7 @@ TEST_F(MirrorTest, ReflectionsMoveAsWhatTheMirrorShows) {
 }
 
 /// The picture of lab-mirror and its reflection, in frames of one sample while the camera moves.
-class MirroredPictureTest : public RenderTest {
+class MirroredPictureTest : public SequenceTest {
   protected:
     static constexpr gpu::Extent extent{160, 90};
     static constexpr std::array<uint64_t, 2> judged{12, 18};
@@ -225,29 +221,13 @@ class MirroredPictureTest : public RenderTest {
     void SetUp() override {
         RenderTest::SetUp();
         if (IsSkipped()) return;
-        scene_ = scene::labMirrorScene();
-        scene::prepare(scene_);
-        data_ = scene::buildSceneData(scene_);
-        gpuScene_.emplace(device(), data_);
-        const scene::Camera camera = scene_.cameras.at(0);
-        sequence_.emplace(scene_, data_, camera, scene::builtinCameraPath("orbit", scene_, camera, 4.0),
-                          SequenceTiming{});
+        load(scene::labMirrorScene(), {}, "orbit", 4.0);
     }
 
     RenderSettings settings() const {
         RenderSettings result = centred(extent.width, extent.height, 8);
         result.layers = true;
         return result;
-    }
-
-    image::Image reference(uint64_t frame) {
-        RenderSettings path = settings();
-        path.seed = 1000;
-        path.samplesPerLaunch = 4;
-        ProgressiveStill still(device(), *gpuScene_, referenceSamples);
-        still.update(sequence_->moment(frame, extent), path);
-        while (still.launch()) continue;
-        return beautyOf(still.download());
     }
 
     /// Whether the pixel's centre lies in the quadrangle with these corners.
@@ -262,7 +242,7 @@ class MirroredPictureTest : public RenderTest {
     }
 
     void judge(const RenderedLayers& layers, uint64_t frame, Flip& flip) {
-        const image::Image truth = reference(frame);
+        const image::Image truth = reference(frame, settings(), referenceSamples);
         const image::Image map =
             image::compare(beautyOf(layers), truth, *image::measuredExposure(truth)).flipMap;
         const CameraParams camera = sequence_->moment(frame, extent).camera;
@@ -295,11 +275,6 @@ class MirroredPictureTest : public RenderTest {
         flip.reflected /= static_cast<double>(flip.reflectedPixels);
         return flip;
     }
-
-    scene::Scene scene_;
-    scene::SceneData data_;
-    std::optional<scene::GpuScene> gpuScene_;
-    std::optional<Sequence> sequence_;
 };
 
 TEST_F(MirroredPictureTest, IsAsCleanAsThePictureItself) {
