@@ -18,7 +18,8 @@ struct DoubleSvgfParams {
     bool reflections = true;
     double antilag = 2.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
-    bool blurVariance = true, boost = true, wide = true, mutual = true, position = false;
+    int blurLevels = 1;
+    bool boost = true, wide = true, position = false;
 };
 
 /// What is filtered apart: `Joint` is the sum of the other two.

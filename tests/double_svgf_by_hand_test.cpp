@@ -281,11 +281,9 @@ TEST_F(SvgfRow, VarianceOfAWeightedMean) {
 
 TEST_F(SvgfRow, Color) {
     params.phiColor = 0.5;
-    params.blurVariance = false;
-    expectWeight(std::exp(-0.2126 / (0.5 * 0.6 + 0.001 * 1.2126 + 1e-6)));
-    params.mutual = false;
+    params.blurLevels = 0;
     expectWeight(std::exp(-0.2126 / (0.5 * 0.3 + 0.001 + 1e-6)));
-    params.blurVariance = true;
+    params.blurLevels = 1;
     const double g = (4 * 0.09 + 2 * 0.36) / 6;
     expectWeight(std::exp(-0.2126 / (0.5 * std::sqrt(g) + 0.001 + 1e-6)));
 }

@@ -75,7 +75,11 @@ class Level {
   public:
     Level(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
           uint32_t i, const DoubleSvgfParams& params)
-        : neighbours_(frame, surfaces, params), color_(color), step_(int64_t{1} << i), params_(params) {
+        : neighbours_(frame, surfaces, params),
+          color_(color),
+          level_(i),
+          step_(int64_t{1} << i),
+          params_(params) {
         for (const dvec4& c : color) luminances_.push_back(luminance(dvec3(c)));
     }
 
@@ -92,7 +96,7 @@ class Level {
             double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)];
             if (p != q) {
                 w *= neighbours_.weight(p, q, static_cast<double>(step_) * dvec2(i, j)) *
-                     std::exp(-std::abs(l - luminances_[q]) / std::max(own, toleranceOfTap(q)));
+                     std::exp(-std::abs(l - luminances_[q]) / own);
             }
             sum += w * dvec3(color_[q]);
             variance += w * w * color_[q].w * color_[q].w;
@@ -105,13 +109,10 @@ class Level {
     double tolerance(double luminance, double deviation) const {
         return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
     }
-    double toleranceOfTap(size_t q) const {
-        return params_.mutual ? tolerance(luminances_[q], color_[q].w) : 0.0;
-    }
 
     /// g
     double guide(size_t p) const {
-        if (!params_.blurVariance) return color_[p].w * color_[p].w;
+        if (level_ >= params_.blurLevels) return color_[p].w * color_[p].w;
         double sum = 0.0, weights = 0.0;
         neighbours_.around(p, 1, 1, [&](size_t q, int i, int j) {
             const double w = (i == 0 ? 2.0 : 1.0) * (j == 0 ? 2.0 : 1.0);
@@ -123,6 +124,7 @@ class Level {
 
     Neighbours neighbours_;
     const std::vector<dvec4>& color_;
+    int level_;
     int64_t step_;
     const DoubleSvgfParams& params_;
     std::vector<double> luminances_;

@@ -27,10 +27,9 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .phiColor = double{s.phiColor},
             .phiNormal = double{s.phiNormal},
             .phiDepth = double{s.phiDepth},
-            .blurVariance = s.blurVariance,
+            .blurLevels = s.blurLevels,
             .boost = s.boost,
             .wide = s.wide,
-            .mutual = s.mutual,
             .position = s.position};
 }
 
@@ -166,8 +165,10 @@ SvgfSurfaces SvgfPassTest::surfaces(const HostFrame& frame) {
 Stored SvgfPassTest::stored(const Signal& signal) {
     Stored result;
     result.moments = download("svgf/reproject " + signal.name, "moments");
-    const std::vector<float> tiles =
-        graph_.downloadFloat(device(), written("svgf/tiles " + signal.name, "tiles"));
+    const std::vector<float> tiles = graph_.downloadFloat(
+        device(),
+        written((filters_ == gpu::Backing::Buffer ? "svgf/reproject " : "svgf/tiles ") + signal.name,
+                "tiles"));
     result.tiles.assign(tiles.begin(), tiles.end());
     const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
     if (images.size() != 1) throw Error("the variance of young pixels is not one image");
@@ -293,11 +294,7 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"Tiny", moving, {}, 3, 2}, Case{"Thin", {}, {}, 1, 40},
             Case{"Position",
                  moving,
-                 {.historyLevel = 2,
-                  .phiNormal = 0.3f,
-                  .phiDepth = 0.5f,
-                  .blurVariance = false,
-                  .position = true}},
+                 {.historyLevel = 2, .phiNormal = 0.3f, .phiDepth = 0.5f, .blurLevels = 0, .position = true}},
             Case{"PositionOrthographic",
                  {.cameraMoves = true, .orthographic = true},
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},

@@ -21,7 +21,8 @@ using nlohmann::json;
 
 struct DenoiseBench {
     DeviceChoice device;
-    std::string scene = "builtin:cornell", pipeline = "atrous";
+    SceneChoice scene{"builtin:cornell", "", ""};
+    std::string cameraPath = "shake", pipeline = "atrous";
     std::vector<std::string> presets, assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
@@ -59,7 +60,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
-    BenchScene scene(device, chosenTracer(o.device, device), o.scene);
+    BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
     std::optional<gpu::Backing> filters;
     if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
     return scene.measure(settings, o.warmup, o.frames, filters);
@@ -90,7 +91,8 @@ void run(const DenoiseBench& o) {
     if (!o.json) return;
     const json object{{"device", device->info().name},
                       {"driver", device->info().driver},
-                      {"scene", o.scene},
+                      {"scene", o.scene.scene},
+                      {"camera_path", o.cameraPath},
                       {"pipeline", o.pipeline},
                       {"width", o.width},
                       {"height", o.height},
@@ -106,7 +108,9 @@ void addDenoiseBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "denoise", "Milliseconds of every pass of a pipeline under a moving camera, and the bytes it moves");
     auto o = std::make_shared<DenoiseBench>();
-    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
+    command->add_option("--scene", o->scene.scene, "Scene (builtin:cornell)");
+    command->add_option("--env", o->scene.environment, "Environment map, .hdr or .exr, lat-long");
+    command->add_option("--camera-path", o->cameraPath, "A JSON file, or orbit, dolly or shake (shake)");
     command->add_option("--pipeline", o->pipeline, "Pipeline (atrous)");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");

@@ -116,10 +116,12 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     quality.reference = references.back().picture;
     quality.methods.emplace_back().name = "noisy";
     for (const QualityMethod& chosen : methods) {
-        FrameRenderer renderer(device, scene, chosen.settings, samples);
         const bool first = quality.methods.size() == 1;
+        RenderSettings settings = chosen.settings;
+        settings.layers = first;  // the noisy picture is made of them
+        FrameRenderer renderer(device, scene, settings, samples);
         MethodQuality method =
-            measure(renderer, sequence, chosen.settings.extent, frames, {references, quality.exposure},
+            measure(renderer, sequence, settings.extent, frames, {references, quality.exposure},
                     first ? &quality.methods.front() : nullptr);
         method.name = chosen.name;
         quality.methods.push_back(std::move(method));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -42,7 +43,7 @@ struct QualityOptions {
 
 /// SVGF as others have it, and without each thing that Limpid adds to the paper.
 constexpr std::array svgfSteps{"preset=paper",      "preset=cis565",        "svgf.antilag=0",
-                               "svgf.mutual=off",   "svgf.boost=off",       "svgf.wide=on",
+                               "svgf.boost=off",    "svgf.blur_levels=10",  "svgf.wide=on",
                                "svgf.separate=off", "svgf.reflections=off", "pathtrace.through_mirrors=off"};
 
 /// `texts` by commas: group.name=value, or preset=name.
@@ -159,21 +160,22 @@ void printSequence(const MeasuredSequence& measured) {
     const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
     for (const MethodQuality& method : quality.methods) {
         const double psnr = meanOf(method, "psnr").value_or(0.0);
-        fmt::print("  {:<10}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
+        fmt::print("  {:<28}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
                    image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
                    cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
                    cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
                    cell(denoisingMs(method), 10, 3), cell(bytesPerPixel(method), 9, 0));
     }
+    std::fflush(stdout);  // a run may take long, and may be stopped
 }
 
 void printRanking(const QualityRun& run) {
-    fmt::print("all {} sequences\n  {:<10}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}  best in\n", run.sequences.size(),
+    fmt::print("all {} sequences\n  {:<28}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}  best in\n", run.sequences.size(),
                "method", "FLIP", "rank", "gain dB", "flicker", "filter ms", "B/pixel");
     for (const MethodRank& rank : rankMethods(run)) {
         std::string best;
         for (const std::string& name : rank.best) best += (best.empty() ? "" : ", ") + name;
-        fmt::print("  {:<10}{:>9.4f}{:>8.2f}{}{}{}{}  {}\n", rank.name, rank.flip, rank.rank,
+        fmt::print("  {:<28}{:>9.4f}{:>8.2f}{}{}{}{}  {}\n", rank.name, rank.flip, rank.rank,
                    cell(rank.gain, 9, 2), cell(rank.flicker, 10, 5), cell(rank.denoisingMs, 10, 3),
                    cell(rank.bytesPerPixel, 9, 0), best);
     }
@@ -181,7 +183,7 @@ void printRanking(const QualityRun& run) {
 
 void printHead(const QualityRun& run) {
     fmt::print(
-        "{}, {}x{}, {} samples a frame, references of {}\n  {:<10}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
+        "{}, {}x{}, {} samples a frame, references of {}\n  {:<28}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
         "{:>10}{:>9}\n",
         run.device, run.extent.width, run.extent.height, run.samples, run.referenceSamples, "method",
         "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker", "filter ms", "B/pixel");

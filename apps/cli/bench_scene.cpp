@@ -1,26 +1,30 @@
 #include "bench_scene.h"
 
+#include <utility>
+
 #include "pass_times.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/sequence.h"
-#include "scene/camera_path.h"
-#include "scene_options.h"
+#include "sequence_options.h"
 
 namespace limpid::cli {
 
-BenchScene::BenchScene(gpu::Device& device, scene::Tracer tracer, const std::string& name)
+BenchScene::BenchScene(gpu::Device& device, scene::Tracer tracer, const SceneChoice& choice,
+                       std::string cameraPath)
     : device_(device),
-      scene_(loadChosenScene({name, "", ""})),
+      cameraPath_(std::move(cameraPath)),
+      scene_(loadChosenScene(choice)),
       data_(scene::buildSceneData(scene_)),
       gpuScene_(device, data_, {tracer, {}}) {}
 
 std::map<std::string, PassCost> BenchScene::measure(const RenderSettings& settings, uint32_t warmup,
                                                     uint32_t frames, std::optional<gpu::Backing> filters) {
-    const SequenceTiming timing;
     const uint64_t count = uint64_t{warmup} + frames;
     const scene::Camera& camera = scene_.cameras.front();
-    const Sequence sequence(scene_, data_, camera,
-                            scene::builtinCameraPath("shake", scene_, camera, timing.timeOf(count)), timing);
+    SequenceChoice choice;
+    choice.cameraPath = cameraPath_;
+    choice.frames = static_cast<int>(count);
+    const Sequence sequence(scene_, data_, camera, chosenPath(choice, scene_, camera), choice.timing);
     FrameRenderer renderer(device_, gpuScene_, settings, 1);
     if (filters) renderer.setFilterBacking(*filters);
     std::map<std::string, PassCost> costs;

@@ -11,6 +11,7 @@
 #include "renderer/settings.h"
 #include "scene/gpu_scene.h"
 #include "scene/scene.h"
+#include "scene_options.h"
 
 namespace limpid::cli {
 
@@ -21,18 +22,20 @@ struct PassCost {
 
 class BenchScene {
   public:
-    /// Throws as loading a scene does. The device must outlive it.
-    BenchScene(gpu::Device& device, scene::Tracer tracer, const std::string& name);
+    /// `cameraPath`: a built-in one or a file. Throws as loading a scene does. The device must outlive it.
+    BenchScene(gpu::Device& device, scene::Tracer tracer, const SceneChoice& choice,
+               std::string cameraPath = "shake");
 
     uint64_t triangleCount() const { return scene_.triangleCount(); }
 
-    /// Every pass of `frames` frames of one sample under the camera path `shake`, after `warmup` others.
+    /// Every pass of `frames` frames of one sample under the moving camera, after `warmup` others.
     /// `filters`: empty for what the device likes.
     std::map<std::string, PassCost> measure(const RenderSettings& settings, uint32_t warmup, uint32_t frames,
                                             std::optional<gpu::Backing> filters = {});
 
   private:
     gpu::Device& device_;
+    std::string cameraPath_;
     scene::Scene scene_;
     scene::SceneData data_;
     scene::GpuScene gpuScene_;

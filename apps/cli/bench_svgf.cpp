@@ -43,7 +43,8 @@ struct Stages {
     }
 };
 
-/// A pass belongs to the stage that its name begins with.
+/// A pass belongs to the stage that its name begins with. Without a pass ("tiles" on GPUs) a stage takes no
+/// time.
 constexpr std::array<std::pair<const char*, const char*>, 7> stageNames{{{"path tracing", "pathtrace"},
                                                                          {"surfaces", "svgf/surfaces"},
                                                                          {"reprojection", "svgf/reproject"},
@@ -84,7 +85,7 @@ std::vector<OfScene> measureScenes(gpu::Device& device, const SvgfBench& o) {
     std::vector<OfScene> result;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         const std::string name = "builtin:" + info.name;
-        BenchScene scene(device, chosenTracer(o.device, device), name);
+        BenchScene scene(device, chosenTracer(o.device, device), {name, "", ""});
         result.push_back(
             {name, scene.triangleCount(), stagesOf(scene.measure(settingsOf(o), o.warmup, o.frames))});
     }
@@ -165,7 +166,7 @@ void run(const SvgfBench& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     Measured measured;
     {
-        BenchScene scene(*device, chosenTracer(o.device, *device), o.scene);
+        BenchScene scene(*device, chosenTracer(o.device, *device), {o.scene, "", ""});
         measured.stages = stagesOf(scene.measure(settingsOf(o), o.warmup, o.frames));
         measured.levels = measureLevels(scene, o);
     }

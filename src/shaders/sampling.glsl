@@ -59,9 +59,14 @@ uint encodeOctahedral(vec3 n) {
     return packSnorm2x16(n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * signs);
 }
 
+/// 32,768 added as a bit: GPUs convert integers at an eighth of the rate at which they add.
+float signed16(uint low) {
+    return uintBitsToFloat(0x4B000000u | (low ^ 0x8000u)) - (8388608.0 + 32768.0);
+}
+
 vec3 decodeOctahedral(uint packed) {
-    const vec2 e = unpackSnorm2x16(packed);
-    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    const vec2 e = vec2(signed16(packed & 0xFFFFu), signed16(packed >> 16));
+    vec3 n = vec3(e, 32767.0 - abs(e.x) - abs(e.y));
     const float t = max(-n.z, 0.0);
     n.x += n.x >= 0.0 ? -t : t;
     n.y += n.y >= 0.0 ? -t : t;

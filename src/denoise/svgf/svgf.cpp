@@ -56,23 +56,34 @@ class Svgf {
           extent_(graph.extent(input.diffuse)),
           buffers_(input.filters == Backing::Buffer) {}
 
+    /// Each pass for all signals before the next pass: those of one kind do not wait for each other, and the
+    /// device starts one while the other runs out.
     ImageHandle record() {
         const Surfaces surfaces = recordSurfaces();
-        if (!settings_.separate) {
-            const Signal joint{"joint",       input_.diffuse,        input_.specular,
-                               input_.albedo, input_.albedoSpecular, true};
-            const ImageHandle filtered = recordSignal(joint, surfaces);
-            return modulate(filtered, filtered);
+        const std::vector<Signal> all = signals();
+        std::vector<Accumulated> accumulated;
+        std::vector<ImageHandle> filtered;
+        for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
+        for (size_t i = 0; i < all.size(); ++i) {
+            estimateVariance(all[i], surfaces, accumulated[i]);
+            filtered.push_back(accumulated[i].color);
         }
-        const Signal diffuse{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo};
-        const Signal specular{
-            "specular", input_.specular,      input_.specular, input_.albedoSpecular, input_.albedoSpecular,
-            false,      settings_.reflections};
-        const ImageHandle filteredDiffuse = recordSignal(diffuse, surfaces);
-        return modulate(filteredDiffuse, recordSignal(specular, surfaces));
+        for (int number = 1; number <= settings_.levels; ++number) {
+            for (size_t i = 0; i < all.size(); ++i)
+                filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
+        }
+        return modulate(filtered.front(), filtered.back());
     }
 
   private:
+    std::vector<Signal> signals() const {
+        if (!settings_.separate)
+            return {{"joint", input_.diffuse, input_.specular, input_.albedo, input_.albedoSpecular, true}};
+        return {{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo},
+                {"specular", input_.specular, input_.specular, input_.albedoSpecular, input_.albedoSpecular,
+                 false, settings_.reflections}};
+    }
+
     const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
         return buffers_ ? buffers : images;
     }
@@ -94,17 +105,16 @@ class Svgf {
         return result;
     }
 
-    ImageHandle recordSignal(const Signal& signal, const Surfaces& surfaces) {
-        const Accumulated accumulated = reproject(signal, surfaces);
-        estimateVariance(signal, surfaces, accumulated);
-        ImageHandle filtered = accumulated.color;
-        for (int number = 1; number <= settings_.levels; ++number)
-            filtered = level(signal, surfaces, accumulated, filtered, number);
-        return filtered;
-    }
-
     /// Of the filter's levels; 0: none.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
+
+    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady.
+    float steadyShare() const {
+        const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
+        const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
+        const float common = fast * slow / (fast + slow - fast * slow);
+        return (shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow));
+    }
 
     SvgfReprojectParams reprojectParams() const {
         SvgfReprojectParams params{};
@@ -119,6 +129,8 @@ class Svgf {
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
+        params.steadyShare = steadyShare();
+        params.antilag = settings_.antilag;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
@@ -136,38 +148,32 @@ class Svgf {
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
         const SvgfReprojectParams params = reprojectParams();
+        std::vector<gpu::Binding> bindings{{"lightA", signal.light},
+                                           {"lightB", signal.otherLight},
+                                           {"albedoA", signal.albedo},
+                                           {"albedoB", signal.otherAlbedo},
+                                           {"motion", input_.motion},
+                                           {"reflectionMotion", input_.reflectionMotion},
+                                           {"previousNormal", input_.previousNormal},
+                                           {"surfaces", surfaces.surfaces.current},
+                                           {"instances", surfaces.instances.current},
+                                           {"surfacesBefore", surfaces.surfaces.previous},
+                                           {"instancesBefore", surfaces.instances.previous},
+                                           {"colorBefore", feedback.previous},
+                                           {"momentsBefore", moments.previous},
+                                           {"tilesBefore", tiles.previous},
+                                           {"color", color},
+                                           {"moments", moments.current}};
+        if (buffers_) bindings.push_back({"tiles", tiles.current});
         graph_.dispatch({.pass = "svgf/reproject " + signal.name,
                          .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
-                         .bindings = {{"lightA", signal.light},
-                                      {"lightB", signal.otherLight},
-                                      {"albedoA", signal.albedo},
-                                      {"albedoB", signal.otherAlbedo},
-                                      {"motion", input_.motion},
-                                      {"reflectionMotion", input_.reflectionMotion},
-                                      {"previousNormal", input_.previousNormal},
-                                      {"surfaces", surfaces.surfaces.current},
-                                      {"instances", surfaces.instances.current},
-                                      {"surfacesBefore", surfaces.surfaces.previous},
-                                      {"instancesBefore", surfaces.instances.previous},
-                                      {"colorBefore", feedback.previous},
-                                      {"momentsBefore", moments.previous},
-                                      {"tilesBefore", tiles.previous},
-                                      {"color", color},
-                                      {"moments", moments.current}},
+                         .bindings = bindings,
                          .params = gpu::paramsOf(params),
                          .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
                                        {"REFLECTIONS", signal.reflects ? 1u : 0u}},
                          .extent = extent_});
-        recordTiles(signal, moments.current, tiles.current);
+        if (!buffers_) recordTiles(signal, moments.current, tiles.current);
         return {color, moments.current, feedback};
-    }
-
-    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady.
-    float steadyShare() const {
-        const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
-        const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
-        const float common = fast * slow / (fast + slow - fast * slow);
-        return (shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow));
     }
 
     void recordTiles(const Signal& signal, ImageHandle moments, ImageHandle tiles) {
@@ -225,9 +231,8 @@ class Svgf {
         const int step = 1 << (number - 1);
         const SvgfFilterParams params = filterParams(step);
         std::vector<gpu::ConstantValue> constants = filterConstants();
-        constants.push_back({"BLUR_VARIANCE", settings_.blurVariance ? 1u : 0u});
+        constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
-        constants.push_back({"MUTUAL", settings_.mutual ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -307,12 +312,12 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
               "tolerated difference of distance, in units of the surface's own slope (with `position`: "
               "tolerated distance of points, world units); higher smooths over steps");
-        t.add("blur_variance", &S::blurVariance, "average the variance over 3x3 pixels before it guides");
+        t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
+              "so many first levels average the variance over 3x3 pixels before it guides them; more cost "
+              "time, and keep "
+              "more noise where it differs from pixel to pixel");
         t.add("boost", &S::boost,
               "the shorter the history of a pixel seen for under 4 frames, the more noise is expected of it");
-        t.add("mutual", &S::mutual,
-              "the noisier of two pixels decides what they tolerate of each other; off: the one that is "
-              "filtered, which rejects bright samples and darkens the picture");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("paper", {{"alpha", "0.2"},
                            {"reflections", "off"},
@@ -321,7 +326,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
                            {"antilag", "0"},
                            {"history_level", "1"},
                            {"boost", "off"},
-                           {"mutual", "off"}});
+                           {"blur_levels", "10"}});
         t.preset("cis565", {{"separate", "off"},
                             {"demodulate", "off"},
                             {"alpha", "0.2"},
@@ -337,7 +342,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
                             {"phi_normal", "0.2"},
                             {"phi_depth", "0.35"},
                             {"boost", "off"},
-                            {"mutual", "off"},
+                            {"blur_levels", "10"},
                             {"position", "on"}});
         return t;
     }();

@@ -28,18 +28,18 @@ struct SvgfSettings {
     float phiColor = 4.0f;
     float phiNormal = 128.0f;
     float phiDepth = 1.0f;
-    bool blurVariance = true;
+    int blurLevels = 1;
     bool boost = true;
-    bool mutual = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;
 };
 const ParamTable<SvgfSettings>& svgfParams();
 
 /// One frame: the clean beauty, rgba32f, alpha 1. Passes, each once for every signal ("joint", or "diffuse"
-/// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL",
-/// "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces",
-/// "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and "svgf/SIGNAL tiles".
+/// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
+/// (with filters in images; otherwise "svgf/reproject" does its work), "svgf/variance SIGNAL", "svgf/level 1
+/// SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal
+/// "svgf/SIGNAL color", "svgf/SIGNAL moments" and "svgf/SIGNAL tiles".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 }  // namespace limpid::denoise

@@ -5,7 +5,6 @@
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
-layout(constant_id = 5) const bool MUTUAL = true;  // the noisier of two pixels says what they tolerate, else the centre
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -22,7 +21,7 @@ const float LOG2_E = 1.44269504;
 
 struct Tap {
     vec4 light;  // and deviation; negative: nothing is seen
-    float luminance, luminanceScale;
+    float luminance;
     Surface surface;
     bool counts;
 };
@@ -48,9 +47,7 @@ float kernel(ivec2 from) {
 Tap loadTap(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const vec4 light = LOAD_HALF4(signal, inside);
-    const float l = luminance(light.rgb);
-    const float scale = MUTUAL ? luminanceScaleOf(l, max(light.a, 0.0)) : 0.0;
-    return Tap(light, l, scale, surfaceAt(inside), at == inside && light.a >= 0.0);
+    return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
 }
 
 void addVariance(inout vec2 sum, ivec2 at, float weight) {
@@ -88,9 +85,8 @@ Centre begin(ivec2 at) {
 }
 
 void addTo(inout Centre centre, Tap tap, ivec2 from) {
-    const float scale = MUTUAL ? min(centre.luminanceScale, tap.luminanceScale) : centre.luminanceScale;
-    const float exponent =
-        surfaceExponent(centre.surface, tap.surface, from) - abs(centre.luminance - tap.luminance) * scale;
+    const float exponent = surfaceExponent(centre.surface, tap.surface, from) -
+                           abs(centre.luminance - tap.luminance) * centre.luminanceScale;
     const float weight = tap.counts ? kernel(from) * exp2(exponent) : 0.0;
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
     const float deviation = weight * tap.light.a;
@@ -113,8 +109,10 @@ ivec2 inBlock(int number) {
 
 void main() {
     const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy);
-    const ivec2 first = invocation / params.step * (BLOCK * params.step) + invocation % params.step;
-    if (first.x >= int(params.width) || first.y >= int(params.height)) return;
+    const ivec2 size = ivec2(params.width, params.height);
+    const int power = findMSB(params.step);  // steps are powers of 2, and shifts cheaper than divisions
+    const ivec2 first = (invocation >> power) * (BLOCK << power) + (invocation & (params.step - 1));
+    if (first.x >= size.x || first.y >= size.y) return;
     Centre centres[COUNT];
     bool anySeen = false;
     [[unroll]] for (int number = 0; number < COUNT; ++number) {

@@ -39,7 +39,9 @@ struct SvgfReprojectParams {
     float alpha;
     float alphaMoments;
     float alphaFast;
-    float longest;  // frames
+    float longest;      // frames
+    float steadyShare;  // as SvgfTilesParams
+    float antilag;
 };
 
 struct SvgfTilesParams {

@@ -4,8 +4,6 @@
 #include "denoise/svgf/svgf_params.h"
 #include "shaders/filter_image.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
 layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, albedo likewise; else the first
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
@@ -153,9 +151,8 @@ Past accumulated(Past past, vec3 x) {
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
 }
 
-void main() {
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+/// Returns the moments.
+vec4 accumulate(ivec2 at) {
     vec3 light = imageLoad(lightA, at).rgb;
     if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
     const vec3 x = demodulated(light, at);
@@ -170,5 +167,7 @@ void main() {
     const float deviation = min(sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0)), MAX_HALF);
     const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : deviation;
     STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
-    imageStore(moments, at, seen ? now.moments : vec4(0.0));
+    const vec4 stored = seen ? now.moments : vec4(0.0);
+    imageStore(moments, at, stored);
+    return stored;
 }

@@ -1,5 +1,36 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_reproject.glsl with gpu::Backing::Buffer.
+// svgf_reproject.glsl with gpu::Backing::Buffer, for GPUs. A group is a tile (svgf_tiles.glsl), whose moments it has at hand.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/svgf/svgf_reproject.glsl"
+#include "denoise/svgf/svgf_tiles.glsl"
+
+layout(local_size_x = SVGF_TILE, local_size_y = SVGF_TILE) in;
+
+layout(set = 0, binding = 17, r32f) uniform writeonly image2D tiles;
+
+shared TileSums pixelSums[SVGF_TILE * SVGF_TILE];
+shared TileSums rowSums[SVGF_TILE];
+
+/// Of all of the group. Every invocation calls this.
+TileSums sumOverTile(TileSums own) {
+    const uint number = gl_LocalInvocationIndex;
+    pixelSums[number] = own;
+    barrier();
+    if (number < SVGF_TILE) {
+        rowSums[number] = pixelSums[number * SVGF_TILE];
+        for (int i = 1; i < SVGF_TILE; ++i) add(rowSums[number], pixelSums[number * SVGF_TILE + i]);
+    }
+    barrier();
+    TileSums all = rowSums[0];
+    for (int i = 1; i < SVGF_TILE; ++i) add(all, rowSums[i]);
+    return all;
+}
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    vec4 moments = vec4(0.0);
+    if (at.x < int(params.width) && at.y < int(params.height)) moments = accumulate(at);
+    const float lag = lagOf(sumOverTile(tileSumsOf(moments)), params.steadyShare, params.antilag);
+    if (gl_LocalInvocationIndex == 0u) imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lag));
+}

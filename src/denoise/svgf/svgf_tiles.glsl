@@ -1,0 +1,22 @@
+// What 8x8 pixels together say of one signal: how far the slow mean of the luminance lags behind the fast one.
+// docs/denoising.md, SVGF, step 4.
+#include "denoise/svgf/svgf_params.h"
+
+struct TileSums {
+    float lag, noise, light;
+};
+
+/// Of a pixel of the image of moments.
+TileSums tileSumsOf(vec4 m) {
+    const float counts = m.w >= 2.0 ? 1.0 : 0.0;
+    return TileSums(counts * (m.z - m.x), counts * max(m.y - m.x * m.x, 0.0), counts * max(m.z, m.x));
+}
+
+void add(inout TileSums sums, TileSums other) {
+    sums = TileSums(sums.lag + other.lag, sums.noise + other.noise, sums.light + other.light);
+}
+
+float lagOf(TileSums sums, float steadyShare, float antilag) {
+    const float excess = max(abs(sums.lag) - SVGF_LAG_SIGMAS * sqrt(steadyShare * sums.noise), 0.0);
+    return sums.light > 0.0 ? min(antilag * excess / sums.light, 1.0) : 0.0;
+}
