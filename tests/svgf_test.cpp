@@ -405,7 +405,7 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         denoise(*method, frame, settings);
         const double bytes =
             static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
-        EXPECT_EQ(bytes, separate ? 216.25 : 128.125);
+        EXPECT_EQ(bytes, separate ? 200.25 : 120.125);
     }
 }
 

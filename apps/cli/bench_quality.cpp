@@ -31,6 +31,19 @@ double ownPsnr(const std::vector<Reference>& references, float stops) {
     return sum / static_cast<double>(references.size());
 }
 
+/// As shown, with as much noise as the reference has: its noise changes from frame to frame, and without it a
+/// perfect test would seem to change less. Half the difference of the reference's halves is as strong as the
+/// error of their mean, and independent of it.
+Image shownWithNoiseOf(const Reference& reference, const Image& picture, const Image& shown, float stops) {
+    Image noisy = picture;
+    for (size_t i = 0; i < noisy.pixels.size(); ++i) noisy.pixels[i] += 0.5f * reference.difference.pixels[i];
+    Image result = image::displayEncode(noisy, stops);
+    for (size_t i = 0; i < noisy.pixels.size(); ++i) {
+        if (!std::isfinite(noisy.pixels[i])) result.pixels[i] = shown.pixels[i];
+    }
+    return result;
+}
+
 /// Scores frame after frame; flicker needs the frame before.
 class Judge {
   public:
@@ -48,23 +61,28 @@ class Judge {
                                   .relMse = c.relMse,
                                   .flip = c.flip};
         scores.invalidPixels = c.invalidPixels;
+        Shown shown{shownWithNoiseOf(reference, picture, c.shownTest, stops_), std::move(c.shownReference)};
         if (before_) {
             const auto reprojection =
                 image::reproject(reference.geometry, references_[frame - first_ - 1].geometry);
-            scores.flicker = image::flicker(c.shownTest, before_->shownTest, c.shownReference,
-                                            before_->shownReference, reprojection);
+            scores.flicker =
+                image::flicker(shown.test, before_->test, shown.reference, before_->reference, reprojection);
         }
-        before_ = std::move(c);
+        before_ = std::move(shown);
         method.scores.push_back(scores);
         method.last = std::move(picture);
-        method.lastError = before_->flipMap;
+        method.lastError = std::move(c.flipMap);
     }
 
   private:
+    struct Shown {
+        Image test, reference;
+    };
+
     const std::vector<Reference>& references_;
     uint64_t first_;
     float stops_;
-    std::optional<image::Comparison> before_;
+    std::optional<Shown> before_;
 };
 
 Image noisyOf(RenderedLayers layers) {

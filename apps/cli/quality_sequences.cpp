@@ -33,16 +33,16 @@ std::vector<fs::path> sortedEntries(const fs::path& folder) {
 const std::vector<QualitySequence>& labSequences() {
     //   name, scene, camera path, {first frame compared, frames}
     static const std::vector<QualitySequence> sequences{
-        {"cornell", "builtin:cornell", "orbit", {16, 61}},
-        {"cornell-spheres", "builtin:cornell-spheres", "orbit", {16, 61}},
-        {"cornell-moving", "builtin:cornell-moving", "orbit", {16, 61}},
-        {"heavy", "builtin:heavy", "dolly", {16, 61}},
-        {"moving-light", "builtin:lab-light", "none", {16, 61}},
-        {"light-goes-out", "builtin:lab-switch", "none", {16, 61}},
-        {"disocclusion", "builtin:lab-disocclusion", "shake", {16, 61}},
-        {"mirror", "builtin:lab-mirror", "orbit", {16, 61}},
-        {"textures", "builtin:lab-textures", "dolly", {16, 61}},
-        {"many-lights", "builtin:lab-lights", "dolly", {16, 61}},
+        {"cornell", "builtin:cornell", "orbit", {20, 36}},
+        {"cornell-spheres", "builtin:cornell-spheres", "orbit", {20, 36}},
+        {"cornell-moving", "builtin:cornell-moving", "orbit", {20, 36}},
+        {"heavy", "builtin:heavy", "dolly", {20, 36}},
+        {"moving-light", "builtin:lab-light", "none", {20, 36}},
+        {"light-goes-out", "builtin:lab-switch", "none", {20, 36}},
+        {"disocclusion", "builtin:lab-disocclusion", "shake", {20, 36}},
+        {"mirror", "builtin:lab-mirror", "orbit", {20, 36}},
+        {"textures", "builtin:lab-textures", "dolly", {20, 36}},
+        {"many-lights", "builtin:lab-lights", "dolly", {20, 36}},
     };
     return sequences;
 }

@@ -324,7 +324,10 @@ const ParamTable<SvgfSettings>& svgfParams() {
                            {"wide", "on"},
                            {"alpha_moments", "0.2"},
                            {"antilag", "0"},
+                           {"levels", "5"},
                            {"history_level", "1"},
+                           {"phi_normal", "128"},
+                           {"phi_depth", "1"},
                            {"boost", "off"},
                            {"blur_levels", "10"}});
         t.preset("cis565", {{"separate", "off"},

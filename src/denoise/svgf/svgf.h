@@ -22,12 +22,12 @@ struct SvgfSettings {
     bool search = true;
     bool reflections = true;
     float antilag = 16.0f;
-    int levels = 5;
+    int levels = 4;
     int historyLevel = 0;
     bool wide = false;
     float phiColor = 4.0f;
-    float phiNormal = 128.0f;
-    float phiDepth = 1.0f;
+    float phiNormal = 64.0f;
+    float phiDepth = 3.0f;
     int blurLevels = 1;
     bool boost = true;
     bool position = false;
