@@ -1,0 +1,71 @@
+"""What the networks see of a frame, and how their light is transformed: Bako et al., "Kernel-Predicting Convolutional
+Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. src/denoise/kpcn does the same.
+
+A frame is a dict of float32 tensors (batch, channels, rows, columns): diffuse, specular, albedo, normal (3 channels) and depth
+(1; 0: nothing is seen), and of each the variance of the mean, of its luminance or of its only or all components,
+as "diffuse.variance" (1 channel) and so on."""
+
+import torch
+
+#: Keeps dark albedo from amplifying what little light it reflects.
+EPSILON = 0.00316
+
+#: radiance, albedo, normal: 3 + 2 x 3 + 1 each; depth: 1 + 2 + 1.
+INPUT_CHANNELS = 34
+
+SIDES = ("diffuse", "specular")
+
+
+def gradients(image):
+    """Differences from the pixel to the left and from the one above; 0 in the first column and row."""
+    across = torch.zeros_like(image)
+    down = torch.zeros_like(image)
+    across[..., :, 1:] = image[..., :, 1:] - image[..., :, :-1]
+    down[..., 1:, :] = image[..., 1:, :] - image[..., :-1, :]
+    return torch.cat([across, down], dim=1)
+
+
+def luminance(color):
+    red, green, blue = color.unbind(dim=1)
+    return (0.2126 * red + 0.7152 * green + 0.0722 * blue).unsqueeze(1)
+
+
+def to_network(side, light, albedo):
+    """Diffuse light without its albedo; specular light as a logarithm."""
+    return light / (albedo + EPSILON) if side == "diffuse" else torch.log1p(light.clamp(min=0.0))
+
+
+def from_network(side, light, albedo):
+    """The inverse."""
+    return light * (albedo + EPSILON) if side == "diffuse" else torch.expm1(light)
+
+
+def transformed_variance(side, frame):
+    """Of to_network's result, to first order: the variance times the squared slope."""
+    variance = frame[side + ".variance"]
+    if side == "diffuse":
+        return variance / (luminance(frame["albedo"]) + EPSILON) ** 2
+    return variance / (1.0 + luminance(frame["specular"]).clamp(min=0.0)) ** 2
+
+
+def depth_scale(frame):
+    """One over the frame's largest distance; 1 if nothing is seen. By itself since a patch must use that of its frame."""
+    largest = frame["depth"].amax(dim=(1, 2, 3), keepdim=True)
+    return torch.where(largest > 0, 1.0 / largest.clamp(min=1e-30), torch.ones_like(largest))
+
+
+def inputs(side, frame, scale=None):
+    """The 34 channels for `side`, "diffuse" or "specular". `scale`: of depth; depth_scale(frame) if none is given."""
+    if scale is None:
+        scale = depth_scale(frame)
+    light = to_network(side, frame[side], frame["albedo"])
+    depth = frame["depth"] * scale
+    parts = []
+    for image, variance in (
+        (light, transformed_variance(side, frame)),
+        (frame["albedo"], frame["albedo.variance"]),
+        (frame["normal"], frame["normal.variance"]),
+        (depth, frame["depth.variance"] * scale**2),
+    ):
+        parts += [image, gradients(image), variance]
+    return torch.cat(parts, dim=1)

@@ -1,0 +1,81 @@
+"""The kernel-predicting network: Bako et al. 2017 (see features.py). src/denoise/kpcn has the same layers by the same names."""
+
+import torch
+from torch import nn
+from torch.nn import functional
+
+from . import features
+
+
+class KernelPredictor(nn.Module):
+    """From (batch, 34, rows, columns) to the weights of a kernel for each pixel (batch, width^2, rows, columns), not
+    yet normalised. `hidden` convolutions of `channels` channels with ReLU, and one more; all of 5x5 taps, with zeros
+    around the picture."""
+
+    def __init__(self, hidden=8, channels=100, width=21):
+        super().__init__()
+        if width % 2 != 1:
+            raise ValueError(f"a kernel {width} pixels wide has no centre")
+        self.width = width
+        before = features.INPUT_CHANNELS
+        self.hidden = nn.ModuleList()
+        for _ in range(hidden):
+            self.hidden.append(nn.Conv2d(before, channels, 5, padding=2))
+            before = channels
+        self.output = nn.Conv2d(before, width * width, 5, padding=2)
+        for layer in [*self.hidden, self.output]:
+            nn.init.xavier_uniform_(layer.weight)
+            nn.init.zeros_(layer.bias)
+
+    def forward(self, x):
+        for layer in self.hidden:
+            x = functional.relu(layer(x))
+        return self.output(x)
+
+
+def apply_kernel(logits, light):
+    """The mean of the pixels around each, by the softmax of `logits` (batch, width^2, rows, columns; rows of the kernel from
+    the top) over those that lie in the picture. `light`: (batch, channels, rows, columns)."""
+    width = round(logits.shape[1] ** 0.5)
+    radius = width // 2
+    rows, columns = light.shape[2:]
+    padded = functional.pad(light, [radius] * 4)
+    inside = functional.pad(torch.ones_like(light[:1, :1]), [radius] * 4)
+
+    def shifted(image, tap):
+        top, left = divmod(tap, width)
+        return image[:, :, top : top + rows, left : left + columns]
+
+    # Tap by tap: all of them at once would take width^2 pictures of memory.
+    with torch.no_grad():
+        largest = torch.full_like(logits[:, :1], -torch.inf)
+        for tap in range(width * width):
+            there = logits[:, tap : tap + 1].masked_fill(shifted(inside, tap) == 0, -torch.inf)
+            largest = torch.maximum(largest, there)
+    total = torch.zeros_like(light)
+    weights = torch.zeros_like(light[:, :1])
+    for tap in range(width * width):
+        exponent = (logits[:, tap : tap + 1] - largest).masked_fill(shifted(inside, tap) == 0, -torch.inf)
+        weight = torch.exp(exponent)
+        total = total + weight * shifted(padded, tap)
+        weights = weights + weight
+    return total / weights
+
+
+class Kpcn(nn.Module):
+    """Both sides, and the denoised picture without emission."""
+
+    def __init__(self, hidden=8, channels=100, width=21):
+        super().__init__()
+        self.diffuse = KernelPredictor(hidden, channels, width)
+        self.specular = KernelPredictor(hidden, channels, width)
+
+    def side(self, side, frame, scale=None):
+        """Denoised light of one side, as to_network() has it: what each is trained by alone."""
+        logits = getattr(self, side)(features.inputs(side, frame, scale))
+        return apply_kernel(logits, features.to_network(side, frame[side], frame["albedo"]))
+
+    def forward(self, frame, scale=None):
+        return sum(
+            features.from_network(side, self.side(side, frame, scale), frame["albedo"]) for side in features.SIDES
+        )

@@ -1,0 +1,79 @@
+"""Named tensors in files, as src/neural/tensor_file.h reads and writes them: the format safetensors
+(https://github.com/huggingface/safetensors, "Format"), with the CRC-32 of all elements as metadata "crc32"."""
+
+import json
+import os
+import struct
+import tempfile
+import zlib
+
+import torch
+
+_TYPES = {"F16": torch.float16, "F32": torch.float32}
+_NAMES = {dtype: name for name, dtype in _TYPES.items()}
+_METADATA = "__metadata__"
+
+
+def _bytes_of(tensor):
+    return tensor.detach().cpu().contiguous().numpy().tobytes()
+
+
+def write(path, tensors, metadata=None):
+    """Writes `tensors` (names to tensors of float16 or float32), so that an earlier file survives a failure."""
+    header, place, checksum, blocks = {}, 0, 0, []
+    for name in sorted(tensors):
+        block = _bytes_of(tensors[name])
+        header[name] = {
+            "dtype": _NAMES[tensors[name].dtype],
+            "shape": list(tensors[name].shape),
+            "data_offsets": [place, place + len(block)],
+        }
+        place += len(block)
+        checksum = zlib.crc32(block, checksum)
+        blocks.append(block)
+    header[_METADATA] = dict(metadata or {}, crc32=f"{checksum:08x}")
+    text = json.dumps(header, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 8)
+    folder = os.path.dirname(os.path.abspath(path))
+    handle, temporary = tempfile.mkstemp(dir=folder, prefix=os.path.basename(path) + ".")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(struct.pack("<Q", len(text)))
+            stream.write(text)
+            for block in blocks:
+                stream.write(block)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def read(path):
+    """The tensors by name, and the metadata. ValueError if the file is damaged."""
+    with open(path, "rb") as stream:
+        content = stream.read()
+    if len(content) < 8:
+        raise ValueError(f"{path}: is no safetensors file")
+    (length,) = struct.unpack_from("<Q", content)
+    if length > len(content) - 8:
+        raise ValueError(f"{path}: is cut off within its header")
+    header = json.loads(content[8 : 8 + length])
+    data = content[8 + length :]
+    metadata = header.pop(_METADATA, {})
+    if "crc32" in metadata and metadata["crc32"] != f"{zlib.crc32(data):08x}":
+        raise ValueError(f"{path}: is damaged: its elements do not have the checksum that it states")
+    tensors = {}
+    for name, entry in header.items():
+        begin, end = entry["data_offsets"]
+        dtype = _TYPES[entry["dtype"]]
+        count = (end - begin) // torch.empty(0, dtype=dtype).element_size()
+        if end > len(data):
+            raise ValueError(f"{path}: is cut off within '{name}'")
+        flat = (
+            torch.frombuffer(bytearray(data[begin:end]), dtype=dtype) if count else torch.empty(0, dtype=dtype)
+        )
+        tensors[name] = flat.reshape(entry["shape"])
+    return tensors, metadata

@@ -1,0 +1,134 @@
+import math
+import unittest
+
+import torch
+
+from limpid_training import features
+from limpid_training.network import Kpcn, KernelPredictor, apply_kernel
+
+
+def random_frame(rows=24, columns=20, batch=2):
+    def image(channels):
+        return torch.rand(batch, channels, rows, columns)
+
+    frame = {"diffuse": image(3), "specular": 4 * image(3), "albedo": image(3), "normal": 2 * image(3) - 1}
+    frame["depth"] = 10 * image(1)
+    for name in list(frame):
+        frame[name + ".variance"] = 0.1 * image(1)
+    return frame
+
+
+class FeaturesTest(unittest.TestCase):
+    def setUp(self):
+        torch.manual_seed(1)
+
+    def test_light_comes_back(self):
+        frame = random_frame()
+        for side in features.SIDES:
+            there = features.to_network(side, frame[side], frame["albedo"])
+            back = features.from_network(side, there, frame["albedo"])
+            self.assertTrue(torch.allclose(back, frame[side], atol=1e-5))
+
+    def test_gradients_of_a_ramp(self):
+        rows, columns = torch.meshgrid(torch.arange(4.0), torch.arange(5.0), indexing="ij")
+        across, down = features.gradients((3 * columns + 7 * rows)[None, None])[0]
+        self.assertTrue(torch.equal(across[:, 1:], torch.full((4, 4), 3.0)))
+        self.assertTrue(torch.equal(down[1:, :], torch.full((3, 5), 7.0)))
+        self.assertEqual(across[:, 0].abs().sum() + down[0].abs().sum(), 0)
+
+    def test_variance_is_transformed_as_the_light_is(self):
+        # Of many samples around one grey pixel: the variance of their transforms.
+        samples = 2.0 + 0.05 * torch.randn(200000)
+        albedo = torch.full((1, 3, 1, 1), 0.3)
+        frame = {"albedo": albedo}
+        for side in features.SIDES:
+            light = samples.reshape(-1, 1, 1, 1).expand(-1, 3, 1, 1)
+            frame[side] = torch.full((1, 3, 1, 1), 2.0)
+            frame[side + ".variance"] = samples.var().reshape(1, 1, 1, 1)
+            truth = features.to_network(side, light, albedo)[:, 0].var().item()
+            self.assertAlmostEqual(features.transformed_variance(side, frame).item() / truth, 1.0, delta=0.02)
+
+    def test_inputs(self):
+        frame = random_frame()
+        for side in features.SIDES:
+            x = features.inputs(side, frame)
+            self.assertEqual(x.shape, (2, features.INPUT_CHANNELS, 24, 20))
+            self.assertTrue(torch.equal(x[:, :3], features.to_network(side, frame[side], frame["albedo"])))
+            self.assertEqual(x[:, 30].amax(dim=(1, 2)).tolist(), [1.0, 1.0], "depth over the frame's maximum")
+
+    def test_nothing_seen(self):
+        frame = {name: torch.zeros_like(image) for name, image in random_frame().items()}
+        for side in features.SIDES:
+            self.assertTrue(torch.isfinite(features.inputs(side, frame)).all())
+
+
+class KernelTest(unittest.TestCase):
+    def setUp(self):
+        torch.manual_seed(2)
+
+    def test_is_the_weighted_mean_of_the_formula(self):
+        width, rows, columns = 5, 6, 4
+        logits = 3 * torch.randn(1, width * width, rows, columns, dtype=torch.float64)
+        light = torch.rand(1, 3, rows, columns, dtype=torch.float64)
+        result = apply_kernel(logits, light)
+        for row in range(rows):
+            for column in range(columns):
+                total, weights = torch.zeros(3, dtype=torch.float64), 0.0
+                for tap in range(width * width):
+                    y, x = row + tap // width - 2, column + tap % width - 2
+                    if 0 <= y < rows and 0 <= x < columns:
+                        weight = math.exp(logits[0, tap, row, column])
+                        total += weight * light[0, :, y, x]
+                        weights += weight
+                self.assertTrue(torch.allclose(result[0, :, row, column], total / weights, atol=1e-12))
+
+    def test_weights_beyond_any_exponent(self):
+        logits = torch.full((1, 9, 3, 3), -1000.0)
+        logits[:, 0] = 1000.0  # up and to the left: outside of the first row and column
+        light = torch.arange(9.0).reshape(1, 1, 3, 3)
+        result = apply_kernel(logits, light)[0, 0]
+        self.assertTrue(torch.equal(result[1:, 1:], light[0, 0, :2, :2]))
+        self.assertTrue(torch.isfinite(result).all())
+
+    def test_a_constant_picture_stays(self):
+        light = torch.full((1, 3, 9, 7), 0.25)
+        self.assertTrue(torch.allclose(apply_kernel(5 * torch.randn(1, 49, 9, 7), light), light))
+
+    def test_gradient_reaches_every_weight(self):
+        logits = torch.randn(1, 9, 4, 4, requires_grad=True)
+        apply_kernel(logits, torch.rand(1, 3, 4, 4)).sum().backward()
+        self.assertTrue((logits.grad[:, :, 1:3, 1:3] != 0).all())
+
+
+class NetworkTest(unittest.TestCase):
+    def setUp(self):
+        torch.manual_seed(3)
+
+    def test_is_the_published_one(self):
+        net = KernelPredictor()
+        self.assertEqual(len(net.hidden), 8)
+        shapes = [tuple(layer.weight.shape) for layer in [*net.hidden, net.output]]
+        self.assertEqual(shapes, [(100, 34, 5, 5)] + 7 * [(100, 100, 5, 5)] + [(441, 100, 5, 5)])
+
+    def test_even_kernels_have_no_centre(self):
+        with self.assertRaises(ValueError):
+            KernelPredictor(width=4)
+
+    def test_learns(self):
+        net = Kpcn(hidden=1, channels=8, width=5)
+        frame = random_frame()
+        frame["diffuse"] = frame["albedo"] * 0.5 + 0.2 * torch.rand_like(frame["albedo"])
+        target = frame["albedo"] * 0.6 + torch.full_like(frame["albedo"], 2.0)
+        optimizer = torch.optim.Adam(net.parameters(), lr=1e-2)
+        losses = []
+        for _ in range(30):
+            optimizer.zero_grad()
+            loss = (net(frame) - target).abs().mean()
+            loss.backward()
+            optimizer.step()
+            losses.append(loss.item())
+        self.assertLess(losses[-1], 0.8 * losses[0])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+import os
+import tempfile
+import unittest
+
+import torch
+
+from limpid_training import tensor_file
+
+
+class TensorFileTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.path = os.path.join(folder.name, "a.safetensors")
+
+    def test_comes_back_as_it_was_written(self):
+        tensors = {
+            "w": torch.arange(6, dtype=torch.float32).reshape(1, 2, 3),
+            "half": torch.tensor([0.1, -65504.0], dtype=torch.float16),
+            "one": torch.tensor(2.5),
+            "none": torch.empty(3, 0),
+        }
+        tensor_file.write(self.path, tensors, {"seed": "7"})
+        read, metadata = tensor_file.read(self.path)
+        self.assertEqual(metadata["seed"], "7")
+        self.assertEqual(set(read), set(tensors))
+        for name in tensors:
+            self.assertEqual(read[name].dtype, tensors[name].dtype)
+            self.assertTrue(torch.equal(read[name], tensors[name]), name)
+        self.assertEqual(os.listdir(self.folder), ["a.safetensors"])
+
+    def test_checksum_is_that_of_the_cpp_writer(self):
+        tensor_file.write(self.path, {"w": torch.tensor([1.0])})
+        self.assertEqual(tensor_file.read(self.path)[1]["crc32"], "aca16a6a")  # as in tensor_file_test.cpp
+
+    def test_damage_is_noticed(self):
+        tensor_file.write(self.path, {"w": torch.ones(100)})
+        with open(self.path, "r+b") as stream:
+            stream.seek(-5, os.SEEK_END)
+            stream.write(b"x")
+        with self.assertRaisesRegex(ValueError, "damaged"):
+            tensor_file.read(self.path)
+
+    def test_a_cut_file_is_noticed(self):
+        tensor_file.write(self.path, {"w": torch.ones(100)})
+        for size in (3, 20):
+            os.truncate(self.path, size)
+            with self.assertRaises(ValueError):
+                tensor_file.read(self.path)
+
+
+if __name__ == "__main__":
+    unittest.main()
