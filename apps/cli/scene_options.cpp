@@ -13,7 +13,10 @@ namespace limpid::cli {
 void addSceneOptions(CLI::App& command, SceneChoice& choice) {
     std::string builtins;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
-    command.add_option("SCENE", choice.scene, "A .gltf, .glb or .obj file, or one of" + builtins)->required();
+    command
+        .add_option("SCENE", choice.scene,
+                    "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N")
+        ->required();
     command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
 }

@@ -1,12 +1,15 @@
 #include "scene/builtin.h"
 
+#include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "scene/builtin_lab.h"
 #include "scene/builtin_parts.h"
 #include "scene/camera.h"
 #include "scene/mesh_builder.h"
+#include "scene/random_room.h"
 
 namespace limpid::scene {
 namespace {
@@ -184,6 +187,17 @@ constexpr Entry entries[] = {
     {"lab-lights", "a hall with 220 small coloured lights and diffuse and glossy blocks", labLightsScene},
 };
 
+/// N of "room-N".
+std::optional<uint32_t> seedOfRoom(std::string_view name) {
+    constexpr std::string_view prefix = "room-";
+    if (!name.starts_with(prefix)) return std::nullopt;
+    name.remove_prefix(prefix.size());
+    uint32_t seed = 0;
+    const auto [end, fault] = std::from_chars(name.data(), name.data() + name.size(), seed);
+    if (fault != std::errc() || end != name.data() + name.size()) return std::nullopt;
+    return seed;
+}
+
 }  // namespace
 
 std::vector<BuiltinInfo> builtinScenes() {
@@ -193,13 +207,14 @@ std::vector<BuiltinInfo> builtinScenes() {
 }
 
 Scene builtinScene(std::string_view name) {
+    if (const std::optional<uint32_t> seed = seedOfRoom(name)) return randomRoom(*seed);
     std::string names;
     for (const Entry& entry : entries) {
         if (name == entry.name) return entry.make();
         names += std::string(" builtin:") + entry.name;
     }
     throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" +
-                     names);
+                     names + " builtin:room-N");
 }
 
 }  // namespace limpid::scene

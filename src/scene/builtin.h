@@ -15,8 +15,8 @@ struct BuiltinInfo {
 };
 std::vector<BuiltinInfo> builtinScenes();
 
-/// By name.  Throws UsageError listing the names if there is no such
-/// scene.
+/// By name; "room-N" is randomRoom(N) (random_room.h). Throws UsageError listing the names if there is no
+/// such scene.
 Scene builtinScene(std::string_view name);
 
 /// The Cornell box with its measured dimensions (www.graphics.cornell.edu/online/box/data.html) in metres,

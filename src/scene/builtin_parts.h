@@ -38,6 +38,8 @@ void addClip(Scene& scene, Clip clip);
 /// A small generator of fixed sequence, so that built-in scenes are the same everywhere.
 class Sequence {
   public:
+    explicit Sequence(uint32_t seed = 1) : state_(seed) {}
+
     float next(float low, float high) {
         state_ = state_ * 747796405u + 2891336453u;
         const uint32_t word = ((state_ >> ((state_ >> 28) + 4u)) ^ state_) * 277803737u;
@@ -45,7 +47,7 @@ class Sequence {
     }
 
   private:
-    uint32_t state_ = 1;
+    uint32_t state_;
 };
 
 }  // namespace limpid::scene
