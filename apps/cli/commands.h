@@ -9,6 +9,7 @@ void addRenderCommand(CLI::App& app);
 void addMergeCommand(CLI::App& app);
 void addDenoiseCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
+void addDatasetCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 

@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
     addMergeCommand(app);
     addDenoiseCommand(app);
     addCompareCommand(app);
+    addDatasetCommand(app);
     addBenchCommand(app);
     addInfoCommand(app);
     try {
