@@ -49,23 +49,35 @@ def transformed_variance(side, frame):
 
 
 def depth_scale(frame):
-    """One over the frame's largest distance; 1 if nothing is seen. By itself since a patch must use that of its frame."""
+    """One over the frame's largest distance; 1 if nothing is seen."""
     largest = frame["depth"].amax(dim=(1, 2, 3), keepdim=True)
     return torch.where(largest > 0, 1.0 / largest.clamp(min=1e-30), torch.ones_like(largest))
 
 
-def inputs(side, frame, scale=None):
-    """The 34 channels for `side`, "diffuse" or "specular". `scale`: of depth; depth_scale(frame) if none is given."""
-    if scale is None:
-        scale = depth_scale(frame)
-    light = to_network(side, frame[side], frame["albedo"])
-    depth = frame["depth"] * scale
+def inputs(side, frame):
+    """The 34 channels for `side`, "diffuse" or "specular"."""
+    scale = depth_scale(frame)
     parts = []
     for image, variance in (
-        (light, transformed_variance(side, frame)),
+        (to_network(side, frame[side], frame["albedo"]), transformed_variance(side, frame)),
         (frame["albedo"], frame["albedo.variance"]),
         (frame["normal"], frame["normal.variance"]),
-        (depth, frame["depth.variance"] * scale**2),
+        (frame["depth"] * scale, frame["depth.variance"] * scale**2),
     ):
         parts += [image, gradients(image), variance]
     return torch.cat(parts, dim=1)
+
+
+def prepare(frame):
+    """What the network takes: of each side "SIDE.input" and "SIDE.light"; "albedo". Where the frame has "reference.SIDE",
+    also "SIDE.target", the same transform of it, and "target", the picture without emission. Of a whole frame: patches are
+    cut afterwards, or their gradients would end at their edges."""
+    prepared = {"albedo": frame["albedo"]}
+    for side in SIDES:
+        prepared[side + ".input"] = inputs(side, frame)
+        prepared[side + ".light"] = to_network(side, frame[side], frame["albedo"])
+        if "reference." + side in frame:
+            prepared[side + ".target"] = to_network(side, frame["reference." + side], frame["albedo"])
+    if "reference.diffuse" in frame:
+        prepared["target"] = frame["reference.diffuse"] + frame["reference.specular"]
+    return prepared

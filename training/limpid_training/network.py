@@ -40,25 +40,25 @@ def apply_kernel(logits, light):
     radius = width // 2
     rows, columns = light.shape[2:]
     padded = functional.pad(light, [radius] * 4)
-    inside = functional.pad(torch.ones_like(light[:1, :1]), [radius] * 4)
+    outside = functional.pad(torch.zeros_like(light[:1, :1]), [radius] * 4, value=-torch.inf)
 
-    def shifted(image, tap):
-        top, left = divmod(tap, width)
-        return image[:, :, top : top + rows, left : left + columns]
+    def row_of_taps(image, top):
+        """(batch, channels, rows, taps, columns), without a copy."""
+        return image[:, :, top : top + rows].unfold(3, columns, 1)
 
-    # Tap by tap: all of them at once would take width^2 pictures of memory.
+    def exponents(top):
+        taps = logits[:, top * width : (top + 1) * width].permute(0, 2, 1, 3).unsqueeze(1)
+        return taps + row_of_taps(outside, top)
+
+    # Row by row of the kernel: all of it at once would take width^2 pictures of memory.
     with torch.no_grad():
-        largest = torch.full_like(logits[:, :1], -torch.inf)
-        for tap in range(width * width):
-            there = logits[:, tap : tap + 1].masked_fill(shifted(inside, tap) == 0, -torch.inf)
-            largest = torch.maximum(largest, there)
+        largest = torch.stack([exponents(top).amax(dim=3) for top in range(width)]).amax(dim=0)
     total = torch.zeros_like(light)
     weights = torch.zeros_like(light[:, :1])
-    for tap in range(width * width):
-        exponent = (logits[:, tap : tap + 1] - largest).masked_fill(shifted(inside, tap) == 0, -torch.inf)
-        weight = torch.exp(exponent)
-        total = total + weight * shifted(padded, tap)
-        weights = weights + weight
+    for top in range(width):
+        weight = torch.exp(exponents(top) - largest.unsqueeze(3))
+        total = total + (weight * row_of_taps(padded, top)).sum(dim=3)
+        weights = weights + weight.sum(dim=3)
     return total / weights
 
 
@@ -70,12 +70,11 @@ class Kpcn(nn.Module):
         self.diffuse = KernelPredictor(hidden, channels, width)
         self.specular = KernelPredictor(hidden, channels, width)
 
-    def side(self, side, frame, scale=None):
-        """Denoised light of one side, as to_network() has it: what each is trained by alone."""
-        logits = getattr(self, side)(features.inputs(side, frame, scale))
-        return apply_kernel(logits, features.to_network(side, frame[side], frame["albedo"]))
+    def side(self, side, prepared):
+        """Denoised light of one side, as to_network() has it: what each is trained by alone. `prepared`: features.prepare()."""
+        return apply_kernel(getattr(self, side)(prepared[side + ".input"]).float(), prepared[side + ".light"])
 
-    def forward(self, frame, scale=None):
+    def forward(self, prepared):
         return sum(
-            features.from_network(side, self.side(side, frame, scale), frame["albedo"]) for side in features.SIDES
+            features.from_network(side, self.side(side, prepared), prepared["albedo"]) for side in features.SIDES
         )

@@ -119,11 +119,12 @@ class NetworkTest(unittest.TestCase):
         frame = random_frame()
         frame["diffuse"] = frame["albedo"] * 0.5 + 0.2 * torch.rand_like(frame["albedo"])
         target = frame["albedo"] * 0.6 + torch.full_like(frame["albedo"], 2.0)
+        prepared = features.prepare(frame)
         optimizer = torch.optim.Adam(net.parameters(), lr=1e-2)
         losses = []
         for _ in range(30):
             optimizer.zero_grad()
-            loss = (net(frame) - target).abs().mean()
+            loss = (net(prepared) - target).abs().mean()
             loss.backward()
             optimizer.step()
             losses.append(loss.item())

@@ -1,0 +1,79 @@
+"""What `limpid dataset` made: its examples, and patches of them. docs/kpcn.md, "Data"."""
+
+import json
+import os
+
+import torch
+from torch.nn import functional
+
+from . import features, tensor_file
+
+LAYERS = ("diffuse", "specular", "albedo", "normal", "depth")
+
+
+class Dataset:
+    """Examples as dicts of (1, channels, rows, columns): the layers and their variances, the targets "reference.diffuse" and
+    "reference.specular". Files are read when they are needed, and the last ones are kept."""
+
+    def __init__(self, folder, samples, kept_files=64):
+        with open(os.path.join(folder, "manifest.json")) as stream:
+            self.manifest = json.load(stream)
+        if samples not in self.manifest["dataset"]["samples"]:
+            raise ValueError(f"{folder} has pictures of {self.manifest['dataset']['samples']} samples, none of {samples}")
+        self.folder, self.samples, self.kept_files = folder, samples, kept_files
+        self.examples = [
+            (file["name"], example["name"], example["scene"])
+            for file in self.manifest["files"]
+            for example in file["examples"]
+        ]
+        self.cache = {}
+
+    def __len__(self):
+        return len(self.examples)
+
+    def __getitem__(self, index):
+        file, name, _ = self.examples[index]
+        if file not in self.cache:
+            if len(self.cache) >= self.kept_files:
+                self.cache.pop(next(iter(self.cache)))
+            self.cache[file] = tensor_file.read(os.path.join(self.folder, file))[0]
+        tensors = self.cache[file]
+        frame = {}
+        for layer in LAYERS:
+            for which in (layer, layer + ".variance"):
+                frame[which] = tensors[f"{name}/{self.samples}/{which}"].float().unsqueeze(0)
+        for side in features.SIDES:
+            frame["reference." + side] = tensors[f"{name}/reference/{side}"].float().unsqueeze(0)
+        return frame
+
+
+def importance(frame):
+    """(rows, columns): where a network has most to learn. The spread of the light relative to its mean, and that of the normals, over 11x11 pixels:
+    noise, shadows, edges (Bako et al. 2017, section 6)."""
+
+    def mean(image):
+        return functional.avg_pool2d(image, 11, stride=1, padding=5, count_include_pad=False)
+
+    light = features.luminance(frame["diffuse"] + frame["specular"])
+    average = mean(light)
+    spread = (mean(light**2) - average**2).clamp(min=0).sqrt() / (average + 1e-3)
+    normal = (mean(frame["normal"] ** 2) - mean(frame["normal"]) ** 2).clamp(min=0).sum(dim=1, keepdim=True).sqrt()
+    return (spread.clamp(max=4.0) / 4.0 + normal + 0.05)[0, 0]
+
+
+def patches(frame, size, count, generator):
+    """`count` patches of `size` x `size` pixels (less where the picture is smaller) of features.prepare(frame), drawn by
+    importance."""
+    prepared = features.prepare(frame)
+    rows, columns = frame["depth"].shape[2:]
+    height, width = min(size, rows), min(size, columns)
+    centres = importance(frame)[height // 2 : rows - (height - 1) // 2, width // 2 : columns - (width - 1) // 2]
+    chosen = torch.multinomial(centres.flatten(), count, replacement=True, generator=generator)
+    for place in chosen.tolist():
+        top, left = divmod(place, centres.shape[1])
+        yield {name: image[:, :, top : top + height, left : left + width] for name, image in prepared.items()}
+
+
+def batch_of(items):
+    """One dict of stacked patches."""
+    return {name: torch.cat([item[name] for item in items]) for name in items[0]}

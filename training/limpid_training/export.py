@@ -1,0 +1,39 @@
+"""Writes the weights of a run as the file that Limpid denoises with:
+
+    python3 -m limpid_training.export RUN -o kpcn.safetensors
+
+Halves, named as the network's layers ("diffuse.hidden.0.weight"), with the network's shape and the training's parameters as metadata."""
+
+import argparse
+import json
+import os
+
+import torch
+
+from . import tensor_file
+
+
+def export(run, output):
+    state = torch.load(os.path.join(run, "checkpoint.pt"), map_location="cpu")
+    options = state["options"]
+    metadata = {
+        "limpid.network": "kpcn",
+        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width")}),
+        "limpid.training": json.dumps(
+            {
+                "dataset": state["dataset"],
+                "epochs": state["epoch"],
+                "seconds": round(state["seconds"]),
+                "options": {key: value for key, value in options.items() if key not in ("data", "output", "device")},
+            }
+        ),
+    }
+    tensor_file.write(output, {name: weight.half() for name, weight in state["net"].items()}, metadata)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="limpid_training.export", description=__doc__.split("\n")[0])
+    parser.add_argument("run", help="folder of the run")
+    parser.add_argument("-o", "--output", required=True, help="file")
+    chosen = parser.parse_args()
+    export(chosen.run, chosen.output)

@@ -1,0 +1,205 @@
+"""Trains the network on what `limpid dataset` made:
+
+    python3 -m limpid_training.train DATA -o RUN            (or torchrun --nproc_per_node 4 -m limpid_training.train ...)
+
+Each side is trained by itself, by the mean absolute difference of its transformed light; then both together, by that of the picture. RUN holds
+checkpoint.pt (--resume goes on from it), losses.json and losses.svg, and validation.png: noisy, denoised, reference."""
+
+import argparse
+import contextlib
+import json
+import os
+import time
+
+import torch
+import torch.distributed as distributed
+
+from . import data, features, pictures
+from .network import Kpcn
+
+PRESETS = {"cis565": {"batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "epochs": 10, "tuning_epochs": 0}}
+
+
+def parse(arguments=None):
+    parser = argparse.ArgumentParser(prog="limpid_training.train", description=__doc__.split("\n")[0])
+    parser.add_argument("data", help="folder that `limpid dataset` made")
+    parser.add_argument("-o", "--output", required=True, help="folder of the run")
+    parser.add_argument("--preset", choices=sorted(PRESETS), help="a named set of the options below")
+    parser.add_argument("--samples", type=int, default=32, help="per pixel, of the noisy pictures")
+    parser.add_argument("--epochs", type=int, default=30, help="of each side by itself")
+    parser.add_argument("--tuning-epochs", type=int, default=5, help="of both together")
+    parser.add_argument("--patches", type=int, default=16, help="of each example in an epoch")
+    parser.add_argument("--patch", type=int, default=128, help="pixels along its edge")
+    parser.add_argument("--batch", type=int, default=16, help="patches")
+    parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate")
+    parser.add_argument("--rate-specular", type=float, default=1e-4)
+    parser.add_argument("--rate-tuning", type=float, default=1e-5)
+    parser.add_argument("--hidden", type=int, default=8, help="convolutions before the last")
+    parser.add_argument("--channels", type=int, default=100)
+    parser.add_argument("--width", type=int, default=21, help="pixels of a kernel")
+    parser.add_argument("--validation", type=float, default=0.1, help="share of the examples that are not learnt from")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--time-limit", type=float, default=0, help="seconds after which no epoch begins; 0: none")
+    parser.add_argument("--resume", action="store_true", help="go on from the run's checkpoint")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    chosen, _ = parser.parse_known_args(arguments)
+    if chosen.preset:
+        parser.set_defaults(**PRESETS[chosen.preset])
+    return parser.parse_args(arguments)
+
+
+class Workers:
+    """The processes that torchrun started, or this one alone."""
+
+    def __init__(self, device):
+        self.count = int(os.environ.get("WORLD_SIZE", "1"))
+        self.number = int(os.environ.get("RANK", "0"))
+        self.device = torch.device(device)
+        if self.count > 1:
+            distributed.init_process_group("nccl" if self.device.type == "cuda" else "gloo")
+            if self.device.type == "cuda":
+                self.device = torch.device("cuda", int(os.environ["LOCAL_RANK"]))
+
+    def average(self, tensors):
+        if self.count == 1:
+            return
+        for tensor in tensors:
+            distributed.all_reduce(tensor)
+            tensor /= self.count
+
+
+class Trainer:
+    def __init__(self, options):
+        self.options = options
+        self.workers = Workers(options.device)
+        torch.manual_seed(options.seed)
+        self.net = Kpcn(options.hidden, options.channels, options.width).to(self.workers.device)
+        self.examples = data.Dataset(options.data, options.samples)
+        held_out = max(1, round(options.validation * len(self.examples)))
+        if held_out >= len(self.examples):
+            raise SystemExit(f"{options.data}: {len(self.examples)} examples are too few")
+        self.learnt = list(range(len(self.examples) - held_out))
+        self.validated = list(range(len(self.examples) - held_out, len(self.examples)))
+        rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular}
+        self.optimizers = {
+            side: torch.optim.Adam(getattr(self.net, side).parameters(), lr=rates[side]) for side in features.SIDES
+        }
+        self.optimizers["both"] = torch.optim.Adam(self.net.parameters(), lr=options.rate_tuning)
+        self.scaler = torch.cuda.amp.GradScaler(enabled=self.half)
+        self.epoch, self.seconds, self.losses = 0, 0.0, {}
+
+    @property
+    def half(self):
+        return self.workers.device.type == "cuda"
+
+    @property
+    def epochs(self):
+        return self.options.epochs + self.options.tuning_epochs
+
+    def loss(self, side, batch):
+        with torch.autocast("cuda", dtype=torch.float16) if self.half else contextlib.nullcontext():
+            if side == "both":
+                return (self.net(batch) - batch["target"]).abs().mean()
+            return (self.net.side(side, batch) - batch[side + ".target"]).abs().mean()
+
+    def step(self, side, batch):
+        optimizer = self.optimizers[side]
+        optimizer.zero_grad(set_to_none=True)
+        loss = self.loss(side, batch)
+        self.scaler.scale(loss).backward()
+        self.workers.average(p.grad for group in optimizer.param_groups for p in group["params"] if p.grad is not None)
+        self.scaler.step(optimizer)
+        self.scaler.update()
+        return loss.item()
+
+    def batches(self):
+        """Of one epoch, for this worker. The same for the same seed, epoch and number of workers."""
+        generator = torch.Generator().manual_seed(self.options.seed * 1000003 + self.epoch)
+        order = torch.randperm(len(self.learnt), generator=generator).tolist()
+        share = order[self.workers.number :: self.workers.count]
+        share = share[: len(order) // self.workers.count]  # workers wait for each other after every batch
+        generator.manual_seed(generator.initial_seed() + 7919 * self.workers.number)
+        waiting = []
+        for index in share:
+            frame = self.examples[self.learnt[index]]
+            waiting += data.patches(frame, self.options.patch, self.options.patches, generator)
+            while len(waiting) >= self.options.batch:
+                batch, waiting = waiting[: self.options.batch], waiting[self.options.batch :]
+                yield {name: image.to(self.workers.device) for name, image in data.batch_of(batch).items()}
+        if waiting:
+            yield {name: image.to(self.workers.device) for name, image in data.batch_of(waiting).items()}
+
+    def train_epoch(self):
+        sides = features.SIDES if self.epoch < self.options.epochs else ("both",)
+        sums, count = dict.fromkeys(sides, 0.0), 0
+        for batch in self.batches():
+            for side in sides:
+                sums[side] += self.step(side, batch)
+            count += 1
+        for side in sides:
+            self.losses.setdefault(side, []).append(sums[side] / max(count, 1))
+
+    @torch.no_grad()
+    def validate(self):
+        """Loss of the picture over the examples that are not learnt from; keeps the last one for show()."""
+        total = 0.0
+        for index in self.validated:
+            frame = {name: image.to(self.workers.device) for name, image in self.examples[index].items()}
+            prepared = features.prepare(frame)
+            result = self.net(prepared)
+            total += (result - prepared["target"]).abs().mean().item()
+        self.losses.setdefault("validation", []).append(total / len(self.validated))
+        self.shown = [frame["diffuse"] + frame["specular"], result, prepared["target"]]
+
+    def save(self):
+        folder = self.options.output
+        state = {
+            "net": self.net.state_dict(),
+            "optimizers": {name: optimizer.state_dict() for name, optimizer in self.optimizers.items()},
+            "scaler": self.scaler.state_dict(),
+            "epoch": self.epoch,
+            "seconds": self.seconds,
+            "losses": self.losses,
+            "options": vars(self.options),
+            "dataset": self.examples.manifest["dataset"],
+            "validated": [self.examples.examples[i][2] for i in self.validated],
+        }
+        temporary = os.path.join(folder, "checkpoint.pt.new")
+        torch.save(state, temporary)
+        os.replace(temporary, os.path.join(folder, "checkpoint.pt"))
+        with open(os.path.join(folder, "losses.json"), "w") as stream:
+            json.dump({"seconds": self.seconds, "losses": self.losses}, stream, indent=1)
+        pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses)
+        row = torch.cat([pictures.shown(light[0].cpu()) for light in self.shown], dim=2)
+        pictures.write_png(os.path.join(folder, "validation.png"), row)
+
+    def resume(self):
+        state = torch.load(os.path.join(self.options.output, "checkpoint.pt"), map_location=self.workers.device)
+        self.net.load_state_dict(state["net"])
+        for name, optimizer in self.optimizers.items():
+            optimizer.load_state_dict(state["optimizers"][name])
+        self.scaler.load_state_dict(state["scaler"])
+        self.epoch, self.seconds, self.losses = state["epoch"], state["seconds"], state["losses"]
+
+    def run(self):
+        os.makedirs(self.options.output, exist_ok=True)
+        if self.options.resume:
+            self.resume()
+        began, before = time.monotonic(), self.seconds
+        while self.epoch < self.epochs:
+            if self.options.time_limit and time.monotonic() - began > self.options.time_limit:
+                break
+            self.train_epoch()
+            self.epoch += 1
+            self.seconds = before + time.monotonic() - began
+            if self.workers.number > 0:
+                continue
+            self.validate()
+            self.save()
+            last = ", ".join(f"{name} {curve[-1]:.5f}" for name, curve in self.losses.items())
+            print(f"epoch {self.epoch} of {self.epochs}, {self.seconds:.0f} s: {last}", flush=True)
+        return self.losses
+
+
+if __name__ == "__main__":
+    Trainer(parse()).run()

@@ -1,0 +1,133 @@
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import torch
+
+from limpid_training import data, export, features, pictures, tensor_file, train
+from limpid_training.network import Kpcn
+
+LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
+
+
+def make_dataset(folder, examples=6, rows=24, columns=20, samples=4):
+    """As `limpid dataset` makes one: smooth light under a checker of albedo, with noise."""
+    generator = torch.Generator().manual_seed(5)
+    files = []
+    for number in range(examples // 2):
+        tensors, names = {}, []
+        for name in (f"{2 * number:06}", f"{2 * number + 1:06}"):
+            y, x = torch.meshgrid(torch.arange(float(rows)), torch.arange(float(columns)), indexing="ij")
+            albedo = (0.2 + 0.6 * ((x // 4 + y // 4) % 2)).expand(3, -1, -1)
+            light = (1 + torch.sin(0.2 * x + number)).expand(3, -1, -1)
+            clean = {"diffuse": albedo * light, "specular": 0.3 * light}
+            layers = dict(clean, albedo=albedo, normal=torch.zeros(3, rows, columns), depth=(1 + y).unsqueeze(0))
+            layers["normal"][1] = 1.0
+            for layer, image in layers.items():
+                noisy = image * (1 + torch.rand(image.shape, generator=generator) - 0.5) if layer in clean else image
+                tensors[f"{name}/{samples}/{layer}"] = noisy.half()
+                tensors[f"{name}/{samples}/{layer}.variance"] = torch.full((1, rows, columns), 0.05).half()
+            for side in clean:
+                tensors[f"{name}/reference/{side}"] = clean[side].half()
+            names.append({"name": name, "scene": "builtin:room-" + name})
+        file = f"examples.{number:05}.safetensors"
+        tensor_file.write(os.path.join(folder, file), tensors)
+        files.append({"name": file, "examples": names})
+    with open(os.path.join(folder, "manifest.json"), "w") as stream:
+        json.dump({"dataset": {"samples": [samples]}, "files": files}, stream)
+
+
+class TrainingTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.data = os.path.join(self.folder, "data")
+        os.mkdir(self.data)
+        make_dataset(self.data)
+
+    def options(self, run, *more):
+        small = "--samples 4 --hidden 1 --channels 6 --width 5 --patch 12 --patches 4 --batch 4 --device cpu"
+        rates = "--rate-diffuse 1e-2 --rate-specular 1e-2 --rate-tuning 1e-3"
+        return [self.data, "-o", os.path.join(self.folder, run), *small.split(), *rates.split(), *more]
+
+    def train(self, run, *more):
+        trainer = train.Trainer(train.parse(self.options(run, *more)))
+        return trainer.run(), trainer
+
+    def test_patches_are_cut_from_the_frame(self):
+        frame = data.Dataset(self.data, 4)[0]
+        whole = features.prepare(frame)
+        for patch in data.patches(frame, 12, 5, torch.Generator().manual_seed(1)):
+            self.assertEqual(patch["diffuse.input"].shape, (1, features.INPUT_CHANNELS, 12, 12))
+            windows = whole["target"].unfold(2, 12, 1).unfold(3, 12, 1)
+            self.assertTrue((windows == patch["target"].unsqueeze(2).unsqueeze(2)).all(-1).all(-1).all(1).any())
+
+    def test_other_numbers_of_samples_are_refused(self):
+        with self.assertRaisesRegex(ValueError, "none of 32"):
+            data.Dataset(self.data, 32)
+
+    def test_learns_and_leaves_what_it_learnt(self):
+        losses, trainer = self.train("run", "--epochs", "6", "--tuning-epochs", "2")
+        self.assertEqual([len(losses[name]) for name in ("diffuse", "specular", "both", "validation")], [6, 6, 2, 8])
+        self.assertLess(losses["validation"][-1], 0.85 * losses["validation"][0])
+        run = os.path.join(self.folder, "run")
+        for name in ("checkpoint.pt", "losses.json", "losses.svg", "validation.png"):
+            self.assertGreater(os.path.getsize(os.path.join(run, name)), 100, name)
+
+        file = os.path.join(self.folder, "weights.safetensors")
+        export.export(run, file)
+        weights, metadata = tensor_file.read(file)
+        self.assertEqual(metadata["limpid.network"], "kpcn")
+        net = Kpcn(**json.loads(metadata["limpid.shape"]))
+        net.load_state_dict({name: weight.float() for name, weight in weights.items()})
+        prepared = features.prepare(trainer.examples[0])
+        with torch.no_grad():
+            difference = (net(prepared) - trainer.net(prepared)).abs().max().item()
+        self.assertLess(difference, 1e-2)
+
+    def test_goes_on_where_it_was_stopped(self):
+        _, whole = self.train("whole", "--epochs", "3", "--tuning-epochs", "1")
+        self.train("parts", "--epochs", "2", "--tuning-epochs", "0")
+        losses, parts = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--resume")
+        self.assertEqual(len(losses["validation"]), 4)
+        for a, b in zip(whole.net.parameters(), parts.net.parameters()):
+            self.assertTrue(torch.equal(a, b))
+
+    def test_stops_in_time(self):
+        losses, _ = self.train("run", "--epochs", "1000", "--time-limit", "0.01")
+        self.assertEqual(len(losses["validation"]), 1)
+
+    def test_presets_may_be_changed(self):
+        options = train.parse(["data", "-o", "run", "--preset", "cis565", "--batch", "8"])
+        self.assertEqual((options.epochs, options.rate_diffuse, options.batch), (10, 1e-5, 8))
+
+    def test_two_workers(self):
+        """As torchrun starts them (that of Debian's PyTorch does not run with Debian's Python)."""
+        command = [sys.executable, "-m", "limpid_training.train"]
+        command += self.options("run", "--epochs", "2", "--tuning-epochs", "1")
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = str(free.getsockname()[1])
+        workers = []
+        for rank in ("0", "1"):
+            world = {"WORLD_SIZE": "2", "RANK": rank, "LOCAL_RANK": rank, "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port}
+            environment = dict(os.environ, OMP_NUM_THREADS="1", **world)
+            workers.append(subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT))
+        output = [worker.communicate(timeout=240)[0].decode() for worker in workers]
+        self.assertEqual([worker.returncode for worker in workers], [0, 0], output)
+        self.assertIn("epoch 3 of 3", output[0])
+        self.assertEqual(output[1], "")
+
+
+class PicturesTest(unittest.TestCase):
+    def test_black_stays_black(self):
+        self.assertEqual(pictures.shown(torch.zeros(3, 2, 2)).abs().sum().item(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
