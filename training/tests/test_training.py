@@ -8,7 +8,7 @@ import unittest
 
 import torch
 
-from limpid_training import data, export, features, pictures, tensor_file, train
+from limpid_training import data, evaluate, export, features, pictures, tensor_file, train
 from limpid_training.network import Kpcn
 
 LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
@@ -79,6 +79,11 @@ class TrainingTest(unittest.TestCase):
         for name in ("checkpoint.pt", "losses.json", "losses.svg", "validation.png"):
             self.assertGreater(os.path.getsize(os.path.join(run, name)), 100, name)
 
+        judged = list(evaluate.evaluate(run, self.data))
+        self.assertEqual(len(judged), 6)
+        for scene, noisy, denoised in judged:
+            self.assertLess(denoised, 0.9 * noisy, scene)
+
         file = os.path.join(self.folder, "weights.safetensors")
         export.export(run, file)
         weights, metadata = tensor_file.read(file)
@@ -122,6 +127,12 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual([worker.returncode for worker in workers], [0, 0], output)
         self.assertIn("epoch 3 of 3", output[0])
         self.assertEqual(output[1], "")
+
+
+class RelMseTest(unittest.TestCase):
+    def test_is_the_formula(self):
+        image, reference = torch.tensor([1.0, 0.3]), torch.tensor([2.0, 0.0])
+        self.assertAlmostEqual(evaluate.rel_mse(image, reference), (1 / 4.01 + 0.09 / 0.01) / 2, places=5)
 
 
 class PicturesTest(unittest.TestCase):

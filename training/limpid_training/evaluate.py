@@ -1,0 +1,50 @@
+"""How good a run's network is on a dataset, example by example:
+
+    python3 -m limpid_training.evaluate RUN DATA
+
+relMSE (docs/metrics.md) of the light without emission, of the noisy and of the denoised picture, and their ratio."""
+
+import argparse
+import os
+
+import torch
+
+from . import data, features
+from .network import Kpcn
+
+
+def rel_mse(image, reference):
+    return ((image - reference) ** 2 / (reference**2 + 0.01)).mean().item()
+
+
+@torch.no_grad()
+def evaluate(run, folder, device="cpu"):
+    """(scene, noisy, denoised) of every example of the dataset."""
+    state = torch.load(os.path.join(run, "checkpoint.pt"), map_location=device)
+    options = state["options"]
+    net = Kpcn(options["hidden"], options["channels"], options["width"]).to(device)
+    net.load_state_dict(state["net"])
+    examples = data.Dataset(folder, options["samples"])
+    for index in range(len(examples)):
+        frame = {name: image.to(device) for name, image in examples[index].items()}
+        prepared = features.prepare(frame)
+        noisy = rel_mse(frame["diffuse"] + frame["specular"], prepared["target"])
+        yield examples.examples[index][2], noisy, rel_mse(net(prepared), prepared["target"])
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="limpid_training.evaluate", description=__doc__.split("\n")[0])
+    parser.add_argument("run", help="folder of the run")
+    parser.add_argument("data", help="folder that `limpid dataset` made, with other scenes than the run's")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    chosen = parser.parse_args()
+    ratios = []
+    print(f"{'scene':<32}{'noisy':>10}{'denoised':>10}{'ratio':>8}")
+    for scene, noisy, denoised in evaluate(chosen.run, chosen.data, chosen.device):
+        ratios.append(denoised / max(noisy, 1e-12))
+        print(f"{scene:<32}{noisy:>10.5f}{denoised:>10.5f}{ratios[-1]:>8.3f}")
+    print(f"mean ratio {sum(ratios) / len(ratios):.3f}")
+
+
+if __name__ == "__main__":
+    main()
