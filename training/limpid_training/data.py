@@ -13,38 +13,38 @@ LAYERS = ("diffuse", "specular", "albedo", "normal", "depth")
 
 class Dataset:
     """Examples as dicts of (1, channels, rows, columns): the layers and their variances, the targets "reference.diffuse" and
-    "reference.specular". Files are read when they are needed, and the last ones are kept."""
+    "reference.specular". What has been read is kept on the device, as halves."""
 
-    def __init__(self, folder, samples, kept_files=64):
+    def __init__(self, folder, samples, device="cpu"):
         with open(os.path.join(folder, "manifest.json")) as stream:
             self.manifest = json.load(stream)
         if samples not in self.manifest["dataset"]["samples"]:
             raise ValueError(f"{folder} has pictures of {self.manifest['dataset']['samples']} samples, none of {samples}")
-        self.folder, self.samples, self.kept_files = folder, samples, kept_files
+        self.folder, self.device = folder, device
         self.examples = [
             (file["name"], example["name"], example["scene"])
             for file in self.manifest["files"]
             for example in file["examples"]
         ]
-        self.cache = {}
+        self.names = {f"{samples}/{layer}{kind}": layer + kind for layer in LAYERS for kind in ("", ".variance")}
+        self.names |= {"reference/" + side: "reference." + side for side in features.SIDES}
+        self.kept = {}
 
     def __len__(self):
         return len(self.examples)
 
+    def read_file(self, file):
+        tensors = tensor_file.read(os.path.join(self.folder, file))[0]
+        for _, name, _ in (example for example in self.examples if example[0] == file):
+            self.kept[name] = {
+                known: tensors[f"{name}/{stored}"].unsqueeze(0).to(self.device) for stored, known in self.names.items()
+            }
+
     def __getitem__(self, index):
         file, name, _ = self.examples[index]
-        if file not in self.cache:
-            if len(self.cache) >= self.kept_files:
-                self.cache.pop(next(iter(self.cache)))
-            self.cache[file] = tensor_file.read(os.path.join(self.folder, file))[0]
-        tensors = self.cache[file]
-        frame = {}
-        for layer in LAYERS:
-            for which in (layer, layer + ".variance"):
-                frame[which] = tensors[f"{name}/{self.samples}/{which}"].float().unsqueeze(0)
-        for side in features.SIDES:
-            frame["reference." + side] = tensors[f"{name}/reference/{side}"].float().unsqueeze(0)
-        return frame
+        if name not in self.kept:
+            self.read_file(file)
+        return {known: tensor.float() for known, tensor in self.kept[name].items()}
 
 
 def importance(frame):
@@ -67,7 +67,7 @@ def patches(frame, size, count, generator):
     prepared = features.prepare(frame)
     rows, columns = frame["depth"].shape[2:]
     height, width = min(size, rows), min(size, columns)
-    centres = importance(frame)[height // 2 : rows - (height - 1) // 2, width // 2 : columns - (width - 1) // 2]
+    centres = importance(frame).cpu()[height // 2 : rows - (height - 1) // 2, width // 2 : columns - (width - 1) // 2]
     chosen = torch.multinomial(centres.flatten(), count, replacement=True, generator=generator)
     for place in chosen.tolist():
         top, left = divmod(place, centres.shape[1])
@@ -77,3 +77,7 @@ def patches(frame, size, count, generator):
 def batch_of(items):
     """One dict of stacked patches."""
     return {name: torch.cat([item[name] for item in items]) for name in items[0]}
+
+
+def shuffled(items, order):
+    return [items[i] for i in order.tolist()]

@@ -24,9 +24,9 @@ def evaluate(run, folder, device="cpu"):
     options = state["options"]
     net = Kpcn(options["hidden"], options["channels"], options["width"]).to(device)
     net.load_state_dict(state["net"])
-    examples = data.Dataset(folder, options["samples"])
+    examples = data.Dataset(folder, options["samples"], device)
     for index in range(len(examples)):
-        frame = {name: image.to(device) for name, image in examples[index].items()}
+        frame = examples[index]
         prepared = features.prepare(frame)
         noisy = rel_mse(frame["diffuse"] + frame["specular"], prepared["target"])
         yield examples.examples[index][2], noisy, rel_mse(net(prepared), prepared["target"])

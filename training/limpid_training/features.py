@@ -1,5 +1,6 @@
 """What the networks see of a frame, and how their light is transformed: Bako et al., "Kernel-Predicting Convolutional
-Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. src/denoise/kpcn does the same.
+Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. src/denoise/kpcn does the same. One thing is not the paper's: the
+network sees the logarithm of diffuse light too (and averages the light itself). What it sees is bounded then, so that halves hold it.
 
 A frame is a dict of float32 tensors (batch, channels, rows, columns): diffuse, specular, albedo, normal (3 channels) and depth
 (1; 0: nothing is seen), and of each the variance of the mean, of its luminance or of its only or all components,
@@ -40,12 +41,13 @@ def from_network(side, light, albedo):
     return light * (albedo + EPSILON) if side == "diffuse" else torch.expm1(light)
 
 
-def transformed_variance(side, frame):
-    """Of to_network's result, to first order: the variance times the squared slope."""
-    variance = frame[side + ".variance"]
+def seen(side, frame):
+    """The light as the network sees it, and its variance to first order: the variance times the squared slope."""
+    light, variance = frame[side].clamp(min=0.0), frame[side + ".variance"]
     if side == "diffuse":
-        return variance / (luminance(frame["albedo"]) + EPSILON) ** 2
-    return variance / (1.0 + luminance(frame["specular"]).clamp(min=0.0)) ** 2
+        light = light / (frame["albedo"] + EPSILON)
+        variance = variance / (luminance(frame["albedo"]) + EPSILON) ** 2
+    return torch.log1p(light), variance / (1.0 + luminance(light)) ** 2
 
 
 def depth_scale(frame):
@@ -59,7 +61,7 @@ def inputs(side, frame):
     scale = depth_scale(frame)
     parts = []
     for image, variance in (
-        (to_network(side, frame[side], frame["albedo"]), transformed_variance(side, frame)),
+        seen(side, frame),
         (frame["albedo"], frame["albedo.variance"]),
         (frame["normal"], frame["normal.variance"]),
         (frame["depth"] * scale, frame["depth.variance"] * scale**2),

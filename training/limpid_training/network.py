@@ -7,6 +7,17 @@ from torch.nn import functional
 from . import features
 
 
+def convolve(layer, x):
+    """The layer; in half precision with as many channels of zeros as tensor cores want, which all that follows keeps."""
+    if not torch.is_autocast_enabled():
+        return layer(x)
+    inputs = x.shape[1] + -x.shape[1] % 8
+    more = -layer.out_channels % 8
+    x = functional.pad(x, (0, 0, 0, 0, 0, inputs - x.shape[1]))
+    weight = functional.pad(layer.weight, (0, 0, 0, 0, 0, inputs - layer.in_channels, 0, more))
+    return functional.conv2d(x, weight, functional.pad(layer.bias, (0, more)), padding=2)
+
+
 class KernelPredictor(nn.Module):
     """From (batch, 34, rows, columns) to the weights of a kernel for each pixel (batch, width^2, rows, columns), not
     yet normalised. `hidden` convolutions of `channels` channels with ReLU, and one more; all of 5x5 taps, with zeros
@@ -29,8 +40,8 @@ class KernelPredictor(nn.Module):
 
     def forward(self, x):
         for layer in self.hidden:
-            x = functional.relu(layer(x))
-        return self.output(x)
+            x = functional.relu(convolve(layer, x))
+        return convolve(self.output, x)[:, : self.width**2]
 
 
 def apply_kernel(logits, light):

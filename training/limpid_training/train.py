@@ -8,6 +8,7 @@ checkpoint.pt (--resume goes on from it), losses.json and losses.svg, and valida
 import argparse
 import contextlib
 import json
+import math
 import os
 import time
 
@@ -15,9 +16,12 @@ import torch
 import torch.distributed as distributed
 
 from . import data, features, pictures
+from .evaluate import rel_mse
 from .network import Kpcn
 
-PRESETS = {"cis565": {"batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "epochs": 10, "tuning_epochs": 0}}
+PRESETS = {
+    "cis565": {"batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0}
+}
 
 
 def parse(arguments=None):
@@ -33,7 +37,8 @@ def parse(arguments=None):
     parser.add_argument("--batch", type=int, default=16, help="patches")
     parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate")
     parser.add_argument("--rate-specular", type=float, default=1e-4)
-    parser.add_argument("--rate-tuning", type=float, default=1e-5)
+    parser.add_argument("--rate-tuning", type=float, default=5e-5)
+    parser.add_argument("--final-rate", type=float, default=0.05, help="of the rates, at the end; half a cosine leads there")
     parser.add_argument("--hidden", type=int, default=8, help="convolutions before the last")
     parser.add_argument("--channels", type=int, default=100)
     parser.add_argument("--width", type=int, default=21, help="pixels of a kernel")
@@ -74,17 +79,20 @@ class Trainer:
         self.workers = Workers(options.device)
         torch.manual_seed(options.seed)
         self.net = Kpcn(options.hidden, options.channels, options.width).to(self.workers.device)
-        self.examples = data.Dataset(options.data, options.samples)
+        if self.half:
+            self.net = self.net.to(memory_format=torch.channels_last)
+            torch.backends.cudnn.benchmark = True
+        self.examples = data.Dataset(options.data, options.samples, self.workers.device)
         held_out = max(1, round(options.validation * len(self.examples)))
         if held_out >= len(self.examples):
             raise SystemExit(f"{options.data}: {len(self.examples)} examples are too few")
         self.learnt = list(range(len(self.examples) - held_out))
         self.validated = list(range(len(self.examples) - held_out, len(self.examples)))
-        rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular}
+        self.rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular, "both": options.rate_tuning}
         self.optimizers = {
-            side: torch.optim.Adam(getattr(self.net, side).parameters(), lr=rates[side]) for side in features.SIDES
+            name: torch.optim.Adam((self.net if name == "both" else getattr(self.net, name)).parameters(), lr=rate)
+            for name, rate in self.rates.items()
         }
-        self.optimizers["both"] = torch.optim.Adam(self.net.parameters(), lr=options.rate_tuning)
         self.scaler = torch.cuda.amp.GradScaler(enabled=self.half)
         self.epoch, self.seconds, self.losses = 0, 0.0, {}
 
@@ -99,7 +107,8 @@ class Trainer:
     def loss(self, side, batch):
         with torch.autocast("cuda", dtype=torch.float16) if self.half else contextlib.nullcontext():
             if side == "both":
-                return (self.net(batch) - batch["target"]).abs().mean()
+                # Relative to the light: else a few bright patches would decide alone.
+                return ((self.net(batch) - batch["target"]).abs() / (batch["target"].abs() + 0.1)).mean()
             return (self.net.side(side, batch) - batch[side + ".target"]).abs().mean()
 
     def step(self, side, batch):
@@ -110,46 +119,58 @@ class Trainer:
         self.workers.average(p.grad for group in optimizer.param_groups for p in group["params"] if p.grad is not None)
         self.scaler.step(optimizer)
         self.scaler.update()
-        return loss.item()
+        return loss.detach()
+
+    def set_rates(self):
+        """Half a cosine over the epochs of each phase."""
+        phases = ((0, self.options.epochs, features.SIDES), (self.options.epochs, self.options.tuning_epochs, ("both",)))
+        for begin, length, names in phases:
+            done = min(max(self.epoch - begin, 0) / max(length, 1), 1.0)
+            share = self.options.final_rate + (1 - self.options.final_rate) * 0.5 * (1 + math.cos(math.pi * done))
+            for name in names:
+                for group in self.optimizers[name].param_groups:
+                    group["lr"] = self.rates[name] * share
 
     def batches(self):
-        """Of one epoch, for this worker. The same for the same seed, epoch and number of workers."""
+        """Of one epoch, for this worker: patches of a few examples at a time, shuffled. The same for the same seed, epoch and number of
+        workers."""
         generator = torch.Generator().manual_seed(self.options.seed * 1000003 + self.epoch)
         order = torch.randperm(len(self.learnt), generator=generator).tolist()
         share = order[self.workers.number :: self.workers.count]
         share = share[: len(order) // self.workers.count]  # workers wait for each other after every batch
         generator.manual_seed(generator.initial_seed() + 7919 * self.workers.number)
-        waiting = []
-        for index in share:
-            frame = self.examples[self.learnt[index]]
-            waiting += data.patches(frame, self.options.patch, self.options.patches, generator)
-            while len(waiting) >= self.options.batch:
-                batch, waiting = waiting[: self.options.batch], waiting[self.options.batch :]
-                yield {name: image.to(self.workers.device) for name, image in data.batch_of(batch).items()}
-        if waiting:
-            yield {name: image.to(self.workers.device) for name, image in data.batch_of(waiting).items()}
+        size = self.options.batch
+        for begin in range(0, len(share), size):
+            pool = []
+            for index in share[begin : begin + size]:
+                frame = self.examples[self.learnt[index]]
+                pool += data.patches(frame, self.options.patch, self.options.patches, generator)
+            pool = data.shuffled(pool, torch.randperm(len(pool), generator=generator))
+            for i in range(0, len(pool), size):
+                yield data.batch_of(pool[i : i + size])
 
     def train_epoch(self):
         sides = features.SIDES if self.epoch < self.options.epochs else ("both",)
         sums, count = dict.fromkeys(sides, 0.0), 0
+        self.set_rates()
         for batch in self.batches():
             for side in sides:
                 sums[side] += self.step(side, batch)
             count += 1
         for side in sides:
-            self.losses.setdefault(side, []).append(sums[side] / max(count, 1))
+            self.losses.setdefault(side, []).append(float(sums[side]) / max(count, 1))
 
     @torch.no_grad()
     def validate(self):
-        """Loss of the picture over the examples that are not learnt from; keeps the last one for show()."""
+        """relMSE over that of the noisy picture, on average over the examples that are not learnt from; keeps the last one for show()."""
         total = 0.0
         for index in self.validated:
-            frame = {name: image.to(self.workers.device) for name, image in self.examples[index].items()}
+            frame = self.examples[index]
             prepared = features.prepare(frame)
-            result = self.net(prepared)
-            total += (result - prepared["target"]).abs().mean().item()
+            noisy, target, result = frame["diffuse"] + frame["specular"], prepared["target"], self.net(prepared)
+            total += rel_mse(result, target) / max(rel_mse(noisy, target), 1e-12)
         self.losses.setdefault("validation", []).append(total / len(self.validated))
-        self.shown = [frame["diffuse"] + frame["specular"], result, prepared["target"]]
+        self.shown = [noisy, result, target]
 
     def save(self):
         folder = self.options.output

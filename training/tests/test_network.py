@@ -45,16 +45,29 @@ class FeaturesTest(unittest.TestCase):
             light = samples.reshape(-1, 1, 1, 1).expand(-1, 3, 1, 1)
             frame[side] = torch.full((1, 3, 1, 1), 2.0)
             frame[side + ".variance"] = samples.var().reshape(1, 1, 1, 1)
-            truth = features.to_network(side, light, albedo)[:, 0].var().item()
-            self.assertAlmostEqual(features.transformed_variance(side, frame).item() / truth, 1.0, delta=0.02)
+            frame["albedo"] = albedo
+            truth = features.seen(side, dict(frame, **{side: light}))[0][:, 0].var().item()
+            self.assertAlmostEqual(features.seen(side, frame)[1].item() / truth, 1.0, delta=0.02)
 
     def test_inputs(self):
         frame = random_frame()
         for side in features.SIDES:
             x = features.inputs(side, frame)
             self.assertEqual(x.shape, (2, features.INPUT_CHANNELS, 24, 20))
-            self.assertTrue(torch.equal(x[:, :3], features.to_network(side, frame[side], frame["albedo"])))
+            light = features.to_network(side, frame[side], frame["albedo"])
+            expected = torch.log1p(light) if side == "diffuse" else light
+            self.assertTrue(torch.allclose(x[:, :3], expected, rtol=1e-6))
             self.assertEqual(x[:, 30].amax(dim=(1, 2)).tolist(), [1.0, 1.0], "depth over the frame's maximum")
+
+    def test_halves_hold_the_brightest_light_on_the_darkest_surface(self):
+        frame = {name: 65504.0 * torch.ones_like(image) for name, image in random_frame().items()}
+        frame["albedo"] = torch.zeros_like(frame["albedo"])
+        for name in ("albedo", "normal", "depth"):
+            frame[name + ".variance"] = torch.ones_like(frame[name + ".variance"])
+        for side in features.SIDES:
+            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # one sample saw it all
+            self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
+            self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 
     def test_nothing_seen(self):
         frame = {name: torch.zeros_like(image) for name, image in random_frame().items()}

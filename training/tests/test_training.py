@@ -97,7 +97,8 @@ class TrainingTest(unittest.TestCase):
 
     def test_goes_on_where_it_was_stopped(self):
         _, whole = self.train("whole", "--epochs", "3", "--tuning-epochs", "1")
-        self.train("parts", "--epochs", "2", "--tuning-epochs", "0")
+        losses, _ = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--time-limit", "0.001")
+        self.assertEqual(len(losses["validation"]), 1)
         losses, parts = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--resume")
         self.assertEqual(len(losses["validation"]), 4)
         for a, b in zip(whole.net.parameters(), parts.net.parameters()):
