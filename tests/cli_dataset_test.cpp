@@ -27,10 +27,10 @@ class CliDatasetTest : public CliTest {
 
 TEST_F(CliDatasetTest, ShardsMakeWhatOneProcessMakes) {
     expect(command("whole"), 0, "3 examples in 3 files");
-    expect(command("parts", "--shard 1/2"), 0, "the others are not yet");
+    expect(command("parts", "--shard 2/2"), 0, "the others are not yet");
     EXPECT_FALSE(fs::exists(path("parts/manifest.json")));
     EXPECT_FALSE(fs::exists(path("parts/examples.00000.safetensors")));
-    expect(command("parts", "--shard 0/2"), 0, "their manifest");
+    expect(command("parts", "--shard 1/2"), 0, "their manifest");
     for (int number = 0; number < 3; ++number)
         EXPECT_EQ(file("whole", number), file("parts", number)) << number;
     EXPECT_EQ(get("whole/manifest.json"), get("parts/manifest.json"));
@@ -60,7 +60,7 @@ TEST_F(CliDatasetTest, KeepsWhatIsWholeAndMakesAnewWhatIsDamaged) {
 }
 
 TEST_F(CliDatasetTest, SaysWhatIsWrong) {
-    expect(command("data", "--shard 2/2"), 2, "--shard");
+    expect(command("data", "--shard 3/2"), 2, "--shard");
     expect(command("data", "--shard x"), 2, "--shard");
     expect("dataset --rooms 0 -o '" + path("data") + "'", 2, "no rooms");
     expect("dataset --samples 4,1 -o '" + path("data") + "'", 2, "ascend");

@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "dataset_example.h"
 #include "device_options.h"
+#include "long_render_options.h"
 #include "progress.h"
 #include "scene/scene_data.h"
 #include "scene_options.h"
@@ -30,7 +31,7 @@ constexpr const char* examplesKey = "limpid.examples";
 
 struct DatasetOptions {
     DeviceChoice device;
-    std::string folder, shard = "0/1";
+    std::string folder, shard = "1/1";
     std::vector<std::string> scenes;
     uint32_t rooms = 100, perFile = 8;
     ExampleSettings example;
@@ -116,6 +117,9 @@ class Dataset {
 
     /// Of all files, if all are there: whichever process finishes last writes it.
     bool writeManifest() const {
+        for (uint64_t number = 0; number < files(); ++number) {
+            if (!fs::exists(file(number))) return false;
+        }
         json manifest{{"dataset", parameters()}, {"files", json::array()}};
         for (uint64_t number = 0; number < files(); ++number) {
             const auto metadata = finished(number);
@@ -133,23 +137,8 @@ class Dataset {
     const DatasetOptions& o_;
 };
 
-/// "I/N".
-std::pair<uint64_t, uint64_t> shardOf(const std::string& text) {
-    const size_t slash = text.find('/');
-    const auto number = [&](const std::string& digits) -> uint64_t {
-        if (digits.empty() || digits.size() > 6 ||
-            digits.find_first_not_of("0123456789") != std::string::npos)
-            throw UsageError("--shard takes I/N, as in 0/4, not '" + text + "'");
-        return std::stoull(digits);
-    };
-    const std::pair shard(number(text.substr(0, slash)),
-                          number(slash == std::string::npos ? "" : text.substr(slash + 1)));
-    if (shard.first >= shard.second) throw UsageError("--shard I/N: I is below N, not as in '" + text + "'");
-    return shard;
-}
-
 void run(const DatasetOptions& o) {
-    const auto [shard, shards] = shardOf(o.shard);
+    const Shard shard = chosenShard(o.shard);
     if (!std::ranges::is_sorted(o.example.samples, std::less_equal{}) || o.example.samples.front() == 0)
         throw UsageError("--samples are above 0 and ascend");
     const Dataset dataset(o);
@@ -160,7 +149,7 @@ void run(const DatasetOptions& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);
     Progress progress("files", dataset.files());
-    for (uint64_t number = shard; number < dataset.files(); number += shards) {
+    for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {
         removeStaleTemporaries(dataset.file(number));
         if (!dataset.finished(number)) dataset.make(*device, tracer, number);
         progress.show(number);
@@ -193,7 +182,7 @@ void addDatasetCommand(CLI::App& app) {
         ->check(CLI::Range(1, 1 << 24));
     command->add_option("--per-file", o->perFile, "Examples in a file (8)")->check(CLI::Range(1, 10000));
     command->add_option("--shard", o->shard,
-                        "I/N: every Nth file from the Ith on; files that are there are kept (0/1)");
+                        "I/N: the I-th of N parts, from 1/N to N/N; files that are there are kept (1/1)");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

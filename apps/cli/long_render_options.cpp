@@ -38,14 +38,14 @@ bool isLongRender(const LongRenderChoice& choice) {
     return choice.timeLimit > 0.0 || !choice.checkpoint.empty() || choice.resume || !choice.shard.empty();
 }
 
-Shard chosenShard(const LongRenderChoice& choice) {
-    if (choice.shard.empty()) return {};
-    const size_t slash = std::min(choice.shard.find('/'), choice.shard.size());
-    const std::string_view text = choice.shard;
+Shard chosenShard(const std::string& choice) {
+    if (choice.empty()) return {};
+    const size_t slash = std::min(choice.find('/'), choice.size());
+    const std::string_view text = choice;
     const Shard shard{.index = positiveNumber(text.substr(0, slash)),
                       .count = positiveNumber(text.substr(std::min(slash + 1, text.size())))};
     if (shard.index == 0 || shard.count == 0 || shard.index > shard.count) {
-        throw UsageError("--shard: '" + choice.shard + "' is not I/N, the I-th of N parts, I from 1 to N");
+        throw UsageError("--shard: '" + choice + "' is not I/N, the I-th of N parts, I from 1 to N");
     }
     return shard;
 }

@@ -20,8 +20,8 @@ void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice);
 /// Whether any of the four is chosen.
 bool isLongRender(const LongRenderChoice& choice);
 
-/// 1/1 if none is chosen. Throws UsageError if it makes no sense.
-Shard chosenShard(const LongRenderChoice& choice);
+/// Of --shard I/N; 1/1 if it is empty. Throws UsageError if it makes no sense.
+Shard chosenShard(const std::string& choice);
 
 /// Throws UsageError if --resume has no --checkpoint, or a checkpoint is there that would be overwritten;
 /// OutputError if the checkpoint cannot be written.

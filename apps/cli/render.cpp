@@ -51,7 +51,7 @@ void render(const RenderOptions& o) {
     const scene::Camera camera = chosenCamera(scene, o.scene.camera);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
     summary.frames = frameCount(o.sequence, output, scene, path);
-    if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender).count > 1)
+    if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
         throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
     summary.timings.loadSeconds = since(started);
 

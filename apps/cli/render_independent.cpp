@@ -29,7 +29,7 @@ AccumulationHeader headerOf(const RenderJob& job) {
     header.plan = planBlocks(job.device, settings, samplesOf(o));
     header.layers = chosenLayers(o);
     header.frames = frames;
-    header.shard = chosenShard(o.longRender);
+    header.shard = chosenShard(o.longRender.shard);
     header.frame = frames > 1 ? header.shard.at(0) : 0;
     header.device = validUtf8(job.device.info().name);
     header.driver = validUtf8(job.device.info().driver);

@@ -95,7 +95,7 @@ uint64_t samplesOf(const RenderOptions& o) {
 }
 
 bool writesSums(const RenderOptions& o) {
-    return !FramePattern(o.output).numbered() && chosenShard(o.longRender).count > 1;
+    return !FramePattern(o.output).numbered() && chosenShard(o.longRender.shard).count > 1;
 }
 
 std::vector<std::string> chosenLayers(const RenderOptions& o) {

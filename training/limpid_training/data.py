@@ -61,6 +61,28 @@ def importance(frame):
     return (spread.clamp(max=4.0) / 4.0 + normal + 0.05)[0, 0]
 
 
+def varied(frame, generator):
+    """The frame mirrored, turned, its colors exchanged, its light made brighter or darker: another scene that is as true. (Only the
+    variances of luminance would be slightly others with exchanged colors.)"""
+    draws = torch.rand(5, generator=generator).tolist()
+    flips = [dim for dim, draw in ((2, draws[0]), (3, draws[1])) if draw < 0.5]
+    colors = torch.randperm(3, generator=generator).tolist()
+    brightness = 2.0 ** (2.0 * draws[2] - 1.0)
+    result = {}
+    for name, image in frame.items():
+        image = image.flip(flips)
+        if draws[3] < 0.5:
+            image = image.transpose(2, 3)
+        if name.split(".")[-1] in ("diffuse", "specular"):
+            image = image * brightness
+        elif name in ("diffuse.variance", "specular.variance"):
+            image = image * brightness**2
+        if image.shape[1] == 3 and name != "normal":
+            image = image[:, colors]
+        result[name] = image
+    return result
+
+
 def patches(frame, size, count, generator):
     """`count` patches of `size` x `size` pixels (less where the picture is smaller) of features.prepare(frame), drawn by
     importance."""

@@ -34,6 +34,7 @@ def parse(arguments=None):
     parser.add_argument("--tuning-epochs", type=int, default=5, help="of both together")
     parser.add_argument("--patches", type=int, default=16, help="of each example in an epoch")
     parser.add_argument("--patch", type=int, default=128, help="pixels along its edge")
+    parser.add_argument("--vary", action="store_true", help="mirror, turn and recolor the examples in every epoch anew")
     parser.add_argument("--batch", type=int, default=16, help="patches")
     parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate")
     parser.add_argument("--rate-specular", type=float, default=1e-4)
@@ -144,6 +145,8 @@ class Trainer:
             pool = []
             for index in share[begin : begin + size]:
                 frame = self.examples[self.learnt[index]]
+                if self.options.vary:
+                    frame = data.varied(frame, generator)
                 pool += data.patches(frame, self.options.patch, self.options.patches, generator)
             pool = data.shuffled(pool, torch.randperm(len(pool), generator=generator))
             for i in range(0, len(pool), size):

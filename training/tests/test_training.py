@@ -67,6 +67,21 @@ class TrainingTest(unittest.TestCase):
             windows = whole["target"].unfold(2, 12, 1).unfold(3, 12, 1)
             self.assertTrue((windows == patch["target"].unsqueeze(2).unsqueeze(2)).all(-1).all(-1).all(1).any())
 
+    def test_varied_frames_are_other_views_of_the_same(self):
+        frame = data.Dataset(self.data, 4)[0]
+        generator = torch.Generator().manual_seed(3)
+        shapes = set()
+        for _ in range(12):
+            varied = data.varied(frame, generator)
+            shapes.add(tuple(varied["depth"].shape[2:]))
+            brighter = varied["diffuse"].sum() / frame["diffuse"].sum()
+            for name, power in (("reference.specular", 1), ("diffuse.variance", 2), ("albedo", 0), ("normal", 0)):
+                ratio = (varied[name].sum() / frame[name].sum()).item()
+                self.assertAlmostEqual(ratio / brighter.item() ** power, 1.0, places=3, msg=name)
+            light = (varied["reference.diffuse"] / varied["albedo"]).mean() / brighter
+            self.assertAlmostEqual(light.item(), (frame["reference.diffuse"] / frame["albedo"]).mean().item(), places=3)
+        self.assertEqual(shapes, {(24, 20), (20, 24)})
+
     def test_other_numbers_of_samples_are_refused(self):
         with self.assertRaisesRegex(ValueError, "none of 32"):
             data.Dataset(self.data, 32)
@@ -96,10 +111,10 @@ class TrainingTest(unittest.TestCase):
         self.assertLess(difference, 1e-2)
 
     def test_goes_on_where_it_was_stopped(self):
-        _, whole = self.train("whole", "--epochs", "3", "--tuning-epochs", "1")
-        losses, _ = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--time-limit", "0.001")
+        _, whole = self.train("whole", "--epochs", "3", "--tuning-epochs", "1", "--vary")
+        losses, _ = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--vary", "--time-limit", "0.001")
         self.assertEqual(len(losses["validation"]), 1)
-        losses, parts = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--resume")
+        losses, parts = self.train("parts", "--epochs", "3", "--tuning-epochs", "1", "--vary", "--resume")
         self.assertEqual(len(losses["validation"]), 4)
         for a, b in zip(whole.net.parameters(), parts.net.parameters()):
             self.assertTrue(torch.equal(a, b))
