@@ -12,6 +12,7 @@
 #include "bench.h"
 #include "bench_copy.comp.h"
 #include "bench_scene.h"
+#include "renderer/network_file.h"
 #include "renderer/parameters.h"
 
 namespace limpid::cli {
@@ -26,7 +27,7 @@ struct DenoiseBench {
     std::vector<std::string> presets, assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
-    std::string filters = "auto";
+    std::string filters = "auto", weights;
 };
 
 /// Bytes per second of a copy between images larger than any cache.
@@ -60,6 +61,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
+    loadNetwork(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
     std::optional<gpu::Backing> filters;
     if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
@@ -114,6 +116,7 @@ void addDenoiseBench(CLI::App& bench) {
     command->add_option("--pipeline", o->pipeline, "Pipeline (atrous)");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
     command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
     command->add_option("--frames", o->frames, "Frames timed (100)")->check(CLI::Range(1, 100000));

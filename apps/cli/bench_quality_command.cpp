@@ -22,6 +22,7 @@
 #include "quality_page.h"
 #include "quality_ranking.h"
 #include "quality_sequences.h"
+#include "renderer/network_file.h"
 #include "renderer/parameters.h"
 #include "renderer/render_identity.h"
 #include "scene/camera_path.h"
@@ -33,13 +34,17 @@ namespace {
 struct QualityOptions {
     DeviceChoice device;
     std::vector<std::string> scenes, pipelines, presets, assignments, variants;
-    std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder;
+    std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder,
+                             weights;
     uint32_t width = 640, height = 360, samples = 1;
     uint64_t referenceSamples = 4096;
     QualityFrames frames;
     bool framesGiven = false;  ///< on the command line: then of every sequence
     bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
 };
+
+/// A frame must have so many for networks to be among all pipelines.
+constexpr uint32_t leastNetworkSamples = 8;
 
 /// SVGF as others have it, and without each thing that Limpid adds to the paper.
 constexpr std::array svgfSteps{"preset=paper",      "preset=cis565",        "svgf.antilag=0",
@@ -139,7 +144,12 @@ LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualityS
 
 MeasuredSequence measure(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence,
                          LoadedSequence& loaded) {
-    const std::vector<QualityMethod> methods = methodsOf(o);
+    std::vector<QualityMethod> methods = methodsOf(o);
+    for (QualityMethod& method : methods) {
+        const denoise::Denoiser* const denoiser = method.settings.pipeline.denoiser;
+        if (denoiser && denoiser->network)
+            loadNetwork(device, denoiser, o.weights, method.settings.denoisers);
+    }
     const Sequence frames = loaded.frames();
     ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
     if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
@@ -275,7 +285,9 @@ void complete(QualityOptions& o, const CLI::App& command) {
     }
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
     if (!o.pipelines.empty()) return;
-    for (const denoise::Denoiser& denoiser : denoise::denoisers()) o.pipelines.emplace_back(denoiser.name);
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
+        if (!denoiser.network || o.samples >= leastNetworkSamples) o.pipelines.emplace_back(denoiser.name);
+    }
 }
 
 void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
@@ -315,7 +327,9 @@ void addQualityBench(CLI::App& bench) {
         "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
     addSequenceOptions(*command, o);
-    command->add_option("--pipeline", o->pipelines, "Pipelines that denoise (repeatable; all of them)");
+    command->add_option("--pipeline", o->pipelines,
+                        "Pipelines that denoise (repeatable; all of them, kpcn from --spp 8 on)");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--variant", o->variants,

@@ -17,6 +17,7 @@
 #include "progress.h"
 #include "render_job.h"
 #include "renderer/frame_file.h"
+#include "renderer/network_file.h"
 #include "renderer/parameters.h"
 
 namespace limpid::cli {
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 using image::LayeredImage;
 
 struct DenoiseOptions {
-    std::string input, output, method, exposure = "auto", dump;
+    std::string input, output, method, exposure = "auto", dump, weights;
     std::vector<std::string> presets, assignments;
     DeviceChoice device;
     bool json = false;
@@ -94,7 +95,8 @@ struct DenoiseSummary {
 
 DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
     const denoise::Denoiser& method = chosenMethod(o);
-    const denoise::DenoiserSettings settings = settingsOf(o);
+    denoise::DenoiserSettings settings = settingsOf(o);
+    loadNetwork(device, &method, o.weights, settings);
     const FramePattern input(o.input), output(o.output);
     const std::vector<int> frames = framesOf(input, output);
     Progress progress("frames", frames.size());
@@ -104,7 +106,8 @@ DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
         const fs::path name = input.format(std::max(frame, 0)), result = output.format(std::max(frame, 0));
         LayeredImage file = image::readExr(name);
         std::vector<std::string> lacking;
-        const denoise::HostFrame host = frameOf(file, name, frames.size() > 1, lacking);
+        if (method.network) requireVariances(file, name);
+        const denoise::HostFrame host = frameOf(file, name, frames.size() > 1 && !method.network, lacking);
         if (summary.frames == 0) warnOfLacking(lacking);
         graph.beginFrame();
         denoise::DenoiserInput images = denoise::upload(graph, host);
@@ -159,6 +162,7 @@ void addDenoiseCommand(CLI::App& app) {
     command->add_option("--method", o->method, "One of" + names)->required();
     command->add_option("--preset", o->presets, "A named set of parameters, as course; before --set");
     command->add_option("--set", o->assignments, "A parameter: group.name=value; 'limpid info' lists them");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--exposure", o->exposure, "Of a PNG: stops, or 'auto' (default)");
     command->add_option("--dump", o->dump, "Write the images of this pass beside the output");
     command->add_flag("--json", o->json, "One JSON object about the run on stdout");

@@ -32,6 +32,7 @@ json devicesJson(const std::vector<gpu::DeviceInfo>& devices) {
                         {"usable", device.usable},
                         {"why_not", device.whyNot},
                         {"tracer", scene::toString(scene::automaticTracer(device))},
+                        {"kpcn", denoise::toString(denoise::kpcnPrecision(device, true))},
                         {"features", features},
                         {"limits", limits}});
     }
@@ -86,6 +87,7 @@ void printDevice(const gpu::DeviceInfo& device) {
                static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
     if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);
     fmt::print("   {:<40} {}\n", "--tracer auto", scene::toString(scene::automaticTracer(device)));
+    fmt::print("   {:<40} {}\n", "--pipeline kpcn", denoise::toString(denoise::kpcnPrecision(device, true)));
     for (const auto& [name, present] : device.features)
         fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
     for (const auto& [name, value] : device.limits) fmt::print("   {:<40} {}\n", name, value);

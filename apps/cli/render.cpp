@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "image/exr.h"
 #include "render_job.h"
+#include "renderer/network_file.h"
 #include "renderer/render_identity.h"
 
 namespace limpid::cli {
@@ -42,7 +43,7 @@ double since(Clock::time_point start) {
 
 void render(const RenderOptions& o) {
     checkRenderOptions(o);
-    const RenderSettings settings = settingsOf(o);
+    RenderSettings settings = settingsOf(o);
     const FramePattern output(o.output);
     RenderSummary summary;
     const Clock::time_point started = Clock::now();
@@ -57,6 +58,7 @@ void render(const RenderOptions& o) {
 
     const Clock::time_point uploadStart = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    loadNetwork(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);

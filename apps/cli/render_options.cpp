@@ -65,6 +65,7 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--pipeline", o.pipeline, "What makes the picture; path (default), or one of" + names);
     command.add_option("--preset", o.presets, "A named set of parameters, as course; before --set");
     command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
+    command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
     command.add_option("--exposure", o.exposure, "Of a PNG: stops, or 'auto' (default)");
     command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
     command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
@@ -91,7 +92,9 @@ RenderSettings settingsOf(const RenderOptions& o) {
 
 uint64_t samplesOf(const RenderOptions& o) {
     if (o.samples > 0) return o.samples;
-    return parsePipeline(o.pipeline).accumulates() ? 64 : 1;
+    const Pipeline pipeline = parsePipeline(o.pipeline);
+    if (pipeline.accumulates()) return 64;
+    return pipeline.denoiser->network ? 32 : 1;
 }
 
 bool writesSums(const RenderOptions& o) {

@@ -24,7 +24,7 @@ struct RenderOptions {
     uint32_t samplesPerLaunch = 1;
     uint32_t seed = 0;
     int maxDepth = -1;  // -1: the parameter's own default
-    std::string pipeline = "path", sampler = "pcg", jitter = "auto", exposure = "auto", layers, dump;
+    std::string pipeline = "path", sampler = "pcg", jitter = "auto", exposure = "auto", layers, dump, weights;
     std::vector<std::string> presets, assignments;
     bool floatExr = false, json = false;
 };

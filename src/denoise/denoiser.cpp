@@ -38,16 +38,25 @@ DenoiserOutput recordSvgf(gpu::FrameGraph& graph, const DenoiserInput& input,
     return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
 }
 
+DenoiserOutput recordKpcn(gpu::FrameGraph& graph, const DenoiserInput& input,
+                          const DenoiserSettings& settings) {
+    return {antialias(graph, input, filterKpcn(graph, input, settings.kpcn), settings.taa), {}};
+}
+
 constexpr std::array<std::string_view, 2> historyGroups{"history", "taa"};
 constexpr std::array<std::string_view, 3> atrousGroups{"history", "atrous", "taa"};
 constexpr std::array<std::string_view, 2> svgfGroups{"svgf", "taa"};
 
-constexpr std::array<Denoiser, 3> all{
+constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
+
+constexpr std::array<Denoiser, 4> all{
     Denoiser{"history", "each pixel's running mean follows its surface through camera and object motion",
              recordHistory, historyGroups, 8.0},
     Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 8.0},
     Denoiser{"svgf", "spatiotemporal variance-guided filtering: blurs where and as much as there is noise",
-             recordSvgf, svgfGroups, 8.0}};
+             recordSvgf, svgfGroups, 8.0},
+    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, from 4 or more samples",
+             recordKpcn, kpcnGroups, 8.0, true}};
 
 }  // namespace
 

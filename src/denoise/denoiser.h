@@ -17,6 +17,7 @@
 #include "denoise/atrous/atrous.h"
 #include "denoise/denoiser_input.h"
 #include "denoise/history/history.h"
+#include "denoise/kpcn/kpcn.h"
 #include "denoise/svgf/svgf.h"
 #include "denoise/taa/taa.h"
 
@@ -27,6 +28,7 @@ struct DenoiserSettings {
     HistorySettings history;
     AtrousSettings atrous;
     SvgfSettings svgf;
+    KpcnSettings kpcn;
     TaaSettings taa;
     bool operator==(const DenoiserSettings&) const = default;
 };
@@ -45,6 +47,7 @@ struct Denoiser {
     std::span<const std::string_view> groups;
     /// dB of PSNR that the tests demand over the noisy frames, after 24 of them.
     double leastGain;
+    bool network = false;  ///< needs settings.kpcn.network, and frames with variances of several samples
 };
 
 std::span<const Denoiser> denoisers();

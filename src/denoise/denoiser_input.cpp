@@ -39,6 +39,7 @@ DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     input.ids = graph.transient("input/ids", gpu::Format::RG32Uint, extent);
     graph.upload(input.ids, gpu::bytesOf(frame.ids));
     input.camera = frame.camera;
+    input.samples = frame.samples;
     return input;
 }
 

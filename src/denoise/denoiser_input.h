@@ -18,6 +18,10 @@ struct DenoiserInput {
     gpu::ImageHandle motion, reflectionMotion, previousNormal;
     gpu::ImageHandle ids;  ///< rg32ui: instance, material; UINT32_MAX where nothing is seen
     CameraParams camera{};
+    /// Per pixel, in these means. Alpha of diffuse, specular, albedo and normal is the mean squared deviation
+    /// over them, of the luminance (of normals the components' mean), and of depth its own; only networks
+    /// look at it.
+    uint32_t samples = 1;
     gpu::Backing filters = gpu::Backing::Image;  ///< filterBacking(device)
 };
 

@@ -27,6 +27,9 @@ struct DeviceInfo {
     bool rayTracing = false;  ///< has ray-tracing pipelines and acceleration structures
     /// ... and, as far as can be told, hardware for them: some drivers emulate them on shader cores.
     bool rayTracingCores = false;
+    /// VK_NV_cooperative_matrix: a subgroup of 32 multiplies 16x16 halves and adds them up in single
+    /// precision.
+    bool cooperativeMatrices = false;
     std::string whyNot;                                    ///< the missing features, if it is not usable
     std::vector<std::pair<std::string, bool>> features;    ///< required and optional ones, by Vulkan name
     std::vector<std::pair<std::string, uint64_t>> limits;  ///< those that Limpid heeds, by Vulkan name

@@ -46,7 +46,7 @@ const Feature features[] = {
      [](FeatureChain& f) -> VkBool32& { return f.v12.shaderStorageTexelBufferArrayNonUniformIndexing; }},
 };
 
-/// Listed by name; nothing depends on them yet. VK_KHR_cooperative_matrix is younger than Debian's headers.
+/// Listed by name. VK_KHR_cooperative_matrix is younger than Debian's headers and shader compiler.
 constexpr const char* listedExtensions[] = {
     VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
@@ -209,6 +209,32 @@ void inspectRayTracing(PhysicalDevice& device, const std::set<std::string>& exte
                          .maxPrimitives = structure.maxPrimitiveCount};
 }
 
+void inspectCooperativeMatrices(PhysicalDevice& device, const std::set<std::string>& extensions) {
+    if (!extensions.contains(VK_NV_COOPERATIVE_MATRIX_EXTENSION_NAME)) return;
+    FeatureChain available;
+    available.linkCooperativeMatrix();
+    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+    core.pNext = &subgroup;
+    vkGetPhysicalDeviceProperties2(device.handle, &core);
+    if (!available.cooperativeMatrix.cooperativeMatrix || !available.v12.shaderFloat16 ||
+        subgroup.subgroupSize != 32)
+        return;
+    uint32_t count = 0;
+    LIMPID_VK(vkGetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, nullptr));
+    std::vector<VkCooperativeMatrixPropertiesNV> kinds(count,
+                                                       {VK_STRUCTURE_TYPE_COOPERATIVE_MATRIX_PROPERTIES_NV});
+    LIMPID_VK(vkGetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, kinds.data()));
+    device.info.cooperativeMatrices =
+        std::ranges::any_of(kinds, [](const VkCooperativeMatrixPropertiesNV& kind) {
+            return kind.MSize == 16 && kind.NSize == 16 && kind.KSize == 16 &&
+                   kind.scope == VK_SCOPE_SUBGROUP_NV && kind.AType == VK_COMPONENT_TYPE_FLOAT16_NV &&
+                   kind.BType == VK_COMPONENT_TYPE_FLOAT16_NV && kind.CType == VK_COMPONENT_TYPE_FLOAT32_NV &&
+                   kind.DType == VK_COMPONENT_TYPE_FLOAT32_NV;
+        });
+}
+
 /// The properties that a driver of this version knows, linked for one query.
 void readProperties(PhysicalDevice& device, uint32_t version) {
     Properties properties;
@@ -229,6 +255,11 @@ void readProperties(PhysicalDevice& device, uint32_t version) {
 void FeatureChain::linkRayTracing() {
     v13.pNext = &accelerationStructure;
     accelerationStructure.pNext = &rayTracingPipeline;
+}
+
+void FeatureChain::linkCooperativeMatrix() {
+    cooperativeMatrix.pNext = core.pNext;
+    core.pNext = &cooperativeMatrix;
 }
 
 FeatureChain::FeatureChain() {
@@ -261,7 +292,10 @@ PhysicalDevice inspect(VkPhysicalDevice handle, uint32_t index) {
     }
     const std::set<std::string> extensions = extensionsOf(handle);
     for (const char* name : listedExtensions) info.features.emplace_back(name, extensions.contains(name));
-    if (basics.apiVersion >= VK_API_VERSION_1_3) inspectRayTracing(device, extensions);
+    if (basics.apiVersion >= VK_API_VERSION_1_3) {
+        inspectRayTracing(device, extensions);
+        inspectCooperativeMatrices(device, extensions);
+    }
     listLimits(device);
     info.usable = missing.empty();
     info.whyNot = fmt::format("{}", fmt::join(missing, ", "));
@@ -284,6 +318,10 @@ void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted) {
     for (const Feature& feature : features) {
         if (feature.need != Need::Listed) feature.flag(wanted) = feature.flag(available);
     }
+    if (device.info.cooperativeMatrices) {
+        wanted.linkCooperativeMatrix();
+        wanted.cooperativeMatrix.cooperativeMatrix = VK_TRUE;
+    }
     if (!device.info.rayTracing) return;
     wanted.linkRayTracing();
     wanted.v12.bufferDeviceAddress = VK_TRUE;
@@ -292,8 +330,11 @@ void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted) {
 }
 
 std::vector<const char*> wantedExtensions(const PhysicalDevice& device) {
-    if (!device.info.rayTracing) return {};
-    return {std::begin(rayTracingExtensions), std::end(rayTracingExtensions)};
+    std::vector<const char*> names;
+    if (device.info.cooperativeMatrices) names.push_back(VK_NV_COOPERATIVE_MATRIX_EXTENSION_NAME);
+    if (device.info.rayTracing)
+        names.insert(names.end(), std::begin(rayTracingExtensions), std::end(rayTracingExtensions));
+    return names;
 }
 
 }  // namespace limpid::gpu

@@ -26,6 +26,9 @@ struct FeatureChain {
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayTracingPipeline{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR};
     void linkRayTracing();
+    VkPhysicalDeviceCooperativeMatrixFeaturesNV cooperativeMatrix{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_COOPERATIVE_MATRIX_FEATURES_NV};
+    void linkCooperativeMatrix();
 };
 
 /// What ray-tracing pipelines need to know of the device.

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "gpu/spirv_declarations.h"
 
 namespace limpid::gpu {
 namespace {
@@ -78,7 +79,8 @@ Reflector::Reflector(const ShaderCode& code) : code_(code) {
     if (spvc_context_create(&context) != SPVC_SUCCESS) fail("SPIRV-Cross ran out of memory");
     context_.reset(context);
     spvc_parsed_ir ir = nullptr;
-    check(spvc_context_parse_spirv(context, code.words.data(), code.words.size(), &ir));
+    const std::vector<uint32_t> words = withoutCooperativeMatrices(code.words);
+    check(spvc_context_parse_spirv(context, words.data(), words.size(), &ir));
     check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
                                        &compiler_));
     stage_ = stageOf(spvc_compiler_get_execution_model(compiler_));

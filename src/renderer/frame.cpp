@@ -186,6 +186,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                                        .previousNormal = out.previousNormal,
                                        .ids = out.ids,
                                        .camera = input.camera,
+                                       .samples = input.samples,
                                        .filters = input.filters};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =

@@ -49,13 +49,23 @@ CameraParams cameraOf(const LayeredImage& file, const std::filesystem::path& nam
     return *camera;
 }
 
-/// Four floats a pixel from three; the fourth is 0.
-std::vector<float> fourOf(const Image& image) {
+constexpr const char* layersWithVariance[] = {"diffuse", "specular", "albedo", "normal", "depth"};
+
+/// As the fourth of four; stays 0 without such a layer.
+void addVariance(const LayeredImage& file, const std::string& layer, std::vector<float>& pixels) {
+    const image::Channel* const variance = file.find(layer + ".variance");
+    for (size_t p = 0; variance && p < variance->values.size(); ++p) pixels[4 * p + 3] = variance->values[p];
+}
+
+/// Four floats a pixel from three, and the variance.
+std::vector<float> fourOf(const LayeredImage& file, const char* layer, const char* suffixes = "RGB") {
+    const Image image = file.get(layer, suffixes);
     const size_t pixels = size_t{image.width} * image.height;
     std::vector<float> result(4 * pixels);
     for (size_t p = 0; p < pixels; ++p) {
         for (size_t c = 0; c < 3; ++c) result[4 * p + c] = image.pixels[3 * p + c];
     }
+    addVariance(file, layer, result);
     return result;
 }
 
@@ -96,6 +106,17 @@ std::vector<uint32_t> idsOf(const Image& numbers) {
 
 }  // namespace
 
+void requireVariances(const LayeredImage& file, const std::filesystem::path& name) {
+    std::string missing;
+    for (const char* layer : layersWithVariance) {
+        const std::string wanted = std::string(layer) + ".variance";
+        if (!file.find(wanted)) missing += (missing.empty() ? "" : ", ") + wanted;
+    }
+    if (!missing.empty())
+        throw InputError(name, "lacks the layers " + missing +
+                                   ", which networks need ('limpid render --spp 32 --aov all' writes them)");
+}
+
 denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<std::string>& lacking) {
     requireLayers(file, name, sequence);
@@ -103,17 +124,19 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     frame.width = file.width;
     frame.height = file.height;
     frame.camera = cameraOf(file, name);
-    frame.diffuse = fourOf(file.get("diffuse", "RGB"));
-    frame.specular = fourOf(file.get("specular", "RGB"));
-    frame.emission = fourOf(file.get("emission", "RGB"));
-    frame.albedo = fourOf(file.get("albedo", "RGB"));
-    if (has(file, "albedoSpecular", "RGB")) frame.albedoSpecular = fourOf(file.get("albedoSpecular", "RGB"));
-    frame.normal = fourOf(file.get("normal", "XYZ"));
+    frame.diffuse = fourOf(file, "diffuse");
+    frame.specular = fourOf(file, "specular");
+    frame.emission = fourOf(file, "emission");
+    frame.albedo = fourOf(file, "albedo");
+    if (has(file, "albedoSpecular", "RGB")) frame.albedoSpecular = fourOf(file, "albedoSpecular");
+    frame.normal = fourOf(file, "normal", "XYZ");
     frame.depth = depthOf(file.get("depth", "Z"));
+    addVariance(file, "depth", frame.depth);
+    frame.samples = 2;
     frame.motion = motionOf(file, "motion", frame.pixelCount());
     frame.reflectionMotion = motionOf(file, "reflectionMotion", frame.pixelCount());
     if (has(file, "prevNormal", "XYZ")) {
-        frame.previousNormal = fourOf(file.get("prevNormal", "XYZ"));
+        frame.previousNormal = fourOf(file, "prevNormal", "XYZ");
     } else {
         frame.previousNormal = frame.normal;
         if (sequence) lacking.push_back("prevNormal");

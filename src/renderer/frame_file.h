@@ -14,7 +14,12 @@ namespace limpid {
 /// InputError listing all that is missing of diffuse, specular, emission, albedo, normal, depth, the camera,
 /// and motion. Without the layers id and prevNormal there is one object and nothing turns; `lacking` names
 /// them.
+/// With the layers of variance, and as if of two samples, whose mean squared deviations these are.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<std::string>& lacking);
+
+/// Throws InputError listing those of the layers diffuse.variance, specular.variance, albedo.variance,
+/// normal.variance and depth.variance that the file lacks: networks need them.
+void requireVariances(const image::LayeredImage& file, const std::filesystem::path& name);
 
 }  // namespace limpid

@@ -40,6 +40,8 @@ const std::vector<ParamGroup>& paramGroups() {
         groupOf(
             denoise::svgfParams(), [](auto& s) -> auto& { return s.denoisers.svgf; }),
         groupOf(
+            denoise::kpcnParams(), [](auto& s) -> auto& { return s.denoisers.kpcn; }),
+        groupOf(
             denoise::taaParams(), [](auto& s) -> auto& { return s.denoisers.taa; }),
     };
     return all;

@@ -1,0 +1,291 @@
+#include "denoise/kpcn/kpcn.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "base/error.h"
+#include "denoise/kpcn/kpcn_params.h"
+#include "kpcn_compose.comp.h"
+#include "kpcn_distances.comp.h"
+#include "kpcn_features.comp.h"
+#include "kpcn_features_float.comp.h"
+#include "kpcn_hidden.comp.h"
+#include "kpcn_hidden_float.comp.h"
+#include "kpcn_hidden_matrix.comp.h"
+#include "kpcn_kernel.comp.h"
+#include "kpcn_kernel_float.comp.h"
+#include "kpcn_kernel_matrix.comp.h"
+#include "kpcn_largest.comp.h"
+
+namespace limpid::denoise {
+namespace {
+
+using gpu::Backing;
+using gpu::Extent;
+using gpu::Format;
+using gpu::FrameGraph;
+using gpu::ImageHandle;
+
+constexpr const char* sideNames[] = {"diffuse", "specular"};
+constexpr uint32_t reach = KPCN_TAPS / 2;
+constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
+constexpr uint32_t workgroup = 16;    // pixels along the edge of a workgroup of kpcn_matrix.glsl
+constexpr uint32_t alignment = 16;    // of tiles
+constexpr uint32_t texelsOfSlab = 4;  // of a pixel
+
+uint32_t divideUp(uint32_t a, uint32_t b) {
+    return (a + b - 1) / b;
+}
+
+/// The three ways to compute it.
+struct Shaders {
+    const gpu::ShaderCode &features, &hidden, &kernel;
+    Format format;        ///< of four channels
+    uint32_t texelBytes;  ///< ... in bytes
+    uint32_t width;       ///< pixels that an invocation computes
+};
+
+const Shaders& shadersOf(KpcnPrecision precision) {
+    static const Shaders single{shaders::kpcn_features_float_comp,
+                                shaders::kpcn_hidden_float_comp,
+                                shaders::kpcn_kernel_float_comp,
+                                Format::RGBA32Float,
+                                16,
+                                block};
+    static const Shaders half{shaders::kpcn_features_comp,
+                              shaders::kpcn_hidden_comp,
+                              shaders::kpcn_kernel_comp,
+                              Format::RG32Uint,
+                              8,
+                              block};
+    static const Shaders matrices{shaders::kpcn_features_comp,
+                                  shaders::kpcn_hidden_matrix_comp,
+                                  shaders::kpcn_kernel_matrix_comp,
+                                  Format::RG32Uint,
+                                  8,
+                                  1};
+    return precision == KpcnPrecision::Float ? single : precision == KpcnPrecision::Half ? half : matrices;
+}
+
+/// The largest number up to `most` that divides `count`.
+uint32_t divisor(uint32_t count, uint32_t most) {
+    for (uint32_t d = most; d > 1; --d) {
+        if (count % d == 0) return d;
+    }
+    return 1;
+}
+
+struct Tile {
+    uint32_t left, top, width, height;
+};
+
+class Recorder {
+  public:
+    Recorder(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings)
+        : graph_(graph),
+          input_(input),
+          network_(*settings.network),
+          shaders_(shadersOf(network_.precision())),
+          picture_(graph.extent(input.depth)) {
+        const auto hidden = static_cast<uint32_t>(network_.layers(0).size()) - 1;
+        margin_ = std::max(reach * (hidden + 1), network_.kernelWidth() / 2);
+        tile_ = tileSize(static_cast<uint32_t>(settings.tile));
+        pitch_ = bufferSize(tile_.width, picture_.width);
+        rows_ = bufferSize(tile_.height, picture_.height);
+    }
+
+    ImageHandle run() {
+        const ImageHandle largest = largestDistance();
+        const Extent channels{pitch_ * texelsOfSlab, rows_ * network_.slabs()};
+        for (size_t i = 0; i < 2; ++i)
+            channels_[i] = graph_.transient("kpcn/channels " + std::to_string(i + 1), shaders_.format,
+                                            channels, Backing::Buffer);
+        light_ = graph_.transient("kpcn/light", Format::RGBA32Float, {pitch_, rows_}, Backing::Buffer);
+        std::array<ImageHandle, 2> clean;
+        for (size_t side = 0; side < 2; ++side) {
+            clean[side] =
+                graph_.transient(std::string("kpcn/") + sideNames[side], Format::RGBA32Float, picture_);
+            for (uint32_t top = 0; top < picture_.height; top += tile_.height) {
+                for (uint32_t left = 0; left < picture_.width; left += tile_.width)
+                    recordTile(side,
+                               {left, top, std::min(tile_.width, picture_.width - left),
+                                std::min(tile_.height, picture_.height - top)},
+                               largest, clean[side]);
+            }
+        }
+        return compose(clean);
+    }
+
+  private:
+    /// Even parts of the picture, at most `wanted` pixels along an edge and what the device's buffers hold.
+    Extent tileSize(uint32_t wanted) const {
+        const auto part = [&](uint32_t length, uint32_t most) {
+            const uint32_t even = divideUp(length, divideUp(length, most));
+            return std::min(divideUp(even, alignment) * alignment, divideUp(length, alignment) * alignment);
+        };
+        uint32_t most = std::max(divideUp(wanted, alignment) * alignment, alignment);
+        while (true) {
+            const Extent tile{part(picture_.width, most), part(picture_.height, most)};
+            const uint64_t bytes = uint64_t{bufferSize(tile.width, picture_.width)} *
+                                   bufferSize(tile.height, picture_.height) * network_.slabs() *
+                                   texelsOfSlab * shaders_.texelBytes;
+            if (bytes <= network_.mostBytes() || most == alignment) return tile;
+            most -= alignment;
+        }
+    }
+
+    /// With the margin on both sides, and what workgroups at its end compute beyond it.
+    uint32_t bufferSize(uint32_t tile, uint32_t picture) const {
+        return std::min(tile + 2 * margin_, divideUp(picture, alignment) * alignment) + workgroup;
+    }
+
+    /// The tile and `margin` pixels around it, as far as they lie in the picture; in buffers that begin
+    /// `margin_` pixels before the tile, or with the picture.
+    KpcnRegion region(const Tile& tile, uint32_t margin) const {
+        const auto begin = [](uint32_t at, uint32_t around) {
+            return static_cast<int>(at - std::min(at, around));
+        };
+        KpcnRegion r{};
+        r.left = begin(tile.left, margin);
+        r.top = begin(tile.top, margin);
+        r.width = static_cast<int>(std::min(tile.left + tile.width + margin, picture_.width)) - r.left;
+        r.height = static_cast<int>(std::min(tile.top + tile.height + margin, picture_.height)) - r.top;
+        r.originX = begin(tile.left, margin_);
+        r.originY = begin(tile.top, margin_);
+        r.pitch = static_cast<int>(pitch_);
+        r.rows = static_cast<int>(rows_);
+        r.pictureWidth = static_cast<int>(picture_.width);
+        r.pictureHeight = static_cast<int>(picture_.height);
+        return r;
+    }
+
+    Extent invocations(const KpcnRegion& r, uint32_t width) const {
+        return {divideUp(static_cast<uint32_t>(r.width), width), static_cast<uint32_t>(r.height)};
+    }
+
+    ImageHandle largestDistance() {
+        ImageHandle image = graph_.transient("kpcn/distances", Format::R32Float, picture_);
+        const auto sizeOf = [](Extent e) {
+            return KpcnReduceParams{static_cast<int>(e.width), static_cast<int>(e.height)};
+        };
+        graph_.dispatch({.pass = "kpcn/distances",
+                         .shader = shaders::kpcn_distances_comp,
+                         .bindings = {{"depth", input_.depth}, {"distances", image}},
+                         .params = gpu::paramsOf(sizeOf(picture_)),
+                         .constants = {},
+                         .extent = picture_});
+        for (Extent extent = picture_; extent != Extent{1, 1};) {
+            const Extent smaller{divideUp(extent.width, 8), divideUp(extent.height, 8)};
+            const ImageHandle next = graph_.transient(
+                "kpcn/largest of " + std::to_string(smaller.width) + "x" + std::to_string(smaller.height),
+                Format::R32Float, smaller);
+            graph_.dispatch({.pass = "kpcn/largest",
+                             .shader = shaders::kpcn_largest_comp,
+                             .bindings = {{"source", image}, {"largest", next}},
+                             .params = gpu::paramsOf(sizeOf(extent)),
+                             .constants = {},
+                             .extent = smaller});
+            image = next;
+            extent = smaller;
+        }
+        return image;
+    }
+
+    void recordTile(size_t side, const Tile& tile, ImageHandle largest, ImageHandle clean) {
+        const std::string prefix = std::string("kpcn/") + sideNames[side] + " ";
+        features(side, tile, largest, prefix);
+        const std::vector<KpcnNetwork::Layer>& layers = network_.layers(side);
+        for (size_t i = 0; i + 1 < layers.size(); ++i) {
+            const KpcnRegion where = region(tile, reach * static_cast<uint32_t>(layers.size() - 1 - i));
+            dispatchLayer(prefix + "hidden " + std::to_string(i + 1), shaders_.hidden, layers[i], where, 8,
+                          {{"inputs", channels_[i % 2]}, {"outputs", channels_[(i + 1) % 2]}});
+        }
+        dispatchLayer(prefix + "kernel", shaders_.kernel, layers.back(), region(tile, 0), 4,
+                      {{"inputs", channels_[(layers.size() - 1) % 2]}, {"light", light_}, {"clean", clean}});
+    }
+
+    void features(size_t side, const Tile& tile, ImageHandle largest, const std::string& prefix) {
+        const KpcnFeaturesParams params{
+            region(tile, margin_), input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f,
+            static_cast<uint32_t>(side)};
+        graph_.dispatch({.pass = prefix + "features",
+                         .shader = shaders_.features,
+                         .bindings = {{"radiance", side == 0 ? input_.diffuse : input_.specular},
+                                      {"albedo", input_.albedo},
+                                      {"normal", input_.normal},
+                                      {"depth", input_.depth},
+                                      {"largest", largest},
+                                      {"features", channels_[0]},
+                                      {"light", light_}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = invocations(params.region, 1)});
+    }
+
+    void dispatchLayer(const std::string& pass, const gpu::ShaderCode& shader,
+                       const KpcnNetwork::Layer& layer, const KpcnRegion& where, uint32_t mostTiles,
+                       std::vector<gpu::Binding> bindings) {
+        const KpcnLayerParams params{where, layer.inputSlabs, layer.outputTiles, layer.weights,
+                                     network_.kernelWidth()};
+        bindings.push_back({"weights", &network_.weights()});
+        std::vector<gpu::ConstantValue> constants;
+        if (network_.precision() == KpcnPrecision::Matrices)
+            constants.push_back({"TILES", divisor(layer.outputTiles, mostTiles)});
+        graph_.dispatch({.pass = pass,
+                         .shader = shader,
+                         .bindings = std::move(bindings),
+                         .params = gpu::paramsOf(params),
+                         .constants = std::move(constants),
+                         .extent = invocations(where, shaders_.width)});
+    }
+
+    ImageHandle compose(const std::array<ImageHandle, 2>& clean) {
+        const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
+        const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height)};
+        graph_.dispatch({.pass = "kpcn/compose",
+                         .shader = shaders::kpcn_compose_comp,
+                         .bindings = {{"diffuse", clean[0]},
+                                      {"specular", clean[1]},
+                                      {"albedo", input_.albedo},
+                                      {"emission", input_.emission},
+                                      {"beauty", beauty}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = picture_});
+        return beauty;
+    }
+
+    FrameGraph& graph_;
+    const DenoiserInput& input_;
+    const KpcnNetwork& network_;
+    const Shaders& shaders_;
+    Extent picture_;
+    uint32_t margin_ = 0;  ///< that a tile's features need around it
+    Extent tile_;
+    uint32_t pitch_ = 0, rows_ = 0;  ///< of the buffers, in pixels
+    std::array<ImageHandle, 2> channels_;
+    ImageHandle light_;
+};
+
+}  // namespace
+
+const ParamTable<KpcnSettings>& kpcnParams() {
+    static const auto table = [] {
+        using S = KpcnSettings;
+        ParamTable<S> t("kpcn");
+        t.add("tile", &S::tile, 16, 16384, "pixels",
+              "edge of the parts in which a picture is denoised; larger takes more memory and is a little "
+              "faster");
+        t.add("half", &S::half, "half precision; off: single precision, slower");
+        return t;
+    }();
+    return table;
+}
+
+ImageHandle filterKpcn(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings) {
+    if (!settings.network) throw Error("kpcn has no network: KpcnSettings::network must be set");
+    return Recorder(graph, input, settings).run();
+}
+
+}  // namespace limpid::denoise

@@ -1,0 +1,29 @@
+// Kernel-predicting networks: S. Bako et al., "Kernel-Predicting Convolutional Networks for Denoising Monte
+// Carlo Renderings", SIGGRAPH 2017. docs/kpcn.md has the formulas.
+#pragma once
+
+#include <memory>
+
+#include "base/params.h"
+#include "denoise/denoiser_input.h"
+#include "denoise/kpcn/kpcn_network.h"
+#include "gpu/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; kpcnParams() is where range and meaning stand.
+struct KpcnSettings {
+    int tile = 512;
+    bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
+    std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
+    bool operator==(const KpcnSettings&) const = default;
+};
+const ParamTable<KpcnSettings>& kpcnParams();
+
+/// The beauty, rgba32f, alpha 1, from this frame alone. `input.samples` and the variances in alpha must be
+/// true. Passes: "kpcn/distances", "kpcn/largest", of each side and tile "kpcn/diffuse features",
+/// "kpcn/diffuse hidden 1" and so on, "kpcn/diffuse kernel"; "kpcn/compose". Throws Error if there is no
+/// network.
+gpu::ImageHandle filterKpcn(gpu::FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings);
+
+}  // namespace limpid::denoise

@@ -1,0 +1,29 @@
+// The last layer, the softmax of its channels, and the mean of the light by it: no channel goes to memory.
+#include "denoise/kpcn/kpcn_convolve.glsl"
+#include "denoise/kpcn/kpcn_softmax.glsl"
+
+layout(set = 0, binding = 3, scalar) readonly buffer lightTexels { vec4 texels[]; } light;
+layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D clean;
+
+void main() {
+    const ivec2 first = firstPixel();
+    if (!inRegion(first)) return;
+    WeightedMean means[BLOCK];
+    for (int p = 0; p < BLOCK; ++p) means[p] = NO_MEAN;
+    for (uint tile = 0u; tile < params.outputTiles; ++tile) {
+        vec4 sums[BLOCK][4];
+        convolve(first, tile, sums);
+        for (int p = 0; p < BLOCK; ++p) {
+            if (!inRegion(first + ivec2(p, 0))) break;
+            for (uint k = 0u; k < KPCN_SLAB; ++k) {
+                ivec2 tap;
+                if (kernelTap(params, first + ivec2(p, 0), tile * KPCN_SLAB + k, tap))
+                    add(means[p], sums[p][k / 4u][k % 4u], light.texels[pixelTexel(params.region, tap)].rgb);
+            }
+        }
+    }
+    for (int p = 0; p < BLOCK; ++p) {
+        const ivec2 pixel = first + ivec2(p, 0);
+        if (inRegion(pixel)) imageStore(clean, pixel, vec4(means[p].sum / means[p].weights, 1.0));
+    }
+}

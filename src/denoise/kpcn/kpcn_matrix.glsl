@@ -1,0 +1,110 @@
+// A convolution of 5x5 taps as matrix products on cooperative matrices: 16x16 pixels by TILES x 16 channels in a workgroup, whose eight
+// subgroups have two rows of pixels each. Products in half precision, sums in single.
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_memory_scope_semantics : require
+#extension GL_NV_cooperative_matrix : require
+#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+#include "denoise/kpcn/kpcn_params.h"
+
+layout(local_size_x = 16, local_size_y = 16) in;
+
+layout(constant_id = 0) const uint TILES = 7u;  // of outputs at a time, at most 8; divides outputTiles
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    KpcnLayerParams params;
+};
+// Eight halves each.
+layout(set = 0, binding = 1, scalar) readonly buffer inputTexels { uvec4 texels[]; } inputs;
+layout(set = 0, binding = 2, scalar) readonly buffer weightTexels { uvec4 texels[]; } weights;
+
+#define HalfMatrix fcoopmatNV<16, gl_ScopeSubgroup, 16, 16>
+#define FloatMatrix fcoopmatNV<32, gl_ScopeSubgroup, 16, 16>
+
+const uint EDGE = 16u;                         // pixels of a workgroup
+const uint HALO = EDGE + KPCN_TAPS - 1u;       // and what lies around them
+const uint HALO_PITCH = 3u;                    // uvec4 a pixel, one of them to spread the banks
+const uint HALO_LOADS = (HALO * HALO * 2u + 255u) / 256u;
+const uint WEIGHTS_AT = HALO * HALO * HALO_PITCH;
+const uint WEIGHT_LINES = KPCN_TAPS * KPCN_SLAB;  // of a row of taps
+const uint WEIGHT_LOADS = WEIGHT_LINES * 16u / 256u;
+const uint WEIGHT_PITCH = 2u * TILES + 1u;
+const uint SHARED_TEXELS = WEIGHTS_AT + WEIGHT_LINES * 17u;
+
+shared uvec4 stage[SHARED_TEXELS];
+
+ivec2 groupsFirst() {
+    return ivec2(params.region.left, params.region.top) + ivec2(gl_WorkGroupID.xy * EDGE);
+}
+
+uint slabTexel(uint slab, ivec2 pixel) {
+    return ((slab * uint(params.region.rows) + uint(pixel.y - params.region.originY)) * uint(params.region.pitch) +
+            uint(pixel.x - params.region.originX)) * 2u;
+}
+
+void fetchHalo(uint slab, out uvec4 fetched[HALO_LOADS]) {
+    for (uint j = 0u; j < HALO_LOADS; ++j) {
+        const uint i = gl_LocalInvocationIndex + 256u * j;
+        const uint place = i / 2u;
+        const ivec2 pixel = groupsFirst() + ivec2(place % HALO, place / HALO) - int(KPCN_TAPS / 2u);
+        const bool there = place < HALO * HALO && pixel.x >= 0 && pixel.y >= 0 &&
+                           pixel.x < params.region.pictureWidth && pixel.y < params.region.pictureHeight;
+        fetched[j] = there ? inputs.texels[slabTexel(slab, pixel) + i % 2u] : uvec4(0u);
+    }
+}
+
+void keepHalo(uvec4 fetched[HALO_LOADS]) {
+    for (uint j = 0u; j < HALO_LOADS; ++j) {
+        const uint i = gl_LocalInvocationIndex + 256u * j;
+        if (i / 2u < HALO * HALO) stage[i / 2u * HALO_PITCH + i % 2u] = fetched[j];
+    }
+}
+
+/// Of one row of taps and one slab, for the tiles from `tile` on.
+void fetchWeights(uint slab, uint row, uint tile, out uvec4 fetched[WEIGHT_LOADS]) {
+    const uint line = 2u * params.outputTiles;
+    const uint first = params.weights + (slab * KPCN_TAPS + row) * WEIGHT_LINES * line + tile * 2u;
+    for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
+        const uint i = gl_LocalInvocationIndex + 256u * j;
+        if (i < WEIGHT_LINES * 2u * TILES) fetched[j] = weights.texels[first + i / (2u * TILES) * line + i % (2u * TILES)];
+    }
+}
+
+void keepWeights(uvec4 fetched[WEIGHT_LOADS]) {
+    for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
+        const uint i = gl_LocalInvocationIndex + 256u * j;
+        if (i < WEIGHT_LINES * 2u * TILES)
+            stage[WEIGHTS_AT + i / (2u * TILES) * WEIGHT_PITCH + i % (2u * TILES)] = fetched[j];
+    }
+}
+
+/// sums[row of pixels][tile from `tile` on]. What is fetched next is under way while this is multiplied.
+void convolve(uint tile, out FloatMatrix sums[2][TILES]) {
+    for (uint m = 0u; m < 2u; ++m) {
+        for (uint n = 0u; n < TILES; ++n) sums[m][n] = FloatMatrix(0.0);
+    }
+    uvec4 halo[HALO_LOADS], lines[WEIGHT_LOADS];
+    fetchHalo(0u, halo);
+    fetchWeights(0u, 0u, tile, lines);
+    for (uint slab = 0u; slab < params.inputSlabs; ++slab) {
+        for (uint row = 0u; row < KPCN_TAPS; ++row) {
+            barrier();
+            if (row == 0u) keepHalo(halo);
+            keepWeights(lines);
+            barrier();
+            const bool last = row + 1u == KPCN_TAPS;
+            if (last && slab + 1u < params.inputSlabs) fetchHalo(slab + 1u, halo);
+            if (!last || slab + 1u < params.inputSlabs)
+                fetchWeights(last ? slab + 1u : slab, last ? 0u : row + 1u, tile, lines);
+            for (uint tap = 0u; tap < KPCN_TAPS; ++tap) {
+                HalfMatrix pixels[2];
+                for (uint m = 0u; m < 2u; ++m)
+                    coopMatLoadNV(pixels[m], stage, ((2u * gl_SubgroupID + m + row) * HALO + tap) * HALO_PITCH, HALO_PITCH, false);
+                for (uint n = 0u; n < TILES; ++n) {
+                    HalfMatrix w;
+                    coopMatLoadNV(w, stage, WEIGHTS_AT + tap * KPCN_SLAB * WEIGHT_PITCH + 2u * n, WEIGHT_PITCH, false);
+                    for (uint m = 0u; m < 2u; ++m) sums[m][n] = coopMatMulAddNV(pixels[m], w, sums[m][n]);
+                }
+            }
+        }
+    }
+}

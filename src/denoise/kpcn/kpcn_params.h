@@ -1,0 +1,53 @@
+// Parameters of the kernel-predicting network's passes. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_KPCN_PARAMS_H
+#define LIMPID_DENOISE_KPCN_PARAMS_H
+
+#include "shaders/camera.h"
+
+#ifdef __cplusplus
+namespace limpid::denoise {
+#endif
+
+/// A pixel's channels lie in slabs of 16 (docs/kpcn.md, "On the device").
+const uint KPCN_SLAB = 16u;
+/// Of a convolution, along each axis.
+const uint KPCN_TAPS = 5u;
+/// What a network sees of a pixel; one channel more is always 1 and brings the bias.
+const uint KPCN_INPUT_CHANNELS = 34u;
+const uint KPCN_INPUT_SLABS = 3u;
+
+/// Where a pass works. Pixels are those of the picture.
+struct KpcnRegion {
+    int left, top;         // the first pixel to compute
+    int width, height;     // of what is computed
+    int originX, originY;  // the first pixel of the buffers
+    int pitch, rows;       // of the buffers
+    int pictureWidth, pictureHeight;
+};
+
+struct KpcnFeaturesParams {
+    KpcnRegion region;
+    float ofMean;   // from mean squared deviations to variances of means: 1 / (samples - 1), 0 for one sample
+    uint specular;  // which side
+};
+
+struct KpcnLayerParams {
+    KpcnRegion region;
+    uint inputSlabs;   // of the layer before
+    uint outputTiles;  // slabs of this one
+    uint weights;      // where they begin in the buffer, by 8
+    uint kernelWidth;  // of the last layer: pixels
+};
+
+struct KpcnReduceParams {
+    int width, height;  // of the source
+};
+
+struct KpcnComposeParams {
+    int width, height;
+};
+
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif

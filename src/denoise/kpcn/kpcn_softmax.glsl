@@ -1,0 +1,28 @@
+// A mean weighted by a softmax, of weights that come one after the other: M. Milakov, N. Gimelshein, "Online normalizer
+// calculation for softmax", 2018.
+struct WeightedMean {
+    vec3 sum;
+    float weights;
+    float largest;
+};
+
+const WeightedMean NO_MEAN = WeightedMean(vec3(0.0), 0.0, -1e30);
+
+void add(inout WeightedMean mean, float logit, vec3 value) {
+    if (logit > mean.largest) {
+        const float shrink = exp(mean.largest - logit);
+        mean.sum *= shrink;
+        mean.weights *= shrink;
+        mean.largest = logit;
+    }
+    const float weight = exp(logit - mean.largest);
+    mean.sum += weight * value;
+    mean.weights += weight;
+}
+
+/// The `channel`-th tap of a kernel around `pixel`, if there is one and it lies in the picture.
+bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap) {
+    const uint width = params.kernelWidth;
+    tap = pixel + ivec2(channel % width, channel / width) - int(width / 2u);
+    return channel < width * width && inPicture(params.region, tap);
+}

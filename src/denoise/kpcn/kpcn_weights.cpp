@@ -1,0 +1,100 @@
+#include "denoise/kpcn/kpcn_weights.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "denoise/kpcn/kpcn_params.h"
+#include "neural/tensor_file.h"
+
+namespace limpid::denoise {
+namespace {
+
+using nlohmann::json;
+
+constexpr uint32_t mostHidden = 64, mostChannels = 1024, widestKernel = 31;
+constexpr float largestHalf = 65504.0f;
+
+struct Shape {
+    uint32_t hidden, channels, width;
+};
+
+class Reader {
+  public:
+    explicit Reader(const std::filesystem::path& path) : path_(path), file_(neural::readTensorFile(path)) {}
+
+    KpcnWeights read() {
+        const Shape shape = readShape();
+        KpcnWeights result;
+        result.kernelWidth = shape.width;
+        const char* names[] = {"diffuse", "specular"};
+        for (size_t side = 0; side < 2; ++side) {
+            uint32_t inputs = KPCN_INPUT_CHANNELS;
+            for (uint32_t i = 0; i < shape.hidden; ++i) {
+                result.sides[side].push_back(
+                    layer(fmt::format("{}.hidden.{}", names[side], i), inputs, shape.channels));
+                inputs = shape.channels;
+            }
+            result.sides[side].push_back(
+                layer(fmt::format("{}.output", names[side]), inputs, shape.width * shape.width));
+        }
+        if (!file_.tensors.empty())
+            fail(fmt::format("holds a tensor '{}', which its shape has no place for",
+                             file_.tensors.begin()->first));
+        return result;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& fault) const { throw InputError(path_, fault); }
+
+    Shape readShape() const {
+        const auto kind = file_.metadata.find("limpid.network"), text = file_.metadata.find("limpid.shape");
+        if (kind == file_.metadata.end() || kind->second != "kpcn" || text == file_.metadata.end())
+            fail("holds no KPCN weights (training/limpid_training/export.py writes such files)");
+        const json shape = json::parse(text->second, nullptr, false);
+        const auto number = [&](const char* name, uint32_t most) {
+            if (!shape.is_object() || !shape.contains(name) || !shape[name].is_number_unsigned() ||
+                shape[name].get<uint64_t>() < 1 || shape[name].get<uint64_t>() > most)
+                fail(fmt::format("its metadata limpid.shape has no '{}' from 1 to {}", name, most));
+            return shape[name].get<uint32_t>();
+        };
+        const Shape result{number("hidden", mostHidden), number("channels", mostChannels),
+                           number("width", widestKernel)};
+        if (result.width % 2 == 0) fail("its kernels have no centre: limpid.shape has an even 'width'");
+        return result;
+    }
+
+    /// Taken out of the file, so that what is left is too much.
+    std::vector<float> take(const std::string& name, const std::vector<uint64_t>& shape) {
+        const auto found = file_.tensors.find(name);
+        if (found == file_.tensors.end()) fail(fmt::format("lacks the tensor '{}'", name));
+        if (found->second.shape != shape)
+            fail(fmt::format("the tensor '{}' has the shape ({}), not ({})", name,
+                             fmt::join(found->second.shape, ", "), fmt::join(shape, ", ")));
+        const std::vector<float> values = neural::valuesOf(found->second);
+        if (!std::ranges::all_of(values, [](float v) { return std::abs(v) <= largestHalf; }))
+            fail(fmt::format("the tensor '{}' holds numbers that are not finite or beyond half precision",
+                             name));
+        file_.tensors.erase(found);
+        return values;
+    }
+
+    KpcnLayer layer(const std::string& name, uint32_t inputs, uint32_t outputs) {
+        return {inputs, outputs, take(name + ".weight", {outputs, inputs, KPCN_TAPS, KPCN_TAPS}),
+                take(name + ".bias", {outputs})};
+    }
+
+    const std::filesystem::path& path_;
+    neural::TensorFile file_;
+};
+
+}  // namespace
+
+KpcnWeights readKpcnWeights(const std::filesystem::path& path) {
+    return Reader(path).read();
+}
+
+}  // namespace limpid::denoise

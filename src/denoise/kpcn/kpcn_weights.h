@@ -1,0 +1,29 @@
+// Weights of the kernel-predicting network from a file that training/limpid_training/export.py wrote
+// (docs/kpcn.md, "Files").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace limpid::denoise {
+
+/// A convolution of 5x5 taps.
+struct KpcnLayer {
+    uint32_t inputs = 0, outputs = 0;  ///< channels
+    std::vector<float> weights;        ///< (outputs, inputs, 5, 5)
+    std::vector<float> bias;           ///< (outputs)
+};
+
+struct KpcnWeights {
+    uint32_t kernelWidth = 0;                     ///< pixels; odd
+    std::array<std::vector<KpcnLayer>, 2> sides;  ///< diffuse, specular: hidden layers, then the output
+};
+
+/// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is no such network,
+/// lacks or has more tensors than its shape says or others, or holds numbers that are not finite or beyond
+/// half precision.
+KpcnWeights readKpcnWeights(const std::filesystem::path& path);
+
+}  // namespace limpid::denoise

@@ -1,0 +1,33 @@
+#include "renderer/network_file.h"
+
+#include "base/error.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+fs::path shippedWeights() {
+    std::error_code fault;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", fault).parent_path();
+    for (const fs::path& candidate :
+         {folder / "kpcn.safetensors", folder.parent_path() / "share" / "limpid" / "kpcn.safetensors"}) {
+        if (fs::exists(candidate, fault)) return candidate;
+    }
+    return {};
+}
+
+void loadNetwork(gpu::Device& device, const denoise::Denoiser* denoiser, const fs::path& file,
+                 denoise::DenoiserSettings& settings) {
+    if (!denoiser || !denoiser->network) {
+        if (!file.empty()) throw UsageError("--weights: only kpcn is a network and has weights");
+        return;
+    }
+    const fs::path chosen = file.empty() ? shippedWeights() : file;
+    if (chosen.empty())
+        throw InputError("kpcn.safetensors",
+                         "the weights that come with Limpid are not there: --weights FILE");
+    settings.kpcn.network = std::make_shared<denoise::KpcnNetwork>(
+        device, denoise::readKpcnWeights(chosen), denoise::kpcnPrecision(device.info(), settings.kpcn.half));
+}
+
+}  // namespace limpid
