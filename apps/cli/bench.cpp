@@ -249,6 +249,7 @@ void addBenchCommand(CLI::App& app) {
         runConvergence(*options);
     });
     addDenoiseBench(*bench);
+    addKpcnBench(*bench);
     addQualityBench(*bench);
     addSvgfBench(*bench);
 }

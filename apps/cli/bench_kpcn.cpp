@@ -1,0 +1,169 @@
+// limpid bench kpcn: milliseconds of the network's layers, and their operations a second beside those of a
+// plain product of matrices.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "bench.h"
+#include "bench_product.comp.h"
+#include "bench_scene.h"
+#include "denoise/kpcn/kpcn_params.h"
+#include "renderer/network_file.h"
+#include "renderer/parameters.h"
+
+namespace limpid::cli {
+namespace {
+
+using nlohmann::json;
+
+struct KpcnBench {
+    DeviceChoice device;
+    std::string scene = "builtin:cornell", weights;
+    std::vector<std::string> assignments;
+    uint32_t width = 1920, height = 1080, frames = 10, warmup = 3, productSize = 8192;
+    bool json = false;
+};
+
+/// Operations a second of a product of square matrices on cooperative matrices; none on devices without them.
+std::optional<double> productRate(gpu::Device& device, uint32_t size) {
+    if (!device.info().cooperativeMatrices) return std::nullopt;
+    // Halves of 1 and of -0.5, as words of two.
+    const std::vector<uint32_t> ones(size_t{size} * size / 2, 0x3C00B800u);
+    const gpu::Buffer left = device.createStorageBuffer("left", gpu::bytesOf(ones));
+    const gpu::Buffer right = device.createStorageBuffer("right", gpu::bytesOf(ones));
+    const gpu::Buffer result = device.createStorageBuffer("result", gpu::bytesOf(ones).size());
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    for (int i = 0; i < 12; ++i)
+        graph.dispatch({.pass = "product",
+                        .shader = shaders::bench_product_comp,
+                        .bindings = {{"left", &left}, {"right", &right}, {"result", &result}},
+                        .params = gpu::paramsOf(size),
+                        .constants = {},
+                        .extent = {size / 8, size / 8}});
+    graph.execute(device);
+    std::vector<double> times;
+    for (const gpu::PassTime& pass : graph.passTimes(device)) times.push_back(pass.milliseconds);
+    times.erase(times.begin(), times.begin() + 2);
+    return 2.0 * std::pow(size, 3) / (median(times) * 1e-3);
+}
+
+/// Of each pass of the convolutions, for one pixel: multiplications and additions of channels that there are.
+std::map<std::string, double> operationsByPass(const denoise::KpcnWeights& weights) {
+    std::map<std::string, double> result;
+    const char* names[] = {"diffuse", "specular"};
+    for (size_t side = 0; side < 2; ++side) {
+        const std::vector<denoise::KpcnLayer>& layers = weights.sides[side];
+        for (size_t i = 0; i < layers.size(); ++i) {
+            const std::string step = i + 1 < layers.size() ? fmt::format("hidden {}", i + 1) : "kernel";
+            result[fmt::format("kpcn/{} {}", names[side], step)] =
+                2.0 * denoise::KPCN_TAPS * denoise::KPCN_TAPS * layers[i].inputs * layers[i].outputs;
+        }
+    }
+    return result;
+}
+
+struct Row {
+    std::string pass;
+    double milliseconds = 0.0, operations = 0.0;  ///< operations of a frame
+};
+
+RenderSettings settingsOf(const KpcnBench& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.pipeline = parsePipeline("kpcn");
+    settings.jitter = Jitter::Off;
+    for (const std::string& text : o.assignments) assign(settings, text);
+    return settings;
+}
+
+std::vector<Row> measure(gpu::Device& device, const KpcnBench& o, RenderSettings& settings) {
+    const auto file = o.weights.empty() ? shippedWeights() : std::filesystem::path(o.weights);
+    loadNetwork(device, settings.pipeline.denoiser, file, settings.denoisers);
+    const std::map<std::string, double> operations = operationsByPass(denoise::readKpcnWeights(file));
+    BenchScene scene(device, chosenTracer(o.device, device), {o.scene, "", ""});
+    std::vector<Row> rows;
+    for (const auto& [pass, cost] : scene.measure(settings, o.warmup, o.frames)) {
+        if (!pass.starts_with("kpcn/")) continue;
+        const auto known = operations.find(pass);
+        const double pixels = static_cast<double>(o.width) * o.height;
+        rows.push_back(
+            {pass, median(cost.milliseconds), known == operations.end() ? 0.0 : known->second * pixels});
+    }
+    Row all{"all", 0.0, 0.0};
+    for (const Row& row : rows) {
+        all.milliseconds += row.milliseconds;
+        all.operations += row.operations;
+    }
+    rows.push_back(all);
+    return rows;
+}
+
+double rateOf(const Row& row) {
+    return row.operations / (row.milliseconds * 1e-3);
+}
+
+void print(const KpcnBench& o, const gpu::Device& device, const std::vector<Row>& rows,
+           std::string_view precision, std::optional<double> product) {
+    fmt::print("{}, {}x{}, {}\n{:<28}{:>12}{:>12}\n", device.info().name, o.width, o.height, precision,
+               "pass", "ms median", "GFLOP/s");
+    for (const Row& row : rows)
+        fmt::print("{:<28}{:>12.4f}{:>12.1f}\n", row.pass, row.milliseconds, rateOf(row) * 1e-9);
+    if (product)
+        fmt::print(
+            "a product of {0}x{0} matrices of halves: {1:.1f} GFLOP/s; all of the network: {2:.1f} % of "
+            "that\n",
+            o.productSize, *product * 1e-9, 100.0 * rateOf(rows.back()) / *product);
+}
+
+void run(const KpcnBench& o) {
+    if (o.productSize % 128 != 0) throw UsageError("--product-size is a multiple of 128");
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    RenderSettings settings = settingsOf(o);
+    const std::vector<Row> rows = measure(*device, o, settings);
+    const std::string_view precision = denoise::toString(settings.denoisers.kpcn.network->precision());
+    const std::optional<double> product = productRate(*device, o.productSize);
+    if (!o.json) return print(o, *device, rows, precision, product);
+    json passes = json::array();
+    for (const Row& row : rows)
+        passes.push_back(
+            {{"pass", row.pass}, {"ms_median", row.milliseconds}, {"flop_per_second", rateOf(row)}});
+    json object{{"device", device->info().name},
+                {"driver", device->info().driver},
+                {"scene", o.scene},
+                {"precision", precision},
+                {"width", o.width},
+                {"height", o.height},
+                {"frames", o.frames},
+                {"passes", passes}};
+    if (product) object["product_flop_per_second"] = *product;
+    fmt::print("{}\n", object.dump(2));
+}
+
+}  // namespace
+
+void addKpcnBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "kpcn",
+        "Milliseconds of the network's layers, and operations a second beside those of a plain product");
+    auto o = std::make_shared<KpcnBench>();
+    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
+    command->add_option("--weights", o->weights, "Another file than the one that comes with Limpid");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--width", o->width, "Pixels (1920)")->check(CLI::Range(1, 16384));
+    command->add_option("--height", o->height, "Pixels (1080)")->check(CLI::Range(1, 16384));
+    command->add_option("--frames", o->frames, "Frames timed (10)")->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Frames before them (3)")->check(CLI::Range(0, 100000));
+    command->add_option("--product-size", o->productSize, "Rows of the matrices (8192)")
+        ->check(CLI::Range(128, 16384));
+    command->add_flag("--json", o->json, "One JSON object on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,81 @@
+// The network on the command line: its weights, the layers that it needs, and that it denoises.
+#include <gmock/gmock.h>
+
+#include "cli_fixture.h"
+#include "image/exr.h"
+#include "image/metrics.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string smallWeights =
+    " --weights '" + std::string(LIMPID_SOURCE_DIR) + "/tests/data/kpcn_small.safetensors' ";
+constexpr const char* small = " --device cpu --width 48 --height 32 --float ";
+constexpr const char* larger = " --device cpu --width 96 --height 64 --float ";
+
+class CliKpcnTest : public CliTest {
+  protected:
+    image::Image pictureOf(const std::string& file) { return image::readExr(path(file)).get("", "RGB"); }
+    void mustRun(const std::string& command) {
+        const Result result = run(command);
+        ASSERT_EQ(result.code, 0) << result.output;
+    }
+};
+
+TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
+    mustRun("render builtin:cornell -o " + path("noisy.exr") + larger + "--spp 32 --jitter off --aov all");
+    mustRun("render builtin:cornell -o " + path("truth.exr") + larger + "--spp 1024 --seed 3 --jitter off");
+    mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn");
+    const image::Image truth = pictureOf("truth.exr");
+    EXPECT_LT(image::relMse(pictureOf("clean.exr"), truth),
+              0.15 * image::relMse(pictureOf("noisy.exr"), truth));
+}
+
+TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
+    mustRun("render builtin:cornell -o " + path("noisy.exr") + small + "--spp 4 --jitter off --aov all");
+    mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn" +
+            smallWeights);
+    mustRun("render builtin:cornell -o " + path("own.exr") + small + "--spp 4 --pipeline kpcn" +
+            smallWeights);
+    const image::Image clean = pictureOf("clean.exr"), own = pictureOf("own.exr");
+    for (size_t i = 0; i < own.pixels.size(); ++i)
+        ASSERT_NEAR(clean.pixels[i], own.pixels[i], 2e-3f * own.pixels[i] + 1e-4f) << i;
+    EXPECT_NE(own.pixels, pictureOf("noisy.exr").pixels);
+}
+
+TEST_F(CliKpcnTest, MissingLayersAreNamed) {
+    mustRun("render builtin:cornell -o " + path("noisy.exr") + small +
+            "--spp 2 --aov diffuse,specular,emission,albedo,normal,depth");
+    const Result result =
+        run("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn");
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(
+        result.output,
+        HasSubstr("diffuse.variance, specular.variance, albedo.variance, normal.variance, depth.variance"));
+    EXPECT_FALSE(fs::exists(path("clean.exr")));
+}
+
+TEST_F(CliKpcnTest, BadWeightsAreRefused) {
+    const std::string render =
+        "render builtin:cornell -o " + path("own.exr") + small + "--pipeline kpcn --weights ";
+    put("weights", "not weights at all");
+    for (const std::string& file : {path("weights"), path("none")}) {
+        const Result result = run(render + file);
+        EXPECT_EQ(result.code, 3);
+        EXPECT_THAT(result.output, HasSubstr(file));
+    }
+    const Result result =
+        run("render builtin:cornell -o " + path("own.exr") + small + "--pipeline svgf" + smallWeights);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("only kpcn"));
+}
+
+TEST_F(CliKpcnTest, InfoSaysHowItRuns) {
+    EXPECT_THAT(run("info").output, HasSubstr("--pipeline kpcn"));
+    EXPECT_THAT(run("info --json").output, HasSubstr("\"kpcn\": \"half precision"));
+}
+
+}  // namespace
+}  // namespace limpid

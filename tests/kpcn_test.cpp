@@ -1,0 +1,244 @@
+// The kernel-predicting network against PyTorch (training/limpid_training/fixture.py), and what must hold of
+// every denoiser.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "denoise/kpcn/kpcn_params.h"
+#include "denoise_fixture.h"
+#include "double_denoise_fixture.h"
+#include "neural/tensor_file.h"
+
+namespace limpid::test {
+namespace {
+
+using denoise::KpcnNetwork;
+using denoise::KpcnPrecision;
+using denoise::KpcnWeights;
+using neural::TensorFile;
+
+const std::string dataFolder = std::string(LIMPID_SOURCE_DIR) + "/tests/data/";
+
+KpcnWeights weightsOf(const std::string& network) {
+    return denoise::readKpcnWeights(network == "shipped"
+                                        ? std::string(LIMPID_SOURCE_DIR) + "/weights/kpcn.safetensors"
+                                        : dataFolder + "kpcn_small.safetensors");
+}
+
+/// A network of random weights.
+KpcnWeights randomWeights(uint32_t hidden, uint32_t channels, uint32_t width) {
+    std::mt19937 generator(7);
+    KpcnWeights weights{width, {}};
+    for (auto& side : weights.sides) {
+        uint32_t inputs = denoise::KPCN_INPUT_CHANNELS;
+        for (uint32_t i = 0; i <= hidden; ++i) {
+            const uint32_t outputs = i < hidden ? channels : width * width;
+            const double spread = std::sqrt(2.0 / (25.0 * inputs));
+            std::normal_distribution<float> normal(0.0f, static_cast<float>(spread));
+            denoise::KpcnLayer layer{inputs, outputs, std::vector<float>(size_t{25} * inputs * outputs),
+                                     std::vector<float>(outputs)};
+            for (float& w : layer.weights) w = normal(generator);
+            for (float& b : layer.bias) b = normal(generator);
+            side.push_back(layer);
+            inputs = channels;
+        }
+    }
+    return weights;
+}
+
+/// Tensors (channels, rows, columns) to four floats a pixel.
+std::vector<float> pixelsOf(const TensorFile& file, const std::string& name, const std::string& fourth) {
+    const neural::Tensor& tensor = file.tensors.at(name);
+    const std::vector<float> values = neural::valuesOf(tensor);
+    const size_t pixels = tensor.shape[1] * tensor.shape[2];
+    std::vector<float> result(4 * pixels);
+    for (size_t c = 0; c < tensor.shape[0]; ++c) {
+        for (size_t p = 0; p < pixels; ++p) result[4 * p + c] = values[c * pixels + p];
+    }
+    if (fourth.empty()) return result;
+    const std::vector<float> variances = neural::valuesOf(file.tensors.at(fourth));
+    for (size_t p = 0; p < pixels; ++p) result[4 * p + 3] = variances[p];
+    return result;
+}
+
+HostFrame frameOf(const TensorFile& file, const std::string& name) {
+    const std::vector<uint64_t>& shape = file.tensors.at(name + "/depth").shape;
+    HostFrame frame;
+    frame.height = static_cast<uint32_t>(shape[1]);
+    frame.width = static_cast<uint32_t>(shape[2]);
+    const auto pixels = [&](const std::string& layer) {
+        return pixelsOf(file, name + "/" + layer, name + "/" + layer + ".variance");
+    };
+    frame.diffuse = pixels("diffuse");
+    frame.specular = pixels("specular");
+    frame.albedo = pixels("albedo");
+    frame.normal = pixels("normal");
+    frame.depth = pixels("depth");
+    for (size_t p = 0; p < frame.pixelCount(); ++p)
+        frame.depth[4 * p + 1] = frame.depth[4 * p] > 0 ? 1.0f : 0.0f;
+    frame.emission.assign(4 * frame.pixelCount(), 0.0f);
+    frame.motion = frame.previousNormal = frame.emission;
+    frame.ids.assign(2 * frame.pixelCount(), 0);
+    frame.samples = 2;
+    return frame;
+}
+
+/// Root of the squared differences over that of the squares.
+double relativeError(const std::vector<float>& picture, const std::vector<float>& truth) {
+    double differences = 0.0, squares = 0.0;
+    for (size_t i = 0; i < truth.size(); ++i) {
+        if (i % 4 == 3) continue;
+        differences += std::pow(double{picture[i]} - double{truth[i]}, 2);
+        squares += std::pow(double{truth[i]}, 2);
+    }
+    return std::sqrt(differences / squares);
+}
+
+/// The largest difference of a pixel, relative to it and to a tenth of the mean.
+double largestError(const std::vector<float>& picture, const std::vector<float>& truth) {
+    double mean = 0.0, largest = 0.0;
+    for (const float value : truth) mean += std::abs(double{value}) / static_cast<double>(truth.size());
+    for (size_t i = 0; i < truth.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const double difference = std::abs(double{picture[i]} - double{truth[i]});
+        largest = std::max(largest, difference / (std::abs(double{truth[i]}) + 0.1 * mean));
+    }
+    return largest;
+}
+
+class KpcnTest : public DenoiseTest {
+  protected:
+    static const denoise::Denoiser& method() { return *denoise::findDenoiser("kpcn"); }
+
+    DenoiserSettings settingsWith(const KpcnWeights& weights, KpcnPrecision precision, int tile = 512) {
+        DenoiserSettings settings;
+        settings.kpcn.tile = tile;
+        settings.kpcn.network = std::make_shared<KpcnNetwork>(device(), weights, precision);
+        return settings;
+    }
+    DenoiserSettings smallSettings() {
+        return settingsWith(randomWeights(1, 7, 5), denoise::kpcnPrecision(device().info(), true));
+    }
+    std::vector<KpcnPrecision> precisions() {
+        std::vector<KpcnPrecision> all{KpcnPrecision::Float, KpcnPrecision::Half};
+        if (device().info().cooperativeMatrices) all.push_back(KpcnPrecision::Matrices);
+        return all;
+    }
+};
+
+TEST_F(KpcnTest, IsWhatPyTorchComputes) {
+    const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
+    for (const std::string name : {"small", "shipped"}) {
+        const HostFrame frame = frameOf(cases, name);
+        const std::vector<float> truth = pixelsOf(cases, name + "/clean", "");
+        for (const KpcnPrecision precision : precisions()) {
+            const double most = precision == KpcnPrecision::Float ? 1e-3 : 1e-2;
+            const std::vector<float> picture =
+                denoise(method(), frame, settingsWith(weightsOf(name), precision));
+            const std::string what = name + ", " + std::string(denoise::toString(precision));
+            RecordProperty(what, std::to_string(relativeError(picture, truth)));
+            EXPECT_LT(relativeError(picture, truth), most) << what;
+            EXPECT_LT(largestError(picture, truth), 3 * most) << what;
+            for (size_t side = 0; side < 2; ++side) {
+                const std::string which = side == 0 ? "diffuse" : "specular";
+                const std::vector<float> clean =
+                    graph_.downloadFloat(device(), written("kpcn/" + which + " kernel", "kpcn/" + which));
+                EXPECT_LT(relativeError(clean, pixelsOf(cases, name + "/" + which + ".clean", "")), most)
+                    << what;
+            }
+        }
+    }
+}
+
+TEST_F(KpcnTest, TilesDoNotShow) {
+    const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
+    const HostFrame frame = frameOf(cases, "small");
+    for (const KpcnPrecision precision : precisions()) {
+        const std::vector<float> whole =
+            denoise(method(), frame, settingsWith(weightsOf("small"), precision));
+        const std::vector<float> tiled =
+            denoise(method(), frame, settingsWith(weightsOf("small"), precision, 16));
+        EXPECT_EQ(whole, tiled) << denoise::toString(precision);
+    }
+}
+
+/// Of every precision against single precision, which is PyTorch's: shapes whose channels do and do not fill
+/// whole slabs.
+TEST_F(KpcnTest, AnyShapeOfNetwork) {
+    const HostFrame frame = SyntheticScene({}).frame(3, 41, 23, 1);
+    for (const auto& [hidden, channels, width] :
+         {std::tuple{1u, 1u, 3u}, {2u, 15u, 5u}, {1u, 16u, 21u}, {3u, 40u, 9u}}) {
+        const KpcnWeights weights = randomWeights(hidden, channels, width);
+        const std::vector<float> truth =
+            denoise(method(), frame, settingsWith(weights, KpcnPrecision::Float));
+        for (const KpcnPrecision precision : precisions())
+            EXPECT_LT(relativeError(denoise(method(), frame, settingsWith(weights, precision, 32)), truth),
+                      1e-2)
+                << hidden << " " << channels << " " << width << " " << denoise::toString(precision);
+    }
+}
+
+TEST_F(KpcnTest, AConstantImageStaysConstant) {
+    HostFrame frame = frontalPlane(40, 30);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        for (size_t c = 0; c < 3; ++c)
+            frame.diffuse[4 * p + c] = frame.specular[4 * p + c] = 0.25f * static_cast<float>(c + 1);
+    }
+    const std::vector<float> picture = denoise(method(), frame, smallSettings());
+    for (size_t i = 0; i < picture.size(); ++i)
+        ASSERT_NEAR(picture[i], i % 4 == 3 ? 1.0f : 0.5f * static_cast<float>(i % 4 + 1), 1e-4f) << i;
+}
+
+TEST_F(KpcnTest, AnySizeWorks) {
+    const DenoiserSettings settings = smallSettings();
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 3u}, {17u, 5u}, {33u, 65u}}) {
+        const std::vector<float> picture =
+            denoise(method(), SyntheticScene({}).frame(1, width, height, 1), settings);
+        ASSERT_EQ(picture.size(), size_t{4} * width * height);
+        for (const float value : picture) ASSERT_TRUE(std::isfinite(value)) << width << "x" << height;
+    }
+}
+
+TEST_F(KpcnTest, NoNanGoesInOrComesOut) {
+    const DenoiserSettings settings = smallSettings();
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::max()};
+    HostFrame frame = SyntheticScene({}).frame(1, 48, 27, 1);
+    size_t at = 5;
+    for (auto* layer :
+         {&frame.diffuse, &frame.specular, &frame.emission, &frame.albedo, &frame.normal, &frame.depth}) {
+        for (const float value : bad) {
+            if (layer == &frame.emission && value == bad[3]) continue;  // it passes by as it is
+            for (size_t i = 0; i < 4; ++i) (*layer)[(at += 617) % layer->size()] = value;
+        }
+    }
+    for (const float value : denoise(method(), frame, settings)) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
+    const DenoiserSettings settings = settingsWith(randomWeights(2, 100, 21), KpcnPrecision::Half, 64);
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    denoise::DenoiserInput input = denoise::upload(graph, frontalPlane(300, 200));
+    const size_t first = graph.passes().size();
+    method().record(graph, input, settings);
+    // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
+    // bytes, twice, and light of 16. Of the picture: distances, two sides, beauty; and the largest of 38x25,
+    // 5x4 and 1.
+    const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16);
+    const uint64_t images = uint64_t{300} * 200 * (4 + 3 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(first), buffers + images);
+}
+
+TEST_F(KpcnTest, WithoutANetworkItSaysSo) {
+    graph_.beginFrame();
+    const denoise::DenoiserInput input = denoise::upload(graph_, frontalPlane(8, 8));
+    EXPECT_THROW(method().record(graph_, input, {}), Error);
+}
+
+}  // namespace
+}  // namespace limpid::test

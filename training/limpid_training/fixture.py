@@ -1,0 +1,95 @@
+"""Writes what the C++ tests hold their inference against:
+
+    python3 -m limpid_training.fixture ../tests/data
+
+kpcn_small.safetensors: a small network with random weights. kpcn_cases.safetensors: frames ("CASE/LAYER" as in a dataset, in single
+precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean"."""
+
+import argparse
+import json
+import os
+
+import torch
+
+from . import features, tensor_file
+from .network import Kpcn
+
+#: name: rows, columns
+CASES = {"small": (37, 45), "shipped": (23, 30)}
+SMALL = {"hidden": 2, "channels": 20, "width": 7}
+
+
+def frame(rows, columns, generator):
+    """Surfaces in front of each other, under noisy light; with pixels that see nothing."""
+
+    def random(channels):
+        return torch.rand(1, channels, rows, columns, generator=generator)
+
+    y, x = torch.meshgrid(torch.arange(float(rows)), torch.arange(float(columns)), indexing="ij")
+    near = ((x - columns / 2) ** 2 + (y - rows / 2) ** 2 < (rows / 4) ** 2)[None, None]
+    nothing = (x + y < rows / 3)[None, None]
+    albedo = torch.where(near, 0.1 + 0.8 * (x % 7) / 7, 0.5 - 0.4 * (y % 5) / 5).expand(1, 3, -1, -1).clone()
+    normal = torch.where(near, torch.tensor([0.0, 0.6, 0.8])[:, None, None], torch.tensor([1.0, 0.0, 0.0])[:, None, None])
+    layers = {"diffuse": albedo * (0.2 + random(3) ** 4), "specular": 3 * random(3) ** 8, "albedo": albedo, "normal": normal}
+    layers["depth"] = torch.where(near, 2.0 + 0.01 * x, 5.0 + 0.1 * y)
+    for name in list(layers):
+        layers[name] = torch.where(nothing, torch.zeros(1), layers[name])
+        scale = 0.02 if name in ("diffuse", "specular") else 0.001
+        layers[name + ".variance"] = torch.where(nothing, torch.zeros(1), scale * random(1))
+    return {name: image.contiguous() for name, image in layers.items()}
+
+
+def small_network():
+    torch.manual_seed(20)
+    net = Kpcn(**SMALL)
+    with torch.no_grad():
+        for name, parameter in net.named_parameters():
+            if name.endswith("bias"):
+                parameter.uniform_(-0.2, 0.2)
+            if "output.weight" in name:
+                parameter.mul_(8.0)  # kernels that are not flat
+    return net
+
+
+def load(path):
+    weights, metadata = tensor_file.read(path)
+    net = Kpcn(**json.loads(metadata["limpid.shape"]))
+    net.load_state_dict({name: weight.float() for name, weight in weights.items()})
+    return net
+
+
+@torch.no_grad()
+def cases(networks):
+    """Tensors by the names in kpcn_cases.safetensors. In double precision."""
+    generator = torch.Generator().manual_seed(7)
+    result = {}
+    for name, (rows, columns) in CASES.items():
+        layers = frame(rows, columns, generator)
+        prepared = features.prepare({layer: image.double() for layer, image in layers.items()})
+        net = networks[name].double()
+        clean = {side + ".clean": net.side(side, prepared) for side in features.SIDES}
+        clean["clean"] = net(prepared)
+        for layer, image in {**layers, **clean}.items():
+            result[f"{name}/{layer}"] = image[0].float()
+    return result
+
+
+def networks(data, weights):
+    return {"small": load(os.path.join(data, "kpcn_small.safetensors")), "shipped": load(weights)}
+
+
+SHIPPED = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.safetensors")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="limpid_training.fixture", description=__doc__.split("\n")[0])
+    parser.add_argument("output", help="folder")
+    folder = parser.parse_args().output
+    small = os.path.join(folder, "kpcn_small.safetensors")
+    metadata = {"limpid.network": "kpcn", "limpid.shape": json.dumps(SMALL)}
+    tensor_file.write(small, dict(small_network().state_dict()), metadata)
+    tensor_file.write(os.path.join(folder, "kpcn_cases.safetensors"), cases(networks(folder, SHIPPED)))
+
+
+if __name__ == "__main__":
+    main()
