@@ -86,6 +86,10 @@ HostFrame frameOf(const TensorFile& file, const std::string& name) {
     return frame;
 }
 
+bool single(KpcnPrecision precision) {
+    return precision == KpcnPrecision::Float || precision == KpcnPrecision::Host;
+}
+
 /// Root of the squared differences over that of the squares.
 double relativeError(const std::vector<float>& picture, const std::vector<float>& truth) {
     double differences = 0.0, squares = 0.0;
@@ -122,9 +126,14 @@ class KpcnTest : public DenoiseTest {
     DenoiserSettings smallSettings() {
         return settingsWith(randomWeights(1, 7, 5), denoise::kpcnPrecision(device().info(), true));
     }
+    gpu::ImageHandle sideOf(const std::string& side, KpcnPrecision precision) {
+        const std::string step = precision == KpcnPrecision::Host ? " layers" : " kernel";
+        return written("kpcn/" + side + step, "kpcn/" + side);
+    }
     std::vector<KpcnPrecision> precisions() {
         std::vector<KpcnPrecision> all{KpcnPrecision::Float, KpcnPrecision::Half};
         if (device().info().cooperativeMatrices) all.push_back(KpcnPrecision::Matrices);
+        if (device().isCpu() && denoise::kpcnHostAvailable()) all.push_back(KpcnPrecision::Host);
         return all;
     }
 };
@@ -135,7 +144,7 @@ TEST_F(KpcnTest, IsWhatPyTorchComputes) {
         const HostFrame frame = frameOf(cases, name);
         const std::vector<float> truth = pixelsOf(cases, name + "/clean", "");
         for (const KpcnPrecision precision : precisions()) {
-            const double most = precision == KpcnPrecision::Float ? 1e-3 : 1e-2;
+            const double most = single(precision) ? 1e-3 : 1e-2;
             const std::vector<float> picture =
                 denoise(method(), frame, settingsWith(weightsOf(name), precision));
             const std::string what = name + ", " + std::string(denoise::toString(precision));
@@ -144,8 +153,7 @@ TEST_F(KpcnTest, IsWhatPyTorchComputes) {
             EXPECT_LT(largestError(picture, truth), 3 * most) << what;
             for (size_t side = 0; side < 2; ++side) {
                 const std::string which = side == 0 ? "diffuse" : "specular";
-                const std::vector<float> clean =
-                    graph_.downloadFloat(device(), written("kpcn/" + which + " kernel", "kpcn/" + which));
+                const std::vector<float> clean = graph_.downloadFloat(device(), sideOf(which, precision));
                 EXPECT_LT(relativeError(clean, pixelsOf(cases, name + "/" + which + ".clean", "")), most)
                     << what;
             }

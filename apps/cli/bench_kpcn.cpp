@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "bench_product.comp.h"
 #include "bench_scene.h"
 #include "denoise/kpcn/kpcn_params.h"
+#include "neural/convolutions.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
 
@@ -53,6 +55,30 @@ std::optional<double> productRate(gpu::Device& device, uint32_t size) {
     return 2.0 * std::pow(size, 3) / (median(times) * 1e-3);
 }
 
+/// Operations a second of nothing but a convolution of oneDNN's, as the hidden layers have it; none without
+/// it, and beside GPUs.
+std::optional<double> convolutionRate(const gpu::Device& device, const KpcnBench& o) {
+#ifdef LIMPID_HAVE_ONEDNN
+    if (!device.isCpu()) return std::nullopt;
+    constexpr uint32_t channels = 100, padded = 112, taps = denoise::KPCN_TAPS * denoise::KPCN_TAPS;
+    const std::vector<float> weights(size_t{taps} * channels * channels, 0.01f), bias(channels),
+        last(taps * channels);
+    neural::ConvolutionChain chain(
+        {{channels, channels, weights, bias, true}, {channels, 1, last, {bias.data(), 1}, false}});
+    const std::vector<float> input(size_t{padded} * o.width * o.height, 0.5f);
+    std::vector<double> seconds;
+    for (uint32_t i = 0; i < 4; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        chain.begin(input, o.width, o.height);
+        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    seconds.erase(seconds.begin());
+    return 2.0 * taps * channels * channels * o.width * o.height / median(seconds);
+#else
+    return std::nullopt;
+#endif
+}
+
 /// Of each pass of the convolutions, for one pixel: multiplications and additions of channels that there are.
 std::map<std::string, double> operationsByPass(const denoise::KpcnWeights& weights) {
     std::map<std::string, double> result;
@@ -61,12 +87,19 @@ std::map<std::string, double> operationsByPass(const denoise::KpcnWeights& weigh
         const std::vector<denoise::KpcnLayer>& layers = weights.sides[side];
         for (size_t i = 0; i < layers.size(); ++i) {
             const std::string step = i + 1 < layers.size() ? fmt::format("hidden {}", i + 1) : "kernel";
-            result[fmt::format("kpcn/{} {}", names[side], step)] =
+            const double count =
                 2.0 * denoise::KPCN_TAPS * denoise::KPCN_TAPS * layers[i].inputs * layers[i].outputs;
+            result[fmt::format("kpcn/{} {}", names[side], step)] = count;
+            result[fmt::format("kpcn/{} layers", names[side])] += count;  // all of them in one pass, on CPUs
         }
     }
     return result;
 }
+
+/// Operations a second of what the network is held against.
+struct Yardsticks {
+    std::optional<double> product, convolution;
+};
 
 struct Row {
     std::string pass;
@@ -109,16 +142,18 @@ double rateOf(const Row& row) {
 }
 
 void print(const KpcnBench& o, const gpu::Device& device, const std::vector<Row>& rows,
-           std::string_view precision, std::optional<double> product) {
+           std::string_view precision, const Yardsticks& yardsticks) {
     fmt::print("{}, {}x{}, {}\n{:<28}{:>12}{:>12}\n", device.info().name, o.width, o.height, precision,
                "pass", "ms median", "GFLOP/s");
     for (const Row& row : rows)
         fmt::print("{:<28}{:>12.4f}{:>12.1f}\n", row.pass, row.milliseconds, rateOf(row) * 1e-9);
-    if (product)
-        fmt::print(
-            "a product of {0}x{0} matrices of halves: {1:.1f} GFLOP/s; all of the network: {2:.1f} % of "
-            "that\n",
-            o.productSize, *product * 1e-9, 100.0 * rateOf(rows.back()) / *product);
+    const auto beside = [&](const std::string& what, std::optional<double> rate) {
+        if (rate)
+            fmt::print("{}: {:.1f} GFLOP/s; all of the network: {:.1f} % of that\n", what, *rate * 1e-9,
+                       100.0 * rateOf(rows.back()) / *rate);
+    };
+    beside(fmt::format("a product of {0}x{0} matrices of halves", o.productSize), yardsticks.product);
+    beside("nothing but a convolution of 100 to 100 channels by oneDNN", yardsticks.convolution);
 }
 
 void run(const KpcnBench& o) {
@@ -127,8 +162,8 @@ void run(const KpcnBench& o) {
     RenderSettings settings = settingsOf(o);
     const std::vector<Row> rows = measure(*device, o, settings);
     const std::string_view precision = denoise::toString(settings.denoisers.kpcn.network->precision());
-    const std::optional<double> product = productRate(*device, o.productSize);
-    if (!o.json) return print(o, *device, rows, precision, product);
+    const Yardsticks yardsticks{productRate(*device, o.productSize), convolutionRate(*device, o)};
+    if (!o.json) return print(o, *device, rows, precision, yardsticks);
     json passes = json::array();
     for (const Row& row : rows)
         passes.push_back(
@@ -141,7 +176,8 @@ void run(const KpcnBench& o) {
                 {"height", o.height},
                 {"frames", o.frames},
                 {"passes", passes}};
-    if (product) object["product_flop_per_second"] = *product;
+    if (yardsticks.product) object["product_flop_per_second"] = *yardsticks.product;
+    if (yardsticks.convolution) object["convolution_flop_per_second"] = *yardsticks.convolution;
     fmt::print("{}\n", object.dump(2));
 }
 

@@ -146,6 +146,7 @@ void FrameExecutor::checkGroups(const RecordedFrame& frame, size_t index) const 
 void FrameExecutor::recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
     const RecordedPass& pass = frame.passes[index];
     const RecordedDispatch& dispatch = frame.dispatches[index];
+    if (dispatch.host) return runOnHost(frame, index, slot);
     const VkCommandBuffer commands = slot.commands();
     beginLabel(commands, pass.name);
     if (!pass.hazards.empty()) passBarrier(*context_, commands);
@@ -155,6 +156,22 @@ void FrameExecutor::recordPass(const RecordedFrame& frame, size_t index, FrameSl
         dispatch.resources.front().structures->recordRebuild(commands);
     }
     endLabel(commands);
+}
+
+void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
+    std::vector<std::span<std::byte>> pixels;
+    for (const uint32_t image : frame.dispatches[index].hostImages) {
+        const RecordedImage& recorded = frame.images[image];
+        std::byte* const mapped = frameImages_[image]->image.buffer->memory.mapped;
+        if (!mapped)
+            throw Error(fmt::format("pass '{}': the host cannot see image '{}' in the memory of {}",
+                                    frame.passes[index].name, recorded.name, context_->info().name));
+        pixels.emplace_back(mapped, recorded.bytes());
+    }
+    memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
+    slot.flush();
+    frame.dispatches[index].host(pixels);  // what it writes is seen by all that is submitted after it
 }
 
 void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {

@@ -25,6 +25,7 @@ class FrameExecutor {
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
     void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
+    void runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     VkDescriptorSet writeDescriptors(const RecordedFrame& frame, size_t index, VkDescriptorSetLayout layout,
                                      FrameSlot& slot);

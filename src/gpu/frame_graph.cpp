@@ -256,6 +256,32 @@ void FrameGraph::rebuild(std::string_view pass, const AccelerationStructures& st
     impl_->frame.dispatches.push_back(std::move(dispatch));
 }
 
+void FrameGraph::host(HostPass pass) {
+    impl_->requireRecording();
+    RecordedPass recorded;
+    recorded.name = pass.pass;
+    RecordedDispatch dispatch;
+    std::vector<Access> accesses;
+    const auto add = [&](ImageHandle handle, bool writes) {
+        const uint32_t index = impl_->indexOf(handle);
+        const RecordedImage& image = impl_->frame.images[index];
+        if (image.key.backing != Backing::Buffer)
+            throw Error(fmt::format("pass '{}': the host cannot see image '{}', which is not in a buffer",
+                                    pass.pass, image.name));
+        if (!writes && !image.written && image.role != RecordedImage::Role::Previous)
+            throw Error(fmt::format("pass '{}': nothing has written image '{}'", pass.pass, image.name));
+        accesses.push_back({.image = index, .name = image.name, .reads = !writes, .writes = writes});
+        dispatch.hostImages.push_back(index);
+        recorded.imageBytes += image.bytes();
+    };
+    for (const ImageHandle handle : pass.reads) add(handle, false);
+    for (const ImageHandle handle : pass.writes) add(handle, true);
+    impl_->noteAccesses(recorded, accesses);
+    dispatch.host = std::move(pass.run);
+    impl_->frame.passes.push_back(std::move(recorded));
+    impl_->frame.dispatches.push_back(std::move(dispatch));
+}
+
 const std::vector<RecordedPass>& FrameGraph::passes() const {
     return impl_->frame.passes;
 }

@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -94,6 +95,14 @@ struct Dispatch {
     const RayShaders* rays = nullptr;
 };
 
+/// A pass that the host computes, on devices whose memory it sees: CPUs. All images have Backing::Buffer.
+struct HostPass {
+    std::string_view pass;
+    std::vector<ImageHandle> reads, writes;
+    /// Gets the pixels of `reads`, then those of `writes`, row 0 first.
+    std::function<void(std::span<const std::span<std::byte>> pixels)> run;
+};
+
 /// Why a pass waits: for tests, and for whoever reads a frame.
 struct Hazard {
     enum class Kind { ReadAfterWrite, WriteAfterWrite, WriteAfterRead };
@@ -147,6 +156,11 @@ class FrameGraph {
     /// extent is empty. Every variable that the shader declares must be bound, used or not; the uniform block
     /// is filled from params. A recorded Buffer may be destroyed: the frame keeps what it needs.
     void dispatch(const Dispatch& dispatch);
+
+    /// Records a pass of the host's: execute() waits there until the passes before it are done, and runs it.
+    /// Throws Error if an image is not in a buffer, or is read though nothing wrote it; execute() does if the
+    /// host cannot see the device's memory.
+    void host(HostPass pass);
 
     /// Writes `data` into the buffer, from byte `offset` on, before the first pass of this frame; after all
     /// passes of earlier frames. Both are multiples of 4 bytes; ranges of one frame must not overlap. Throws

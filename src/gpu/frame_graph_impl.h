@@ -65,6 +65,9 @@ struct RecordedDispatch {
     std::vector<std::pair<uint32_t, uint32_t>> constants;  ///< id and value, sorted
     std::array<uint32_t, 3> groups{};
     std::array<uint32_t, 3> workgroupSize{};
+    std::function<void(std::span<const std::span<std::byte>>)>
+        host;                          ///< instead of all this: a pass of the host's
+    std::vector<uint32_t> hostImages;  ///< indices of images, in its order
 };
 
 /// Data that reaches a buffer or an image before the first pass.

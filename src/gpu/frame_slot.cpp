@@ -58,6 +58,18 @@ void FrameSlot::submit(const RecordedFrame& frame) {
     for (const RecordedPass& pass : frame.passes) passNames_.push_back(pass.name);
 }
 
+void FrameSlot::flush() {
+    LIMPID_VK(vkEndCommandBuffer(commands_));
+    context_->submit(commands_, fence_.get());
+    submitted_ = true;
+    wait();
+    const VkFence fence = fence_.get();
+    LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
+    submitted_ = false;
+    LIMPID_VK(vkResetCommandPool(context_->device(), commandPool_.get(), 0));
+    beginCommands(commands_);
+}
+
 /// Resets the pool, or replaces it by one that is twice as large as the frame needs.
 void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
     std::array<uint32_t, bindingKindCount> needed{};

@@ -14,6 +14,8 @@ class FrameSlot {
     void begin(const RecordedFrame& frame);
     void submit(const RecordedFrame& frame);
     void wait();
+    /// Runs the commands so far to their end, in the middle of a frame.
+    void flush();
 
     VkCommandBuffer commands() const { return commands_; }
     VkDescriptorSet allocateSet(VkDescriptorSetLayout layout, const std::string& name);

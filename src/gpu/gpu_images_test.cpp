@@ -77,6 +77,62 @@ TEST_F(GpuTest, ImagesInBuffersAreReadWrittenUploadedAndDownloaded) {
     }
 }
 
+TEST_F(GpuTest, AHostPassStandsBetweenThoseOfTheDevice) {
+    FrameGraph graph;
+    const std::vector<uint16_t> ramp = halfRamp(odd);
+    for (int frame = 0; frame < 3; ++frame) {
+        graph.beginFrame();
+        const auto inBuffer = [&](const char* name) {
+            return graph.transient(name, Format::RGBA16Float, odd, Backing::Buffer);
+        };
+        const ImageHandle source = inBuffer("source"), once = inBuffer("once"), shifted = inBuffer("shifted"),
+                          twice = inBuffer("twice");
+        const ImageHandle image = graph.transient("image", rgba, odd),
+                          last = graph.transient("last", rgba, odd);
+        graph.upload(source, bytesOf(ramp));
+        graph.dispatch(doubling(source, once, image, odd));
+        graph.host({.pass = "shift", .reads = {once}, .writes = {shifted}, .run = [](auto pixels) {
+                        // By one texel.
+                        std::copy_n(pixels[0].begin() + 8, pixels[0].size() - 8, pixels[1].begin());
+                        std::fill_n(pixels[1].end() - 8, 8, std::byte{0});
+                    }});
+        graph.dispatch(doubling(shifted, twice, last, odd));
+        ASSERT_EQ(graph.passes()[1].hazards.size(), 1u);
+        ASSERT_EQ(graph.passes()[2].hazards.size(), 1u);
+        EXPECT_EQ(graph.passes()[2].hazards[0].earlierPass, "shift");
+        EXPECT_EQ(graph.passes()[1].imageBytes, pixelsOf(odd) * 16);
+        if (!device().isCpu()) {
+            EXPECT_THAT(faultOf([&] { graph.execute(device()); }),
+                        HasSubstr("pass 'shift': the host cannot see"));
+            return;
+        }
+        graph.execute(device());
+        const std::vector<float> values = graph.downloadFloat(device(), twice);
+        for (size_t i = 0; i < values.size(); ++i)
+            ASSERT_EQ(values[i], i + 4 < ramp.size() ? 4 * glm::unpackHalf1x16(ramp[i + 4]) : 0.0f) << i;
+        EXPECT_EQ(graph.passTimes(device()).size(), 3u);
+    }
+}
+
+TEST(FrameGraphImages, AHostPassTakesWrittenBuffersOnly) {
+    FrameGraph graph;
+    graph.beginFrame();
+    const ImageHandle image = graph.transient("image", rgba, odd);
+    const ImageHandle buffer = graph.transient("buffer", Format::RGBA16Float, odd, Backing::Buffer);
+    const auto nothing = [](auto) {};
+    EXPECT_THAT(faultOf([&] {
+                    graph.host({"pass", {}, {image}, nothing});
+                }),
+                HasSubstr("'image', which is not in a buffer"));
+    EXPECT_THAT(faultOf([&] {
+                    graph.host({"pass", {buffer}, {}, nothing});
+                }),
+                HasSubstr("nothing has written image 'buffer'"));
+    graph.host({"pass", {}, {buffer}, nothing});
+    graph.host({"next", {buffer}, {}, nothing});
+    EXPECT_EQ(graph.passes()[1].hazards.size(), 1u);
+}
+
 TEST(FrameGraphImages, AWrongUploadOrBackingIsRefusedByName) {
     FrameGraph graph;
     graph.beginFrame();

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "denoise/kpcn/kpcn_params.h"
 #include "kpcn_compose.comp.h"
+#include "kpcn_compose_buffers.comp.h"
 #include "kpcn_distances.comp.h"
 #include "kpcn_features.comp.h"
 #include "kpcn_features_float.comp.h"
@@ -65,7 +66,14 @@ const Shaders& shadersOf(KpcnPrecision precision) {
                                   Format::RG32Uint,
                                   8,
                                   1};
-    return precision == KpcnPrecision::Float ? single : precision == KpcnPrecision::Half ? half : matrices;
+    switch (precision) {
+        case KpcnPrecision::Half:
+            return half;
+        case KpcnPrecision::Matrices:
+            return matrices;
+        default:
+            return single;
+    }
 }
 
 /// The largest number up to `most` that divides `count`.
@@ -74,6 +82,10 @@ uint32_t divisor(uint32_t count, uint32_t most) {
         if (count % d == 0) return d;
     }
     return 1;
+}
+
+std::span<float> asFloats(std::span<std::byte> bytes) {
+    return {reinterpret_cast<float*>(bytes.data()), bytes.size() / sizeof(float)};
 }
 
 struct Tile {
@@ -98,14 +110,14 @@ class Recorder {
     ImageHandle run() {
         const ImageHandle largest = largestDistance();
         const Extent channels{pitch_ * texelsOfSlab, rows_ * network_.slabs()};
-        for (size_t i = 0; i < 2; ++i)
+        for (size_t i = 0; i < (onHost() ? 1 : 2); ++i)
             channels_[i] = graph_.transient("kpcn/channels " + std::to_string(i + 1), shaders_.format,
                                             channels, Backing::Buffer);
         light_ = graph_.transient("kpcn/light", Format::RGBA32Float, {pitch_, rows_}, Backing::Buffer);
         std::array<ImageHandle, 2> clean;
         for (size_t side = 0; side < 2; ++side) {
-            clean[side] =
-                graph_.transient(std::string("kpcn/") + sideNames[side], Format::RGBA32Float, picture_);
+            clean[side] = graph_.transient(std::string("kpcn/") + sideNames[side], Format::RGBA32Float,
+                                           picture_, onHost() ? Backing::Buffer : Backing::Image);
             for (uint32_t top = 0; top < picture_.height; top += tile_.height) {
                 for (uint32_t left = 0; left < picture_.width; left += tile_.width)
                     recordTile(side,
@@ -153,8 +165,8 @@ class Recorder {
         r.height = static_cast<int>(std::min(tile.top + tile.height + margin, picture_.height)) - r.top;
         r.originX = begin(tile.left, margin_);
         r.originY = begin(tile.top, margin_);
-        r.pitch = static_cast<int>(pitch_);
-        r.rows = static_cast<int>(rows_);
+        r.pitch = onHost() ? r.width : static_cast<int>(pitch_);  // the host wants no gaps
+        r.rows = onHost() ? r.height : static_cast<int>(rows_);
         r.pictureWidth = static_cast<int>(picture_.width);
         r.pictureHeight = static_cast<int>(picture_.height);
         return r;
@@ -195,6 +207,7 @@ class Recorder {
     void recordTile(size_t side, const Tile& tile, ImageHandle largest, ImageHandle clean) {
         const std::string prefix = std::string("kpcn/") + sideNames[side] + " ";
         features(side, tile, largest, prefix);
+        if (onHost()) return layersOnHost(side, tile, clean, prefix);
         const std::vector<KpcnNetwork::Layer>& layers = network_.layers(side);
         for (size_t i = 0; i + 1 < layers.size(); ++i) {
             const KpcnRegion where = region(tile, reach * static_cast<uint32_t>(layers.size() - 1 - i));
@@ -203,6 +216,27 @@ class Recorder {
         }
         dispatchLayer(prefix + "kernel", shaders_.kernel, layers.back(), region(tile, 0), 4,
                       {{"inputs", channels_[(layers.size() - 1) % 2]}, {"light", light_}, {"clean", clean}});
+    }
+
+    bool onHost() const { return network_.precision() == KpcnPrecision::Host; }
+
+    void layersOnHost(size_t side, const Tile& tile, ImageHandle clean, const std::string& prefix) {
+        const KpcnRegion whole = region(tile, margin_);
+        const KpcnHostTile part{static_cast<uint32_t>(whole.width),
+                                static_cast<uint32_t>(whole.height),
+                                tile.left - static_cast<uint32_t>(whole.left),
+                                tile.top - static_cast<uint32_t>(whole.top),
+                                tile.width,
+                                tile.height};
+        const size_t first = 4 * (size_t{tile.top} * picture_.width + tile.left);
+        graph_.host({.pass = prefix + "layers",
+                     .reads = {channels_[0], light_},
+                     .writes = {clean},
+                     .run = [&host = network_.host(), side, part, first,
+                             pitch = picture_.width](std::span<const std::span<std::byte>> pixels) {
+                         host.run(side, part, asFloats(pixels[0]), asFloats(pixels[1]),
+                                  asFloats(pixels[2]).subspan(first), pitch);
+                     }});
     }
 
     void features(size_t side, const Tile& tile, ImageHandle largest, const std::string& prefix) {
@@ -244,7 +278,7 @@ class Recorder {
         const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
         const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height)};
         graph_.dispatch({.pass = "kpcn/compose",
-                         .shader = shaders::kpcn_compose_comp,
+                         .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
                          .bindings = {{"diffuse", clean[0]},
                                       {"specular", clean[1]},
                                       {"albedo", input_.albedo},

@@ -52,11 +52,14 @@ std::string_view toString(KpcnPrecision precision) {
             return "half precision";
         case KpcnPrecision::Matrices:
             return "half precision, cooperative matrices";
+        case KpcnPrecision::Host:
+            return "single precision, oneDNN";
     }
     return "";
 }
 
 KpcnPrecision kpcnPrecision(const gpu::DeviceInfo& device, bool half) {
+    if (device.type == "cpu" && kpcnHostAvailable()) return KpcnPrecision::Host;
     if (!half) return KpcnPrecision::Float;
     return device.cooperativeMatrices ? KpcnPrecision::Matrices : KpcnPrecision::Half;
 }
@@ -76,6 +79,11 @@ KpcnNetwork::KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPr
             layers_[side].push_back(made);
             slabs_ = std::max(slabs_, made.inputSlabs);
         }
+    }
+    if (precision == KpcnPrecision::Host) {
+        host_ = std::make_unique<KpcnHost>(weights);
+        slabs_ = KPCN_INPUT_SLABS;
+        return;
     }
     const auto type =
         precision == KpcnPrecision::Float ? neural::ElementType::Float32 : neural::ElementType::Float16;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string_view>
 #include <vector>
 
+#include "denoise/kpcn/kpcn_host.h"
 #include "denoise/kpcn/kpcn_weights.h"
 #include "gpu/device.h"
 
@@ -12,13 +14,14 @@ namespace limpid::denoise {
 
 /// How a network is computed. Sums are always in single precision.
 enum class KpcnPrecision {
-    Float,    ///< weights and channels in single precision
-    Half,     ///< ... in half precision
-    Matrices  ///< ... multiplied by cooperative matrices
+    Float,     ///< weights and channels in single precision
+    Half,      ///< ... in half precision
+    Matrices,  ///< ... multiplied by cooperative matrices
+    Host       ///< in single precision by the host, with oneDNN: on CPUs, where Limpid was built with it
 };
 std::string_view toString(KpcnPrecision precision);
 
-/// The fastest that the device has; Float unless `half`.
+/// The fastest that the device has; of GPUs Float unless `half`.
 KpcnPrecision kpcnPrecision(const gpu::DeviceInfo& device, bool half);
 
 /// The weights in the order in which the passes read them: of each slab of 16 inputs, of each tap, of each
@@ -35,6 +38,8 @@ class KpcnNetwork {
     /// 0: diffuse, 1: specular. Hidden layers, then the output.
     const std::vector<Layer>& layers(size_t side) const { return layers_[side]; }
     const gpu::Buffer& weights() const { return buffer_; }
+    /// Of KpcnPrecision::Host.
+    KpcnHost& host() const { return *host_; }
     KpcnPrecision precision() const { return precision_; }
     uint32_t kernelWidth() const { return kernelWidth_; }
     /// Of hidden layers and inputs, the most.
@@ -48,6 +53,7 @@ class KpcnNetwork {
     uint64_t mostBytes_;
     std::array<std::vector<Layer>, 2> layers_;
     gpu::Buffer buffer_;
+    std::unique_ptr<KpcnHost> host_;
 };
 
 }  // namespace limpid::denoise

@@ -1,0 +1,156 @@
+#include "denoise/kpcn/kpcn_host.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#ifdef LIMPID_HAVE_ONEDNN
+#include <tbb/parallel_for.h>
+
+#include "neural/convolutions.h"
+#endif
+
+namespace limpid::denoise {
+
+#ifndef LIMPID_HAVE_ONEDNN
+
+struct KpcnHost::Impl {};
+
+bool kpcnHostAvailable() {
+    return false;
+}
+KpcnHost::KpcnHost(const KpcnWeights&) {
+    throw Error("Limpid was built without oneDNN");
+}
+KpcnHost::~KpcnHost() = default;
+void KpcnHost::run(size_t, const KpcnHostTile&, std::span<const float>, std::span<const float>,
+                   std::span<float>, size_t) {}
+
+#else
+
+namespace {
+
+/// Rows of the output layer that are computed at a time: of 441 channels, 2 MB for each 64 pixels of width.
+constexpr uint32_t bandRows = 16;
+
+/// Within 3e-7 of e^x, relatively, for x from -87 to 0; 0 below. Written so that compilers make vector code
+/// of it: Taylor's polynomial of what is left below half a power of 2, and the power into the exponent.
+inline float exponential(float x) {
+    const float t = std::max(x, -87.0f) * 1.44269504f;
+    const float whole = static_cast<float>(static_cast<int>(t - 0.5f));
+    const float f = (t - whole) * 0.693147181f;
+    float p = 1.0f / 720.0f;
+    p = p * f + 1.0f / 120.0f;
+    p = p * f + 1.0f / 24.0f;
+    p = p * f + 1.0f / 6.0f;
+    p = p * f + 0.5f;
+    p = p * f + 1.0f;
+    p = p * f + 1.0f;
+    const float scale = std::bit_cast<float>((static_cast<int>(whole) + 127) << 23);
+    return x < -87.0f ? 0.0f : p * scale;
+}
+
+/// The means of one row of pixels; as if one after the other, all pixels of the row are under way at once.
+class RowOfMeans {
+  public:
+    RowOfMeans(const KpcnHostTile& tile, uint32_t kernelWidth, std::span<const float> light)
+        : tile_(tile), kernelWidth_(kernelWidth), light_(light), sums_(5 * size_t{tile.columns}) {}
+
+    /// `logits`: (channels, count, columns) of which `row`, in the part the row `y`.
+    void compute(std::span<const float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
+        const size_t n = tile_.columns;
+        std::fill(sums_.begin(), sums_.end(), 0.0f);
+        float *largest = &sums_[0], *weights = &sums_[n], *red = &sums_[2 * n], *green = &sums_[3 * n],
+              *blue = &sums_[4 * n];
+        std::fill_n(largest, n, -1e30f);
+        eachTap(logits, count, row, y, [&](const float* logit, int, int, size_t begin, size_t end) {
+            for (size_t x = begin; x < end; ++x) largest[x] = std::max(largest[x], logit[x]);
+        });
+        eachTap(logits, count, row, y, [&](const float* logit, int dx, int dy, size_t begin, size_t end) {
+            const float* light =
+                &light_[4 * static_cast<size_t>((static_cast<int64_t>(y) + dy) * static_cast<int64_t>(n))];
+            for (size_t x = begin; x < end; ++x) {
+                const float weight = exponential(logit[x] - largest[x]);
+                const float* at = light + 4 * (static_cast<int64_t>(x) + dx);
+                weights[x] += weight;
+                red[x] += weight * at[0];
+                green[x] += weight * at[1];
+                blue[x] += weight * at[2];
+            }
+        });
+        for (size_t x = tile_.left; x < tile_.left + tile_.width; ++x, clean += 4) {
+            clean[0] = red[x] / weights[x];
+            clean[1] = green[x] / weights[x];
+            clean[2] = blue[x] / weights[x];
+            clean[3] = 1.0f;
+        }
+    }
+
+  private:
+    /// Taps that lie in the picture: what lies outside the part but in the picture is never asked for by
+    /// wanted pixels.
+    template <typename Visit>
+    void eachTap(std::span<const float> logits, uint32_t count, uint32_t row, uint32_t y, Visit visit) const {
+        const int n = static_cast<int>(tile_.columns), reach = static_cast<int>(kernelWidth_ / 2);
+        for (uint32_t k = 0; k < kernelWidth_ * kernelWidth_; ++k) {
+            const int dx = static_cast<int>(k % kernelWidth_) - reach,
+                      dy = static_cast<int>(k / kernelWidth_) - reach;
+            const int tapRow = static_cast<int>(y) + dy;
+            if (tapRow < 0 || tapRow >= static_cast<int>(tile_.rows)) continue;
+            const int begin = std::max(0, -dx), end = std::min(n, n - dx);
+            if (begin < end)
+                visit(&logits[(size_t{k} * count + row) * tile_.columns], dx, dy, static_cast<size_t>(begin),
+                      static_cast<size_t>(end));
+        }
+    }
+
+    const KpcnHostTile& tile_;
+    uint32_t kernelWidth_;
+    std::span<const float> light_;
+    std::vector<float> sums_;  ///< largest logit, weights, red, green, blue: a row each
+};
+
+}  // namespace
+
+struct KpcnHost::Impl {
+    uint32_t kernelWidth = 0;
+    std::array<std::unique_ptr<neural::ConvolutionChain>, 2> sides;
+};
+
+bool kpcnHostAvailable() {
+    return true;
+}
+
+KpcnHost::KpcnHost(const KpcnWeights& weights) : impl_(std::make_unique<Impl>()) {
+    impl_->kernelWidth = weights.kernelWidth;
+    for (size_t side = 0; side < 2; ++side) {
+        std::vector<neural::ConvolutionLayer> layers;
+        for (const KpcnLayer& layer : weights.sides[side]) {
+            const bool hidden = &layer != &weights.sides[side].back();
+            layers.push_back({layer.inputs, layer.outputs, layer.weights, layer.bias, hidden});
+        }
+        impl_->sides[side] = std::make_unique<neural::ConvolutionChain>(layers);
+    }
+}
+
+KpcnHost::~KpcnHost() = default;
+
+void KpcnHost::run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,
+                   std::span<const float> light, std::span<float> clean, size_t pitch) {
+    neural::ConvolutionChain& chain = *impl_->sides[side];
+    chain.begin(channels, tile.columns, tile.rows);
+    for (uint32_t first = tile.top; first < tile.top + tile.height; first += bandRows) {
+        const uint32_t count = std::min(bandRows, tile.top + tile.height - first);
+        const std::span<const float> logits = chain.rows(first, count);
+        tbb::parallel_for(0u, count, [&](uint32_t row) {
+            RowOfMeans(tile, impl_->kernelWidth, light)
+                .compute(logits, count, row, first + row, &clean[4 * pitch * (first + row - tile.top)]);
+        });
+    }
+}
+
+#endif
+
+}  // namespace limpid::denoise
