@@ -313,7 +313,8 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "tolerated difference of distance, in units of the surface's own slope (with `position`: "
               "tolerated distance of points, world units); higher smooths over steps");
         t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
-              "so many first levels average the variance over 3x3 pixels before it guides them; more take longer");
+              "so many first levels average the variance over 3x3 pixels before it guides them; more take "
+              "longer");
         t.add("boost", &S::boost,
               "the shorter the history of a pixel seen for under 4 frames, the more noise is expected of it");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
