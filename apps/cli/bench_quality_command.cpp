@@ -43,9 +43,6 @@ struct QualityOptions {
     bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
 };
 
-/// A frame must have so many for networks to be among all pipelines.
-constexpr uint32_t leastNetworkSamples = 8;
-
 /// SVGF as others have it, and without each thing that Limpid adds to the paper.
 constexpr std::array svgfSteps{"preset=paper",      "preset=cis565",        "svgf.antilag=0",
                                "svgf.boost=off",    "svgf.blur_levels=10",  "svgf.wide=on",

@@ -58,6 +58,10 @@ void render(const RenderOptions& o) {
 
     const Clock::time_point uploadStart = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    if (settings.pipeline.denoiser && settings.pipeline.denoiser->network &&
+        samplesOf(o) < leastNetworkSamples)
+        log::warn("{} learnt from frames of 32 samples; {} tell it little", settings.pipeline.denoiser->name,
+                  samplesOf(o));
     loadNetwork(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});

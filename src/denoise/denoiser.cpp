@@ -55,7 +55,7 @@ constexpr std::array<Denoiser, 4> all{
     Denoiser{"atrous", "history, then the edge-avoiding a-trous filter", recordAtrous, atrousGroups, 8.0},
     Denoiser{"svgf", "spatiotemporal variance-guided filtering: blurs where and as much as there is noise",
              recordSvgf, svgfGroups, 8.0},
-    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, from 4 or more samples",
+    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, of some 32 samples",
              recordKpcn, kpcnGroups, 8.0, true}};
 
 }  // namespace

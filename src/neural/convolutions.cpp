@@ -12,10 +12,17 @@ namespace {
 
 using dnnl::memory;
 
-constexpr uint32_t taps = 5, reach = taps / 2, block = 16;
+constexpr uint32_t taps = 5, reach = taps / 2;
+constexpr uint32_t inputBlock = 16;  ///< channels that lie together in what begin() is given
 
-uint32_t blocksOf(uint32_t channels) {
+uint32_t blocksOf(uint32_t channels, uint32_t block) {
     return (channels + block - 1) / block;
+}
+
+/// Channels that lie together where oneDNN has fast convolutions for this CPU.
+uint32_t blockOfCpu() {
+    const auto isa = static_cast<unsigned>(dnnl::get_effective_cpu_isa());
+    return isa >= static_cast<unsigned>(dnnl::cpu_isa::avx512_core) ? 16 : 8;
 }
 
 memory::desc picture(uint32_t channels, uint32_t rows, uint32_t columns, memory::format_tag tag) {
@@ -40,6 +47,8 @@ struct ConvolutionChain::Impl {
 
     dnnl::engine engine{dnnl::engine::kind::cpu, 0};
     dnnl::stream stream{engine};
+    const uint32_t block = blockOfCpu();
+    const memory::format_tag tag = block == 16 ? memory::format_tag::nChw16c : memory::format_tag::nChw8c;
     std::vector<Kept> layers;
     uint32_t columns = 0, height = 0;
     std::vector<Step> hidden;
@@ -53,7 +62,7 @@ struct ConvolutionChain::Impl {
 
     Kept keep(const ConvolutionLayer& layer, bool first) {
         Kept kept{layer.inputs, layer.outputs, layer.relu, {}, {}};
-        if (first) kept.inputs = blocksOf(layer.inputs) * block;
+        if (first) kept.inputs = blocksOf(layer.inputs, inputBlock) * inputBlock;
         const memory::desc desc({layer.outputs, kept.inputs, taps, taps}, memory::data_type::f32,
                                 memory::format_tag::oihw);
         kept.weights = memory(desc, engine);
@@ -70,7 +79,6 @@ struct ConvolutionChain::Impl {
     /// `above`: rows of zeros above and below; the output layer's are in its input.
     Step step(const Kept& layer, uint32_t rows, uint32_t above) {
         using Forward = dnnl::convolution_forward;
-        const auto tag = memory::format_tag::nChw16c;
         const memory::desc source = picture(layer.inputs, rows, columns, tag);
         const memory::desc result = picture(layer.outputs, rows + 2 * above - 2 * reach, columns, tag);
         const memory::desc weights({layer.outputs, layer.inputs, taps, taps}, memory::data_type::f32,
@@ -134,7 +142,7 @@ struct ConvolutionChain::Impl {
         const size_t line = size_t{columns} * block;
         const auto* from = static_cast<const float*>(last.get_data_handle());
         auto* into = static_cast<float*>(band.get_data_handle());
-        for (uint32_t b = 0; b < blocksOf(layers.back().inputs); ++b) {
+        for (uint32_t b = 0; b < blocksOf(layers.back().inputs, block); ++b) {
             for (uint32_t i = 0; i < rows + 2 * reach; ++i, into += line) {
                 const int64_t row = int64_t{first} + i - reach;
                 if (row < 0 || row >= height)
@@ -157,11 +165,18 @@ ConvolutionChain::ConvolutionChain(const std::vector<ConvolutionLayer>& layers)
 ConvolutionChain::~ConvolutionChain() = default;
 
 void ConvolutionChain::begin(std::span<const float> input, uint32_t columns, uint32_t rows) {
-    if (input.size() < size_t{blocksOf(impl_->layers.front().inputs)} * block * columns * rows)
+    if (input.size() <
+        size_t{blocksOf(impl_->layers.front().inputs, inputBlock)} * inputBlock * columns * rows)
         throw Error("a convolution's input is smaller than its picture");
     impl_->resize(columns, rows);
     memory source(picture(impl_->layers.front().inputs, rows, columns, memory::format_tag::nChw16c),
                   impl_->engine, const_cast<float*>(input.data()));
+    if (impl_->block != inputBlock) {
+        memory reordered(picture(impl_->layers.front().inputs, rows, columns, impl_->tag), impl_->engine);
+        dnnl::reorder(source, reordered).execute(impl_->stream, source, reordered);
+        impl_->stream.wait();
+        source = reordered;
+    }
     for (size_t i = 0; i < impl_->hidden.size(); ++i) {
         impl_->run(impl_->hidden[i], source, impl_->channels[i]);
         source = impl_->channels[i];

@@ -8,6 +8,9 @@
 
 namespace limpid {
 
+/// Fewer samples per pixel tell a network too little of a frame.
+constexpr uint32_t leastNetworkSamples = 8;
+
 /// The weights that come with Limpid: kpcn.safetensors beside the program, or in ../share/limpid seen from
 /// there. Empty if there are none.
 std::filesystem::path shippedWeights();

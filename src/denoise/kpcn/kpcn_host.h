@@ -19,6 +19,7 @@ struct KpcnHostTile {
     uint32_t columns, rows, left, top, width, height;
 };
 
+/// One run at a time.
 class KpcnHost {
   public:
     /// Throws Error without oneDNN.
