@@ -1,0 +1,23 @@
+#include "passes/tonemap/tonemap.h"
+
+#include <cmath>
+
+#include "passes/tonemap/tonemap_params.h"
+#include "tonemap.comp.h"
+
+namespace limpid {
+
+gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops) {
+    const gpu::Extent extent = graph.extent(radiance);
+    const gpu::ImageHandle display = graph.transient("tonemap", gpu::Format::RGBA8Unorm, extent);
+    const TonemapParams params{extent.width, extent.height, std::exp2(stops)};
+    graph.dispatch({.pass = "tonemap",
+                    .shader = shaders::tonemap_comp,
+                    .bindings = {{"radiance", radiance}, {"display", display}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
+    return display;
+}
+
+}  // namespace limpid

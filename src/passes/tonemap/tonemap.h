@@ -1,0 +1,12 @@
+// The tone-mapping pass: linear radiance to what a screen shows.
+#pragma once
+
+#include "gpu/frame_graph.h"
+
+namespace limpid {
+
+/// RGBA8, encoded sRGB, alpha 1: image::tonemap() of the same radiance (rgba32f) to within one step. `stops`:
+/// exposure. The pass is called "tonemap".
+gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops);
+
+}  // namespace limpid

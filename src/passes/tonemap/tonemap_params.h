@@ -1,0 +1,20 @@
+// Parameters of the tone-mapping pass. Included by C++ and GLSL.
+#ifndef LIMPID_PASSES_TONEMAP_PARAMS_H
+#define LIMPID_PASSES_TONEMAP_PARAMS_H
+
+#include "shaders/camera.h"
+
+#ifdef __cplusplus
+namespace limpid {
+#endif
+
+struct TonemapParams {
+    uint width;
+    uint height;
+    float scale;  // of radiance, before the curve
+};
+
+#ifdef __cplusplus
+}  // namespace limpid
+#endif
+#endif
