@@ -11,6 +11,7 @@ void addDenoiseCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addDatasetCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addViewCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 
 }  // namespace limpid::cli

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
     addCompareCommand(app);
     addDatasetCommand(app);
     addBenchCommand(app);
+    addViewCommand(app);
     addInfoCommand(app);
     try {
         app.parse(argc, argv);

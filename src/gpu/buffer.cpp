@@ -27,6 +27,8 @@ VkBufferUsageFlags usageOf(const Context& context, BufferUse use) {
         case BufferUse::Staging:
         case BufferUse::Readback:
             return copies;
+        case BufferUse::Triangles:
+            return VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
         case BufferUse::Structure:
             return VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR | address;
         case BufferUse::Scratch:
@@ -45,6 +47,7 @@ MemoryUse memoryOf(BufferUse use) {
             return MemoryUse::Download;
         case BufferUse::Uniform:
         case BufferUse::Staging:
+        case BufferUse::Triangles:
         case BufferUse::ShaderTable:
             return MemoryUse::Upload;
         default:

@@ -24,14 +24,15 @@ struct Buffer::Impl {
     std::shared_ptr<const BufferStorage> storage;
 };
 
-/// The last four need ray tracing: what acceleration structures lie in, what their builds need, instances of
-/// a top level, shader-binding tables.
+/// Triangles are an overlay's vertices and indices. The last four need ray tracing: what acceleration
+/// structures lie in, what their builds need, instances of a top level, shader-binding tables.
 enum class BufferUse {
     Texel,
     Storage,
     Uniform,
     Staging,
     Readback,
+    Triangles,
     Structure,
     Scratch,
     Instances,

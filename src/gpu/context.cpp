@@ -17,16 +17,19 @@ bool validationWanted(const DeviceOptions& options) {
 
 }  // namespace
 
-Context::Context(const DeviceOptions& options) : instance_(Instance::create(validationWanted(options))) {
+Context::Context(const DeviceOptions& options)
+    : instance_(Instance::create(validationWanted(options), options.surfaceExtensions)) {
     physical_ = choose(instance_ ? inspectAll(*instance_) : std::vector<PhysicalDevice>{}, options.select);
     vkGetPhysicalDeviceMemoryProperties(physical_.handle, &memory_);
+    presents_ = instance_->hasSurfaces() && physical_.drawsAndPresents;
     createDevice();
 }
 
 void Context::createDevice() {
     FeatureChain features;
     enableFeatures(physical_, features);
-    const std::vector<const char*> extensions = wantedExtensions(physical_);
+    std::vector<const char*> extensions = wantedExtensions(physical_);
+    if (presents_) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = physical_.queueFamily;

@@ -14,6 +14,10 @@ class Context {
     explicit Context(const DeviceOptions& options);
 
     VkDevice device() const { return device_.get(); }
+    VkInstance instance() const { return instance_->handle(); }
+    VkPhysicalDevice physicalDevice() const { return physical_.handle; }
+    /// It may show pictures in windows.
+    bool presents() const { return presents_; }
     VkQueue queue() const { return queue_; }
     uint32_t queueFamily() const { return physical_.queueFamily; }
     uint32_t timestampValidBits() const { return physical_.timestampValidBits; }
@@ -47,6 +51,7 @@ class Context {
     VkPhysicalDeviceMemoryProperties memory_{};
     UniqueDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;
+    bool presents_ = false;
 };
 
 UniqueCommandPool makeCommandPool(const Context& context, const std::string& name);

@@ -43,6 +43,10 @@ struct DeviceOptions {
     /// switched on by the environment variable LIMPID_VALIDATION=1. Throws Error if asked for and not
     /// installed.
     bool validation = false;
+    /// Of the Vulkan instance, as the window system names them (glfwGetRequiredInstanceExtensions): the
+    /// device shall show pictures in windows (gpu/presenter.h). Those that are missing are left out, and then
+    /// it cannot.
+    std::vector<std::string> surfaceExtensions;
 };
 
 /// All Vulkan devices of this machine; empty if there is no Vulkan loader or driver.

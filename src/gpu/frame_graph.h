@@ -52,6 +52,8 @@ struct ImageHandle {
 /// 0 first, in a storage buffer; on some GPUs filters read buffers twice as fast, on CPUs images are faster.
 enum class Backing { Image, Buffer };
 
+struct Image;  ///< gpu/image.h, for this folder only
+
 /// An image pair that lives from frame to frame.
 struct History {
     ImageHandle previous;  ///< what `current` was in the last frame that recorded this history
@@ -194,6 +196,8 @@ class FrameGraph {
     /// The pixels of an image of the last executed frame, all components, row 0 first. Waits for the device.
     std::vector<float> downloadFloat(Device& device, ImageHandle image);
     std::vector<uint32_t> downloadUint(Device& device, ImageHandle image);
+    /// The image behind a handle of the last executed frame: for this folder.
+    const Image& imageOnDevice(Device& device, ImageHandle image);
     /// Time per pass, of the latest frame that is finished on the device (waits for the last one submitted).
     std::vector<PassTime> passTimes(Device& device);
 

@@ -78,6 +78,11 @@ void FrameGraph::execute(Device& device) {
     impl_->frame.executed = true;
 }
 
+const Image& FrameGraph::imageOnDevice(Device& device, ImageHandle image) {
+    const RecordedImage& recorded = impl_->frame.images[impl_->indexOf(image)];
+    return impl_->executed(device).image(recorded);
+}
+
 std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) {
     switch (format(image)) {
         case Format::R32Float:

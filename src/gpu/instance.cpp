@@ -60,7 +60,8 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::atomic<uint64_t>* counter)
 
 }  // namespace
 
-std::unique_ptr<Instance> Instance::create(bool validation) {
+std::unique_ptr<Instance> Instance::create(bool validation,
+                                           const std::vector<std::string>& surfaceExtensions) {
     if (volkInitialize() != VK_SUCCESS || volkGetInstanceVersion() < VK_API_VERSION_1_1) return nullptr;
     if (validation && !layerInstalled()) {
         throw Error(
@@ -80,6 +81,14 @@ std::unique_ptr<Instance> Instance::create(bool validation) {
     std::vector<const char*> extensions;
     if (self->debugUtils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validation) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+
+    self->surfaces_ =
+        !surfaceExtensions.empty() && std::ranges::all_of(surfaceExtensions, [](const std::string& name) {
+            return hasExtension(nullptr, name);
+        });
+    if (self->surfaces_) {
+        for (const std::string& name : surfaceExtensions) extensions.push_back(name.c_str());
+    }
 
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
     application.pApplicationName = "limpid";

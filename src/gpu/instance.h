@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gpu/unique_handle.h"
@@ -13,7 +14,9 @@ class Instance {
   public:
     /// Null if this machine has no Vulkan loader, or the loader no driver. Throws Error if `validation` is
     /// asked for and the layer is not installed.
-    static std::unique_ptr<Instance> create(bool validation);
+    /// `surfaceExtensions`: DeviceOptions.
+    static std::unique_ptr<Instance> create(bool validation,
+                                            const std::vector<std::string>& surfaceExtensions = {});
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -21,6 +24,9 @@ class Instance {
     std::vector<VkPhysicalDevice> physicalDevices() const;
     /// VK_EXT_debug_utils is there: objects and passes get names.
     bool hasDebugUtils() const { return debugUtils_; }
+    /// All surface extensions that were asked for are there.
+    bool hasSurfaces() const { return surfaces_; }
+    VkInstance handle() const { return instance_.get(); }
     uint64_t validationMessages() const { return *messages_; }
 
   private:
@@ -31,7 +37,7 @@ class Instance {
     std::unique_ptr<std::atomic<uint64_t>> messages_ = std::make_unique<std::atomic<uint64_t>>(0);
     UniqueInstance instance_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    bool debugUtils_ = false;
+    bool debugUtils_ = false, surfaces_ = false;
 };
 
 }  // namespace limpid::gpu

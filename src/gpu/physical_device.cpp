@@ -34,6 +34,7 @@ const Feature features[] = {
      [](FeatureChain& f) -> VkBool32& { return f.v11.storageBuffer16BitAccess; }},
     {"subgroupSizeControl", Need::Enabled,
      [](FeatureChain& f) -> VkBool32& { return f.v13.subgroupSizeControl; }},
+    {"dynamicRendering", Need::Enabled, [](FeatureChain& f) -> VkBool32& { return f.v13.dynamicRendering; }},
     {"computeFullSubgroups", Need::Enabled,
      [](FeatureChain& f) -> VkBool32& { return f.v13.computeFullSubgroups; }},
     {"bufferDeviceAddress", Need::Listed,
@@ -125,6 +126,7 @@ bool findQueueFamily(PhysicalDevice& device) {
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0) continue;
         device.queueFamily = i;
         device.timestampValidBits = families[i].timestampValidBits;
+        device.drawsAndPresents = (families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
         return true;
     }
     return false;
@@ -291,6 +293,7 @@ PhysicalDevice inspect(VkPhysicalDevice handle, uint32_t index) {
         checkFormats(handle, missing);
     }
     const std::set<std::string> extensions = extensionsOf(handle);
+    device.drawsAndPresents = device.drawsAndPresents && extensions.contains(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     for (const char* name : listedExtensions) info.features.emplace_back(name, extensions.contains(name));
     if (basics.apiVersion >= VK_API_VERSION_1_3) {
         inspectRayTracing(device, extensions);

@@ -47,7 +47,8 @@ struct PhysicalDevice {
     uint64_t maxBufferSize = 0;
     uint32_t queueFamily = 0;  ///< computes, and has timestamps
     uint32_t timestampValidBits = 0;
-    RayTracingLimits rayTracing;  ///< if info.rayTracing
+    RayTracingLimits rayTracing;    ///< if info.rayTracing
+    bool drawsAndPresents = false;  ///< the queue draws triangles, and there are swapchains
 };
 
 /// Reads everything; info.whyNot says what is missing.

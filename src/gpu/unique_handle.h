@@ -44,6 +44,8 @@ using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, vkDestroyDescriptorP
 using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, vkDestroyPipelineLayout>;
 using UniquePipeline = UniqueHandle<VkPipeline, vkDestroyPipeline>;
+using UniqueSemaphore = UniqueHandle<VkSemaphore, vkDestroySemaphore>;
+using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, vkDestroySwapchainKHR>;
 using UniqueAccelerationStructure =
     UniqueHandle<VkAccelerationStructureKHR, vkDestroyAccelerationStructureKHR>;
 using UniqueShaderModule = UniqueHandle<VkShaderModule, vkDestroyShaderModule>;

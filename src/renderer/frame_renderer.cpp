@@ -68,6 +68,7 @@ void FrameRenderer::launchAccumulated(const FrameInput& first) {
 void FrameRenderer::launch(FrameInput input) {
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
+    if (display_) displayed_ = display_(graph_, images_);
     graph_.execute(device_);
 }
 

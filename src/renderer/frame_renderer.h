@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,14 @@ class FrameRenderer {
     void render(Moment moment);
     /// For the frames to come. Histories go on unless the samples they are made of are of another kind.
     void setSettings(const RenderSettings& settings);
+
+    /// Records what is shown of a frame, after its passes; the picture is displayed() from then on.
+    using Display = std::function<gpu::ImageHandle(gpu::FrameGraph&, const FrameImages&)>;
+    void setDisplay(Display display) { display_ = std::move(display); }
+    gpu::ImageHandle displayed() const { return displayed_; }
+    gpu::FrameGraph& graph() { return graph_; }
+    /// Per pixel, in the mean of pipelines that accumulate.
+    uint64_t samplesInMean() const { return samplesInMean_; }
 
     /// Other than the device's own, for measurements and tests.
     void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
@@ -59,6 +68,8 @@ class FrameRenderer {
     uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved
     uint64_t samplesInMean_ = 0;              ///< of pipelines that accumulate
     FrameImages images_;
+    Display display_;
+    gpu::ImageHandle displayed_;
     std::vector<uint32_t> ids_;  ///< of the mean's first launch, through the pixels' centres
 };
 

@@ -7,16 +7,18 @@
 
 namespace limpid {
 
-gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops) {
+gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
+                         gpu::ImageHandle added) {
     const gpu::Extent extent = graph.extent(radiance);
     const gpu::ImageHandle display = graph.transient("tonemap", gpu::Format::RGBA8Unorm, extent);
     const TonemapParams params{extent.width, extent.height, std::exp2(stops)};
-    graph.dispatch({.pass = "tonemap",
-                    .shader = shaders::tonemap_comp,
-                    .bindings = {{"radiance", radiance}, {"display", display}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = extent});
+    graph.dispatch(
+        {.pass = "tonemap",
+         .shader = shaders::tonemap_comp,
+         .bindings = {{"radiance", radiance}, {"added", added ? added : radiance}, {"display", display}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"SUM_OF_TWO", added ? 1u : 0u}},
+         .extent = extent});
     return display;
 }
 

@@ -5,8 +5,9 @@
 
 namespace limpid {
 
-/// RGBA8, encoded sRGB, alpha 1: image::tonemap() of the same radiance (rgba32f) to within one step. `stops`:
-/// exposure. The pass is called "tonemap".
-gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops);
+/// RGBA8, encoded sRGB, alpha 1: image::tonemap() of the radiance (rgba32f), or of the sum of the two, to
+/// within one step. `stops`: exposure. The pass is called "tonemap".
+gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
+                         gpu::ImageHandle added = {});
 
 }  // namespace limpid

@@ -1,0 +1,74 @@
+// limpid view: the window.
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+#include "device_options.h"
+#include "renderer/parameters.h"
+#include "scene_options.h"
+#ifdef LIMPID_HAVE_VIEWER
+#include "viewer/viewer.h"
+#endif
+
+namespace limpid::cli {
+namespace {
+
+struct ViewOptions {
+    SceneChoice scene;
+    DeviceChoice device;
+    std::string pipeline = "path", weights, screenshot;
+    std::vector<std::string> presets, assignments;
+    uint32_t width = 1280, height = 720, samples = 1;
+    uint64_t maxSamples = 4096, frames = 0;
+};
+
+void run(const ViewOptions& o) {
+#ifdef LIMPID_HAVE_VIEWER
+    viewer::ViewSettings settings{.samples = o.samples,
+                                  .maxSamples = o.maxSamples,
+                                  .weights = o.weights,
+                                  .quitAfter = o.frames,
+                                  .screenshot = o.screenshot};
+    settings.render.extent = {o.width, o.height};
+    settings.render.pipeline = parsePipeline(o.pipeline);
+    settings.render.jitter = settings.render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
+    for (const std::string& text : o.assignments) assign(settings.render, text);
+    scene::Scene scene = loadChosenScene(o.scene);
+    const scene::Camera camera = chosenCamera(scene, o.scene.camera);
+    viewer::view(
+        o.device.device, [&](const gpu::Device& device) { return chosenTracer(o.device, device); },
+        std::move(scene), camera, settings);
+#else
+    throw Error(
+        "Limpid was built without libglfw3-dev and libimgui-dev, which the window needs; 'limpid render' "
+        "writes "
+        "pictures");
+#endif
+}
+
+}  // namespace
+
+void addViewCommand(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("view", "A window to fly through a scene, with every pipeline and parameter");
+    auto o = std::make_shared<ViewOptions>();
+    addSceneOptions(*command, o->scene);
+    command->add_option("--pipeline", o->pipeline, "What makes the picture (path)");
+    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
+    command->add_option("--width", o->width, "Of the window, in pixels (1280)")->check(CLI::Range(1, 16384));
+    command->add_option("--height", o->height, "(720)")->check(CLI::Range(1, 16384));
+    command->add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 64));
+    command
+        ->add_option("--max-spp", o->maxSamples,
+                     "Of pictures that accumulate; then nothing is computed (4096)")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+    command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");
+    command->add_option("--screenshot", o->screenshot, "PNG to write on leaving");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

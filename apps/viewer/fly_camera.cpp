@@ -1,0 +1,65 @@
+#include "fly_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/camera.h"
+
+namespace limpid::viewer {
+namespace {
+
+constexpr float steepest = 1.55f;  // radians: just short of the poles, where "up" has no direction
+
+}  // namespace
+
+FlyCamera::FlyCamera(const scene::Camera& start, float distance)
+    : start_(start), eye_(start.toWorld[3]), distance_(std::max(distance, 1e-6f)) {
+    const vec3 ahead = -vec3(start.toWorld[2]);
+    yaw_ = std::atan2(ahead.x, -ahead.z);
+    pitch_ = std::clamp(std::asin(std::clamp(ahead.y, -1.0f, 1.0f)), -steepest, steepest);
+}
+
+vec3 FlyCamera::forward() const {
+    return {std::cos(pitch_) * std::sin(yaw_), std::sin(pitch_), -std::cos(pitch_) * std::cos(yaw_)};
+}
+
+vec3 FlyCamera::right() const {
+    return {std::cos(yaw_), 0.0f, std::sin(yaw_)};
+}
+
+void FlyCamera::look(float rightward, float up) {
+    yaw_ = std::remainder(yaw_ + rightward, 6.28318531f);
+    pitch_ = std::clamp(pitch_ + up, -steepest, steepest);
+}
+
+void FlyCamera::orbit(float rightward, float up) {
+    const vec3 middle = target();
+    look(rightward, up);  // the eye goes the other way: what is seen follows the hand
+    eye_ = middle - distance_ * forward();
+}
+
+void FlyCamera::pan(float rightward, float up) {
+    const float height = start_.orthographic ? 2.0f * start_.halfHeight
+                                             : 2.0f * distance_ * std::tan(0.5f * start_.verticalFov);
+    eye_ -= height * (rightward * right() + up * glm::cross(right(), forward()));
+}
+
+void FlyCamera::zoom(float factor) {
+    const vec3 middle = target();
+    distance_ = std::max(distance_ * factor, 1e-6f);
+    eye_ = middle - distance_ * forward();
+    if (start_.orthographic) start_.halfHeight *= factor;
+}
+
+void FlyCamera::move(const vec3& rightUpForward) {
+    eye_ += rightUpForward.x * right() + vec3(0.0f, rightUpForward.y, 0.0f) + rightUpForward.z * forward();
+}
+
+scene::Camera FlyCamera::camera() const {
+    scene::Camera camera = scene::lookAt(eye_, eye_ + forward(), vec3(0.0f, 1.0f, 0.0f), start_.verticalFov);
+    camera.orthographic = start_.orthographic;
+    camera.halfHeight = start_.halfHeight;
+    return camera;
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,29 @@
+// Dear ImGui: its context, its input from the window, and its triangles for the presenter.
+#pragma once
+
+#include <vector>
+
+#include "gpu/presenter.h"
+#include "window.h"
+
+namespace limpid::viewer {
+
+class Interface {
+  public:
+    Interface(const Window& window, gpu::Presenter& presenter);
+    ~Interface();
+    Interface(const Interface&) = delete;
+    Interface& operator=(const Interface&) = delete;
+
+    /// Between the two, ImGui's calls.
+    void begin();
+    /// Valid until the next begin().
+    gpu::Overlay end();
+
+  private:
+    std::vector<gpu::OverlayVertex> vertices_;
+    std::vector<uint16_t> indices_;
+    std::vector<gpu::OverlayDraw> draws_;
+};
+
+}  // namespace limpid::viewer

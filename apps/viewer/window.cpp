@@ -1,0 +1,76 @@
+#include "window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <vulkan/vulkan_core.h>
+// GLFW declares its Vulkan calls after Vulkan's header.
+#include <GLFW/glfw3.h>
+
+#include "base/error.h"
+
+namespace limpid::viewer {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+    const char* why = nullptr;
+    glfwGetError(&why);
+    throw Error(what + (why ? std::string(" (") + why + ")" : "") +
+                "; without a window, 'limpid render' writes pictures, and 'limpid bench quality --report' a "
+                "page to look around in");
+}
+
+}  // namespace
+
+Window::Window(const std::string& title, gpu::Extent size) {
+    if (!glfwInit()) fail("there is no display to open a window on");
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
+                               nullptr, nullptr);
+    if (window_) return;
+    try {
+        fail("no window can be opened");
+    } catch (...) {
+        glfwTerminate();
+        throw;
+    }
+}
+
+Window::~Window() {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+std::vector<std::string> Window::surfaceExtensions() {
+    uint32_t count = 0;
+    const char** const names = glfwGetRequiredInstanceExtensions(&count);
+    return names ? std::vector<std::string>(names, names + count) : std::vector<std::string>();
+}
+
+uint64_t Window::makeSurface(void* instance) const {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    if (glfwCreateWindowSurface(static_cast<VkInstance>(instance), window_, nullptr, &surface) != VK_SUCCESS)
+        fail("Vulkan cannot draw in this window");
+    return reinterpret_cast<uint64_t>(surface);
+}
+
+gpu::Extent Window::pixels() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+bool Window::closed() const {
+    return glfwWindowShouldClose(window_) != 0;
+}
+
+void Window::close() {
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void Window::poll(double wait) {
+    if (wait > 0.0)
+        glfwWaitEventsTimeout(wait);
+    else
+        glfwPollEvents();
+}
+
+}  // namespace limpid::viewer
