@@ -57,7 +57,8 @@ std::optional<double> productRate(gpu::Device& device, uint32_t size) {
 
 /// Operations a second of nothing but a convolution of oneDNN's, as the hidden layers have it; none without
 /// it, and beside GPUs.
-std::optional<double> convolutionRate(const gpu::Device& device, const KpcnBench& o) {
+std::optional<double> convolutionRate([[maybe_unused]] const gpu::Device& device,
+                                      [[maybe_unused]] const KpcnBench& o) {
 #ifdef LIMPID_HAVE_ONEDNN
     if (!device.isCpu()) return std::nullopt;
     constexpr uint32_t channels = 100, padded = 112, taps = denoise::KPCN_TAPS * denoise::KPCN_TAPS;
