@@ -22,7 +22,10 @@ class CliViewTest : public CliTest {
     static Result onDisplay(const std::string& arguments) {
         if (runProgram("command -v xvfb-run").code != 0)
             return {77, "NOT TESTED: xvfb-run is missing (Debian packages xvfb and xauth)"};
-        return runProgram(std::string("LIMPID_VALIDATION=1 xvfb-run -a '") + LIMPID_PROGRAM + "' " +
+        // Each process looks for a free display from a number of its own on: two that look at once may find
+        // the same.
+        const std::string first = std::to_string(1000 + ::getpid() % 20000);
+        return runProgram("LIMPID_VALIDATION=1 xvfb-run -a -n " + first + " '" + LIMPID_PROGRAM + "' " +
                           arguments);
     }
 };
