@@ -39,7 +39,7 @@ uint32_t divideUp(uint32_t a, uint32_t b) {
     return (a + b - 1) / b;
 }
 
-/// The three ways to compute it.
+/// The ways to compute it; the host computes features alone on the device, in single precision.
 struct Shaders {
     const gpu::ShaderCode &features, &hidden, &kernel;
     Format format;        ///< of four channels

@@ -20,12 +20,10 @@ layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(set = 0, binding = 4, rgba32f) uniform readonly image2D emission;
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D beauty;
 
-const float EPSILON = 0.00316;
-
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= params.width || at.y >= params.height) return;
-    const vec3 surface = clamp(finiteOr(imageLoad(albedo, at).rgb, vec3(0.0)), 0.0, MAX_ALBEDO) + EPSILON;
+    const vec3 surface = clamp(finiteOr(imageLoad(albedo, at).rgb, vec3(0.0)), 0.0, MAX_ALBEDO) + KPCN_EPSILON;
     const vec3 scattered = LOAD(diffuse, at).rgb * surface + exp(LOAD(specular, at).rgb) - 1.0;
     imageStore(beauty, at, vec4(scattered + finiteOr(imageLoad(emission, at).rgb, vec3(0.0)), 1.0));
 }

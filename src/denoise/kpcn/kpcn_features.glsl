@@ -16,7 +16,6 @@ layout(set = 0, binding = 5, r32f) uniform readonly image2D largest;
 layout(set = 0, binding = 6, scalar) writeonly buffer featureTexels { KPCN_TEXEL texels[]; } features;
 layout(set = 0, binding = 7, scalar) writeonly buffer lightTexels { vec4 texels[]; } light;
 
-const float EPSILON = 0.00316;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Seen {
@@ -40,8 +39,8 @@ Seen seenAt(ivec2 pixel) {
     vec3 linear = color.rgb;
     float variance = color.a;
     if (params.specular == 0u) {
-        linear /= seen.albedo.rgb + EPSILON;
-        const float divisor = dot(seen.albedo.rgb, LUMINANCE) + EPSILON;
+        linear /= seen.albedo.rgb + KPCN_EPSILON;
+        const float divisor = dot(seen.albedo.rgb, LUMINANCE) + KPCN_EPSILON;
         variance /= divisor * divisor;
     }
     const float slope = 1.0 + dot(linear, LUMINANCE);

@@ -15,6 +15,8 @@ const uint KPCN_TAPS = 5u;
 /// What a network sees of a pixel; one channel more is always 1 and brings the bias.
 const uint KPCN_INPUT_CHANNELS = 34u;
 const uint KPCN_INPUT_SLABS = 3u;
+/// Added to albedo before light is divided by it.
+const float KPCN_EPSILON = 0.00316f;
 
 /// Where a pass works. Pixels are those of the picture.
 struct KpcnRegion {
