@@ -22,7 +22,7 @@ struct ViewOptions {
     uint64_t maxSamples = 4096, frames = 0;
 };
 
-void run(const ViewOptions& o) {
+void run([[maybe_unused]] const ViewOptions& o) {
 #ifdef LIMPID_HAVE_VIEWER
     viewer::ViewSettings settings{.samples = o.samples,
                                   .maxSamples = o.maxSamples,
@@ -42,8 +42,7 @@ void run(const ViewOptions& o) {
 #else
     throw Error(
         "Limpid was built without libglfw3-dev and libimgui-dev, which the window needs; 'limpid render' "
-        "writes "
-        "pictures");
+        "writes pictures");
 #endif
 }
 

@@ -9,9 +9,9 @@ void main() {
     for (uint tile = 0u; tile < params.outputTiles; tile += TILES) {
         FloatMatrix sums[2][TILES];
         convolve(tile, sums);
-        for (uint m = 0u; m < 2u; ++m) {
+        [[unroll]] for (uint m = 0u; m < 2u; ++m) {
             const ivec2 pixel = groupsFirst() + ivec2(0, 2u * gl_SubgroupID + m);
-            for (uint n = 0u; n < TILES; ++n) {
+            [[unroll]] for (uint n = 0u; n < TILES; ++n) {
                 for (int i = 0; i < sums[m][n].length(); ++i) sums[m][n][i] = clamp(sums[m][n][i], 0.0, 65504.0);
                 coopMatStoreNV(HalfMatrix(sums[m][n]), outputs.texels, slabTexel(tile + n, pixel), 2u, false);
             }

@@ -18,8 +18,8 @@ void main() {
         FloatMatrix sums[2][TILES];
         convolve(tile, sums);
         barrier();
-        for (uint m = 0u; m < 2u; ++m) {
-            for (uint n = 0u; n < TILES; ++n)
+        [[unroll]] for (uint m = 0u; m < 2u; ++m) {
+            [[unroll]] for (uint n = 0u; n < TILES; ++n)
                 coopMatStoreNV(HalfMatrix(sums[m][n]), stage, (2u * gl_SubgroupID + m) * EDGE * LOGITS_PITCH + 2u * n, LOGITS_PITCH, false);
         }
         barrier();

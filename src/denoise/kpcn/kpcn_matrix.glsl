@@ -1,7 +1,9 @@
 // A convolution of 5x5 taps as matrix products on cooperative matrices: 16x16 pixels by TILES x 16 channels in a workgroup, whose eight
 // subgroups have two rows of pixels each. Products in half precision, sums in single.
+// Loops over matrices are unrolled explicitly: NVIDIA's compiler otherwise keeps them in memory, five times slower.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_memory_scope_semantics : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_NV_cooperative_matrix : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
 #include "denoise/kpcn/kpcn_params.h"
@@ -42,7 +44,7 @@ uint slabTexel(uint slab, ivec2 pixel) {
 }
 
 void fetchHalo(uint slab, out uvec4 fetched[HALO_LOADS]) {
-    for (uint j = 0u; j < HALO_LOADS; ++j) {
+    [[unroll]] for (uint j = 0u; j < HALO_LOADS; ++j) {
         const uint i = gl_LocalInvocationIndex + 256u * j;
         const uint place = i / 2u;
         const ivec2 pixel = groupsFirst() + ivec2(place % HALO, place / HALO) - int(KPCN_TAPS / 2u);
@@ -53,7 +55,7 @@ void fetchHalo(uint slab, out uvec4 fetched[HALO_LOADS]) {
 }
 
 void keepHalo(uvec4 fetched[HALO_LOADS]) {
-    for (uint j = 0u; j < HALO_LOADS; ++j) {
+    [[unroll]] for (uint j = 0u; j < HALO_LOADS; ++j) {
         const uint i = gl_LocalInvocationIndex + 256u * j;
         if (i / 2u < HALO * HALO) stage[i / 2u * HALO_PITCH + i % 2u] = fetched[j];
     }
@@ -63,14 +65,14 @@ void keepHalo(uvec4 fetched[HALO_LOADS]) {
 void fetchWeights(uint slab, uint row, uint tile, out uvec4 fetched[WEIGHT_LOADS]) {
     const uint line = 2u * params.outputTiles;
     const uint first = params.weights + (slab * KPCN_TAPS + row) * WEIGHT_LINES * line + tile * 2u;
-    for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
+    [[unroll]] for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
         const uint i = gl_LocalInvocationIndex + 256u * j;
         if (i < WEIGHT_LINES * 2u * TILES) fetched[j] = weights.texels[first + i / (2u * TILES) * line + i % (2u * TILES)];
     }
 }
 
 void keepWeights(uvec4 fetched[WEIGHT_LOADS]) {
-    for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
+    [[unroll]] for (uint j = 0u; j < WEIGHT_LOADS; ++j) {
         const uint i = gl_LocalInvocationIndex + 256u * j;
         if (i < WEIGHT_LINES * 2u * TILES)
             stage[WEIGHTS_AT + i / (2u * TILES) * WEIGHT_PITCH + i % (2u * TILES)] = fetched[j];
@@ -79,8 +81,8 @@ void keepWeights(uvec4 fetched[WEIGHT_LOADS]) {
 
 /// sums[row of pixels][tile from `tile` on]. What is fetched next is under way while this is multiplied.
 void convolve(uint tile, out FloatMatrix sums[2][TILES]) {
-    for (uint m = 0u; m < 2u; ++m) {
-        for (uint n = 0u; n < TILES; ++n) sums[m][n] = FloatMatrix(0.0);
+    [[unroll]] for (uint m = 0u; m < 2u; ++m) {
+        [[unroll]] for (uint n = 0u; n < TILES; ++n) sums[m][n] = FloatMatrix(0.0);
     }
     uvec4 halo[HALO_LOADS], lines[WEIGHT_LOADS];
     fetchHalo(0u, halo);
@@ -97,12 +99,12 @@ void convolve(uint tile, out FloatMatrix sums[2][TILES]) {
                 fetchWeights(last ? slab + 1u : slab, last ? 0u : row + 1u, tile, lines);
             for (uint tap = 0u; tap < KPCN_TAPS; ++tap) {
                 HalfMatrix pixels[2];
-                for (uint m = 0u; m < 2u; ++m)
+                [[unroll]] for (uint m = 0u; m < 2u; ++m)
                     coopMatLoadNV(pixels[m], stage, ((2u * gl_SubgroupID + m + row) * HALO + tap) * HALO_PITCH, HALO_PITCH, false);
-                for (uint n = 0u; n < TILES; ++n) {
+                [[unroll]] for (uint n = 0u; n < TILES; ++n) {
                     HalfMatrix w;
                     coopMatLoadNV(w, stage, WEIGHTS_AT + tap * KPCN_SLAB * WEIGHT_PITCH + 2u * n, WEIGHT_PITCH, false);
-                    for (uint m = 0u; m < 2u; ++m) sums[m][n] = coopMatMulAddNV(pixels[m], w, sums[m][n]);
+                    [[unroll]] for (uint m = 0u; m < 2u; ++m) sums[m][n] = coopMatMulAddNV(pixels[m], w, sums[m][n]);
                 }
             }
         }
