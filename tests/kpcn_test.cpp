@@ -119,6 +119,7 @@ class KpcnTest : public DenoiseTest {
 
     DenoiserSettings settingsWith(const KpcnWeights& weights, KpcnPrecision precision, int tile = 512) {
         DenoiserSettings settings;
+        settings.kpcn.standardErrors = 0.0f;  // the network alone
         settings.kpcn.tile = tile;
         settings.kpcn.network = std::make_shared<KpcnNetwork>(device(), weights, precision);
         return settings;
@@ -159,6 +160,43 @@ TEST_F(KpcnTest, IsWhatPyTorchComputes) {
             }
         }
     }
+}
+
+/// Of the network's light, by the formula of docs/kpcn.md in double precision.
+TEST_F(KpcnTest, LightStaysNearWhatTheSamplesAreSureOf) {
+    const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
+    const HostFrame frame = frameOf(cases, "small");
+    const KpcnPrecision precision = denoise::kpcnPrecision(device().info(), true);
+    DenoiserSettings settings = settingsWith(weightsOf("small"), precision);
+    settings.kpcn.standardErrors = 1.5f;
+    const std::vector<float> picture = denoise(method(), frame, settings);
+    const std::vector<float> diffuse = graph_.downloadFloat(device(), sideOf("diffuse", precision)),
+                             specular = graph_.downloadFloat(device(), sideOf("specular", precision));
+    int moved = 0;
+    const auto within = [&](const glm::dvec3& clean, const float* noisy) {
+        const glm::dvec3 light(noisy[0], noisy[1], noisy[2]), weights(0.2126, 0.7152, 0.0722);
+        const double apart = glm::dot(clean, weights) - glm::dot(light, weights);
+        const double most = 1.5 * std::sqrt(double{noisy[3]});
+        if (std::abs(apart) <= most) return clean;
+        ++moved;
+        return light + (clean - light) * (most / std::abs(apart));
+    };
+    for (size_t at = 0; at < picture.size(); at += 4) {
+        glm::dvec3 demodulated, logarithm, albedo;
+        for (int c = 0; c < 3; ++c) {
+            const size_t i = at + static_cast<size_t>(c);
+            demodulated[c] = diffuse[i];
+            logarithm[c] = specular[i];
+            albedo[c] = frame.albedo[i] + 0.00316;
+        }
+        const glm::dvec3 truth = within(demodulated * albedo, &frame.diffuse[at]) +
+                                 within(glm::exp(logarithm) - 1.0, &frame.specular[at]);
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(picture[at + static_cast<size_t>(c)], truth[c], 1e-4 * (1.0 + truth[c])) << at;
+    }
+    const auto lights = static_cast<int>(picture.size() / 2);
+    EXPECT_GT(moved, lights / 50);
+    EXPECT_LT(moved, lights * 9 / 10);
 }
 
 TEST_F(KpcnTest, TilesDoNotShow) {

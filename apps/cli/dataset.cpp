@@ -33,7 +33,7 @@ struct DatasetOptions {
     DeviceChoice device;
     std::string folder, shard = "1/1";
     std::vector<std::string> scenes;
-    uint32_t rooms = 100, perFile = 8;
+    uint32_t rooms = 100, stillLifes = 0, perFile = 8;
     ExampleSettings example;
 };
 
@@ -52,23 +52,28 @@ class Dataset {
   public:
     explicit Dataset(const DatasetOptions& options) : o_(options) {}
 
-    uint64_t examples() const { return uint64_t{o_.rooms} + o_.scenes.size(); }
+    uint64_t examples() const { return uint64_t{o_.rooms} + o_.stillLifes + o_.scenes.size(); }
     uint64_t files() const { return (examples() + o_.perFile - 1) / o_.perFile; }
     fs::path file(uint64_t number) const {
         return fs::path(o_.folder) / fmt::format("examples.{:05}.safetensors", number);
     }
 
-    /// Rooms first, then the scenes that are named.
+    /// Rooms first, then still lifes, then the scenes that are named.
     std::string sceneOf(uint64_t example) const {
-        if (example >= o_.rooms) return o_.scenes[example - o_.rooms];
-        return fmt::format("builtin:room-{}", numberFrom(o_.example.seed, "room", example));
+        if (example < o_.rooms)
+            return fmt::format("builtin:room-{}", numberFrom(o_.example.seed, "room", example));
+        example -= o_.rooms;
+        if (example < o_.stillLifes)
+            return fmt::format("builtin:still-life-{}", numberFrom(o_.example.seed, "still life", example));
+        return o_.scenes[example - o_.stillLifes];
     }
 
     /// What decides its content: the same in every file of one dataset.
     json parameters() const {
-        return {{"version", 1},
+        return {{"version", 2},
                 {"seed", o_.example.seed},
                 {"rooms", o_.rooms},
+                {"still_lifes", o_.stillLifes},
                 {"scenes", o_.scenes},
                 {"per_file", o_.perFile},
                 {"width", o_.example.extent.width},
@@ -142,7 +147,7 @@ void run(const DatasetOptions& o) {
     if (!std::ranges::is_sorted(o.example.samples, std::less_equal{}) || o.example.samples.front() == 0)
         throw UsageError("--samples are above 0 and ascend");
     const Dataset dataset(o);
-    if (dataset.examples() == 0) throw UsageError("a dataset of no rooms and no scenes");
+    if (dataset.examples() == 0) throw UsageError("a dataset of no rooms, no still lifes and no scenes");
     std::error_code fault;
     fs::create_directories(o.folder, fault);
     if (fault) throw OutputError(o.folder, "cannot be made: " + fault.message());
@@ -170,6 +175,8 @@ void addDatasetCommand(CLI::App& app) {
     ExampleSettings& example = o->example;
     command->add_option("-o,--output", o->folder, "Folder")->required();
     command->add_option("--rooms", o->rooms, "Rooms drawn from the seed (100)")
+        ->check(CLI::Range(0, 1000000));
+    command->add_option("--still-lifes", o->stillLifes, "Still lifes drawn from the seed (0)")
         ->check(CLI::Range(0, 1000000));
     command->add_option("--scene", o->scenes, "More scenes: files or built-in ones (repeatable)");
     command->add_option("--seed", example.seed,

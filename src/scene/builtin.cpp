@@ -10,6 +10,7 @@
 #include "scene/camera.h"
 #include "scene/mesh_builder.h"
 #include "scene/random_room.h"
+#include "scene/random_still_life.h"
 
 namespace limpid::scene {
 namespace {
@@ -187,9 +188,8 @@ constexpr Entry entries[] = {
     {"lab-lights", "a hall with 220 small coloured lights and diffuse and glossy blocks", labLightsScene},
 };
 
-/// N of "room-N".
-std::optional<uint32_t> seedOfRoom(std::string_view name) {
-    constexpr std::string_view prefix = "room-";
+/// N of a name of `prefix` and N.
+std::optional<uint32_t> seedAfter(std::string_view prefix, std::string_view name) {
     if (!name.starts_with(prefix)) return std::nullopt;
     name.remove_prefix(prefix.size());
     uint32_t seed = 0;
@@ -207,14 +207,15 @@ std::vector<BuiltinInfo> builtinScenes() {
 }
 
 Scene builtinScene(std::string_view name) {
-    if (const std::optional<uint32_t> seed = seedOfRoom(name)) return randomRoom(*seed);
+    if (const std::optional<uint32_t> seed = seedAfter("room-", name)) return randomRoom(*seed);
+    if (const std::optional<uint32_t> seed = seedAfter("still-life-", name)) return randomStillLife(*seed);
     std::string names;
     for (const Entry& entry : entries) {
         if (name == entry.name) return entry.make();
         names += std::string(" builtin:") + entry.name;
     }
     throw UsageError("there is no scene 'builtin:" + std::string(name) + "'; the built-in scenes are" +
-                     names + " builtin:room-N");
+                     names + " builtin:room-N builtin:still-life-N");
 }
 
 }  // namespace limpid::scene

@@ -1,13 +1,11 @@
 #include "scene/random_room.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
-#include "scene/builtin_parts.h"
 #include "scene/environment.h"
 #include "scene/mesh_builder.h"
-#include "scene/procedural_textures.h"
+#include "scene/random_scene.h"
 
 namespace limpid::scene {
 namespace {
@@ -18,10 +16,9 @@ struct Place {
     float radius;
 };
 
-/// Random numbers are drawn one a statement or within braces: elsewhere compilers choose the order.
-class RandomRoom {
+class RandomRoom : RandomScene {
   public:
-    explicit RandomRoom(uint32_t seed) : random_(seed) { scene_.name = "room-" + std::to_string(seed); }
+    explicit RandomRoom(uint32_t seed) : RandomScene("room", seed) {}
 
     Scene make() {
         half_ = {random_.next(1.5f, 4.5f), random_.next(1.5f, 4.5f)};
@@ -39,73 +36,6 @@ class RandomRoom {
     }
 
   private:
-    bool chance(float share) { return random_.next(0.0f, 1.0f) < share; }
-    int whole(int least, int most) {
-        return std::min(
-            static_cast<int>(random_.next(static_cast<float>(least), static_cast<float>(most + 1))), most);
-    }
-    vec3 color(float least, float most) {
-        const vec3 hue{random_.next(least, most), random_.next(least, most), random_.next(least, most)};
-        const vec3 grey((hue.x + hue.y + hue.z) / 3.0f);
-        return glm::mix(grey, hue, random_.next(0.0f, 1.0f));
-    }
-    /// Daylight to candle light; now and then any colour.
-    vec3 lightColor() {
-        if (chance(0.15f)) return color(0.05f, 1.0f);
-        return glm::mix(vec3(1.0f, 0.62f, 0.3f), vec3(0.75f, 0.88f, 1.0f), random_.next(0.0f, 1.0f));
-    }
-
-    int addMaterial(Material material) {
-        scene_.materials.push_back(std::move(material));
-        return static_cast<int>(scene_.materials.size() - 1);
-    }
-
-    Texture pattern() {
-        const vec3 dark = color(0.05f, 0.5f), bright = color(0.4f, 0.9f);
-        switch (whole(0, 3)) {
-            case 0:
-                return checkerTexture(static_cast<uint32_t>(2 * whole(1, 6)), dark, bright);
-            case 1:
-                return noiseTexture(static_cast<uint32_t>(whole(2, 12)), dark, bright);
-            case 2:
-                return brickTexture();
-            default:
-                return woodTexture();
-        }
-    }
-
-    Material roughened(Material material, float least) {
-        material.roughness = random_.next(least, 0.7f);
-        return material;
-    }
-
-    /// Papered with a pattern, of `least` to `most` repeats a metre.
-    Material patterned(Material material, float least, float most) {
-        material.baseColor = vec4(color(0.5f, 1.0f), 1.0f);
-        const Texture texture = pattern();
-        const float repeats = random_.next(least, most);
-        return textured(std::move(material), addTexture(scene_, texture, repeats));
-    }
-
-    /// What walls and things are made of.
-    Material anyMaterial(bool mayBeGlass) {
-        const float kind = random_.next(0.0f, 1.0f);
-        if (kind < 0.45f) return lambertian("diffuse", color(0.05f, 0.85f));
-        if (kind < 0.70f) return roughened(glossy("glossy", color(0.05f, 0.8f), 0.0f, 0.0f), 0.05f);
-        if (kind < 0.85f) return roughened(glossy("metal", color(0.3f, 0.95f), 1.0f, 0.0f), 0.08f);
-        if (kind < 0.90f) return glossy("mirror", color(0.8f, 0.97f), 1.0f, 0.0f);
-        if (kind < 0.97f || !mayBeGlass) {
-            Material lacquer = lambertian("lacquer", color(0.05f, 0.7f));
-            lacquer.clearcoat = 1.0f;
-            lacquer.clearcoatRoughness = random_.next(0.0f, 0.3f);
-            return lacquer;
-        }
-        Material glass = glossy("glass", vec3(1.0f), 0.0f, chance(0.5f) ? 0.0f : random_.next(0.05f, 0.3f));
-        glass.transmission = 1.0f;
-        glass.thin = false;
-        return glass;
-    }
-
     Material wallMaterial() {
         Material wall = chance(0.7f) ? lambertian("wall", color(0.3f, 0.85f))
                                      : roughened(glossy("wall", color(0.1f, 0.8f), 0.0f, 0.0f), 0.1f);
@@ -285,8 +215,6 @@ class RandomRoom {
         addFlat(block, false);
     }
 
-    Scene scene_;
-    Sequence random_;
     vec2 half_{0.0f};  ///< of the floor's width and depth
     float height_ = 0.0f;
     bool isOpen_ = false, hasWindow_ = false;

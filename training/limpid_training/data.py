@@ -64,7 +64,7 @@ def importance(frame):
 def varied(frame, generator):
     """The frame mirrored, turned, its colors exchanged, its light made brighter or darker: another scene that is as true. (Only the
     variances of luminance would be slightly others with exchanged colors.)"""
-    draws = torch.rand(5, generator=generator).tolist()
+    draws = torch.rand(4, generator=generator).tolist()
     flips = [dim for dim, draw in ((2, draws[0]), (3, draws[1])) if draw < 0.5]
     colors = torch.randperm(3, generator=generator).tolist()
     brightness = 2.0 ** (2.0 * draws[2] - 1.0)

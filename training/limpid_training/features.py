@@ -41,6 +41,11 @@ def from_network(side, light, albedo):
     return light * (albedo + EPSILON) if side == "diffuse" else torch.expm1(light)
 
 
+def recombined(sides, albedo):
+    """The picture without emission, from both sides as the network has them."""
+    return sum(from_network(side, light, albedo) for side, light in sides.items())
+
+
 def seen(side, frame):
     """The light as the network sees it, and its variance to first order: the variance times the squared slope."""
     light, variance = frame[side].clamp(min=0.0), frame[side + ".variance"]

@@ -83,9 +83,12 @@ class Kpcn(nn.Module):
 
     def side(self, side, prepared):
         """Denoised light of one side, as to_network() has it: what each is trained by alone. `prepared`: features.prepare()."""
-        return apply_kernel(getattr(self, side)(prepared[side + ".input"]).float(), prepared[side + ".light"])
+        return self.side_and_logits(side, prepared)[0]
+
+    def side_and_logits(self, side, prepared):
+        """And the kernels' weights before their softmax."""
+        logits = getattr(self, side)(prepared[side + ".input"]).float()
+        return apply_kernel(logits, prepared[side + ".light"]), logits
 
     def forward(self, prepared):
-        return sum(
-            features.from_network(side, self.side(side, prepared), prepared["albedo"]) for side in features.SIDES
-        )
+        return features.recombined({side: self.side(side, prepared) for side in features.SIDES}, prepared["albedo"])

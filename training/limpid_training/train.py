@@ -20,7 +20,7 @@ from .evaluate import rel_mse
 from .network import Kpcn
 
 PRESETS = {
-    "cis565": {"batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0}
+    "cis565": {"loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0}
 }
 
 
@@ -39,7 +39,14 @@ def parse(arguments=None):
     parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate")
     parser.add_argument("--rate-specular", type=float, default=1e-4)
     parser.add_argument("--rate-tuning", type=float, default=5e-5)
+    parser.add_argument("--logit-decay", type=float, default=1e-5,
+                        help="weight of the mean square of what goes into the softmax: keeps kernels from collapsing to single pixels, "
+                        "where no gradient is left")
+    parser.add_argument("--warm-up", type=float, default=0.04,
+                        help="share of each phase over which its rate grows to its full size")
     parser.add_argument("--final-rate", type=float, default=0.05, help="of the rates, at the end; half a cosine leads there")
+    parser.add_argument("--loss", choices=("logarithmic", "absolute"), default="logarithmic",
+                        help="mean absolute difference of log(x + 0.1), or as in the paper, of x")
     parser.add_argument("--hidden", type=int, default=8, help="convolutions before the last")
     parser.add_argument("--channels", type=int, default=100)
     parser.add_argument("--width", type=int, default=21, help="pixels of a kernel")
@@ -52,6 +59,12 @@ def parse(arguments=None):
     if chosen.preset:
         parser.set_defaults(**PRESETS[chosen.preset])
     return parser.parse_args(arguments)
+
+
+def split(count, held_out):
+    """Numbers of the examples to learn from, and of those that are held out: evenly spread, for kinds of scenes follow each other."""
+    validated = [i for i in range(count) if (i + 1) * held_out // count > i * held_out // count]
+    return sorted(set(range(count)) - set(validated)), validated
 
 
 class Workers:
@@ -87,14 +100,17 @@ class Trainer:
         held_out = max(1, round(options.validation * len(self.examples)))
         if held_out >= len(self.examples):
             raise SystemExit(f"{options.data}: {len(self.examples)} examples are too few")
-        self.learnt = list(range(len(self.examples) - held_out))
-        self.validated = list(range(len(self.examples) - held_out, len(self.examples)))
+        self.learnt, self.validated = split(len(self.examples), held_out)
         self.rates = {"diffuse": options.rate_diffuse, "specular": options.rate_specular, "both": options.rate_tuning}
         self.optimizers = {
             name: torch.optim.Adam((self.net if name == "both" else getattr(self.net, name)).parameters(), lr=rate)
             for name, rate in self.rates.items()
         }
         self.scaler = torch.cuda.amp.GradScaler(enabled=self.half)
+        self.batches_done = dict.fromkeys(self.rates, 0)
+        batches = len(self.learnt) // self.workers.count * options.patches / options.batch  # in an epoch
+        lengths = {"both": options.tuning_epochs}
+        self.warm_up = {name: max(options.warm_up * lengths.get(name, options.epochs) * batches, 1.0) for name in self.rates}
         self.epoch, self.seconds, self.losses = 0, 0.0, {}
 
     @property
@@ -106,31 +122,41 @@ class Trainer:
         return self.options.epochs + self.options.tuning_epochs
 
     def loss(self, side, batch):
+        """What is reported, and what is added to it for the gradient."""
         with torch.autocast("cuda", dtype=torch.float16) if self.half else contextlib.nullcontext():
+            parts = {name: self.net.side_and_logits(name, batch) for name in (features.SIDES if side == "both" else (side,))}
             if side == "both":
-                # Relative to the light: else a few bright patches would decide alone.
-                return ((self.net(batch) - batch["target"]).abs() / (batch["target"].abs() + 0.1)).mean()
-            return (self.net.side(side, batch) - batch[side + ".target"]).abs().mean()
+                result, target = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"]), batch["target"]
+            else:
+                result, target = parts[side][0], batch[side + ".target"]
+            # As relative errors: else a few bright patches would decide alone. Specular light is a logarithm already.
+            if self.options.loss == "logarithmic" and side != "specular":
+                result, target = (result.float() + 0.1).log(), (target.clamp(min=0.0) + 0.1).log()
+            decay = sum(logits.square().mean() for _, logits in parts.values())
+            return (result - target).abs().mean(), self.options.logit_decay * decay
 
     def step(self, side, batch):
         optimizer = self.optimizers[side]
+        self.batches_done[side] += 1
+        for group in optimizer.param_groups:
+            group["lr"] = self.rate_now[side] * min(self.batches_done[side] / self.warm_up[side], 1.0) ** 2
         optimizer.zero_grad(set_to_none=True)
-        loss = self.loss(side, batch)
-        self.scaler.scale(loss).backward()
+        loss, decay = self.loss(side, batch)
+        self.scaler.scale(loss + decay).backward()
         self.workers.average(p.grad for group in optimizer.param_groups for p in group["params"] if p.grad is not None)
         self.scaler.step(optimizer)
         self.scaler.update()
         return loss.detach()
 
     def set_rates(self):
-        """Half a cosine over the epochs of each phase."""
+        """Half a cosine over the epochs of each phase; what is left of the warm-up is step()'s."""
+        self.rate_now = {}
         phases = ((0, self.options.epochs, features.SIDES), (self.options.epochs, self.options.tuning_epochs, ("both",)))
         for begin, length, names in phases:
             done = min(max(self.epoch - begin, 0) / max(length, 1), 1.0)
             share = self.options.final_rate + (1 - self.options.final_rate) * 0.5 * (1 + math.cos(math.pi * done))
             for name in names:
-                for group in self.optimizers[name].param_groups:
-                    group["lr"] = self.rates[name] * share
+                self.rate_now[name] = self.rates[name] * share
 
     def batches(self):
         """Of one epoch, for this worker: patches of a few examples at a time, shuffled. The same for the same seed, epoch and number of
@@ -154,14 +180,20 @@ class Trainer:
 
     def train_epoch(self):
         sides = features.SIDES if self.epoch < self.options.epochs else ("both",)
-        sums, count = dict.fromkeys(sides, 0.0), 0
+        sums, counts, batches = dict.fromkeys(sides, 0.0), dict.fromkeys(sides, 0), 0
         self.set_rates()
         for batch in self.batches():
             for side in sides:
-                sums[side] += self.step(side, batch)
-            count += 1
+                loss = self.step(side, batch)
+                finite = torch.isfinite(loss)  # halves overflow now and then: such a step is skipped
+                sums[side] += torch.where(finite, loss, torch.zeros_like(loss))
+                counts[side] += finite
+            batches += 1
         for side in sides:
-            self.losses.setdefault(side, []).append(float(sums[side]) / max(count, 1))
+            if int(counts[side]) < 0.9 * batches:
+                raise SystemExit(f"epoch {self.epoch + 1}: {batches - int(counts[side])} of {batches} losses of '{side}' are no finite "
+                                 "numbers; lower its rate, or use a longer --warm-up")
+            self.losses.setdefault(side, []).append(float(sums[side]) / max(int(counts[side]), 1))
 
     @torch.no_grad()
     def validate(self):
@@ -181,6 +213,7 @@ class Trainer:
             "net": self.net.state_dict(),
             "optimizers": {name: optimizer.state_dict() for name, optimizer in self.optimizers.items()},
             "scaler": self.scaler.state_dict(),
+            "batches_done": self.batches_done,
             "epoch": self.epoch,
             "seconds": self.seconds,
             "losses": self.losses,
@@ -203,6 +236,7 @@ class Trainer:
         for name, optimizer in self.optimizers.items():
             optimizer.load_state_dict(state["optimizers"][name])
         self.scaler.load_state_dict(state["scaler"])
+        self.batches_done = state["batches_done"]
         self.epoch, self.seconds, self.losses = state["epoch"], state["seconds"], state["losses"]
 
     def run(self):

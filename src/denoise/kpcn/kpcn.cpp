@@ -99,6 +99,7 @@ class Recorder {
           input_(input),
           network_(*settings.network),
           shaders_(shadersOf(network_.precision())),
+          standardErrors_(settings.standardErrors),
           picture_(graph.extent(input.depth)) {
         const auto hidden = static_cast<uint32_t>(network_.layers(0).size()) - 1;
         margin_ = std::max(reach * (hidden + 1), network_.kernelWidth() / 2);
@@ -239,10 +240,12 @@ class Recorder {
                      }});
     }
 
+    float ofMean() const {
+        return input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f;
+    }
+
     void features(size_t side, const Tile& tile, ImageHandle largest, const std::string& prefix) {
-        const KpcnFeaturesParams params{
-            region(tile, margin_), input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f,
-            static_cast<uint32_t>(side)};
+        const KpcnFeaturesParams params{region(tile, margin_), ofMean(), static_cast<uint32_t>(side)};
         graph_.dispatch({.pass = prefix + "features",
                          .shader = shaders_.features,
                          .bindings = {{"radiance", side == 0 ? input_.diffuse : input_.specular},
@@ -276,14 +279,18 @@ class Recorder {
 
     ImageHandle compose(const std::array<ImageHandle, 2>& clean) {
         const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
-        const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height)};
+        // One sample says nothing about its error.
+        const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
+                                       ofMean(), input_.samples > 1 ? standardErrors_ : 0.0f};
         graph_.dispatch({.pass = "kpcn/compose",
                          .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
                          .bindings = {{"diffuse", clean[0]},
                                       {"specular", clean[1]},
                                       {"albedo", input_.albedo},
                                       {"emission", input_.emission},
-                                      {"beauty", beauty}},
+                                      {"beauty", beauty},
+                                      {"noisyDiffuse", input_.diffuse},
+                                      {"noisySpecular", input_.specular}},
                          .params = gpu::paramsOf(params),
                          .constants = {},
                          .extent = picture_});
@@ -294,6 +301,7 @@ class Recorder {
     const DenoiserInput& input_;
     const KpcnNetwork& network_;
     const Shaders& shaders_;
+    float standardErrors_;
     Extent picture_;
     uint32_t margin_ = 0;  ///< that a tile's features need around it
     Extent tile_;
@@ -311,6 +319,9 @@ const ParamTable<KpcnSettings>& kpcnParams() {
         t.add("tile", &S::tile, 16, 16384, "pixels",
               "edge of the parts in which a picture is denoised; larger takes more memory and is a little "
               "faster");
+        t.add("errors", &S::standardErrors, 0.0, 100.0, "standard errors",
+              "how far a pixel's clean light may be from its noisy light, by what the samples say of that: less keeps sharp "
+              "reflections and small lights, more removes fireflies; 0: as far as the network likes");
         t.add("half", &S::half, "half precision; off: single precision, slower");
         return t;
     }();

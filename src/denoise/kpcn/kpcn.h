@@ -14,6 +14,7 @@ namespace limpid::denoise {
 /// What a user may set; kpcnParams() is where range and meaning stand.
 struct KpcnSettings {
     int tile = 512;
+    float standardErrors = 6.0f;
     bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
     std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
     bool operator==(const KpcnSettings&) const = default;

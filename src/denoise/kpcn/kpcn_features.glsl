@@ -16,8 +16,6 @@ layout(set = 0, binding = 5, r32f) uniform readonly image2D largest;
 layout(set = 0, binding = 6, scalar) writeonly buffer featureTexels { KPCN_TEXEL texels[]; } features;
 layout(set = 0, binding = 7, scalar) writeonly buffer lightTexels { vec4 texels[]; } light;
 
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
-
 struct Seen {
     vec4 light, albedo, normal;  // alpha: variance
     vec2 depth;                  // and variance
@@ -40,10 +38,10 @@ Seen seenAt(ivec2 pixel) {
     float variance = color.a;
     if (params.specular == 0u) {
         linear /= seen.albedo.rgb + KPCN_EPSILON;
-        const float divisor = dot(seen.albedo.rgb, LUMINANCE) + KPCN_EPSILON;
+        const float divisor = luminance(seen.albedo.rgb) + KPCN_EPSILON;
         variance /= divisor * divisor;
     }
-    const float slope = 1.0 + dot(linear, LUMINANCE);
+    const float slope = 1.0 + luminance(linear);
     seen.light = vec4(log(1.0 + linear), variance / (slope * slope));
     seen.averaged = params.specular == 0u ? linear : seen.light.rgb;
     const vec4 n = imageLoad(normal, pixel);

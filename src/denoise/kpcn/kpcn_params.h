@@ -47,6 +47,8 @@ struct KpcnReduceParams {
 
 struct KpcnComposeParams {
     int width, height;
+    float ofMean;          // as in KpcnFeaturesParams
+    float standardErrors;  // how far clean luminance may be from the noisy one; 0: as far as it likes
 };
 
 #ifdef __cplusplus
