@@ -16,7 +16,8 @@ using neural::valuesOf;
 class CliDatasetTest : public CliTest {
   protected:
     std::string command(const std::string& folder, const std::string& more = "") const {
-        return "dataset --device cpu --rooms 1 --still-lifes 1 --scene builtin:cornell --width 16 --height 12 --samples 1,4 "
+        return "dataset --device cpu --rooms 1 --still-lifes 1 --scene builtin:cornell --width 16 --height "
+               "12 --samples 1,4 "
                "--reference-samples 8 --per-file 1 -o '" +
                path(folder) + "' " + more;
     }

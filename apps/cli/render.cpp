@@ -49,7 +49,7 @@ void render(const RenderOptions& o) {
     const Clock::time_point started = Clock::now();
     scene::Scene scene = loadChosenScene(o.scene);
     chooseAnimation(o.sequence, output, scene);
-    const scene::Camera camera = chosenCamera(scene, o.scene.camera);
+    const scene::Camera camera = chosenCamera(scene, o.scene);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
     summary.frames = frameCount(o.sequence, output, scene, path);
     if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
@@ -72,7 +72,7 @@ void render(const RenderOptions& o) {
     summary.timings.uploadSeconds = since(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
-    if (settings.pipeline == Pipeline{}) {
+    if (settings.pipeline == Pipeline{} && !o.progressive) {
         renderIndependentFrames(job, summary);
     } else {
         renderSuccessiveFrames(job, summary);

@@ -66,6 +66,10 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--preset", o.presets, "A named set of parameters, as course; before --set");
     command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
     command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
+    command.add_flag("--progressive", o.progressive,
+                     "Of --pipeline path: the mean as the window keeps it, launch after launch in single "
+                     "precision; not with --resume, "
+                     "--shard and --time-limit");
     command.add_option("--exposure", o.exposure, "Of a PNG: stops, or 'auto' (default)");
     command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
     command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
@@ -120,6 +124,8 @@ std::vector<std::string> chosenLayers(const RenderOptions& o) {
 
 void checkRenderOptions(const RenderOptions& o) {
     const Pipeline pipeline = parsePipeline(o.pipeline);
+    if (o.progressive && isLongRender(o.longRender))
+        throw UsageError("--progressive: not with --checkpoint, --resume, --shard and --time-limit");
     if (pipeline != Pipeline{} && isLongRender(o.longRender)) {
         throw UsageError(
             "--checkpoint, --resume, --shard and --time-limit are for --pipeline path: the frames of '" +

@@ -26,7 +26,7 @@ struct RenderOptions {
     int maxDepth = -1;  // -1: the parameter's own default
     std::string pipeline = "path", sampler = "pcg", jitter = "auto", exposure = "auto", layers, dump, weights;
     std::vector<std::string> presets, assignments;
-    bool floatExr = false, json = false;
+    bool progressive = false, floatExr = false, json = false;
 };
 
 void addRenderOptions(CLI::App& command, RenderOptions& options);

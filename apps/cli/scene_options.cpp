@@ -4,21 +4,44 @@
 
 #include "base/error.h"
 #include "scene/builtin.h"
+#include "scene/camera.h"
 #include "scene/environment.h"
 #include "scene/load.h"
 #include "scene/prepare.h"
 
 namespace limpid::cli {
 
+namespace {
+
+const scene::Camera& namedCamera(const scene::Scene& scene, const std::string& choice) {
+    if (choice.empty()) return scene.cameras.front();
+    std::string known;
+    for (size_t i = 0; i < scene.cameras.size(); ++i) {
+        const scene::Camera& camera = scene.cameras[i];
+        if (camera.name == choice || std::to_string(i) == choice) return camera;
+        known += fmt::format(" {} '{}'", i, camera.name);
+    }
+    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
+}
+
+}  // namespace
+
 void addSceneOptions(CLI::App& command, SceneChoice& choice) {
     std::string builtins;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
     command
-        .add_option("SCENE", choice.scene,
-                    "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N")
+        .add_option(
+            "SCENE", choice.scene,
+            "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
         ->required();
     command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
+    command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
+        ->delimiter(',')
+        ->expected(3);
+    command.add_option("--target", choice.target, "What it looks at: X,Y,Z")->delimiter(',')->expected(3);
+    command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
+        ->check(CLI::Range(0.01, 179.0));
 }
 
 scene::Scene loadChosenScene(const SceneChoice& choice) {
@@ -31,15 +54,16 @@ scene::Scene loadChosenScene(const SceneChoice& choice) {
     return scene;
 }
 
-const scene::Camera& chosenCamera(const scene::Scene& scene, const std::string& choice) {
-    if (choice.empty()) return scene.cameras.front();
-    std::string known;
-    for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        const scene::Camera& camera = scene.cameras[i];
-        if (camera.name == choice || std::to_string(i) == choice) return camera;
-        known += fmt::format(" {} '{}'", i, camera.name);
-    }
-    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
+scene::Camera chosenCamera(const scene::Scene& scene, const SceneChoice& choice) {
+    scene::Camera camera = namedCamera(scene, choice.camera);
+    if (choice.eye.empty() && choice.target.empty() && choice.fov == 0.0f) return camera;
+    if (choice.eye.size() != 3 || choice.target.size() != 3)
+        throw UsageError("--eye and --target go together, three numbers each; --fov goes with them");
+    const vec3 eye(choice.eye[0], choice.eye[1], choice.eye[2]),
+        target(choice.target[0], choice.target[1], choice.target[2]);
+    if (eye == target) throw UsageError("--eye and --target are the same point");
+    return scene::lookAt(eye, target, vec3(0.0f, 1.0f, 0.0f),
+                         choice.fov > 0.0f ? glm::radians(choice.fov) : camera.verticalFov);
 }
 
 }  // namespace limpid::cli

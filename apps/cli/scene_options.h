@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
@@ -12,6 +13,8 @@ struct SceneChoice {
     std::string scene;
     std::string environment;
     std::string camera;
+    std::vector<float> eye, target;  ///< three numbers each, or none: instead of the scene's cameras
+    float fov = 0.0f;                ///< degrees, with these; 0: that of the camera
 };
 
 void addSceneOptions(CLI::App& command, SceneChoice& choice);
@@ -19,7 +22,8 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice);
 /// Loads or makes the scene, gives it the environment, and completes it (scene/prepare.h).
 scene::Scene loadChosenScene(const SceneChoice& choice);
 
-/// By name, or by number from 0; the first if `choice` is empty. Throws UsageError listing the cameras.
-const scene::Camera& chosenCamera(const scene::Scene& scene, const std::string& choice);
+/// By name, or by number from 0; the first if none is chosen; or one that stands at `eye`. Throws UsageError,
+/// listing the cameras if there is none of that name.
+scene::Camera chosenCamera(const scene::Scene& scene, const SceneChoice& choice);
 
 }  // namespace limpid::cli

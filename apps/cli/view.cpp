@@ -16,29 +16,40 @@ namespace {
 struct ViewOptions {
     SceneChoice scene;
     DeviceChoice device;
-    std::string pipeline = "path", weights, screenshot;
+    std::string pipeline = "path", animation, weights, screenshot, controls;
     std::vector<std::string> presets, assignments;
-    uint32_t width = 1280, height = 720, samples = 1;
+    uint32_t width = 1280, height = 720, samples = 1, seed = 0;
+    int shrink = 0;
     uint64_t maxSamples = 4096, frames = 0;
 };
 
 void run([[maybe_unused]] const ViewOptions& o) {
 #ifdef LIMPID_HAVE_VIEWER
-    viewer::ViewSettings settings{.samples = o.samples,
+    viewer::ViewSettings settings{.scene = o.scene.scene,
+                                  .environment = o.scene.environment,
+                                  .animation = o.animation,
+                                  .render = {},
+                                  .samples = o.samples,
                                   .maxSamples = o.maxSamples,
+                                  .shrink = o.shrink,
+                                  .controls = o.controls,
                                   .weights = o.weights,
                                   .quitAfter = o.frames,
                                   .screenshot = o.screenshot};
     settings.render.extent = {o.width, o.height};
     settings.render.pipeline = parsePipeline(o.pipeline);
-    settings.render.jitter = settings.render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    settings.render.seed = o.seed;
     for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
     for (const std::string& text : o.assignments) assign(settings.render, text);
-    scene::Scene scene = loadChosenScene(o.scene);
-    const scene::Camera camera = chosenCamera(scene, o.scene.camera);
+    const auto load = [&](const std::string& scene, const std::string& environment) {
+        SceneChoice choice = o.scene;
+        choice.scene = scene;
+        choice.environment = environment;
+        return loadChosenScene(choice);
+    };
     viewer::view(
-        o.device.device, [&](const gpu::Device& device) { return chosenTracer(o.device, device); },
-        std::move(scene), camera, settings);
+        o.device.device, [&](const gpu::Device& device) { return chosenTracer(o.device, device); }, load,
+        [&](const scene::Scene& scene) { return chosenCamera(scene, o.scene); }, settings);
 #else
     throw Error(
         "Limpid was built without libglfw3-dev and libimgui-dev, which the window needs; 'limpid render' "
@@ -62,8 +73,17 @@ void addViewCommand(CLI::App& app) {
     command->add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 64));
     command
         ->add_option("--max-spp", o->maxSamples,
-                     "Of pictures that accumulate; then nothing is computed (4096)")
+                     "With so many and nothing changing, nothing is computed any more (4096)")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+    command->add_option("--seed", o->seed, "Another seed, other noise (0)");
+    command->add_option("--animation", o->animation, "Clip by name or number; default: the first");
+    command
+        ->add_option(
+            "--shrink", o->shrink,
+            "The picture has 2^N times fewer pixels along each axis than the window, for slow devices (0)")
+        ->check(CLI::Range(0, 3));
+    command->add_option("--controls", o->controls,
+                        "For tests: a file that says where in the window each control is");
     command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");
     command->add_option("--screenshot", o->screenshot, "PNG to write on leaving");
     addDeviceOptions(*command, o->device);

@@ -13,9 +13,10 @@ ImGuiSliderFlags scaleOf(double least, double most) {
 
 }  // namespace
 
-void Controls::note(const std::string& name) {
+void Controls::note(const std::string& name, const std::string& value) {
     const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
-    drawn_.push_back({group_.empty() ? name : group_ + "." + name, lower.x, lower.y, upper.x, upper.y});
+    drawn_.push_back(
+        {group_.empty() ? name : group_ + "." + name, value, lower.x, lower.y, upper.x, upper.y});
 }
 
 bool Controls::button(const char* name) {
@@ -26,33 +27,32 @@ bool Controls::button(const char* name) {
 
 bool Controls::checkbox(const char* name, bool& value) {
     const bool changed = ImGui::Checkbox(name, &value);
-    note(name);
+    note(name, value ? "on" : "off");
     return changed;
 }
 
 bool Controls::slider(const char* name, int& value, int least, int most) {
     const bool changed = ImGui::SliderInt(name, &value, least, most, "%d", scaleOf(least, most));
-    note(name);
+    note(name, fmt::format("{}", value));
     return changed;
 }
 
 bool Controls::slider(const char* name, float& value, float least, float most, const char* format) {
-    const bool changed =
-        ImGui::SliderFloat(name, &value, least, most, format,
-                           scaleOf(static_cast<double>(least), static_cast<double>(most)));
-    note(name);
+    const bool changed = ImGui::SliderFloat(name, &value, least, most, format,
+                                            scaleOf(static_cast<double>(least), static_cast<double>(most)));
+    note(name, fmt::format("{}", value));
     return changed;
 }
 
 bool Controls::header(const char* name) {
     const bool open = ImGui::CollapsingHeader(name);
-    note(name);
+    note(name, open ? "open" : "closed");
     return open;
 }
 
 bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen) {
     const bool open = ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str());
-    note(name);
+    note(name, choices[static_cast<size_t>(chosen)]);
     if (!open) return false;
     bool changed = false;
     for (size_t i = 0; i < choices.size(); ++i) {
@@ -67,16 +67,11 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
     return changed;
 }
 
-bool Controls::color(const char* name, float (&rgb)[3]) {
-    const bool changed = ImGui::ColorEdit3(name, rgb, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
-    note(name);
-    return changed;
-}
-
 std::string Controls::text() const {
     std::string lines;
     for (const DrawnControl& c : drawn_)
-        lines += fmt::format("{:.0f} {:.0f} {:.0f} {:.0f} {}\n", c.left, c.top, c.right, c.bottom, c.name);
+        lines += fmt::format("{:.0f}\t{:.0f}\t{:.0f}\t{:.0f}\t{}\t{}\n", c.left, c.top, c.right, c.bottom,
+                             c.name, c.value);
     return lines;
 }
 

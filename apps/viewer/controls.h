@@ -7,8 +7,9 @@
 namespace limpid::viewer {
 
 struct DrawnControl {
-    std::string name;
-    float left = 0.0f, top = 0.0f, right = 0.0f, bottom = 0.0f;  ///< pixels of the window; outside it: scrolled away
+    std::string name, value;
+    float left = 0.0f, top = 0.0f, right = 0.0f,
+          bottom = 0.0f;  ///< pixels of the window; outside it: scrolled away
 };
 
 /// Every function draws a control named `name` and returns whether the user changed it.
@@ -27,12 +28,11 @@ class Controls {
     bool header(const char* name);
     /// `choices` are shown in a list that opens; `chosen` is one's number.
     bool choice(const char* name, const std::vector<std::string>& choices, int& chosen);
-    bool color(const char* name, float (&rgb)[3]);
     /// Of whatever was drawn last.
-    void note(const std::string& name);
+    void note(const std::string& name, const std::string& value = {});
 
     const std::vector<DrawnControl>& drawn() const { return drawn_; }
-    /// One a line: left, top, right, bottom, name.
+    /// One a line: left, top, right, bottom, name, value; between tabs.
     std::string text() const;
 
   private:

@@ -1,8 +1,9 @@
 #include "panel.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 #include "renderer/parameters.h"
@@ -10,57 +11,54 @@
 namespace limpid::viewer {
 namespace {
 
-/// A slider over a range of more than a thousand to one is logarithmic.
-ImGuiSliderFlags scaleOf(const ParamInfo& info) {
-    return info.maximum - info.minimum > 1000.0 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
-}
-
 /// Whether the user changed it.
-bool editValue(const ParamInfo& info, ParamValue& value) {
+bool editValue(Controls& controls, const ParamInfo& info, ParamValue& value) {
     const char* const name = info.name.c_str();
-    if (bool* const on = std::get_if<bool>(&value)) return ImGui::Checkbox(name, on);
-    if (int* const number = std::get_if<int>(&value)) {
-        return ImGui::SliderInt(name, number, static_cast<int>(info.minimum), static_cast<int>(info.maximum),
-                                "%d", scaleOf(info) | ImGuiSliderFlags_AlwaysClamp);
-    }
-    return ImGui::SliderFloat(name, &std::get<float>(value), static_cast<float>(info.minimum),
-                              static_cast<float>(info.maximum), "%.4g",
-                              scaleOf(info) | ImGuiSliderFlags_AlwaysClamp);
+    if (bool* const on = std::get_if<bool>(&value)) return controls.checkbox(name, *on);
+    if (int* const number = std::get_if<int>(&value))
+        return controls.slider(name, *number, static_cast<int>(info.minimum), static_cast<int>(info.maximum));
+    return controls.slider(name, std::get<float>(value), static_cast<float>(info.minimum),
+                           static_cast<float>(info.maximum));
 }
 
-void drawGroup(RenderSettings& settings, const ParamGroup& group) {
-    if (!ImGui::CollapsingHeader(group.name.c_str())) return;
+void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& controls) {
+    controls.setGroup("");
+    if (!controls.header(group.name.c_str())) return;
+    controls.setGroup(group.name);
     ImGui::PushID(group.name.c_str());
     for (const ParamPreset& preset : group.presets) {
-        if (ImGui::SmallButton(("preset " + preset.name).c_str())) group.applyPreset(settings, preset.name);
+        if (controls.button(("preset " + preset.name).c_str())) group.applyPreset(settings, preset.name);
         ImGui::SameLine();
     }
-    if (ImGui::SmallButton("defaults")) {
+    if (controls.button("defaults")) {
         for (const ParamInfo& info : group.infos) group.set(settings, info.name, toString(info.defaultValue));
     }
     for (size_t i = 0; i < group.infos.size(); ++i) {
         const ParamInfo& info = group.infos[i];
         ParamValue value = group.get(settings, i);
-        if (editValue(info, value)) group.set(settings, info.name, toString(value));
+        if (editValue(controls, info, value)) group.set(settings, info.name, toString(value));
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s%s", info.help.c_str(),
                               info.unit.empty() ? "" : (" [" + info.unit + "]").c_str());
     }
     ImGui::PopID();
+    controls.setGroup("");
 }
 
-void drawPipelines(RenderSettings& settings) {
-    if (!ImGui::BeginCombo("pipeline", std::string(settings.pipeline.name()).c_str())) return;
+void drawPipelines(RenderSettings& settings, Controls& controls) {
+    std::vector<std::string> names;
+    int chosen = 0;
     for (const Pipeline& pipeline : pipelines()) {
-        const std::string name(pipeline.name());
-        if (ImGui::Selectable(name.c_str(), pipeline == settings.pipeline)) settings.pipeline = pipeline;
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(pipeline.help()).c_str());
+        if (pipeline == settings.pipeline) chosen = static_cast<int>(names.size());
+        names.emplace_back(pipeline.name());
     }
-    ImGui::EndCombo();
+    if (controls.choice("pipeline", names, chosen))
+        settings.pipeline = pipelines()[static_cast<size_t>(chosen)];
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(settings.pipeline.help()).c_str());
 }
 
-void drawPasses(const std::vector<gpu::PassTime>& passes) {
-    if (!ImGui::CollapsingHeader("passes")) return;
+void drawPasses(const std::vector<gpu::PassTime>& passes, Controls& controls) {
+    if (!controls.header("passes")) return;
     std::map<std::string, double> byName;
     std::vector<std::string> order;
     for (const gpu::PassTime& pass : passes) {
@@ -78,35 +76,92 @@ void drawPasses(const std::vector<gpu::PassTime>& passes) {
     ImGui::EndTable();
 }
 
-}  // namespace
+void drawSampling(PanelState& state, Controls& controls) {
+    drawPipelines(state.render, controls);
+    int samples = static_cast<int>(state.samples), seed = static_cast<int>(state.render.seed);
+    if (controls.slider("samples a frame", samples, 1, 64)) state.samples = static_cast<uint32_t>(samples);
+    controls.slider("most samples", state.maxSamples, 1, 1 << 20);
+    if (controls.slider("seed", seed, 0, 1000)) state.render.seed = static_cast<uint32_t>(seed);
+    controls.choice("jitter", {"as the pipeline needs it", "pixel", "frame", "off"}, state.jitter);
+    controls.choice("resolution", {"full", "1/2", "1/4", "1/8"}, state.shrink);
+}
 
-void drawPanel(PanelState& state, const PanelFacts& facts) {
-    if (!state.shown) return;
-    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({340, 520}, ImGuiCond_FirstUseEver);
-    ImGui::Begin("Limpid");
+void drawDisplay(PanelState& state, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    controls.slider("exposure, stops", state.exposure, -16.0f, 16.0f, "%.2f");
+    asked.measureExposure |= controls.button("measure exposure");
+    ImGui::SameLine();
+    asked.screenshot |= controls.button("screenshot");
+    ImGui::SameLine();
+    asked.command |= controls.button("copy command line");
+}
+
+void drawTime(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    controls.checkbox("running", state.running);
+    ImGui::SameLine();
+    asked.step |= controls.button("step");
+    ImGui::SameLine();
+    asked.reset |= controls.button("reset");
+    if (facts.duration <= 0.0) return;
+    ImGui::SameLine();
+    controls.checkbox("playing", state.playing);
+    asked.seek |= controls.slider("time, s", state.time, 0.0f, static_cast<float>(facts.duration), "%.3f");
+}
+
+void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
+    controls.slider("field of view", state.fovDegrees, 5.0f, 150.0f, "%.1f");
+    asked.resetCamera |= controls.button("reset camera");
+    ImGui::SameLine();
+    asked.savePath |= controls.button("save path flown");
+}
+
+void drawOpen(PanelState& state, Controls& controls) {
+    std::array<char, 1024> text{};
+    state.file.copy(text.data(), text.size() - 1);
+    if (ImGui::InputText("open", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+        state.asked.open = true;
+    controls.note("open");
+    state.file = text.data();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene, or an environment (.hdr, .exr); or drop it here");
+}
+
+void drawFacts(const PanelState& state, const PanelFacts& facts) {
     ImGui::TextUnformatted(facts.device.c_str());
-    ImGui::Text("%ux%u, %.1f ms a frame", state.render.extent.width, state.render.extent.height,
-                facts.frameMilliseconds);
+    ImGui::Text("%ux%u, %.1f ms a frame, frame %llu", state.render.extent.width, state.render.extent.height,
+                facts.frameMilliseconds, static_cast<unsigned long long>(facts.frames));
     if (facts.samplesInMean > 0)
         ImGui::Text("%llu samples", static_cast<unsigned long long>(facts.samplesInMean));
-    if (!facts.fault.empty()) ImGui::TextColored({1.0f, 0.5f, 0.4f, 1.0f}, "%s", facts.fault.c_str());
-    drawPipelines(state.render);
-    int samples = static_cast<int>(state.samples);
-    if (ImGui::SliderInt("samples a frame", &samples, 1, 64, "%d", ImGuiSliderFlags_AlwaysClamp))
-        state.samples = static_cast<uint32_t>(samples);
-    ImGui::SliderFloat("exposure, stops", &state.exposure, -16.0f, 16.0f, "%.2f");
-    if (ImGui::SmallButton("measure exposure")) state.measureExposure = true;
-    ImGui::SliderAngle("field of view", &state.verticalFov, 5.0f, 150.0f);
-    if (ImGui::SmallButton("reset camera")) state.resetCamera = true;
-    ImGui::SameLine();
-    if (ImGui::SmallButton("screenshot")) state.screenshot = true;
-    drawPasses(facts.passes);
-    for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group);
+    if (!facts.message.empty()) ImGui::TextWrapped("%s", facts.message.c_str());
+    if (facts.fault.empty()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
+    ImGui::TextWrapped("%s", facts.fault.c_str());
+    ImGui::PopStyleColor();
+}
+
+}  // namespace
+
+void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    controls.begin();
+    if (!state.shown) return;
+    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({380, std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
+                             ImGuiCond_FirstUseEver);
+    ImGui::Begin("Limpid");
+    drawFacts(state, facts);
+    drawSampling(state, controls);
+    drawDisplay(state, controls);
+    drawTime(state, facts, controls);
+    drawCamera(state, facts, controls);
+    drawOpen(state, controls);
+    drawPasses(facts.passes, controls);
+    for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
     ImGui::Separator();
     ImGui::TextWrapped(
         "left button: orbit; right: look, with WASDQE to fly; middle: pan; wheel: zoom; Tab: this panel; "
-        "Escape: leave");
+        "Space: run or stop; Escape: leave");
     ImGui::End();
 }
 

@@ -4,32 +4,55 @@
 #include <string>
 #include <vector>
 
+#include "controls.h"
 #include "gpu/frame_graph.h"
 #include "renderer/settings.h"
 
 namespace limpid::viewer {
 
+/// Asked for; whoever does it clears it.
+struct PanelRequests {
+    bool measureExposure = false, resetCamera = false, screenshot = false, command = false, savePath = false;
+    bool reset = false;       ///< start anew: histories, means, the frame's number
+    bool step = false;        ///< one frame, though rendering stands still
+    bool seek = false;        ///< to PanelState::time
+    bool choosePose = false;  ///< PanelState::camera is another one
+    bool open = false;        ///< PanelState::file
+};
+
 /// What the panel shows and changes.
 struct PanelState {
-    RenderSettings render;
-    uint32_t samples = 1;      ///< per pixel and frame
-    float exposure = 0.0f;     ///< stops
-    float verticalFov = 0.8f;  ///< radians
-    bool measureExposure = false, resetCamera = false,
-         screenshot = false;  ///< asked for; whoever does it clears it
+    RenderSettings render;  ///< its extent and jitter follow from what is below
+    uint32_t samples = 1;   ///< per pixel and frame
+    int maxSamples = 4096;  ///< of pictures that accumulate
+    int jitter = 0;         ///< 0: as the pipeline needs it; else 1 + Jitter
+    int shrink = 0;         ///< 2^shrink pixels of the window for one of the picture's, along each axis
+    float exposure = 0.0f;  ///< stops
+    float fovDegrees = 45.0f;
+    bool running = true;   ///< frames are rendered as long as there is something to gain
+    bool playing = false;  ///< the clip, or the camera's path
+    float time = 0.0f;     ///< seconds
+    int camera = 0;        ///< of PanelFacts::cameras
+    std::string file;      ///< scene or environment to open
     bool shown = true;
+    PanelRequests asked;
 };
 
 /// What it only shows.
 struct PanelFacts {
     std::string device;
     uint64_t samplesInMean = 0;  ///< 0 where nothing accumulates
+    uint64_t frames = 0;         ///< since the last reset
     double frameMilliseconds = 0.0;
+    double duration = 0.0;  ///< of the clip or of the path, seconds; 0: nothing plays
+    std::vector<std::string> cameras;
     std::vector<gpu::PassTime> passes;
-    std::string fault;  ///< of the last thing that failed
+    std::string command;  ///< that makes this frame again
+    std::string message;  ///< of the last thing that was done
+    std::string fault;    ///< of the last thing that failed
 };
 
 /// ImGui's calls for it.
-void drawPanel(PanelState& state, const PanelFacts& facts);
+void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls);
 
 }  // namespace limpid::viewer

@@ -18,7 +18,7 @@ void Playback::reset(double time) {
     shownBefore_.reset();
     previous_.reset();
     cameras_.clear();
-    stoodStill_ = playedAll_ = playedNone_ = true;
+    stoodStill_ = playedAll_ = playedNone_ = sameSettings_ = true;
 }
 
 void Playback::seek(double time) {
@@ -57,7 +57,8 @@ void Playback::advance(const CameraParams& params, const scene::CameraKey& camer
     wentOn_ = playing;
     if (!playing) return;
     // As SequenceTiming::timeOf(), to the last bit, as long as it can be.
-    time_ = playedAll_ ? start_ + static_cast<double>(frames_) / framesPerSecond : time_ + 1.0 / framesPerSecond;
+    time_ =
+        playedAll_ ? start_ + static_cast<double>(frames_) / framesPerSecond : time_ + 1.0 / framesPerSecond;
 }
 
 }  // namespace limpid::viewer

@@ -26,8 +26,8 @@ class Playback {
     /// Goes to another moment, as a cut.
     void seek(double time);
 
-    /// What of the scene differs from the last frame's, for the next one: from when to when. None: nothing, and the device's scene
-    /// stands at the right moment already.
+    /// What of the scene differs from the last frame's, for the next one: from when to when. None: nothing,
+    /// and the device's scene stands at the right moment already.
     struct Change {
         double from, to;
     };
@@ -39,12 +39,17 @@ class Playback {
 
     /// The camera of all frames since the reset; key n has the time of frame n. Empty if there were too many.
     const std::vector<scene::CameraKey>& cameras() const { return cameras_; }
+    /// From the next frame on, settings are others than those of the frames since the reset.
+    void noteOtherSettings() { sameSettings_ = sameSettings_ && frames_ == 0; }
+    bool sameSettings() const { return sameSettings_; }
     bool cameraStoodStill() const { return stoodStill_; }
     /// Time went on in every frame since the reset.
     bool playedThroughout() const { return playedAll_; }
     /// Time went on in none of them.
     bool stoodThroughout() const { return playedNone_; }
     double startTime() const { return start_; }
+    /// Of the last frame.
+    double shownTime() const { return shown_.value_or(time_); }
 
   private:
     double start_ = 0.0, time_ = 0.0;
@@ -52,7 +57,7 @@ class Playback {
     std::optional<double> shown_, shownBefore_;  ///< times of the last frame and of the one before it
     std::optional<CameraParams> previous_;
     std::vector<scene::CameraKey> cameras_;
-    bool stoodStill_ = true, playedAll_ = true, playedNone_ = true, wentOn_ = false;
+    bool stoodStill_ = true, playedAll_ = true, playedNone_ = true, wentOn_ = false, sameSettings_ = true;
 };
 
 }  // namespace limpid::viewer

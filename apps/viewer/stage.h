@@ -11,7 +11,8 @@ namespace limpid::viewer {
 
 class Stage {
   public:
-    /// `scene` is complete (scene/prepare.h), with its clip chosen if one shall play. Throws as GpuScene does.
+    /// `scene` is complete (scene/prepare.h), with its clip chosen if one shall play. Throws as GpuScene
+    /// does.
     Stage(gpu::Device& device, scene::Scene scene, scene::Tracer tracer);
     Stage(const Stage&) = delete;  // the animator refers to the scene
     Stage& operator=(const Stage&) = delete;

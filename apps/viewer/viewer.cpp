@@ -4,180 +4,372 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/log.h"
+#include "command_line.h"
+#include "controls.h"
 #include "fly_camera.h"
+#include "image/exr.h"
 #include "image/png.h"
 #include "image/tonemap.h"
 #include "interface.h"
 #include "panel.h"
 #include "passes/tonemap/tonemap.h"
+#include "playback.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/network_file.h"
+#include "renderer/reset_rule.h"
 #include "scene/camera.h"
-#include "scene/framing.h"
-#include "scene/gpu_scene.h"
+#include "scene/movement.h"
+#include "stage.h"
 
 namespace limpid::viewer {
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr float radiansAPixel = 0.005f;
 constexpr float zoomAStep = 0.85f;
-constexpr double idleSeconds = 0.5;          ///< between looks at the window while nothing is computed
+constexpr double idleSeconds = 1.0;          ///< between looks at the window while nothing is computed
+constexpr int restlessPictures = 4;          ///< drawn after the last event: until the panel has settled
 constexpr uint64_t framesBetweenTimes = 16;  ///< reading the passes' times waits for the device
-
-class Viewer {
-  public:
-    Viewer(const gpu::DeviceOptions& options, const TracerChoice& tracer, scene::Scene scene,
-           const scene::Camera& camera, const ViewSettings& settings);
-    void run();
-
-  private:
-    void handleInput(double seconds);
-    void applyChanges();
-    bool mustRender();
-    void render();
-    void show();
-    void measureExposure();
-    void writeScreenshot(const std::filesystem::path& file);
-    FlyCamera startCamera() const;
-
-    ViewSettings settings_;
-    scene::Scene scene_;
-    scene::Camera start_;
-    Window window_;
-    gpu::Device device_;
-    scene::GpuScene gpuScene_;
-    gpu::Presenter presenter_;
-    Interface interface_;
-    FlyCamera camera_;
-    PanelState panel_;
-    PanelState used_;  ///< by the last frame
-    PanelFacts facts_;
-    std::optional<FrameRenderer> renderer_;
-    std::optional<CameraParams> previousCamera_;
-    CameraParams lastCamera_{};
-    float speed_ = 1.0f;  ///< world units a second
-    uint64_t frames_ = 0;
-};
+constexpr double pathSeconds = 10.0;         ///< of the built-in camera paths
+constexpr const char* pathFile = "flown.json";
+constexpr std::array<const char*, 3> pathNames{"orbit", "dolly", "shake"};
 
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     options.surfaceExtensions = Window::surfaceExtensions();
     return options;
 }
 
-Viewer::Viewer(const gpu::DeviceOptions& options, const TracerChoice& tracer, scene::Scene scene,
-               const scene::Camera& camera, const ViewSettings& settings)
+bool differ(const CameraParams& a, const CameraParams& b) {
+    return a.origin != b.origin || a.forward != b.forward || a.right != b.right || a.up != b.up ||
+           a.spread != b.spread || a.orthographic != b.orthographic;
+}
+
+class Viewer {
+  public:
+    Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load,
+           std::function<scene::Camera(const scene::Scene&)> start, const ViewSettings& settings);
+    void run();
+
+  private:
+    void loadStage(const std::string& scene, const std::string& environment);
+    void open(const std::string& file);
+    void handleInput(double seconds);
+    void fly(const ImGuiIO& io, float seconds);
+    void applyRequests();
+    void applySettings();
+    void choosePose();
+    bool isFree() const { return panel_.camera == 0; }
+    bool settingsDiffer() const;
+    bool mustRender();
+    void render();
+    void makeRenderer();
+    void show();
+    void measureExposure();
+    void writeScreenshot(const fs::path& file);
+    void copyCommand();
+    void savePath();
+    void writeControls();
+    FlyCamera startCamera() const;
+    scene::Camera cameraNow() const;
+    scene::CameraKey keyNow() const;
+    std::string cameraOption() const;
+    /// Runs what may fail for reasons of the user's; says so in the panel.
+    template <typename Function>
+    void attempt(const Function& function);
+
+    ViewSettings settings_;
+    TracerChoice tracer_;
+    SceneLoader load_;
+    std::function<scene::Camera(const scene::Scene&)> start_;
+    Window window_;
+    gpu::Device device_;
+    std::unique_ptr<Stage> stage_;
+    gpu::Presenter presenter_;
+    Interface interface_;
+    scene::Camera home_;
+    FlyCamera camera_;
+    Playback playback_;
+    PanelState panel_;
+    PanelState used_;  ///< by the last frame
+    PanelFacts facts_;
+    Controls controls_;
+    std::string controlsText_;  ///< as last written
+    std::optional<scene::CameraPath> path_;
+    std::optional<FrameRenderer> renderer_;
+    CameraParams lastCamera_{};
+    float speed_ = 1.0f;  ///< world units a second
+    uint64_t launchesOfMean_ = 0;
+    uint64_t rendered_ = 0;    ///< frames, ever
+    uint64_t sameFrames_ = 0;  ///< since something changed
+};
+
+Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load,
+               std::function<scene::Camera(const scene::Scene&)> start, const ViewSettings& settings)
     : settings_(settings),
-      scene_(std::move(scene)),
-      start_(camera),
-      window_("Limpid: " + scene_.name, settings.render.extent),
+      tracer_(std::move(tracer)),
+      load_(std::move(load)),
+      start_(std::move(start)),
+      window_("Limpid", settings.render.extent),
       device_(presenting(options)),
-      gpuScene_(device_, scene::buildSceneData(scene_), {tracer(device_), {}}),
       presenter_(device_, [this](void* instance) { return window_.makeSurface(instance); }),
       interface_(window_, presenter_),
-      camera_(startCamera()) {
+      camera_(scene::Camera{}, 1.0f) {
     panel_.render = settings.render;
     panel_.samples = settings.samples;
-    panel_.verticalFov = start_.verticalFov;
-    panel_.measureExposure = true;
+    panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
+    panel_.shrink = settings.shrink;
     facts_.device = device_.info().name;
-    speed_ = 0.25f * scene::boundingSphere(scene_).radius;
+    loadStage(settings.scene, settings.environment);
+}
+
+/// Leaves everything as it was if the scene cannot be had.
+void Viewer::loadStage(const std::string& name, const std::string& environment) {
+    scene::Scene scene = load_(name, environment);
+    if (!scene.rig.clips.empty()) scene::chooseClip(scene, settings_.animation);
+    auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
+    device_.waitIdle();
+    renderer_.reset();
+    stage_ = std::move(stage);
+    settings_.scene = name;
+    settings_.environment = environment;
+    window_.setTitle("Limpid: " + stage_->scene().name);
+    home_ = start_(stage_->scene());
+    facts_.cameras = {"free"};
+    for (const scene::Camera& camera : stage_->scene().cameras) facts_.cameras.push_back(camera.name);
+    facts_.cameras.insert(facts_.cameras.end(), pathNames.begin(), pathNames.end());
+    speed_ = 0.25f * stage_->sphere().radius;
+    panel_.asked.measureExposure = panel_.asked.resetCamera = true;
+    playback_.reset(0.0);
+}
+
+/// An environment is put around the scene that there is; anything else is a scene.
+void Viewer::open(const std::string& file) {
+    const std::string extension = fs::path(file).extension().string();
+    if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
+        loadStage(settings_.scene, file);
+    else
+        loadStage(file, settings_.environment);
+    facts_.message = "opened " + file;
+}
+
+template <typename Function>
+void Viewer::attempt(const Function& function) {
+    try {
+        facts_.fault.clear();
+        function();
+    } catch (const Error& fault) {
+        facts_.fault = fault.what();
+        log::warn("{}", fault.what());
+    }
 }
 
 /// Around the middle of the scene, as far as it lies ahead.
 FlyCamera Viewer::startCamera() const {
-    const scene::BoundingSphere sphere = scene::boundingSphere(scene_);
-    const vec3 eye(start_.toWorld[3]), ahead = -vec3(start_.toWorld[2]);
-    return {start_, std::max(glm::dot(sphere.center - eye, ahead), 0.25f * sphere.radius)};
+    const scene::BoundingSphere& sphere = stage_->sphere();
+    const vec3 eye(home_.toWorld[3]), ahead = -vec3(home_.toWorld[2]);
+    return {home_, std::max(glm::dot(sphere.center - eye, ahead), 0.25f * sphere.radius)};
+}
+
+scene::Camera Viewer::cameraNow() const {
+    const auto number = static_cast<size_t>(panel_.camera);
+    if (isFree()) return camera_.camera();
+    if (path_) return path_->at(playback_.time());
+    return scene::cameraAt(stage_->scene(), stage_->scene().cameras[number - 1], playback_.time());
+}
+
+scene::CameraKey Viewer::keyNow() const {
+    scene::CameraKey key;
+    key.eye = camera_.eye();
+    key.target = camera_.eye() + camera_.forward();  // as FlyCamera::camera() has it
+    key.verticalFov = glm::radians(panel_.fovDegrees);
+    return key;
+}
+
+std::string Viewer::cameraOption() const {
+    if (isFree()) return {};
+    return path_ ? "--camera-path " + facts_.cameras[static_cast<size_t>(panel_.camera)]
+                 : fmt::format("--camera {}", panel_.camera - 1);
 }
 
 void Viewer::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantCaptureKeyboard) {
-        if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) window_.close();
-        if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) panel_.shown = !panel_.shown;
+    for (const int key : window_.takePressed()) {
+        if (io.WantTextInput) break;
+        if (key == GLFW_KEY_ESCAPE) window_.close();
+        if (key == GLFW_KEY_TAB) panel_.shown = !panel_.shown;
+        if (key == GLFW_KEY_SPACE) panel_.running = !panel_.running;
     }
-    if (io.WantCaptureMouse) return;
+    if (!io.WantCaptureMouse) fly(io, static_cast<float>(seconds));
+}
+
+void Viewer::fly(const ImGuiIO& io, float seconds) {
     const float x = io.MouseDelta.x, y = io.MouseDelta.y;
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) camera_.orbit(radiansAPixel * x, -radiansAPixel * y);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) camera_.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left),
+               right = ImGui::IsMouseDown(ImGuiMouseButton_Right),
+               middle = ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f;
+    if (moves && !isFree()) {
+        // From where it is.
+        camera_ = FlyCamera(cameraNow(), camera_.distance());
+        panel_.camera = 0;
+        path_.reset();
+    }
+    if (left) camera_.orbit(radiansAPixel * x, -radiansAPixel * y);
+    if (middle) camera_.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
+    if (right) {
         camera_.look(radiansAPixel * x, -radiansAPixel * y);
         if (io.MouseWheel != 0.0f) speed_ *= std::pow(1.0f / zoomAStep, io.MouseWheel);
         const auto axis = [&](int more, int less) {
             return (ImGui::IsKeyDown(more) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(less) ? 1.0f : 0.0f);
         };
         camera_.move(
-            speed_ * static_cast<float>(seconds) *
+            speed_ * seconds *
             vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_W, GLFW_KEY_S)));
     } else if (io.MouseWheel != 0.0f) {
         camera_.zoom(std::pow(zoomAStep, io.MouseWheel));
     }
 }
 
-/// What the panel asked for; the settings of what cannot be done go back to what was.
-void Viewer::applyChanges() {
-    if (std::exchange(panel_.resetCamera, false)) {
-        camera_ = startCamera();
-        panel_.verticalFov = start_.verticalFov;
+void Viewer::choosePose() {
+    const size_t cameras = stage_->scene().cameras.size();
+    const auto number = static_cast<size_t>(panel_.camera);
+    path_.reset();
+    if (number > cameras) {
+        const double seconds = std::max(stage_->duration(), pathSeconds);
+        path_ = scene::builtinCameraPath(facts_.cameras[number], stage_->scene(), home_, seconds);
+        panel_.playing = true;
     }
-    camera_.setVerticalFov(panel_.verticalFov);
-    panel_.render.extent = window_.pixels();
-    const denoise::Denoiser* const denoiser = panel_.render.pipeline.denoiser;
-    const bool half = panel_.render.denoisers.kpcn.half;
-    if (denoiser && denoiser->network &&
-        (!panel_.render.denoisers.kpcn.network || half != used_.render.denoisers.kpcn.half)) {
-        try {
-            loadNetwork(device_, denoiser, settings_.weights, panel_.render.denoisers);
-        } catch (const Error& fault) {
-            facts_.fault = fault.what();
-            panel_.render = used_.render;
-        }
-    }
+    if (number == 0) camera_ = startCamera();
+    playback_.reset(playback_.time());
+    renderer_.reset();
 }
 
-/// Whether the next picture would be another one.
+/// What the panel asked for.
+void Viewer::applyRequests() {
+    PanelRequests& asked = panel_.asked;
+    if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file); });
+    for (const std::string& file : window_.takeDropped()) attempt([&] { open(file); });
+    if (std::exchange(asked.resetCamera, false)) {
+        panel_.camera = 0;
+        panel_.fovDegrees = glm::degrees(home_.verticalFov);
+        choosePose();
+    }
+    if (std::exchange(asked.choosePose, false)) choosePose();
+    if (std::exchange(asked.seek, false)) playback_.seek(double{panel_.time});
+    if (std::exchange(asked.reset, false)) {
+        playback_.reset(playback_.time());
+        renderer_.reset();
+    }
+    if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
+    if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
+    if (std::exchange(asked.screenshot, false) && renderer_) attempt([&] { writeScreenshot("limpid.png"); });
+}
+
+/// Settings that follow from others. Those of what cannot be done go back to what was.
+void Viewer::applySettings() {
+    const gpu::Extent window = window_.pixels();
+    RenderSettings& render = panel_.render;
+    const auto shrunk = [&](uint32_t pixels) {
+        return pixels == 0 ? 0 : std::max(pixels >> panel_.shrink, 1u);
+    };
+    render.extent = {shrunk(window.width), shrunk(window.height)};
+    if (panel_.jitter > 0)
+        render.jitter = static_cast<Jitter>(panel_.jitter - 1);
+    else
+        render.jitter = render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    camera_.setVerticalFov(glm::radians(panel_.fovDegrees));
+    playback_.playing = panel_.playing && (stage_->moves() || path_);
+    facts_.duration = path_ ? std::max(stage_->duration(), pathSeconds) : stage_->duration();
+    if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
+    panel_.time = static_cast<float>(playback_.time());
+    const denoise::Denoiser* const denoiser = render.pipeline.denoiser;
+    const bool half = render.denoisers.kpcn.half;
+    if (!denoiser || !denoiser->network ||
+        (render.denoisers.kpcn.network && half == used_.render.denoisers.kpcn.half))
+        return;
+    attempt([&] { loadNetwork(device_, denoiser, settings_.weights, render.denoisers); });
+    if (!render.denoisers.kpcn.network) render = used_.render;
+}
+
+/// Other settings than those of the last frame, as far as they make another picture.
+bool Viewer::settingsDiffer() const {
+    if (!renderer_ || panel_.samples != used_.samples || panel_.exposure != used_.exposure) return true;
+    if (!panel_.render.pipeline.accumulates()) return panel_.render != used_.render;
+    return mustReset({lastCamera_, used_.render}, {lastCamera_, panel_.render});
+}
+
+/// Whether the next picture would be another one, and is wanted.
 bool Viewer::mustRender() {
-    if (panel_.render.extent.width == 0 || panel_.render.extent.height == 0) return false;
-    if (!renderer_ || panel_.render != used_.render || panel_.samples != used_.samples ||
-        panel_.exposure != used_.exposure)
+    const gpu::Extent extent = panel_.render.extent;
+    if (extent.width == 0 || extent.height == 0) return false;
+    const CameraParams now = scene::cameraParams(cameraNow(), extent.width, extent.height);
+    const bool moved = differ(now, lastCamera_);
+    if (std::exchange(panel_.asked.step, false)) return true;
+    if (settingsDiffer()) {
+        sameFrames_ = 0;
         return true;
-    const CameraParams now =
-        scene::cameraParams(camera_.camera(), panel_.render.extent.width, panel_.render.extent.height);
-    if (now.origin != lastCamera_.origin || now.forward != lastCamera_.forward || now.up != lastCamera_.up)
+    }
+    if (!panel_.running) return false;
+    if (moved || (stage_->moves() && playback_.change()) || (path_ && playback_.playing)) {
+        sameFrames_ = 0;
         return true;
-    return !panel_.render.pipeline.accumulates() || renderer_->samplesInMean() < settings_.maxSamples;
+    }
+    const uint64_t samples =
+        panel_.render.pipeline.accumulates() ? renderer_->samplesInMean() : sameFrames_ * panel_.samples;
+    return samples < static_cast<uint64_t>(panel_.maxSamples);
+}
+
+void Viewer::makeRenderer() {
+    if (renderer_ && panel_.samples == used_.samples) return;
+    renderer_.emplace(device_, stage_->onDevice(), panel_.render, panel_.samples);
+    launchesOfMean_ = 0;
+    playback_.reset(playback_.time());
+    renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
+        if (images.beauty) return tonemap(graph, images.beauty, panel_.exposure);
+        return tonemap(graph, images.diffuse, panel_.exposure, images.emission);
+    });
 }
 
 void Viewer::render() {
     const auto began = Clock::now();
-    if (!renderer_ || panel_.samples != used_.samples) {
-        renderer_.emplace(device_, gpuScene_, panel_.render, panel_.samples);
-        previousCamera_.reset();
-        renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
-            if (images.beauty) return tonemap(graph, images.beauty, panel_.exposure);
-            return tonemap(graph, images.diffuse, panel_.exposure, images.emission);
-        });
-    }
-    if (panel_.render.extent != used_.render.extent) previousCamera_.reset();
+    const bool changed =
+        renderer_ && (panel_.render != used_.render || panel_.fovDegrees != used_.fovDegrees);
+    makeRenderer();
+    if (changed) playback_.reset(playback_.time());
+    const gpu::Extent extent = panel_.render.extent;
+    const CameraParams camera = scene::cameraParams(cameraNow(), extent.width, extent.height);
     renderer_->setSettings(panel_.render);
+    Moment moment = playback_.moment(camera);
+    if (stage_->moves()) {
+        if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
+    }
+    if (panel_.render.pipeline.accumulates()) {
+        // A mean that starts anew starts with the first random numbers, so that it can be made again.
+        if (moment.scene || mustReset({lastCamera_, used_.render}, {camera, panel_.render}))
+            launchesOfMean_ = 0;
+        moment.number = launchesOfMean_++;
+    }
     used_ = panel_;
-    lastCamera_ =
-        scene::cameraParams(camera_.camera(), panel_.render.extent.width, panel_.render.extent.height);
-    renderer_->render(
-        {.camera = lastCamera_, .previousCamera = previousCamera_, .scene = {}, .number = frames_});
-    previousCamera_ = lastCamera_;
-    ++frames_;
-    if (std::exchange(panel_.measureExposure, false)) measureExposure();
+    lastCamera_ = camera;
+    renderer_->render(std::move(moment));
+    playback_.advance(camera, keyNow());
+    ++rendered_;
+    ++sameFrames_;
+    if (std::exchange(panel_.asked.measureExposure, false)) measureExposure();
     facts_.samplesInMean = panel_.render.pipeline.accumulates() ? renderer_->samplesInMean() : 0;
-    if (frames_ % framesBetweenTimes != 1) return;
+    facts_.frames = playback_.frames();
+    if (rendered_ % framesBetweenTimes != 1) return;
     facts_.passes = renderer_->passTimes();
     facts_.frameMilliseconds = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
@@ -186,14 +378,52 @@ void Viewer::measureExposure() {
     panel_.exposure = image::autoExposure(beautyOf(renderer_->download()));
 }
 
-void Viewer::writeScreenshot(const std::filesystem::path& file) {
-    try {
-        const image::Image picture = image::tonemap(beautyOf(renderer_->download()), panel_.exposure);
-        image::writePng(file, image::toBytes(picture));
-        log::info("wrote {}", file.string());
-    } catch (const Error& fault) {
-        facts_.fault = fault.what();
+void Viewer::writeScreenshot(const fs::path& file) {
+    const RenderedLayers layers = renderer_->download();
+    if (file.extension() == ".exr") {
+        image::writeExr(file, toLayeredImage(layers, {}, image::Storage::Float));
+    } else {
+        image::writePng(file, image::toBytes(image::tonemap(beautyOf(layers), panel_.exposure)));
     }
+    facts_.message = "wrote " + file.string();
+    log::info("wrote {}", file.string());
+}
+
+void Viewer::copyCommand() {
+    const scene::Scene& scene = stage_->scene();
+    ShownFrame frame{.scene = settings_.scene,
+                     .environment = settings_.environment,
+                     .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
+                     .weights = settings_.weights.string(),
+                     .settings = used_.render,
+                     .samples = used_.samples,
+                     .samplesInMean = renderer_ ? renderer_->samplesInMean() : 0,
+                     .camera = cameraOption(),
+                     .fovDegrees = used_.fovDegrees};
+    const CommandLine command = commandLineOf(frame, playback_, pathFile);
+    if (!command.problem.empty()) throw Error(command.problem);
+    if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, used_.fovDegrees));
+    window_.setClipboard(command.text);
+    facts_.message = command.text;
+    log::info("{}", command.text);
+}
+
+void Viewer::savePath() {
+    if (playback_.cameras().empty()) throw Error("nothing was flown since the last reset, or too much");
+    writeTextAtomically(pathFile, pathText(playback_, used_.fovDegrees));
+    facts_.message =
+        fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size());
+}
+
+/// Whenever something is elsewhere.
+void Viewer::writeControls() {
+    if (settings_.controls.empty()) return;
+    const std::string text = fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\n", facts_.frames,
+                                         facts_.samplesInMean, facts_.fault, facts_.message) +
+                             controls_.text();
+    if (text == controlsText_) return;
+    controlsText_ = text;
+    writeTextAtomically(settings_.controls, text);
 }
 
 void Viewer::show() {
@@ -204,18 +434,23 @@ void Viewer::show() {
 
 void Viewer::run() {
     auto last = Clock::now();
-    bool idle = false;
-    while (!window_.closed() && (settings_.quitAfter == 0 || frames_ < settings_.quitAfter)) {
-        window_.poll(idle ? idleSeconds : 0.0);
+    int restless = restlessPictures;
+    while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
+        if (window_.poll(restless > 0 ? 0.0 : idleSeconds) && restless == 0) restless = restlessPictures;
+        if (restless == 0) continue;
         interface_.begin();
         const auto now = Clock::now();
         handleInput(std::chrono::duration<double>(now - last).count());
         last = now;
-        drawPanel(panel_, facts_);
-        applyChanges();
-        idle = !mustRender();
-        if (!idle) render();
-        if (std::exchange(panel_.screenshot, false) && renderer_) writeScreenshot("limpid.png");
+        drawPanel(panel_, facts_, controls_);
+        applyRequests();
+        applySettings();
+        --restless;
+        if (mustRender()) {
+            render();
+            restless = restlessPictures;
+        }
+        writeControls();
         show();
     }
     if (renderer_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
@@ -226,9 +461,9 @@ void Viewer::run() {
 
 }  // namespace
 
-void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, scene::Scene scene,
-          const scene::Camera& camera, const ViewSettings& settings) {
-    Viewer(device, tracer, std::move(scene), camera, settings).run();
+void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const SceneLoader& load,
+          const std::function<scene::Camera(const scene::Scene&)>& start, const ViewSettings& settings) {
+    Viewer(device, tracer, load, start, settings).run();
 }
 
 }  // namespace limpid::viewer

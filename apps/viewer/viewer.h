@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "gpu/device.h"
 #include "renderer/settings.h"
@@ -12,21 +13,30 @@
 namespace limpid::viewer {
 
 struct ViewSettings {
-    RenderSettings render;  ///< its extent is the window's
-    uint32_t samples = 1;   ///< per pixel and frame
-    uint64_t maxSamples =
-        4096;  ///< of pictures that accumulate; then nothing is computed until something changes
-    std::filesystem::path weights;     ///< of networks; empty: those that come with Limpid
-    uint64_t quitAfter = 0;            ///< frames; 0: when the window is closed
+    std::string scene, environment;  ///< as the command line names them
+    std::string animation;           ///< clip by name or number; empty: the first one
+    RenderSettings render;           ///< its extent is the window's
+    uint32_t samples = 1;            ///< per pixel and frame
+    /// Frames in which nothing changes, times samples; then nothing is computed until something does.
+    uint64_t maxSamples = 4096;
+    int shrink = 0;  ///< 2^shrink pixels of the window for one of the picture's, along each axis
+    std::filesystem::path
+        controls;                   ///< file that says where the panel's controls are, for tests; empty: none
+    std::filesystem::path weights;  ///< of networks; empty: those that come with Limpid
+    uint64_t quitAfter = 0;         ///< frames; 0: when the window is closed
     std::filesystem::path screenshot;  ///< PNG written on leaving; empty: none
 };
 
 /// How rays are traced on the device that there is.
 using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
 
+/// A complete scene (scene/prepare.h), by what the command line calls it and its environment. Throws
+/// InputError.
+using SceneLoader = std::function<scene::Scene(const std::string& scene, const std::string& environment)>;
+
 /// Opens the window and returns when it is closed. Throws Error where there is no display, or a device that
-/// cannot show pictures.
-void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, scene::Scene scene,
-          const scene::Camera& camera, const ViewSettings& settings);
+/// cannot show pictures; and what the loader throws.
+void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const SceneLoader& load,
+          const std::function<scene::Camera(const scene::Scene&)>& start, const ViewSettings& settings);
 
 }  // namespace limpid::viewer

@@ -25,7 +25,18 @@ Window::Window(const std::string& title, gpu::Extent size) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
                                nullptr, nullptr);
-    if (window_) return;
+    if (window_) {
+        glfwSetWindowUserPointer(window_, this);
+        glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+            if (action == GLFW_PRESS)
+                static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key);
+        });
+        glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+            auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+            self.dropped_.insert(self.dropped_.end(), paths, paths + count);
+        });
+        return;
+    }
     try {
         fail("no window can be opened");
     } catch (...) {
@@ -58,6 +69,14 @@ gpu::Extent Window::pixels() const {
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
+void Window::setClipboard(const std::string& text) const {
+    glfwSetClipboardString(window_, text.c_str());
+}
+
+void Window::setTitle(const std::string& title) const {
+    glfwSetWindowTitle(window_, title.c_str());
+}
+
 bool Window::closed() const {
     return glfwWindowShouldClose(window_) != 0;
 }
@@ -66,11 +85,14 @@ void Window::close() {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
-void Window::poll(double wait) {
-    if (wait > 0.0)
-        glfwWaitEventsTimeout(wait);
-    else
+bool Window::poll(double wait) {
+    if (wait <= 0.0) {
         glfwPollEvents();
+        return true;
+    }
+    const double began = glfwGetTime();
+    glfwWaitEventsTimeout(wait);
+    return glfwGetTime() - began < wait;
 }
 
 }  // namespace limpid::viewer

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/frame_graph.h"
@@ -28,12 +29,21 @@ class Window {
     gpu::Extent pixels() const;  ///< 0 while it is minimised
     bool closed() const;
     void close();
-    /// Handles what has happened; `wait`: until something has, or for so many seconds.
-    void poll(double wait = 0.0);
+    /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may
+    /// have.
+    bool poll(double wait = 0.0);
+    /// What has been dropped on it since the last call.
+    std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
+    /// Keys (GLFW's numbers) that have gone down since the last call, however soon they went up again.
+    std::vector<int> takePressed() { return std::exchange(pressed_, {}); }
+    void setClipboard(const std::string& text) const;
+    void setTitle(const std::string& title) const;
     GLFWwindow* handle() const { return window_; }
 
   private:
     GLFWwindow* window_ = nullptr;
+    std::vector<std::string> dropped_;
+    std::vector<int> pressed_;
 };
 
 }  // namespace limpid::viewer

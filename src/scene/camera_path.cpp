@@ -97,7 +97,7 @@ CameraKey readKey(const gltf::Object& source) {
     for (const char* needed : {"time", "eye", "target"}) {
         if (!source.has(needed)) source.fail(fmt::format("has no {}", needed));
     }
-    key.time = double{source.number("time", 0.0f)};
+    key.time = source.number("time", 0.0);
     key.eye = source.vector("eye", vec3(0.0f));
     key.target = source.vector("target", vec3(0.0f));
     key.up = source.vector("up", vec3(0, 1, 0));

@@ -119,6 +119,14 @@ float Object::number(const char* key, float absent) const {
     return *number;
 }
 
+double Object::number(const char* key, double absent) const {
+    const Json* value = find(key);
+    if (!value) return absent;
+    const double number = value->is_number() ? value->get<double>() : NAN;
+    if (!std::isfinite(number)) fail(key, "is not a finite number");
+    return number;
+}
+
 bool Object::boolean(const char* key, bool absent) const {
     const Json* value = find(key);
     if (!value) return absent;

@@ -34,7 +34,8 @@ class Object {
     const std::string& place() const { return place_; }
     bool has(const char* key) const { return find(key) != nullptr; }
 
-    float number(const char* key, float absent) const;  ///< finite
+    float number(const char* key, float absent) const;    ///< finite
+    double number(const char* key, double absent) const;  ///< finite
     bool boolean(const char* key, bool absent) const;
     std::string text(const char* key, const std::string& absent = {}) const;
     /// A whole number of 0 to 2^53. The second form requires the key.

@@ -240,9 +240,7 @@ class Recorder {
                      }});
     }
 
-    float ofMean() const {
-        return input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f;
-    }
+    float ofMean() const { return input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f; }
 
     void features(size_t side, const Tile& tile, ImageHandle largest, const std::string& prefix) {
         const KpcnFeaturesParams params{region(tile, margin_), ofMean(), static_cast<uint32_t>(side)};
@@ -320,7 +318,8 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "edge of the parts in which a picture is denoised; larger takes more memory and is a little "
               "faster");
         t.add("errors", &S::standardErrors, 0.0, 100.0, "standard errors",
-              "how far a pixel's clean light may be from its noisy light, by what the samples say of that: less keeps sharp "
+              "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
+              "less keeps sharp "
               "reflections and small lights, more removes fireflies; 0: as far as the network likes");
         t.add("half", &S::half, "half precision; off: single precision, slower");
         return t;

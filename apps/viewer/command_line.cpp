@@ -1,0 +1,108 @@
+#include "command_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "renderer/parameters.h"
+
+namespace limpid::viewer {
+namespace {
+
+std::string triple(const vec3& v) {
+    return fmt::format("{},{},{}", v.x, v.y, v.z);
+}
+
+/// Parameters that are not as they come.
+std::string assignmentsOf(const RenderSettings& settings) {
+    std::string text;
+    for (const ParamGroup& group : paramGroups()) {
+        for (size_t i = 0; i < group.infos.size(); ++i) {
+            const ParamValue value = group.get(settings, i);
+            if (value != group.infos[i].defaultValue)
+                text += fmt::format(" --set {}.{}={}", group.name, group.infos[i].name, toString(value));
+        }
+    }
+    return text;
+}
+
+const char* nameOf(Jitter jitter) {
+    switch (jitter) {
+        case Jitter::Pixel:
+            return "pixel";
+        case Jitter::Frame:
+            return "frame";
+        default:
+            return "off";
+    }
+}
+
+/// Its frames' times, and why they cannot be had again.
+std::string timesOf(const ShownFrame& frame, const Playback& playback, bool accumulates, uint64_t frames,
+                    std::string& problem) {
+    if (frame.clip.empty()) return " --animation none";
+    const std::string clip = " --animation " + quoted(frame.clip);
+    if (accumulates || frames == 1) return clip + fmt::format(" --time {}", playback.shownTime());
+    if (!playback.playedThroughout())
+        problem = "the clip was stopped or moved by hand since the last reset; reset, and let it play";
+    return clip + fmt::format(" --time {}", playback.startTime());
+}
+
+}  // namespace
+
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::ranges::all_of(word, [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string_view("_-./:,=+%").find(c) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, const std::string& pathFile) {
+    CommandLine result;
+    const RenderSettings& s = frame.settings;
+    const bool accumulates = s.pipeline.accumulates();
+    const uint64_t frames = accumulates ? 1 : playback.frames();
+    result.text = "limpid render " + quoted(frame.scene);
+    if (!frame.environment.empty()) result.text += " --env " + quoted(frame.environment);
+    result.text += fmt::format(" --pipeline {} --width {} --height {} --seed {} --jitter {} --spp {}",
+                               s.pipeline.name(), s.extent.width, s.extent.height, s.seed, nameOf(s.jitter),
+                               accumulates ? frame.samplesInMean : frame.samples);
+    if (accumulates) result.text += " --progressive";
+    if (s.pathtrace.samplerTea) result.text += " --sampler tea";
+    if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);
+    result.text += timesOf(frame, playback, accumulates, frames, result.problem);
+    if (frames > 1 && !playback.sameSettings())
+        result.problem = "settings were changed since the last reset; reset first";
+    if (!frame.camera.empty()) {
+        result.text += " " + frame.camera;
+    } else if (playback.cameras().empty()) {
+        result.problem = "there are too many frames since the last reset; reset first";
+    } else if (accumulates || playback.cameraStoodStill()) {
+        const scene::CameraKey& key = playback.cameras().back();
+        result.text += fmt::format(" --eye {} --target {} --fov {}", triple(key.eye), triple(key.target),
+                                   frame.fovDegrees);
+    } else {
+        result.needsPath = true;
+        result.text += " --camera-path " + quoted(pathFile);
+    }
+    if (!frame.weights.empty()) result.text += " --weights " + quoted(frame.weights);
+    result.text += assignmentsOf(s) + (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");
+    return result;
+}
+
+std::string pathText(const Playback& playback, float fovDegrees) {
+    nlohmann::json keys = nlohmann::json::array();
+    for (const scene::CameraKey& key : playback.cameras())
+        keys.push_back({{"time", key.time},
+                        {"eye", {key.eye.x, key.eye.y, key.eye.z}},
+                        {"target", {key.target.x, key.target.y, key.target.z}},
+                        {"fov", fovDegrees}});
+    return nlohmann::json{{"keys", keys}}.dump(1) + "\n";
+}
+
+}  // namespace limpid::viewer
