@@ -90,6 +90,25 @@ TEST_F(ViewEventsTest, PicturesChangeAndComeBack) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
+TEST_F(ViewEventsTest, PassesShowTheirImages) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --pipeline svgf");
+    viewer.settledPicture();
+    open(viewer, "passes");
+    const std::string pass = "pass svgf/reproject diffuse";
+    viewer.waitFor("passes", [&] { return viewer.controls().contains(pass); });
+    viewer.click(pass);
+    viewer.waitFor("images", [&] { return viewer.controls().contains("image"); });
+    viewer.choose("channels", "green");
+    change(viewer, "brightness, stops");
+    change(viewer, "false color");
+    viewer.xdotool("mousemove 430 850");
+    viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
+    viewer.choose("pipeline", "path");  // which has no such pass
+    viewer.settledPicture();
+    EXPECT_FALSE(viewer.controls().contains("image"));
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
 TEST_F(ViewEventsTest, AnySizeOfWindow) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
     const std::string start = viewer.settledPicture();

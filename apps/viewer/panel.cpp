@@ -57,11 +57,24 @@ void drawPipelines(RenderSettings& settings, Controls& controls) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(settings.pipeline.help()).c_str());
 }
 
-void drawPasses(const std::vector<gpu::PassTime>& passes, Controls& controls) {
+/// Of the pass that is chosen in the list.
+void drawInspector(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    if (state.pass.empty() || facts.images.empty()) return;
+    state.image = std::min(state.image, static_cast<int>(facts.images.size()) - 1);
+    controls.choice("image", facts.images, state.image);
+    controls.choice("channels", {"color", "red", "green", "blue", "alpha"}, state.view.channels);
+    controls.slider("brightness, stops", state.view.stops, -16.0f, 16.0f, "%.2f");
+    controls.checkbox("false color", state.view.falseColor);
+    ImGui::TextUnformatted(facts.probe.c_str());
+}
+
+/// A click on one shows its images, another one the picture again.
+void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) {
     if (!controls.header("passes")) return;
+    drawInspector(state, facts, controls);
     std::map<std::string, double> byName;
     std::vector<std::string> order;
-    for (const gpu::PassTime& pass : passes) {
+    for (const gpu::PassTime& pass : facts.passes) {
         if (byName.emplace(pass.name, 0.0).second) order.push_back(pass.name);
         byName[pass.name] += pass.milliseconds;
     }
@@ -69,7 +82,9 @@ void drawPasses(const std::vector<gpu::PassTime>& passes, Controls& controls) {
     for (const std::string& name : order) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(name.c_str());
+        if (ImGui::Selectable(name.c_str(), name == state.pass, ImGuiSelectableFlags_SpanAllColumns))
+            state.pass = name == state.pass ? std::string() : name;
+        controls.note("pass " + name);
         ImGui::TableNextColumn();
         ImGui::Text("%.3f ms", byName[name]);
     }
@@ -150,14 +165,16 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     ImGui::SetNextWindowSize({380, std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
                              ImGuiCond_FirstUseEver);
     ImGui::Begin("Limpid");
+    ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // what is left of their names
     drawFacts(state, facts);
     drawSampling(state, controls);
     drawDisplay(state, controls);
     drawTime(state, facts, controls);
     drawCamera(state, facts, controls);
     drawOpen(state, controls);
-    drawPasses(facts.passes, controls);
+    drawPasses(state, facts, controls);
     for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
+    ImGui::PopItemWidth();
     ImGui::Separator();
     ImGui::TextWrapped(
         "left button: orbit; right: look, with WASDQE to fly; middle: pan; wheel: zoom; Tab: this panel; "

@@ -6,6 +6,7 @@
 
 #include "controls.h"
 #include "gpu/frame_graph.h"
+#include "inspector.h"
 #include "renderer/settings.h"
 
 namespace limpid::viewer {
@@ -34,6 +35,9 @@ struct PanelState {
     float time = 0.0f;     ///< seconds
     int camera = 0;        ///< of PanelFacts::cameras
     std::string file;      ///< scene or environment to open
+    std::string pass;      ///< whose images are shown instead of the picture; empty: none
+    int image = 0;         ///< of PanelFacts::images
+    InspectorView view;
     bool shown = true;
     PanelRequests asked;
 };
@@ -47,9 +51,11 @@ struct PanelFacts {
     double duration = 0.0;  ///< of the clip or of the path, seconds; 0: nothing plays
     std::vector<std::string> cameras;
     std::vector<gpu::PassTime> passes;
-    std::string command;  ///< that makes this frame again
-    std::string message;  ///< of the last thing that was done
-    std::string fault;    ///< of the last thing that failed
+    std::vector<std::string> images;  ///< of PanelState::pass
+    std::string probe;                ///< what lies under the mouse in the image that is shown
+    std::string command;              ///< that makes this frame again
+    std::string message;              ///< of the last thing that was done
+    std::string fault;                ///< of the last thing that failed
 };
 
 /// ImGui's calls for it.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -19,6 +20,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "inspector.h"
 #include "interface.h"
 #include "panel.h"
 #include "passes/tonemap/tonemap.h"
@@ -75,6 +77,8 @@ class Viewer {
     void render();
     void makeRenderer();
     void show();
+    bool inspect();
+    std::string probeOf(const image::Image& picture) const;
     void measureExposure();
     void writeScreenshot(const fs::path& file);
     void copyCommand();
@@ -107,6 +111,9 @@ class Viewer {
     std::string controlsText_;  ///< as last written
     std::optional<scene::CameraPath> path_;
     std::optional<FrameRenderer> renderer_;
+    Inspector inspector_;
+    std::vector<std::pair<std::string, image::Image>> images_;  ///< of the pass that is inspected
+    std::tuple<uint64_t, std::string, int, InspectorView> inspected_;
     CameraParams lastCamera_{};
     float speed_ = 1.0f;  ///< world units a second
     uint64_t launchesOfMean_ = 0;
@@ -418,17 +425,55 @@ void Viewer::savePath() {
 /// Whenever something is elsewhere.
 void Viewer::writeControls() {
     if (settings_.controls.empty()) return;
-    const std::string text = fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\n", facts_.frames,
-                                         facts_.samplesInMean, facts_.fault, facts_.message) +
-                             controls_.text();
+    const std::string text =
+        fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\n", facts_.frames,
+                    facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe) +
+        controls_.text();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);
 }
 
+/// Whether an image of a pass is shown instead of the picture.
+bool Viewer::inspect() {
+    if (panel_.pass.empty() || !renderer_ || rendered_ == 0) return false;
+    const auto wanted = std::tuple(rendered_, panel_.pass, panel_.image, panel_.view);
+    if (wanted != inspected_) {
+        try {
+            images_ = renderer_->dump(panel_.pass);
+        } catch (const UsageError&) {  // of another pipeline
+            panel_.pass.clear();
+            return false;
+        }
+        facts_.images.clear();
+        for (const auto& [name, picture] : images_) facts_.images.push_back(name);
+        panel_.image = std::min(panel_.image, static_cast<int>(images_.size()) - 1);
+        inspector_.show(device_, images_[static_cast<size_t>(panel_.image)].second, panel_.view);
+        inspected_ = wanted;
+    }
+    facts_.probe = probeOf(images_[static_cast<size_t>(panel_.image)].second);
+    return true;
+}
+
+std::string Viewer::probeOf(const image::Image& picture) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto along = [](float mouse, float window, uint32_t pixels) {
+        return static_cast<uint32_t>(std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f) *
+                                     static_cast<float>(pixels));
+    };
+    const uint32_t x = along(io.MousePos.x, io.DisplaySize.x, picture.width),
+                   y = along(io.MousePos.y, io.DisplaySize.y, picture.height);
+    std::string text = fmt::format("({}, {}):", x, y);
+    for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
+    return text;
+}
+
 void Viewer::show() {
+    const bool inspects = inspect();
     const gpu::Overlay overlay = interface_.end();
-    if (renderer_ && renderer_->displayed())
+    if (inspects)
+        presenter_.present(inspector_.graph(), inspector_.shown(), window_.pixels(), overlay);
+    else if (renderer_ && renderer_->displayed())
         presenter_.present(renderer_->graph(), renderer_->displayed(), window_.pixels(), overlay);
 }
 
