@@ -109,6 +109,23 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
+TEST_F(ViewEventsTest, SettingsAreKept) {
+    {
+        DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3");
+        viewer.choose("pipeline", "atrous");
+        open(viewer, "atrous");
+        change(viewer, "atrous.levels");
+        EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+    }
+    const std::string kept = get("kept.json");
+    EXPECT_THAT(kept, HasSubstr("atrous.levels="));
+    DrivenViewer viewer(folder_, "builtin:cornell");
+    EXPECT_EQ(viewer.value("pipeline"), "atrous");
+    EXPECT_EQ(viewer.value("most samples"), "3");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+    EXPECT_EQ(get("kept.json"), kept);
+}
+
 TEST_F(ViewEventsTest, AnySizeOfWindow) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
     const std::string start = viewer.settledPicture();

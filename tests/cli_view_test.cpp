@@ -26,7 +26,7 @@ class CliViewTest : public CliTest {
         // the same.
         const std::string first = std::to_string(1000 + ::getpid() % 20000);
         return runProgram("LIMPID_VALIDATION=1 xvfb-run -a -n " + first + " '" + LIMPID_PROGRAM + "' " +
-                          arguments);
+                          arguments + " --settings none");
     }
 };
 

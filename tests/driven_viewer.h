@@ -42,14 +42,15 @@ class DrivenViewer {
         waitFor("a display", [&] { return !get("display").empty() && get("display").back() == '\n'; });
         display_ = ":" + get("display").substr(0, get("display").find('\n'));
         shell(in + "DISPLAY=" + display_ + " LIMPID_VALIDATION=1 '" + LIMPID_PROGRAM + "' view " + arguments +
-                  " --device cpu --width 460 --height 1700 --shrink 3 --controls controls >log 2>&1 & echo "
+                  " --settings kept.json --device cpu --width 460 --height 1700 --shrink 3 --controls "
+                  "controls >log 2>&1 & echo "
                   "$! > '" +
                   (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +
                   "'",
               true);
         waitFor("the panel", [&] { return number("frames") > 0; });
         window_ = output("xdotool search --name Limpid | tail -1");
-        xdotool("windowfocus " + window_);
+        xdotool("windowfocus " + window_ + " sleep 0.5");
     }
     ~DrivenViewer() {
         kill("view.pid");

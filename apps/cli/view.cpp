@@ -1,5 +1,6 @@
 // limpid view: the window.
 #include <memory>
+#include <optional>
 
 #include "base/error.h"
 #include "commands.h"
@@ -7,6 +8,7 @@
 #include "renderer/parameters.h"
 #include "scene_options.h"
 #ifdef LIMPID_HAVE_VIEWER
+#include "viewer/kept_settings.h"
 #include "viewer/viewer.h"
 #endif
 
@@ -16,31 +18,45 @@ namespace {
 struct ViewOptions {
     SceneChoice scene;
     DeviceChoice device;
-    std::string pipeline = "path", animation, weights, screenshot, controls;
+    std::optional<std::string> pipeline;
+    std::optional<uint32_t> samples;
+    std::optional<uint64_t> maxSamples;
+    std::optional<int> shrink;
+    std::string settings = "auto", animation, weights, screenshot, controls;
     std::vector<std::string> presets, assignments;
-    uint32_t width = 1280, height = 720, samples = 1, seed = 0;
-    int shrink = 0;
-    uint64_t maxSamples = 4096, frames = 0;
+    uint32_t width = 1280, height = 720, seed = 0;
+    uint64_t frames = 0;
 };
 
-void run([[maybe_unused]] const ViewOptions& o) {
 #ifdef LIMPID_HAVE_VIEWER
+/// What was kept, and over it what this command line says.
+viewer::ViewSettings settingsOf(const ViewOptions& o) {
     viewer::ViewSettings settings{.scene = o.scene.scene,
                                   .environment = o.scene.environment,
                                   .animation = o.animation,
                                   .render = {},
-                                  .samples = o.samples,
-                                  .maxSamples = o.maxSamples,
-                                  .shrink = o.shrink,
                                   .controls = o.controls,
                                   .weights = o.weights,
                                   .quitAfter = o.frames,
                                   .screenshot = o.screenshot};
+    if (o.settings != "none")
+        settings.kept = o.settings == "auto" ? viewer::keptSettingsFile() : std::filesystem::path(o.settings);
+    restoreSettings(settings.kept, settings);
+    settings.samples = o.samples.value_or(settings.samples);
+    settings.maxSamples = o.maxSamples.value_or(settings.maxSamples);
+    settings.shrink = o.shrink.value_or(settings.shrink);
     settings.render.extent = {o.width, o.height};
-    settings.render.pipeline = parsePipeline(o.pipeline);
+    if (o.pipeline) settings.render.pipeline = parsePipeline(*o.pipeline);
     settings.render.seed = o.seed;
     for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
     for (const std::string& text : o.assignments) assign(settings.render, text);
+    return settings;
+}
+#endif
+
+void run([[maybe_unused]] const ViewOptions& o) {
+#ifdef LIMPID_HAVE_VIEWER
+    const viewer::ViewSettings settings = settingsOf(o);
     const auto load = [&](const std::string& scene, const std::string& environment) {
         SceneChoice choice = o.scene;
         choice.scene = scene;
@@ -64,7 +80,7 @@ void addViewCommand(CLI::App& app) {
         app.add_subcommand("view", "A window to fly through a scene, with every pipeline and parameter");
     auto o = std::make_shared<ViewOptions>();
     addSceneOptions(*command, o->scene);
-    command->add_option("--pipeline", o->pipeline, "What makes the picture (path)");
+    command->add_option("--pipeline", o->pipeline, "What makes the picture (the last one; at first path)");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
@@ -75,6 +91,11 @@ void addViewCommand(CLI::App& app) {
         ->add_option("--max-spp", o->maxSamples,
                      "With so many and nothing changing, nothing is computed any more (4096)")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+    command->add_option(
+        "--settings", o->settings,
+        "File that keeps pipeline and parameters from one time to the next, under what this command line "
+        "says; "
+        "default: limpid/view.json in $XDG_CONFIG_HOME or ~/.config; 'none': nothing is kept");
     command->add_option("--seed", o->seed, "Another seed, other noise (0)");
     command->add_option("--animation", o->animation, "Clip by name or number; default: the first");
     command

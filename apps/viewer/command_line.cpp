@@ -14,19 +14,6 @@ std::string triple(const vec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 
-/// Parameters that are not as they come.
-std::string assignmentsOf(const RenderSettings& settings) {
-    std::string text;
-    for (const ParamGroup& group : paramGroups()) {
-        for (size_t i = 0; i < group.infos.size(); ++i) {
-            const ParamValue value = group.get(settings, i);
-            if (value != group.infos[i].defaultValue)
-                text += fmt::format(" --set {}.{}={}", group.name, group.infos[i].name, toString(value));
-        }
-    }
-    return text;
-}
-
 const char* nameOf(Jitter jitter) {
     switch (jitter) {
         case Jitter::Pixel:
@@ -91,7 +78,8 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
         result.text += " --camera-path " + quoted(pathFile);
     }
     if (!frame.weights.empty()) result.text += " --weights " + quoted(frame.weights);
-    result.text += assignmentsOf(s) + (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");
+    for (const std::string& text : assignmentsOf(s)) result.text += " --set " + text;
+    result.text += (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");
     return result;
 }
 

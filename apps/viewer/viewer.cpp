@@ -22,6 +22,7 @@
 #include "image/tonemap.h"
 #include "inspector.h"
 #include "interface.h"
+#include "kept_settings.h"
 #include "panel.h"
 #include "passes/tonemap/tonemap.h"
 #include "playback.h"
@@ -83,6 +84,7 @@ class Viewer {
     void writeScreenshot(const fs::path& file);
     void copyCommand();
     void savePath();
+    void keep();
     void writeControls();
     FlyCamera startCamera() const;
     scene::Camera cameraNow() const;
@@ -422,6 +424,15 @@ void Viewer::savePath() {
         fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size());
 }
 
+void Viewer::keep() {
+    ViewSettings settings = settings_;
+    settings.render = panel_.render;
+    settings.samples = panel_.samples;
+    settings.maxSamples = static_cast<uint64_t>(panel_.maxSamples);
+    settings.shrink = panel_.shrink;
+    keepSettings(settings_.kept, settings);
+}
+
 /// Whenever something is elsewhere.
 void Viewer::writeControls() {
     if (settings_.controls.empty()) return;
@@ -481,7 +492,7 @@ void Viewer::run() {
     auto last = Clock::now();
     int restless = restlessPictures;
     while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
-        if (window_.poll(restless > 0 ? 0.0 : idleSeconds) && restless == 0) restless = restlessPictures;
+        if (window_.poll(restless > 0 ? 0.0 : idleSeconds)) restless = restlessPictures;
         if (restless == 0) continue;
         interface_.begin();
         const auto now = Clock::now();
@@ -499,6 +510,7 @@ void Viewer::run() {
         show();
     }
     if (renderer_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
+    attempt([&] { keep(); });
     device_.waitIdle();
     if (device_.validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device_.validationMessages()));

@@ -22,6 +22,7 @@ struct ViewSettings {
     int shrink = 0;  ///< 2^shrink pixels of the window for one of the picture's, along each axis
     std::filesystem::path
         controls;                   ///< file that says where the panel's controls are, for tests; empty: none
+    std::filesystem::path kept;     ///< file that these are written to on leaving; empty: none
     std::filesystem::path weights;  ///< of networks; empty: those that come with Limpid
     uint64_t quitAfter = 0;         ///< frames; 0: when the window is closed
     std::filesystem::path screenshot;  ///< PNG written on leaving; empty: none

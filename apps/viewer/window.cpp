@@ -26,15 +26,7 @@ Window::Window(const std::string& title, gpu::Extent size) {
     window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
                                nullptr, nullptr);
     if (window_) {
-        glfwSetWindowUserPointer(window_, this);
-        glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-            if (action == GLFW_PRESS)
-                static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key);
-        });
-        glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
-            auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
-            self.dropped_.insert(self.dropped_.end(), paths, paths + count);
-        });
+        listen();
         return;
     }
     try {
@@ -43,6 +35,33 @@ Window::Window(const std::string& title, gpu::Extent size) {
         glfwTerminate();
         throw;
     }
+}
+
+/// Before ImGui does, which passes everything on. A wait for events does not tell whether there were any.
+void Window::listen() {
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+        Window& self = of(window);
+        self.dropped_.insert(self.dropped_.end(), paths, paths + count);
+    });
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+        if (action == GLFW_PRESS) of(window).pressed_.push_back(key);
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { of(window); });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double, double) { of(window); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) { of(window); });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double) { of(window); });
+    glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int) { of(window); });
+    glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { of(window); });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { of(window); });
+    glfwSetWindowCloseCallback(window_, [](GLFWwindow* window) { of(window); });
+}
+
+/// To which something has happened.
+Window& Window::of(GLFWwindow* window) {
+    Window& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+    self.touched_ = true;
+    return self;
 }
 
 Window::~Window() {
@@ -86,13 +105,11 @@ void Window::close() {
 }
 
 bool Window::poll(double wait) {
-    if (wait <= 0.0) {
+    if (wait > 0.0)
+        glfwWaitEventsTimeout(wait);
+    else
         glfwPollEvents();
-        return true;
-    }
-    const double began = glfwGetTime();
-    glfwWaitEventsTimeout(wait);
-    return glfwGetTime() - began < wait;
+    return std::exchange(touched_, false);
 }
 
 }  // namespace limpid::viewer

@@ -41,9 +41,13 @@ class Window {
     GLFWwindow* handle() const { return window_; }
 
   private:
+    void listen();
+    static Window& of(GLFWwindow* window);
+
     GLFWwindow* window_ = nullptr;
     std::vector<std::string> dropped_;
     std::vector<int> pressed_;
+    bool touched_ = true;
 };
 
 }  // namespace limpid::viewer

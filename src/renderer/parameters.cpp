@@ -55,6 +55,18 @@ void assign(RenderSettings& settings, std::string_view assignment) {
     throw UsageError("there is no parameter '" + a.group + "." + a.name + "'; 'limpid info' lists them");
 }
 
+std::vector<std::string> assignmentsOf(const RenderSettings& settings) {
+    std::vector<std::string> texts;
+    for (const ParamGroup& group : paramGroups()) {
+        for (size_t i = 0; i < group.infos.size(); ++i) {
+            const ParamValue value = group.get(settings, i);
+            if (value != group.infos[i].defaultValue)
+                texts.push_back(group.name + "." + group.infos[i].name + "=" + toString(value));
+        }
+    }
+    return texts;
+}
+
 void applyPreset(RenderSettings& settings, std::string_view preset) {
     bool found = false;
     std::set<std::string> names;

@@ -27,6 +27,9 @@ const std::vector<ParamGroup>& paramGroups();
 /// "group.name=value". Throws UsageError if there is no such parameter, or on a bad value.
 void assign(RenderSettings& settings, std::string_view assignment);
 
+/// What assign() must be given to come from the defaults to these settings.
+std::vector<std::string> assignmentsOf(const RenderSettings& settings);
+
 /// Of every technique that has it. Throws UsageError listing the presets if none has.
 void applyPreset(RenderSettings& settings, std::string_view preset);
 
