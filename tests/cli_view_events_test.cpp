@@ -43,6 +43,18 @@ class ViewEventsTest : public CliTest {
     }
 };
 
+/// A mean that was left for another pipeline begins anew.
+TEST_F(ViewEventsTest, AMeanOfBeforeIsNotTakenUp) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 5");
+    const std::string start = viewer.settledPicture();
+    viewer.choose("pipeline", "svgf");
+    viewer.settledPicture();
+    viewer.choose("pipeline", "path");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.fact("samples"), "5");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
 /// limpid info lists paramGroups().
 TEST_F(ViewEventsTest, EveryParameterChangesAndGoesBack) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");

@@ -1,4 +1,7 @@
 // limpid view: the window.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 #include <optional>
 
@@ -8,6 +11,7 @@
 #include "renderer/parameters.h"
 #include "scene_options.h"
 #ifdef LIMPID_HAVE_VIEWER
+#include "viewer/command_line.h"
 #include "viewer/kept_settings.h"
 #include "viewer/viewer.h"
 #endif
@@ -29,6 +33,11 @@ struct ViewOptions {
 };
 
 #ifdef LIMPID_HAVE_VIEWER
+std::string eyeOptions(const SceneChoice& choice) {
+    return fmt::format(" --eye {} --target {}{}", fmt::join(choice.eye, ","), fmt::join(choice.target, ","),
+                       choice.fov > 0.0f ? fmt::format(" --fov {}", choice.fov) : "");
+}
+
 /// What was kept, and over it what this command line says.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
     viewer::ViewSettings settings{.scene = o.scene.scene,
@@ -48,6 +57,8 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
     settings.render.extent = {o.width, o.height};
     if (o.pipeline) settings.render.pipeline = parsePipeline(*o.pipeline);
     settings.render.seed = o.seed;
+    if (!o.scene.camera.empty()) settings.startCamera = "--camera " + viewer::quoted(o.scene.camera);
+    if (!o.scene.eye.empty()) settings.startCamera += eyeOptions(o.scene);
     for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
     for (const std::string& text : o.assignments) assign(settings.render, text);
     return settings;
@@ -90,7 +101,7 @@ void addViewCommand(CLI::App& app) {
     command
         ->add_option("--max-spp", o->maxSamples,
                      "With so many and nothing changing, nothing is computed any more (4096)")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+        ->check(CLI::Range(1, 1 << 20));
     command->add_option(
         "--settings", o->settings,
         "File that keeps pipeline and parameters from one time to the next, under what this command line "

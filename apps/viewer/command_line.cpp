@@ -25,15 +25,13 @@ const char* nameOf(Jitter jitter) {
     }
 }
 
-/// Its frames' times, and why they cannot be had again.
-std::string timesOf(const ShownFrame& frame, const Playback& playback, bool accumulates, uint64_t frames,
-                    std::string& problem) {
-    if (frame.clip.empty()) return " --animation none";
-    const std::string clip = " --animation " + quoted(frame.clip);
-    if (accumulates || frames == 1) return clip + fmt::format(" --time {}", playback.shownTime());
-    if (!playback.playedThroughout())
-        problem = "the clip was stopped or moved by hand since the last reset; reset, and let it play";
-    return clip + fmt::format(" --time {}", playback.startTime());
+/// Its frames' times, or why they cannot be had again.
+std::string timesOf(const ShownFrame& frame, const Playback& playback, uint64_t frames, CommandLine& result) {
+    const bool moves = !frame.clip.empty() || frame.camera.find("--camera-path") != std::string::npos;
+    if (frames > 1 && moves && !playback.playedThroughout())
+        result.problem = "time was stopped or moved by hand since the last reset; reset, and let it play";
+    return " --animation " + (frame.clip.empty() ? "none" : quoted(frame.clip)) +
+           fmt::format(" --time {}", frames > 1 ? playback.startTime() : playback.shownTime());
 }
 
 }  // namespace
@@ -62,22 +60,23 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     if (accumulates) result.text += " --progressive";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
     if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);
-    result.text += timesOf(frame, playback, accumulates, frames, result.problem);
+    result.text += timesOf(frame, playback, frames, result);
     if (frames > 1 && !playback.sameSettings())
         result.problem = "settings were changed since the last reset; reset first";
     if (!frame.camera.empty()) {
         result.text += " " + frame.camera;
-    } else if (playback.cameras().empty()) {
-        result.problem = "there are too many frames since the last reset; reset first";
     } else if (accumulates || playback.cameraStoodStill()) {
-        const scene::CameraKey& key = playback.cameras().back();
+        const scene::CameraKey& key = playback.lastCamera();
         result.text += fmt::format(" --eye {} --target {} --fov {}", triple(key.eye), triple(key.target),
                                    frame.fovDegrees);
+    } else if (playback.cameras().empty()) {
+        result.problem = "there are too many frames since the last reset; reset first";
     } else {
         result.needsPath = true;
         result.text += " --camera-path " + quoted(pathFile);
     }
-    if (!frame.weights.empty()) result.text += " --weights " + quoted(frame.weights);
+    if (!frame.weights.empty() && s.pipeline.denoiser && s.pipeline.denoiser->network)
+        result.text += " --weights " + quoted(frame.weights);
     for (const std::string& text : assignmentsOf(s)) result.text += " --set " + text;
     result.text += (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");
     return result;

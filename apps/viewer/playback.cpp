@@ -42,7 +42,8 @@ Moment Playback::moment(const CameraParams& now) const {
 
 void Playback::advance(const CameraParams& params, const scene::CameraKey& camera) {
     if (frames_ > 0) (wentOn_ ? playedNone_ : playedAll_) = false;
-    if (!cameras_.empty() && !samePlace(cameras_.front(), camera)) stoodStill_ = false;
+    if (frames_ > 0 && !samePlace(lastCamera_, camera)) stoodStill_ = false;
+    lastCamera_ = camera;
     if (cameras_.size() == frames_ && frames_ < mostCameras) {
         cameras_.push_back(camera);
         cameras_.back().time = start_ + static_cast<double>(frames_) / framesPerSecond;

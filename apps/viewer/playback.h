@@ -39,6 +39,8 @@ class Playback {
 
     /// The camera of all frames since the reset; key n has the time of frame n. Empty if there were too many.
     const std::vector<scene::CameraKey>& cameras() const { return cameras_; }
+    /// Of the last frame.
+    const scene::CameraKey& lastCamera() const { return lastCamera_; }
     /// From the next frame on, settings are others than those of the frames since the reset.
     void noteOtherSettings() { sameSettings_ = sameSettings_ && frames_ == 0; }
     bool sameSettings() const { return sameSettings_; }
@@ -57,6 +59,7 @@ class Playback {
     std::optional<double> shown_, shownBefore_;  ///< times of the last frame and of the one before it
     std::optional<CameraParams> previous_;
     std::vector<scene::CameraKey> cameras_;
+    scene::CameraKey lastCamera_;
     bool stoodStill_ = true, playedAll_ = true, playedNone_ = true, wentOn_ = false, sameSettings_ = true;
 };
 

@@ -42,6 +42,7 @@ using Clock = std::chrono::steady_clock;
 constexpr float radiansAPixel = 0.005f;
 constexpr float zoomAStep = 0.85f;
 constexpr double idleSeconds = 1.0;          ///< between looks at the window while nothing is computed
+constexpr double longestStep = 0.1;          ///< seconds that a key moves the camera in one picture
 constexpr int restlessPictures = 4;          ///< drawn after the last event: until the panel has settled
 constexpr uint64_t framesBetweenTimes = 16;  ///< reading the passes' times waits for the device
 constexpr double pathSeconds = 10.0;         ///< of the built-in camera paths
@@ -117,6 +118,7 @@ class Viewer {
     std::vector<std::pair<std::string, image::Image>> images_;  ///< of the pass that is inspected
     std::tuple<uint64_t, std::string, int, InspectorView> inspected_;
     CameraParams lastCamera_{};
+    bool networkIsHalf_ = true;
     float speed_ = 1.0f;  ///< world units a second
     uint64_t launchesOfMean_ = 0;
     uint64_t rendered_ = 0;    ///< frames, ever
@@ -145,7 +147,11 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
 /// Leaves everything as it was if the scene cannot be had.
 void Viewer::loadStage(const std::string& name, const std::string& environment) {
     scene::Scene scene = load_(name, environment);
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, settings_.animation);
+    // What the command line says of camera and clip is of its own scene.
+    const bool isFirst = !stage_;
+    if (!scene.rig.clips.empty()) scene::chooseClip(scene, isFirst ? settings_.animation : "");
+    const scene::Camera home = isFirst ? start_(scene) : scene.cameras.front();
+    if (!isFirst) settings_.startCamera.clear();
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
     renderer_.reset();
@@ -153,7 +159,8 @@ void Viewer::loadStage(const std::string& name, const std::string& environment) 
     settings_.scene = name;
     settings_.environment = environment;
     window_.setTitle("Limpid: " + stage_->scene().name);
-    home_ = start_(stage_->scene());
+    home_ = home;
+    path_.reset();
     facts_.cameras = {"free"};
     for (const scene::Camera& camera : stage_->scene().cameras) facts_.cameras.push_back(camera.name);
     facts_.cameras.insert(facts_.cameras.end(), pathNames.begin(), pathNames.end());
@@ -207,8 +214,9 @@ scene::CameraKey Viewer::keyNow() const {
 
 std::string Viewer::cameraOption() const {
     if (isFree()) return {};
-    return path_ ? "--camera-path " + facts_.cameras[static_cast<size_t>(panel_.camera)]
-                 : fmt::format("--camera {}", panel_.camera - 1);
+    if (!path_) return fmt::format("--camera {}", panel_.camera - 1);
+    const std::string start = settings_.startCamera.empty() ? "" : settings_.startCamera + " ";
+    return start + "--camera-path " + facts_.cameras[static_cast<size_t>(panel_.camera)];
 }
 
 void Viewer::handleInput(double seconds) {
@@ -230,9 +238,13 @@ void Viewer::fly(const ImGuiIO& io, float seconds) {
     const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f;
     if (moves && !isFree()) {
         // From where it is.
-        camera_ = FlyCamera(cameraNow(), camera_.distance());
+        const scene::Camera here = cameraNow();
+        camera_ = FlyCamera(here, camera_.distance());
+        panel_.fovDegrees = glm::degrees(here.verticalFov);
         panel_.camera = 0;
         path_.reset();
+        playback_.reset(playback_.time());
+        renderer_.reset();
     }
     if (left) camera_.orbit(radiansAPixel * x, -radiansAPixel * y);
     if (middle) camera_.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
@@ -280,6 +292,10 @@ void Viewer::applyRequests() {
         playback_.reset(playback_.time());
         renderer_.reset();
     }
+    if (asked.measureExposure && renderer_ && playback_.frames() > 0) {
+        asked.measureExposure = false;
+        measureExposure();
+    }
     if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
     if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
     if (std::exchange(asked.screenshot, false) && renderer_) attempt([&] { writeScreenshot("limpid.png"); });
@@ -304,11 +320,10 @@ void Viewer::applySettings() {
     panel_.time = static_cast<float>(playback_.time());
     const denoise::Denoiser* const denoiser = render.pipeline.denoiser;
     const bool half = render.denoisers.kpcn.half;
-    if (!denoiser || !denoiser->network ||
-        (render.denoisers.kpcn.network && half == used_.render.denoisers.kpcn.half))
-        return;
+    if (!denoiser || !denoiser->network || (render.denoisers.kpcn.network && half == networkIsHalf_)) return;
     attempt([&] { loadNetwork(device_, denoiser, settings_.weights, render.denoisers); });
-    if (!render.denoisers.kpcn.network) render = used_.render;
+    networkIsHalf_ = half;
+    if (!render.denoisers.kpcn.network) render.pipeline = used_.render.pipeline;
 }
 
 /// Other settings than those of the last frame, as far as they make another picture.
@@ -334,6 +349,7 @@ bool Viewer::mustRender() {
         sameFrames_ = 0;
         return true;
     }
+    if (settings_.quitAfter > 0) return true;
     const uint64_t samples =
         panel_.render.pipeline.accumulates() ? renderer_->samplesInMean() : sameFrames_ * panel_.samples;
     return samples < static_cast<uint64_t>(panel_.maxSamples);
@@ -355,10 +371,12 @@ void Viewer::render() {
     const bool changed =
         renderer_ && (panel_.render != used_.render || panel_.fovDegrees != used_.fovDegrees);
     makeRenderer();
-    if (changed) playback_.reset(playback_.time());
+    if (renderer_->setSettings(panel_.render))
+        playback_.reset(playback_.time());
+    else if (changed)
+        playback_.noteOtherSettings();
     const gpu::Extent extent = panel_.render.extent;
     const CameraParams camera = scene::cameraParams(cameraNow(), extent.width, extent.height);
-    renderer_->setSettings(panel_.render);
     Moment moment = playback_.moment(camera);
     if (stage_->moves()) {
         if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
@@ -399,6 +417,9 @@ void Viewer::writeScreenshot(const fs::path& file) {
 }
 
 void Viewer::copyCommand() {
+    if (!renderer_ || playback_.frames() == 0) throw Error("there is no frame yet");
+    if (isFree() && home_.orthographic)
+        throw Error("the command line has no orthographic camera of one's own");
     const scene::Scene& scene = stage_->scene();
     ShownFrame frame{.scene = settings_.scene,
                      .environment = settings_.environment,
@@ -406,7 +427,7 @@ void Viewer::copyCommand() {
                      .weights = settings_.weights.string(),
                      .settings = used_.render,
                      .samples = used_.samples,
-                     .samplesInMean = renderer_ ? renderer_->samplesInMean() : 0,
+                     .samplesInMean = renderer_->samplesInMean(),
                      .camera = cameraOption(),
                      .fovDegrees = used_.fovDegrees};
     const CommandLine command = commandLineOf(frame, playback_, pathFile);
@@ -418,6 +439,7 @@ void Viewer::copyCommand() {
 }
 
 void Viewer::savePath() {
+    if (!isFree()) throw Error("only what the hand has flown can be saved");
     if (playback_.cameras().empty()) throw Error("nothing was flown since the last reset, or too much");
     writeTextAtomically(pathFile, pathText(playback_, used_.fovDegrees));
     facts_.message =
@@ -496,7 +518,7 @@ void Viewer::run() {
         if (restless == 0) continue;
         interface_.begin();
         const auto now = Clock::now();
-        handleInput(std::chrono::duration<double>(now - last).count());
+        handleInput(std::min(std::chrono::duration<double>(now - last).count(), longestStep));
         last = now;
         drawPanel(panel_, facts_, controls_);
         applyRequests();

@@ -14,9 +14,11 @@ namespace limpid::viewer {
 
 struct ViewSettings {
     std::string scene, environment;  ///< as the command line names them
-    std::string animation;           ///< clip by name or number; empty: the first one
-    RenderSettings render;           ///< its extent is the window's
-    uint32_t samples = 1;            ///< per pixel and frame
+    std::string startCamera;  ///< options of the command line that chose the camera of the first scene;
+                              ///< empty: its first
+    std::string animation;    ///< clip by name or number; empty: the first one
+    RenderSettings render;    ///< its extent is the window's
+    uint32_t samples = 1;     ///< per pixel and frame
     /// Frames in which nothing changes, times samples; then nothing is computed until something does.
     uint64_t maxSamples = 4096;
     int shrink = 0;  ///< 2^shrink pixels of the window for one of the picture's, along each axis

@@ -22,9 +22,14 @@ FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const 
       samples_(samples),
       filters_(denoise::filterBacking(device)) {}
 
-void FrameRenderer::setSettings(const RenderSettings& settings) {
-    if (!sameSamples(settings, settings_)) graph_.resetHistories();
+bool FrameRenderer::setSettings(const RenderSettings& settings) {
+    const bool anew = !sameSamples(settings, settings_);
     settings_ = settings;
+    if (!anew) return false;
+    graph_.resetHistories();
+    state_.reset();  // a mean of before is gone, even if the settings come back
+    samplesInMean_ = 0;
+    return true;
 }
 
 void FrameRenderer::render(Moment moment) {

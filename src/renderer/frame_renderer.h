@@ -25,8 +25,9 @@ class FrameRenderer {
     /// whatever moves; the others start anew when camera, scene, size or settings change. Does not wait for
     /// the device.
     void render(Moment moment);
-    /// For the frames to come. Histories go on unless the samples they are made of are of another kind.
-    void setSettings(const RenderSettings& settings);
+    /// For the frames to come. Histories go on unless the samples they are made of are of another kind: then
+    /// it returns true.
+    bool setSettings(const RenderSettings& settings);
 
     /// Records what is shown of a frame, after its passes; the picture is displayed() from then on.
     using Display = std::function<gpu::ImageHandle(gpu::FrameGraph&, const FrameImages&)>;

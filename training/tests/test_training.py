@@ -82,6 +82,17 @@ class TrainingTest(unittest.TestCase):
             self.assertAlmostEqual(light.item(), (frame["reference.diffuse"] / frame["albedo"]).mean().item(), places=3)
         self.assertEqual(shapes, {(24, 20), (20, 24)})
 
+    def test_held_out_examples_are_spread(self):
+        self.assertEqual(train.split(6, 1), ([0, 1, 2, 3, 4], [5]))
+        learnt, validated = train.split(100, 7)
+        self.assertEqual(sorted(learnt + validated), list(range(100)))
+        self.assertEqual(len(validated), 7)
+        self.assertLess(max(b - a for a, b in zip(validated, validated[1:])), 16)
+
+    def test_losses_that_are_no_numbers_stop_it(self):
+        with self.assertRaisesRegex(SystemExit, "'diffuse' are no finite numbers"):
+            self.train("run", "--epochs", "3", "--rate-diffuse", "1e30", "--warm-up", "0")
+
     def test_other_numbers_of_samples_are_refused(self):
         with self.assertRaisesRegex(ValueError, "none of 32"):
             data.Dataset(self.data, 32)

@@ -28,6 +28,7 @@ using gpu::Format;
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
+constexpr uint32_t leastSamplesForErrors = 8;
 constexpr const char* sideNames[] = {"diffuse", "specular"};
 constexpr uint32_t reach = KPCN_TAPS / 2;
 constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
@@ -277,9 +278,10 @@ class Recorder {
 
     ImageHandle compose(const std::array<ImageHandle, 2>& clean) {
         const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
-        // One sample says nothing about its error.
+        // Few samples say little about their error: a light that all of them missed has none.
         const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
-                                       ofMean(), input_.samples > 1 ? standardErrors_ : 0.0f};
+                                       ofMean(),
+                                       input_.samples >= leastSamplesForErrors ? standardErrors_ : 0.0f};
         graph_.dispatch({.pass = "kpcn/compose",
                          .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
                          .bindings = {{"diffuse", clean[0]},
