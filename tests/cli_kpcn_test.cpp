@@ -33,16 +33,24 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
               0.15 * image::relMse(pictureOf("noisy.exr"), truth));
 }
 
+/// With few samples and with enough of them for kpcn.errors.
 TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
-    mustRun("render builtin:cornell -o " + path("noisy.exr") + small + "--spp 4 --jitter off --aov all");
-    mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn" +
-            smallWeights);
-    mustRun("render builtin:cornell -o " + path("own.exr") + small + "--spp 4 --pipeline kpcn" +
-            smallWeights);
-    const image::Image clean = pictureOf("clean.exr"), own = pictureOf("own.exr");
-    for (size_t i = 0; i < own.pixels.size(); ++i)
-        ASSERT_NEAR(clean.pixels[i], own.pixels[i], 2e-3f * own.pixels[i] + 1e-4f) << i;
-    EXPECT_NE(own.pixels, pictureOf("noisy.exr").pixels);
+    for (const std::string samples : {"--spp 4 ", "--spp 8 "}) {
+        const std::string errors = "--set kpcn.errors=2";
+        mustRun("render builtin:cornell -o " + path("noisy.exr") + small + samples +
+                "--jitter off --aov all");
+        mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn " +
+                errors + smallWeights);
+        mustRun("render builtin:cornell -o " + path("own.exr") + small + samples + "--pipeline kpcn " +
+                errors + smallWeights);
+        mustRun("denoise " + path("noisy.exr") + " -o " + path("free.exr") +
+                " --device cpu --method kpcn --set kpcn.errors=0" + smallWeights);
+        const image::Image clean = pictureOf("clean.exr"), own = pictureOf("own.exr");
+        for (size_t i = 0; i < own.pixels.size(); ++i)
+            ASSERT_NEAR(clean.pixels[i], own.pixels[i], 2e-3f * own.pixels[i] + 1e-4f) << samples << i;
+        EXPECT_NE(own.pixels, pictureOf("noisy.exr").pixels);
+        EXPECT_EQ(clean.pixels == pictureOf("free.exr").pixels, samples == "--spp 4 ");
+    }
 }
 
 TEST_F(CliKpcnTest, MissingLayersAreNamed) {

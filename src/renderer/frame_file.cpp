@@ -1,6 +1,7 @@
 #include "renderer/frame_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -49,15 +50,28 @@ CameraParams cameraOf(const LayeredImage& file, const std::filesystem::path& nam
     return *camera;
 }
 
+/// As the file says; as many as networks learnt from if it does not.
+uint32_t samplesOf(const LayeredImage& file) {
+    constexpr uint32_t unknown = 32;
+    const auto said = file.metadata.find("limpid.samples");
+    if (said == file.metadata.end()) return unknown;
+    uint32_t samples = 0;
+    const std::string& text = said->second;
+    std::from_chars(text.data(), text.data() + text.size(), samples);
+    return samples > 0 ? samples : unknown;
+}
+
 constexpr const char* layersWithVariance[] = {"diffuse", "specular", "albedo", "normal", "depth"};
 
 /// As the fourth of four; stays 0 without such a layer.
 void addVariance(const LayeredImage& file, const std::string& layer, std::vector<float>& pixels) {
     const image::Channel* const variance = file.find(layer + ".variance");
-    for (size_t p = 0; variance && p < variance->values.size(); ++p) pixels[4 * p + 3] = variance->values[p];
+    const auto ofDeviations = static_cast<float>(samplesOf(file) - 1);
+    for (size_t p = 0; variance && p < variance->values.size(); ++p)
+        pixels[4 * p + 3] = variance->values[p] * ofDeviations;
 }
 
-/// Four floats a pixel from three, and the variance.
+/// Four floats a pixel from three, and the mean squared deviation.
 std::vector<float> fourOf(const LayeredImage& file, const char* layer, const char* suffixes = "RGB") {
     const Image image = file.get(layer, suffixes);
     const size_t pixels = size_t{image.width} * image.height;
@@ -132,7 +146,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     frame.normal = fourOf(file, "normal", "XYZ");
     frame.depth = depthOf(file.get("depth", "Z"));
     addVariance(file, "depth", frame.depth);
-    frame.samples = 2;
+    frame.samples = samplesOf(file);
     frame.motion = motionOf(file, "motion", frame.pixelCount());
     frame.reflectionMotion = motionOf(file, "reflectionMotion", frame.pixelCount());
     if (has(file, "prevNormal", "XYZ")) {

@@ -14,7 +14,8 @@ namespace limpid {
 /// InputError listing all that is missing of diffuse, specular, emission, albedo, normal, depth, the camera,
 /// and motion. Without the layers id and prevNormal there is one object and nothing turns; `lacking` names
 /// them.
-/// With the layers of variance, and as if of two samples, whose mean squared deviations these are.
+/// With the layers of variance, and of as many samples as the attribute "limpid.samples" says; of 32 without
+/// it.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<std::string>& lacking);
 
