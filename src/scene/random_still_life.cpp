@@ -148,6 +148,18 @@ class RandomStillLife : RandomScene {
         scene_.instances[addMesh(scene_, std::move(mesh), number)].transform = transform;
     }
 
+    void addPlacedFlat(MeshBuilder& builder, const vec3& center, float pictures) {
+        Mesh mesh = builder.take();
+        addWallpaperCoordinates(mesh);
+        addPlaced(std::move(mesh), center, richMaterial(pictures));
+    }
+
+    void addPlacedSmooth(MeshBuilder& builder, const vec3& center, float pictures) {
+        Mesh mesh = builder.take();
+        addSlantedCoordinates(mesh);
+        addPlaced(std::move(mesh), center, richMaterial(pictures));
+    }
+
     void addFlat(MeshBuilder& builder, float pictures) {
         Mesh mesh = builder.take();
         addWallpaperCoordinates(mesh);
@@ -159,18 +171,14 @@ class RandomStillLife : RandomScene {
     void addBall(const vec3& center, float size) {
         MeshBuilder ball("ball", true);
         ball.sphere(vec3(0.0f), size, 48, 24);
-        Mesh mesh = ball.take();
-        addSlantedCoordinates(mesh);
-        addPlaced(std::move(mesh), center, richMaterial(0.35f));
+        addPlacedSmooth(ball, center, 0.35f);
     }
 
     void addRing(const vec3& center, float size) {
         MeshBuilder ring("ring", true);
         const float tube = random_.next(0.05f, 0.35f) * size;
         ring.torus(vec3(0.0f), size - tube, tube, 48, 20);
-        Mesh mesh = ring.take();
-        addSlantedCoordinates(mesh);
-        addPlaced(std::move(mesh), center, richMaterial(0.3f));
+        addPlacedSmooth(ring, center, 0.3f);
     }
 
     void addBox(const vec3& center, float size) {
@@ -178,9 +186,7 @@ class RandomStillLife : RandomScene {
         const vec3 half{size * random_.next(0.2f, 0.8f), size * random_.next(0.3f, 1.0f),
                         size * random_.next(0.2f, 0.8f)};
         box.box(-half, half);
-        Mesh mesh = box.take();
-        addWallpaperCoordinates(mesh);
-        addPlaced(std::move(mesh), center, richMaterial(0.4f));
+        addPlacedFlat(box, center, 0.4f);
     }
 
     /// A painting or a poster.
@@ -188,9 +194,7 @@ class RandomStillLife : RandomScene {
         MeshBuilder board("board");
         const vec3 half{size * random_.next(0.5f, 1.2f), size, 0.02f * size};
         board.box(-half, half);
-        Mesh mesh = board.take();
-        addWallpaperCoordinates(mesh);
-        addPlaced(std::move(mesh), center, richMaterial(0.9f));
+        addPlacedFlat(board, center, 0.9f);
     }
 
     /// Bars that may be finer than a pixel.
@@ -202,9 +206,7 @@ class RandomStillLife : RandomScene {
             const float x = -size + (static_cast<float>(i) + 0.5f) * pitch;
             grille.box({x - half, -size, -half}, {x + half, size, half});
         }
-        Mesh mesh = grille.take();
-        addWallpaperCoordinates(mesh);
-        addPlaced(std::move(mesh), center, richMaterial(0.2f));
+        addPlacedFlat(grille, center, 0.2f);
     }
 
     /// As in samples of materials: every ball of its own.
