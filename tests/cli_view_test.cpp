@@ -38,6 +38,12 @@ TEST_F(CliViewTest, WithoutADisplayItSaysWhatToUseInstead) {
     EXPECT_THAT(result.output, HasSubstr("limpid render"));
 }
 
+TEST_F(CliViewTest, WhatIsWrongWithTheSceneNeedsNoWindow) {
+    expect("view builtin:none", 2, "there is no scene");
+    expect("view '" + path("none.gltf") + "'", 3, "none.gltf");
+    expect("view builtin:cornell --camera none", 2, "no camera");
+}
+
 TEST_F(CliViewTest, ShowsWhatRenderRenders) {
     const std::string scene = "builtin:cornell --device cpu --width 160 --height 120 ";
     const Result shown = onDisplay("view " + scene + "--frames 16 --screenshot '" + path("view.png") + "'");

@@ -18,12 +18,12 @@ void Playback::reset(double time) {
     shownBefore_.reset();
     previous_.reset();
     cameras_.clear();
-    stoodStill_ = playedAll_ = playedNone_ = sameSettings_ = true;
+    stoodStill_ = playedAll_ = sameSettings_ = true;
 }
 
 void Playback::seek(double time) {
     time_ = time;
-    playedAll_ = playedNone_ = false;
+    playedAll_ = false;
     shown_.reset();
     shownBefore_.reset();
     previous_.reset();
@@ -41,7 +41,7 @@ Moment Playback::moment(const CameraParams& now) const {
 }
 
 void Playback::advance(const CameraParams& params, const scene::CameraKey& camera) {
-    if (frames_ > 0) (wentOn_ ? playedNone_ : playedAll_) = false;
+    if (frames_ > 0 && !wentOn_) playedAll_ = false;
     if (frames_ > 0 && !samePlace(lastCamera_, camera)) stoodStill_ = false;
     lastCamera_ = camera;
     if (cameras_.size() == frames_ && frames_ < mostCameras) {

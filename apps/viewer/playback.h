@@ -47,8 +47,6 @@ class Playback {
     bool cameraStoodStill() const { return stoodStill_; }
     /// Time went on in every frame since the reset.
     bool playedThroughout() const { return playedAll_; }
-    /// Time went on in none of them.
-    bool stoodThroughout() const { return playedNone_; }
     double startTime() const { return start_; }
     /// Of the last frame.
     double shownTime() const { return shown_.value_or(time_); }
@@ -60,7 +58,7 @@ class Playback {
     std::optional<CameraParams> previous_;
     std::vector<scene::CameraKey> cameras_;
     scene::CameraKey lastCamera_;
-    bool stoodStill_ = true, playedAll_ = true, playedNone_ = true, wentOn_ = false, sameSettings_ = true;
+    bool stoodStill_ = true, playedAll_ = true, wentOn_ = false, sameSettings_ = true;
 };
 
 }  // namespace limpid::viewer

@@ -54,19 +54,15 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     return options;
 }
 
-bool differ(const CameraParams& a, const CameraParams& b) {
-    return a.origin != b.origin || a.forward != b.forward || a.right != b.right || a.up != b.up ||
-           a.spread != b.spread || a.orthographic != b.orthographic;
-}
-
 class Viewer {
   public:
-    Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load,
-           std::function<scene::Camera(const scene::Scene&)> start, const ViewSettings& settings);
+    Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
+           const scene::Camera& home, const ViewSettings& settings);
     void run();
 
   private:
-    void loadStage(const std::string& scene, const std::string& environment);
+    void load(const std::string& scene, const std::string& environment);
+    void show(scene::Scene scene, const scene::Camera& home);
     void open(const std::string& file);
     void handleInput(double seconds);
     void fly(const ImGuiIO& io, float seconds);
@@ -78,7 +74,7 @@ class Viewer {
     bool mustRender();
     void render();
     void makeRenderer();
-    void show();
+    void present();
     bool inspect();
     std::string probeOf(const image::Image& picture) const;
     void measureExposure();
@@ -98,7 +94,6 @@ class Viewer {
     ViewSettings settings_;
     TracerChoice tracer_;
     SceneLoader load_;
-    std::function<scene::Camera(const scene::Scene&)> start_;
     Window window_;
     gpu::Device device_;
     std::unique_ptr<Stage> stage_;
@@ -125,12 +120,11 @@ class Viewer {
     uint64_t sameFrames_ = 0;  ///< since something changed
 };
 
-Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load,
-               std::function<scene::Camera(const scene::Scene&)> start, const ViewSettings& settings)
+Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
+               const scene::Camera& home, const ViewSettings& settings)
     : settings_(settings),
       tracer_(std::move(tracer)),
       load_(std::move(load)),
-      start_(std::move(start)),
       window_("Limpid", settings.render.extent),
       device_(presenting(options)),
       presenter_(device_, [this](void* instance) { return window_.makeSurface(instance); }),
@@ -141,23 +135,26 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     panel_.shrink = settings.shrink;
     facts_.device = device_.info().name;
-    loadStage(settings.scene, settings.environment);
+    show(std::move(first), home);
 }
 
-/// Leaves everything as it was if the scene cannot be had.
-void Viewer::loadStage(const std::string& name, const std::string& environment) {
+/// Leaves everything as it was if the scene cannot be had. What the command line says of camera and clip is
+/// of its own scene.
+void Viewer::load(const std::string& name, const std::string& environment) {
     scene::Scene scene = load_(name, environment);
-    // What the command line says of camera and clip is of its own scene.
-    const bool isFirst = !stage_;
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, isFirst ? settings_.animation : "");
-    const scene::Camera home = isFirst ? start_(scene) : scene.cameras.front();
-    if (!isFirst) settings_.startCamera.clear();
+    if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
+    const scene::Camera home = scene.cameras.front();
+    show(std::move(scene), home);
+    settings_.scene = name;
+    settings_.environment = environment;
+    settings_.startCamera.clear();
+}
+
+void Viewer::show(scene::Scene scene, const scene::Camera& home) {
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
     renderer_.reset();
     stage_ = std::move(stage);
-    settings_.scene = name;
-    settings_.environment = environment;
     window_.setTitle("Limpid: " + stage_->scene().name);
     home_ = home;
     path_.reset();
@@ -173,9 +170,9 @@ void Viewer::loadStage(const std::string& name, const std::string& environment) 
 void Viewer::open(const std::string& file) {
     const std::string extension = fs::path(file).extension().string();
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
-        loadStage(settings_.scene, file);
+        load(settings_.scene, file);
     else
-        loadStage(file, settings_.environment);
+        load(file, settings_.environment);
     facts_.message = "opened " + file;
 }
 
@@ -338,7 +335,7 @@ bool Viewer::mustRender() {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return false;
     const CameraParams now = scene::cameraParams(cameraNow(), extent.width, extent.height);
-    const bool moved = differ(now, lastCamera_);
+    const bool moved = !sameCamera(now, lastCamera_);
     if (std::exchange(panel_.asked.step, false)) return true;
     if (settingsDiffer()) {
         sameFrames_ = 0;
@@ -501,7 +498,7 @@ std::string Viewer::probeOf(const image::Image& picture) const {
     return text;
 }
 
-void Viewer::show() {
+void Viewer::present() {
     const bool inspects = inspect();
     const gpu::Overlay overlay = interface_.end();
     if (inspects)
@@ -529,7 +526,7 @@ void Viewer::run() {
             restless = restlessPictures;
         }
         writeControls();
-        show();
+        present();
     }
     if (renderer_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
     attempt([&] { keep(); });
@@ -542,7 +539,11 @@ void Viewer::run() {
 
 void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const SceneLoader& load,
           const std::function<scene::Camera(const scene::Scene&)>& start, const ViewSettings& settings) {
-    Viewer(device, tracer, load, start, settings).run();
+    // Before there is a window: what is wrong with these needs none.
+    scene::Scene first = load(settings.scene, settings.environment);
+    if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
+    const scene::Camera home = start(first);
+    Viewer(device, tracer, load, std::move(first), home, settings).run();
 }
 
 }  // namespace limpid::viewer

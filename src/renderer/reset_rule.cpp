@@ -1,14 +1,11 @@
 #include "renderer/reset_rule.h"
 
 namespace limpid {
-namespace {
 
 bool sameCamera(const CameraParams& a, const CameraParams& b) {
     return a.origin == b.origin && a.orthographic == b.orthographic && a.forward == b.forward &&
            a.spread == b.spread && a.right == b.right && a.up == b.up;
 }
-
-}  // namespace
 
 bool mustReset(const AccumulationState& before, const AccumulationState& now) {
     RenderSettings settings = now.settings;

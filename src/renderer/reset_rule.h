@@ -15,6 +15,8 @@ struct AccumulationState {
     uint64_t sceneVersion = 0;  ///< counted up by whoever changes the scene
 };
 
+bool sameCamera(const CameraParams& a, const CameraParams& b);
+
 /// True if samples taken under `before` must not be averaged with samples under `now`: the camera's matrix or
 /// field of view, the size, any setting, or the scene has changed. (Samples per launch change no pixel's
 /// distribution, and what denoisers do nothing that is accumulated.)

@@ -185,7 +185,7 @@ class Trainer:
         for batch in self.batches():
             for side in sides:
                 loss = self.step(side, batch)
-                finite = torch.isfinite(loss)  # halves overflow now and then: such a step is skipped
+                finite = torch.isfinite(loss)  # halves overflow now and then; the scaler skips such a step
                 sums[side] += torch.where(finite, loss, torch.zeros_like(loss))
                 counts[side] += finite
             batches += 1
