@@ -1,10 +1,12 @@
 #include "interface.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 // Debian keeps the back ends in a folder of their own.
 #include <backends/imgui_impl_glfw.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace limpid::viewer {
 namespace {
@@ -13,14 +15,14 @@ static_assert(sizeof(ImDrawVert) == sizeof(gpu::OverlayVertex) && sizeof(ImDrawI
 
 }  // namespace
 
-Interface::Interface(const Window& window, gpu::Presenter& presenter) {
+Interface::Interface(Window& window, gpu::Presenter& presenter) : window_(window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     ImGui::StyleColorsDark();
-    ImGui_ImplGlfw_InitForVulkan(window.handle(), true);
+    ImGui_ImplGlfw_InitForVulkan(window.handle(), false);  // the queue has the events
     unsigned char* texels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&texels, &width, &height);
@@ -36,7 +38,40 @@ Interface::~Interface() {
 
 void Interface::begin() {
     ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    for (const InputEvent& event : window_.input().take(io.WantTextInput)) apply(event);
+    // What the back end has read of the window itself is ahead of the queue.
+    io.MousePos = {mouse_.x, mouse_.y};
+    std::copy(buttons_.begin(), buttons_.end(), io.MouseDown);
     ImGui::NewFrame();
+}
+
+void Interface::apply(const InputEvent& event) {
+    ImGuiIO& io = ImGui::GetIO();
+    const auto code = static_cast<size_t>(event.code);
+    switch (event.kind) {
+        case InputEvent::Kind::Move:
+            mouse_ = event;
+            break;
+        case InputEvent::Kind::Button:
+            if (code < buttons_.size()) buttons_[code] = event.down;
+            break;
+        case InputEvent::Kind::Wheel:
+            io.MouseWheelH += event.x;
+            io.MouseWheel += event.y;
+            break;
+        case InputEvent::Kind::Text:
+            io.AddInputCharacter(static_cast<unsigned>(event.code));
+            break;
+        case InputEvent::Kind::Key:
+            if (code < std::size(io.KeysDown)) io.KeysDown[code] = event.down;
+            const auto held = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+            io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+            io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+            io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+            io.KeySuper = held(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+            break;
+    }
 }
 
 gpu::Overlay Interface::end() {

@@ -1,6 +1,8 @@
 // Dear ImGui: its context, its input from the window, and its triangles for the presenter.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <vector>
 
 #include "gpu/presenter.h"
@@ -10,7 +12,7 @@ namespace limpid::viewer {
 
 class Interface {
   public:
-    Interface(const Window& window, gpu::Presenter& presenter);
+    Interface(Window& window, gpu::Presenter& presenter);
     ~Interface();
     Interface(const Interface&) = delete;
     Interface& operator=(const Interface&) = delete;
@@ -21,6 +23,11 @@ class Interface {
     gpu::Overlay end();
 
   private:
+    void apply(const InputEvent& event);
+
+    Window& window_;
+    InputEvent mouse_{.x = -std::numeric_limits<float>::max(), .y = -std::numeric_limits<float>::max()};
+    std::array<bool, 5> buttons_{};
     std::vector<gpu::OverlayVertex> vertices_;
     std::vector<uint16_t> indices_;
     std::vector<gpu::OverlayDraw> draws_;

@@ -218,12 +218,10 @@ std::string Viewer::cameraOption() const {
 
 void Viewer::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
-    for (const int key : window_.takePressed()) {
-        if (io.WantTextInput) break;
-        if (key == GLFW_KEY_ESCAPE) window_.close();
-        if (key == GLFW_KEY_TAB) panel_.shown = !panel_.shown;
-        if (key == GLFW_KEY_SPACE) panel_.running = !panel_.running;
-    }
+    const auto pressed = [&](int key) { return !io.WantTextInput && ImGui::IsKeyPressed(key, false); };
+    if (pressed(GLFW_KEY_ESCAPE)) window_.close();
+    if (pressed(GLFW_KEY_TAB)) panel_.shown = !panel_.shown;
+    if (pressed(GLFW_KEY_SPACE)) panel_.running = !panel_.running;
     if (!io.WantCaptureMouse) fly(io, static_cast<float>(seconds));
 }
 
@@ -512,6 +510,7 @@ void Viewer::run() {
     int restless = restlessPictures;
     while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
         if (window_.poll(restless > 0 ? 0.0 : idleSeconds)) restless = restlessPictures;
+        if (!window_.input().empty()) restless = restlessPictures;
         if (restless == 0) continue;
         interface_.begin();
         const auto now = Clock::now();

@@ -5,6 +5,8 @@
 // GLFW declares its Vulkan calls after Vulkan's header.
 #include <GLFW/glfw3.h>
 
+#include <limits>
+
 #include "base/error.h"
 
 namespace limpid::viewer {
@@ -37,20 +39,34 @@ Window::Window(const std::string& title, gpu::Extent size) {
     }
 }
 
-/// Before ImGui does, which passes everything on. A wait for events does not tell whether there were any.
+/// A wait for events does not tell whether there were any.
 void Window::listen() {
+    using Kind = InputEvent::Kind;
+    constexpr float outside = -std::numeric_limits<float>::max();  // as ImGui has it
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         Window& self = of(window);
         self.dropped_.insert(self.dropped_.end(), paths, paths + count);
     });
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-        if (action == GLFW_PRESS) of(window).pressed_.push_back(key);
+        if (action != GLFW_REPEAT && key != GLFW_KEY_UNKNOWN)
+            of(window).input_.add({.kind = Kind::Key, .code = key, .down = action == GLFW_PRESS});
     });
-    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { of(window); });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double, double) { of(window); });
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) { of(window); });
-    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double) { of(window); });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
+        of(window).input_.add({.kind = Kind::Text, .code = static_cast<int>(character)});
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        of(window).input_.add({.kind = Kind::Move, .x = static_cast<float>(x), .y = static_cast<float>(y)});
+    });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
+        if (!entered) of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+        of(window).input_.add({.kind = Kind::Button, .code = button, .down = action == GLFW_PRESS});
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
+        of(window).input_.add({.kind = Kind::Wheel, .x = static_cast<float>(x), .y = static_cast<float>(y)});
+    });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int) { of(window); });
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { of(window); });
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { of(window); });

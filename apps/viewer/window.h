@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gpu/frame_graph.h"
+#include "input.h"
 
 struct GLFWwindow;
 
@@ -34,8 +35,7 @@ class Window {
     bool poll(double wait = 0.0);
     /// What has been dropped on it since the last call.
     std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
-    /// Keys (GLFW's numbers) that have gone down since the last call, however soon they went up again.
-    std::vector<int> takePressed() { return std::exchange(pressed_, {}); }
+    InputQueue& input() { return input_; }
     void setClipboard(const std::string& text) const;
     void setTitle(const std::string& title) const;
     GLFWwindow* handle() const { return window_; }
@@ -46,7 +46,7 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     std::vector<std::string> dropped_;
-    std::vector<int> pressed_;
+    InputQueue input_;
     bool touched_ = true;
 };
 
