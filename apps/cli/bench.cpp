@@ -54,7 +54,7 @@ double since(Clock::time_point start) {
 
 LoadedScene load(gpu::Device& device, const DeviceChoice& choice, const std::string& name) {
     LoadedScene loaded;
-    loaded.scene = loadChosenScene({name, "", ""});
+    loaded.scene = loadChosenScene({.scene = name});
     const Clock::time_point start = Clock::now();
     const scene::SceneData data = scene::buildSceneData(loaded.scene);
     loaded.treeSeconds = since(start);

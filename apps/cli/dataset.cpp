@@ -104,7 +104,7 @@ class Dataset {
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
             const std::string name = fmt::format("{:06}", example);
-            const scene::Scene scene = loadChosenScene({sceneOf(example), "", ""});
+            const scene::Scene scene = loadChosenScene({.scene = sceneOf(example)});
             const scene::SceneData data = scene::buildSceneData(scene);
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             ExampleSettings settings = o_.example;

@@ -7,6 +7,7 @@
 #include "scene/camera.h"
 #include "scene/environment.h"
 #include "scene/load.h"
+#include "scene/own_light.h"
 #include "scene/prepare.h"
 
 namespace limpid::cli {
@@ -35,6 +36,11 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
             "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
         ->required();
     command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
+    command.add_option("--light", choice.light,
+                       "A white light besides the scene's: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY in "
+                       "that direction");
+    command.add_option("--background", choice.background,
+                       "The same radiance from everywhere instead of any environment: R,G,B");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
     command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
         ->delimiter(',')
@@ -50,6 +56,7 @@ scene::Scene loadChosenScene(const SceneChoice& choice) {
                              ? scene::builtinScene(choice.scene.substr(prefix.size()))
                              : scene::loadScene(choice.scene);
     if (!choice.environment.empty()) scene.environment = scene::loadEnvironment(choice.environment);
+    scene::addOwnLight(scene, {scene::parseLamp(choice.light), scene::parseBackground(choice.background)});
     scene::prepare(scene);
     return scene;
 }

@@ -12,6 +12,7 @@ namespace limpid::cli {
 struct SceneChoice {
     std::string scene;
     std::string environment;
+    std::string light, background;  ///< as scene/own_light.h reads them
     std::string camera;
     std::vector<float> eye, target;  ///< three numbers each, or none: instead of the scene's cameras
     float fov = 0.0f;                ///< degrees, with these; 0: that of the camera

@@ -26,7 +26,7 @@ struct ViewOptions {
     std::optional<uint32_t> samples;
     std::optional<uint64_t> maxSamples;
     std::optional<int> shrink;
-    std::string settings = "auto", animation, weights, screenshot, controls;
+    std::string settings = "auto", animation, weights, screenshot, controls, shaders;
     std::vector<std::string> presets, assignments;
     uint32_t width = 1280, height = 720, seed = 0;
     uint64_t frames = 0;
@@ -40,14 +40,15 @@ std::string eyeOptions(const SceneChoice& choice) {
 
 /// What was kept, and over it what this command line says.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
-    viewer::ViewSettings settings{.scene = o.scene.scene,
-                                  .environment = o.scene.environment,
-                                  .animation = o.animation,
-                                  .render = {},
-                                  .controls = o.controls,
-                                  .weights = o.weights,
-                                  .quitAfter = o.frames,
-                                  .screenshot = o.screenshot};
+    viewer::ViewSettings settings{
+        .source = {o.scene.scene, o.scene.environment, o.scene.light, o.scene.background},
+        .animation = o.animation,
+        .render = {},
+        .controls = o.controls,
+        .weights = o.weights,
+        .shaders = o.shaders,
+        .quitAfter = o.frames,
+        .screenshot = o.screenshot};
     if (o.settings != "none")
         settings.kept = o.settings == "auto" ? viewer::keptSettingsFile() : std::filesystem::path(o.settings);
     restoreSettings(settings.kept, settings);
@@ -68,10 +69,12 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
 void run([[maybe_unused]] const ViewOptions& o) {
 #ifdef LIMPID_HAVE_VIEWER
     const viewer::ViewSettings settings = settingsOf(o);
-    const auto load = [&](const std::string& scene, const std::string& environment) {
+    const auto load = [&](const viewer::SceneSource& source) {
         SceneChoice choice = o.scene;
-        choice.scene = scene;
-        choice.environment = environment;
+        choice.scene = source.scene;
+        choice.environment = source.environment;
+        choice.light = source.light;
+        choice.background = source.background;
         return loadChosenScene(choice);
     };
     viewer::view(
@@ -114,6 +117,8 @@ void addViewCommand(CLI::App& app) {
             "--shrink", o->shrink,
             "The picture has 2^N times fewer pixels along each axis than the window, for slow devices (0)")
         ->check(CLI::Range(0, 3));
+    command->add_option("--shaders", o->shaders,
+                        "Limpid's src folder: shaders are compiled anew (by glslc) when they are saved");
     command->add_option("--controls", o->controls,
                         "For tests: a file that says where in the window each control is");
     command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");

@@ -25,6 +25,14 @@ const char* nameOf(Jitter jitter) {
     }
 }
 
+std::string sourceOptions(const SceneSource& source) {
+    std::string text;
+    if (!source.environment.empty()) text += " --env " + quoted(source.environment);
+    if (!source.light.empty()) text += " --light " + quoted(source.light);
+    if (!source.background.empty()) text += " --background " + quoted(source.background);
+    return text;
+}
+
 /// Its frames' times, or why they cannot be had again.
 std::string timesOf(const ShownFrame& frame, const Playback& playback, uint64_t frames, CommandLine& result) {
     const bool moves = !frame.clip.empty() || frame.camera.find("--camera-path") != std::string::npos;
@@ -52,8 +60,8 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     const RenderSettings& s = frame.settings;
     const bool accumulates = s.pipeline.accumulates();
     const uint64_t frames = accumulates ? 1 : playback.frames();
-    result.text = "limpid render " + quoted(frame.scene);
-    if (!frame.environment.empty()) result.text += " --env " + quoted(frame.environment);
+    result.text = "limpid render " + quoted(frame.source.scene);
+    result.text += sourceOptions(frame.source);
     result.text += fmt::format(" --pipeline {} --width {} --height {} --seed {} --jitter {} --spp {}",
                                s.pipeline.name(), s.extent.width, s.extent.height, s.seed, nameOf(s.jitter),
                                accumulates ? frame.samplesInMean : frame.samples);

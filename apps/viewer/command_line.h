@@ -5,14 +5,15 @@
 
 #include "playback.h"
 #include "renderer/settings.h"
+#include "scene_source.h"
 
 namespace limpid::viewer {
 
 /// What decides the frame in the window.
 struct ShownFrame {
-    std::string scene, environment;  ///< as on the command line; environment may be empty
-    std::string clip;                ///< name; empty: the scene moves by none
-    std::string weights;             ///< of networks; empty: those that come along
+    SceneSource source;
+    std::string clip;     ///< name; empty: the scene moves by none
+    std::string weights;  ///< of networks; empty: those that come along
     RenderSettings settings;
     uint32_t samples = 1;        ///< per pixel and frame
     uint64_t samplesInMean = 0;  ///< of pipelines that accumulate

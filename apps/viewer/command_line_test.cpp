@@ -21,8 +21,7 @@ class CommandLineTest : public testing::Test {
     }
     std::string text() const { return commandLineOf(frame_, playback_, "flown.json").text; }
 
-    ShownFrame frame_{.scene = "my scene.glb",
-                      .environment = {},
+    ShownFrame frame_{.source = {.scene = "my scene.glb", .environment = {}, .light = {}, .background = {}},
                       .clip = {},
                       .weights = {},
                       .settings = {},

@@ -15,8 +15,12 @@ ImGuiSliderFlags scaleOf(double least, double most) {
 
 void Controls::note(const std::string& name, const std::string& value) {
     const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
-    drawn_.push_back(
-        {group_.empty() ? name : group_ + "." + name, value, lower.x, lower.y, upper.x, upper.y});
+    note(name, value, lower.x, lower.y, upper.x, upper.y);
+}
+
+void Controls::note(const std::string& name, const std::string& value, float left, float top, float right,
+                    float bottom) {
+    drawn_.push_back({group_.empty() ? name : group_ + "." + name, value, left, top, right, bottom});
 }
 
 bool Controls::button(const char* name) {
@@ -51,7 +55,8 @@ bool Controls::header(const char* name) {
 }
 
 bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen) {
-    const bool open = ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str());
+    const bool open =
+        ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str(), ImGuiComboFlags_HeightLarge);
     note(name, choices[static_cast<size_t>(chosen)]);
     if (!open) return false;
     bool changed = false;

@@ -30,6 +30,8 @@ class Controls {
     bool choice(const char* name, const std::vector<std::string>& choices, int& chosen);
     /// Of whatever was drawn last.
     void note(const std::string& name, const std::string& value = {});
+    void note(const std::string& name, const std::string& value, float left, float top, float right,
+              float bottom);
 
     const std::vector<DrawnControl>& drawn() const { return drawn_; }
     /// One a line: left, top, right, bottom, name, value; between tabs.

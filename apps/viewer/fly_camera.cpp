@@ -14,9 +14,20 @@ constexpr float steepest = 1.55f;  // radians: just short of the poles, where "u
 
 FlyCamera::FlyCamera(const scene::Camera& start, float distance)
     : start_(start), eye_(start.toWorld[3]), distance_(std::max(distance, 1e-6f)) {
-    const vec3 ahead = -vec3(start.toWorld[2]);
+    face(-vec3(start.toWorld[2]));
+}
+
+/// `ahead` is a unit vector.
+void FlyCamera::face(const vec3& ahead) {
     yaw_ = std::atan2(ahead.x, -ahead.z);
     pitch_ = std::clamp(std::asin(std::clamp(ahead.y, -1.0f, 1.0f)), -steepest, steepest);
+}
+
+void FlyCamera::focus(const vec3& point) {
+    const float distance = glm::distance(point, eye_);
+    if (distance < 1e-6f) return;
+    face((point - eye_) / distance);
+    distance_ = distance;
 }
 
 vec3 FlyCamera::forward() const {

@@ -14,6 +14,8 @@ class FlyCamera {
     void orbit(float right, float up);
     /// Turns where it stands; the target turns with it.
     void look(float right, float up);
+    /// Turns to a point, which it turns around from then on.
+    void focus(const vec3& point);
     /// Moves sideways with the target, in heights of the picture at the target's distance.
     void pan(float right, float up);
     /// Towards the target by a factor: 0.5 halves the distance.
@@ -30,6 +32,7 @@ class FlyCamera {
 
   private:
     vec3 right() const;
+    void face(const vec3& ahead);
 
     scene::Camera start_;
     vec3 eye_;

@@ -64,5 +64,15 @@ TEST(FlyCamera, ZoomsTowardsItsTarget) {
     EXPECT_GT(camera.distance(), 0.0f);
 }
 
+TEST(FlyCamera, FocusTurnsToThePointAndThenAroundIt) {
+    FlyCamera camera(scene::lookAt(vec3(1, 2, 3), vec3(0, 2, 3), vec3(0, 1, 0), 0.6f), 5.0f);
+    const vec3 point(4, 1, -2);
+    camera.focus(point);
+    EXPECT_EQ(camera.eye(), vec3(1, 2, 3));
+    EXPECT_LT(glm::distance(camera.target(), point), 1e-5f);
+    camera.orbit(0.7f, 0.1f);
+    EXPECT_LT(glm::distance(camera.target(), point), 1e-5f);
+}
+
 }  // namespace
 }  // namespace limpid::viewer

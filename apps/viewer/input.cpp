@@ -33,7 +33,9 @@ bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
         case Kind::Move:
             return earlier.kind == Kind::Button || earlier.kind == Kind::Wheel;
         case Kind::Button:
-            return earlier.kind == Kind::Button && earlier.code == later.code;
+            // What was moved before a release was moved with the button down.
+            return (earlier.kind == Kind::Button && earlier.code == later.code) ||
+                   (earlier.kind == Kind::Move && !later.down);
         case Kind::Wheel:
             return false;
         case Kind::Key:

@@ -12,6 +12,7 @@ struct InputEvent {
     Kind kind = Kind::Move;
     int code = 0;              ///< number of the button; GLFW's of the key; the character
     bool down = false;         ///< of buttons and keys
+    bool twice = false;        ///< a button that goes down for the second time, soon and nearby
     float x = 0.0f, y = 0.0f;  ///< Move: pixels of the window; Wheel: steps
     bool operator==(const InputEvent&) const = default;
 };

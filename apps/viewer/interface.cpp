@@ -39,6 +39,7 @@ Interface::~Interface() {
 void Interface::begin() {
     ImGui_ImplGlfw_NewFrame();
     ImGuiIO& io = ImGui::GetIO();
+    clickedTwice_ = false;
     for (const InputEvent& event : window_.input().take(io.WantTextInput)) apply(event);
     // What the back end has read of the window itself is ahead of the queue.
     io.MousePos = {mouse_.x, mouse_.y};
@@ -55,6 +56,7 @@ void Interface::apply(const InputEvent& event) {
             break;
         case InputEvent::Kind::Button:
             if (code < buttons_.size()) buttons_[code] = event.down;
+            clickedTwice_ |= event.twice && event.code == GLFW_MOUSE_BUTTON_LEFT;
             break;
         case InputEvent::Kind::Wheel:
             io.MouseWheelH += event.x;

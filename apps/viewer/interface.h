@@ -19,6 +19,8 @@ class Interface {
 
     /// Between the two, ImGui's calls.
     void begin();
+    /// The left button has gone down for the second time.
+    bool clickedTwice() const { return clickedTwice_; }
     /// Valid until the next begin().
     gpu::Overlay end();
 
@@ -28,6 +30,7 @@ class Interface {
     Window& window_;
     InputEvent mouse_{.x = -std::numeric_limits<float>::max(), .y = -std::numeric_limits<float>::max()};
     std::array<bool, 5> buttons_{};
+    bool clickedTwice_ = false;
     std::vector<gpu::OverlayVertex> vertices_;
     std::vector<uint16_t> indices_;
     std::vector<gpu::OverlayDraw> draws_;

@@ -1,10 +1,11 @@
 #include "panel.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <string>
 
 #include "renderer/parameters.h"
 
@@ -68,27 +69,92 @@ void drawInspector(PanelState& state, const PanelFacts& facts, Controls& control
     ImGui::TextUnformatted(facts.probe.c_str());
 }
 
+constexpr float graphWidth = 80.0f;
+
+void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {
+    const float most = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
+    ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
+                     1.1f * most, size);
+}
+
+std::string bytesText(uint64_t bytes) {
+    const double kibibytes = static_cast<double>(bytes) / 1024.0;
+    return kibibytes < 1024.0 ? fmt::format("{:.1f} KiB", kibibytes)
+                              : fmt::format("{:.1f} MiB", kibibytes / 1024.0);
+}
+
 /// A click on one shows its images, another one the picture again.
 void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) {
     if (!controls.header("passes")) return;
     drawInspector(state, facts, controls);
-    std::map<std::string, double> byName;
-    std::vector<std::string> order;
-    for (const gpu::PassTime& pass : facts.passes) {
-        if (byName.emplace(pass.name, 0.0).second) order.push_back(pass.name);
-        byName[pass.name] += pass.milliseconds;
-    }
-    if (!ImGui::BeginTable("passes", 2, ImGuiTableFlags_RowBg)) return;
-    for (const std::string& name : order) {
+    const std::string last = fmt::format("{:.1f} ms a frame", facts.timings.frames().last());
+    plot("##frames", facts.timings.frames(),
+         {ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetTextLineHeight()}, last.c_str());
+    controls.note("frame times", last);
+    const std::string memory = fmt::format("memory {}, of it the scene's {}", bytesText(facts.memoryBytes),
+                                           bytesText(facts.sceneBytes));
+    ImGui::TextUnformatted(memory.c_str());
+    controls.note("memory", memory);
+    if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("graph", ImGuiTableColumnFlags_WidthFixed, graphWidth);
+    ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
+    for (const PassTrack& pass : facts.timings.passes()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(name.c_str(), name == state.pass, ImGuiSelectableFlags_SpanAllColumns))
-            state.pass = name == state.pass ? std::string() : name;
-        controls.note("pass " + name);
+        if (ImGui::Selectable(pass.name.c_str(), pass.name == state.pass,
+                              ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
+            state.pass = pass.name == state.pass ? std::string() : pass.name;
+        controls.note("pass " + pass.name);
         ImGui::TableNextColumn();
-        ImGui::Text("%.3f ms", byName[name]);
+        plot(("##" + pass.name).c_str(), pass.milliseconds, {graphWidth, ImGui::GetTextLineHeight()});
+        ImGui::TableNextColumn();
+        ImGui::Text("%.3f ms", static_cast<double>(pass.milliseconds.last()));
     }
     ImGui::EndTable();
+}
+
+void drawComparison(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    controls.choice("compare with", comparisonNames(), state.comparison.with);
+    if (!state.comparison.isOn()) return;
+    if (state.comparison.isReference())
+        controls.slider("reference samples", state.comparison.referenceSamples, 1, 1 << 16);
+    ImGui::TextUnformatted(facts.scores.empty() ? "..." : facts.scores.c_str());
+    controls.note("scores", facts.scores);
+}
+
+void drawLooking(PanelState& state, Controls& controls) {
+    controls.checkbox("magnifier", state.magnifier);
+    ImGui::SameLine();
+    controls.checkbox("arrows", state.arrows);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, of pipelines that denoise");
+}
+
+/// Takes effect when the hand lets go: the scene is loaded again.
+void drawLight(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    if (!controls.header("light")) return;
+    controls.setGroup("light");
+    LightChoice& light = state.light;
+    bool& changed = state.asked.relight;
+    const auto slide = [&](const char* name, float& value, float least, float most) {
+        controls.slider(name, value, least, most);
+        changed |= ImGui::IsItemDeactivatedAfterEdit();
+    };
+    changed |= controls.choice("kind", {"the scene's alone", "a point more", "a sun more"}, light.kind);
+    if (light.kind != 0) {
+        const float reach = light.kind == 1 ? facts.lightReach : 1.0f;
+        slide("x", light.at.x, -reach, reach);
+        slide("y", light.at.y, -reach, reach);
+        slide("z", light.at.z, -reach, reach);
+        slide("intensity", light.intensity, 0.0f, 1e4f);
+    }
+    changed |= controls.checkbox("background of its own", light.hasBackground);
+    if (light.hasBackground) {
+        slide("red", light.background.r, 0.0f, 10.0f);
+        slide("green", light.background.g, 0.0f, 10.0f);
+        slide("blue", light.background.b, 0.0f, 10.0f);
+    }
+    controls.setGroup("");
 }
 
 void drawSampling(PanelState& state, Controls& controls) {
@@ -146,20 +212,40 @@ void drawOpen(PanelState& state, Controls& controls) {
 void drawFacts(const PanelState& state, const PanelFacts& facts) {
     ImGui::TextUnformatted(facts.device.c_str());
     ImGui::Text("%ux%u, %.1f ms a frame, frame %llu", state.render.extent.width, state.render.extent.height,
-                facts.frameMilliseconds, static_cast<unsigned long long>(facts.frames));
+                static_cast<double>(facts.timings.frames().last()),
+                static_cast<unsigned long long>(facts.frames));
     if (facts.samplesInMean > 0)
-        ImGui::Text("%llu samples", static_cast<unsigned long long>(facts.samplesInMean));
-    if (!facts.message.empty()) ImGui::TextWrapped("%s", facts.message.c_str());
-    if (facts.fault.empty()) return;
-    ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
-    ImGui::TextWrapped("%s", facts.fault.c_str());
-    ImGui::PopStyleColor();
+        ImGui::Text("mean of %llu samples", static_cast<unsigned long long>(facts.samplesInMean));
+    else
+        ImGui::TextUnformatted("with histories of earlier frames");
+}
+
+/// In a corner of its own, so that nothing moves away under the mouse.
+void drawMessages(const PanelFacts& facts) {
+    const std::string message = facts.messageIsOld ? std::string() : facts.message;
+    if (message.empty() && facts.fault.empty() && facts.allValues.empty()) return;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x - 8.0f, size.y - 8.0f}, ImGuiCond_Always, {1.0f, 1.0f});
+    ImGui::SetNextWindowBgAlpha(0.7f);
+    ImGui::Begin("messages", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(std::max(0.6f * size.x, 200.0f));
+    if (!facts.allValues.empty()) ImGui::TextUnformatted(facts.allValues.c_str());
+    if (!message.empty()) ImGui::TextUnformatted(message.c_str());
+    if (!facts.fault.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
+        ImGui::TextUnformatted(facts.fault.c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::End();
 }
 
 }  // namespace
 
 void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
-    controls.begin();
+    drawMessages(facts);
     if (!state.shown) return;
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize({380, std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
@@ -172,13 +258,16 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     drawTime(state, facts, controls);
     drawCamera(state, facts, controls);
     drawOpen(state, controls);
+    drawLooking(state, controls);
+    drawComparison(state, facts, controls);
+    drawLight(state, facts, controls);
     drawPasses(state, facts, controls);
     for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
     ImGui::PopItemWidth();
     ImGui::Separator();
     ImGui::TextWrapped(
-        "left button: orbit; right: look, with WASDQE to fly; middle: pan; wheel: zoom; Tab: this panel; "
-        "Space: run or stop; Escape: leave");
+        "left button: orbit; double click: look at this; right: look, with WASDQE to fly; middle: pan; "
+        "wheel: zoom; P: all values under the mouse; Tab: this panel; Space: run or stop; Escape: leave");
     ImGui::End();
 }
 

@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "comparison.h"
 #include "controls.h"
 #include "gpu/frame_graph.h"
 #include "inspector.h"
+#include "light_choice.h"
 #include "renderer/settings.h"
+#include "timings.h"
 
 namespace limpid::viewer {
 
@@ -19,6 +22,8 @@ struct PanelRequests {
     bool seek = false;        ///< to PanelState::time
     bool choosePose = false;  ///< PanelState::camera is another one
     bool open = false;        ///< PanelState::file
+    bool relight = false;     ///< PanelState::light is another one
+    bool probe = false;       ///< all values under the mouse
 };
 
 /// What the panel shows and changes.
@@ -38,6 +43,11 @@ struct PanelState {
     std::string pass;      ///< whose images are shown instead of the picture; empty: none
     int image = 0;         ///< of PanelFacts::images
     InspectorView view;
+    ComparisonChoice comparison;
+    float divider = 0.65f;   ///< of the window's width: what it is compared with lies right of it
+    bool magnifier = false;  ///< beside the mouse
+    bool arrows = false;     ///< of motion
+    LightChoice light;
     bool shown = true;
     PanelRequests asked;
 };
@@ -47,14 +57,17 @@ struct PanelFacts {
     std::string device;
     uint64_t samplesInMean = 0;  ///< 0 where nothing accumulates
     uint64_t frames = 0;         ///< since the last reset
-    double frameMilliseconds = 0.0;
-    double duration = 0.0;  ///< of the clip or of the path, seconds; 0: nothing plays
+    double duration = 0.0;       ///< of the clip or of the path, seconds; 0: nothing plays
     std::vector<std::string> cameras;
-    std::vector<gpu::PassTime> passes;
+    Timings timings;
+    uint64_t memoryBytes = 0, sceneBytes = 0;  ///< of the device
+    float lightReach = 1.0f;                   ///< how far from 0 along each axis a light may stand
+    std::string comparedWith, scores;
+    std::string allValues;            ///< of the last probe
     std::vector<std::string> images;  ///< of PanelState::pass
     std::string probe;                ///< what lies under the mouse in the image that is shown
-    std::string command;              ///< that makes this frame again
     std::string message;              ///< of the last thing that was done
+    bool messageIsOld = false;        ///< and no longer shown
     std::string fault;                ///< of the last thing that failed
 };
 

@@ -9,28 +9,28 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <tuple>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "camera_rig.h"
 #include "command_line.h"
 #include "controls.h"
-#include "fly_camera.h"
+#include "display.h"
 #include "image/exr.h"
 #include "image/png.h"
 #include "image/tonemap.h"
-#include "inspector.h"
-#include "interface.h"
 #include "kept_settings.h"
+#include "light_choice.h"
+#include "live_render.h"
 #include "panel.h"
-#include "passes/tonemap/tonemap.h"
+#include "picker.h"
 #include "playback.h"
-#include "renderer/frame_renderer.h"
 #include "renderer/network_file.h"
 #include "renderer/reset_rule.h"
 #include "scene/camera.h"
 #include "scene/movement.h"
+#include "shader_reload.h"
 #include "stage.h"
 
 namespace limpid::viewer {
@@ -41,17 +41,31 @@ using Clock = std::chrono::steady_clock;
 
 constexpr float radiansAPixel = 0.005f;
 constexpr float zoomAStep = 0.85f;
-constexpr double idleSeconds = 1.0;          ///< between looks at the window while nothing is computed
-constexpr double longestStep = 0.1;          ///< seconds that a key moves the camera in one picture
-constexpr int restlessPictures = 4;          ///< drawn after the last event: until the panel has settled
-constexpr uint64_t framesBetweenTimes = 16;  ///< reading the passes' times waits for the device
-constexpr double pathSeconds = 10.0;         ///< of the built-in camera paths
+constexpr double idleSeconds = 1.0;         ///< between looks at the window while nothing is computed
+constexpr double longestStep = 0.1;         ///< seconds that a key moves the camera in one picture
+constexpr int restlessPictures = 4;         ///< drawn after the last event: until the panel has settled
+constexpr double betweenTimes = 0.25;       ///< seconds; reading the passes' times waits for the device
+constexpr double betweenScores = 1.0;       ///< seconds
+constexpr double betweenSources = 0.5;      ///< seconds between looks at the shaders' files
+constexpr float lightReach = 3.0f;          ///< of the scene's radius
+constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
+constexpr double messageSeconds = 20.0;
 constexpr const char* pathFile = "flown.json";
-constexpr std::array<const char*, 3> pathNames{"orbit", "dolly", "shake"};
 
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     options.surfaceExtensions = Window::surfaceExtensions();
     return options;
+}
+
+double secondsSince(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+/// True once `seconds` have gone by; then anew.
+bool due(Clock::time_point& last, double seconds) {
+    if (secondsSince(last) < seconds) return false;
+    last = Clock::now();
+    return true;
 }
 
 class Viewer {
@@ -61,33 +75,35 @@ class Viewer {
     void run();
 
   private:
-    void load(const std::string& scene, const std::string& environment);
-    void show(scene::Scene scene, const scene::Camera& home);
+    void load(const SceneSource& source);
+    void show(scene::Scene scene);
+    void goTo(const scene::Camera& home);
     void open(const std::string& file);
+    void relight();
+    void startAnew();
     void handleInput(double seconds);
     void fly(const ImGuiIO& io, float seconds);
+    void focus();
     void applyRequests();
     void applySettings();
-    void choosePose();
-    bool isFree() const { return panel_.camera == 0; }
-    bool settingsDiffer() const;
-    bool mustRender();
-    void render();
-    void makeRenderer();
-    void present();
-    bool inspect();
-    std::string probeOf(const image::Image& picture) const;
+    void loadNetworkFor(const Pipeline& pipeline);
+    bool reloadShaders();
+    bool messageAges();
+    CameraParams cameraNow() const;
+    bool mustRender(const CameraParams& camera);
+    bool comparisonMustRender(const CameraParams& camera, bool moved) const;
+    RenderSettings otherSettings() const;
+    void render(const CameraParams& camera);
+    void renderComparison(const CameraParams& camera, Moment moment, bool alone);
+    void updateScores(bool rendering);
+    void noteTimes(bool rendered);
     void measureExposure();
     void writeScreenshot(const fs::path& file);
     void copyCommand();
     void savePath();
     void keep();
     void writeControls();
-    FlyCamera startCamera() const;
-    scene::Camera cameraNow() const;
-    scene::CameraKey keyNow() const;
-    std::string cameraOption() const;
-    /// Runs what may fail for reasons of the user's; says so in the panel.
+    /// Runs what may fail for reasons of the user's; says so in the window.
     template <typename Function>
     void attempt(const Function& function);
 
@@ -97,27 +113,27 @@ class Viewer {
     Window window_;
     gpu::Device device_;
     std::unique_ptr<Stage> stage_;
-    gpu::Presenter presenter_;
-    Interface interface_;
-    scene::Camera home_;
-    FlyCamera camera_;
+    Display display_;
+    CameraRig rig_;
     Playback playback_;
     PanelState panel_;
-    PanelState used_;  ///< by the last frame
     PanelFacts facts_;
     Controls controls_;
     std::string controlsText_;  ///< as last written
-    std::optional<scene::CameraPath> path_;
-    std::optional<FrameRenderer> renderer_;
-    Inspector inspector_;
-    std::vector<std::pair<std::string, image::Image>> images_;  ///< of the pass that is inspected
-    std::tuple<uint64_t, std::string, int, InspectorView> inspected_;
-    CameraParams lastCamera_{};
+    ShaderReload reload_;
+    LiveRender main_, other_;
+    LiveScores scores_;
+    float fovOfLast_ = 0.0f;  ///< degrees
     bool networkIsHalf_ = true;
-    float speed_ = 1.0f;  ///< world units a second
-    uint64_t launchesOfMean_ = 0;
-    uint64_t rendered_ = 0;    ///< frames, ever
-    uint64_t sameFrames_ = 0;  ///< since something changed
+    float speed_ = 1.0f;     ///< world units a second
+    uint64_t rendered_ = 0;  ///< frames, ever
+    uint64_t otherRendered_ = 0;
+    std::pair<uint64_t, uint64_t> scored_;  ///< rendered_ and otherRendered_ of the last scores
+    Clock::time_point lastTimes_{}, lastScores_{}, lastSources_{}, lastFrame_{};
+    bool frameBefore_ = false;
+    bool stepping_ = false;  ///< one frame, though rendering stands still
+    std::string shownMessage_;
+    Clock::time_point messageSince_{};
 };
 
 Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
@@ -127,53 +143,84 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       load_(std::move(load)),
       window_("Limpid", settings.render.extent),
       device_(presenting(options)),
-      presenter_(device_, [this](void* instance) { return window_.makeSurface(instance); }),
-      interface_(window_, presenter_),
-      camera_(scene::Camera{}, 1.0f) {
+      display_(window_, device_),
+      reload_(settings.shaders),
+      main_(device_, reload_.replacements()),
+      other_(device_, reload_.replacements()) {
     panel_.render = settings.render;
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     panel_.shrink = settings.shrink;
+    panel_.light = lightChoiceOf(settings.source.light, settings.source.background);
     facts_.device = device_.info().name;
-    show(std::move(first), home);
+    show(std::move(first));
+    goTo(home);
 }
 
 /// Leaves everything as it was if the scene cannot be had. What the command line says of camera and clip is
 /// of its own scene.
-void Viewer::load(const std::string& name, const std::string& environment) {
-    scene::Scene scene = load_(name, environment);
+void Viewer::load(const SceneSource& source) {
+    scene::Scene scene = load_(source);
     if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
     const scene::Camera home = scene.cameras.front();
-    show(std::move(scene), home);
-    settings_.scene = name;
-    settings_.environment = environment;
+    show(std::move(scene));
+    goTo(home);
+    settings_.source = source;
     settings_.startCamera.clear();
 }
 
-void Viewer::show(scene::Scene scene, const scene::Camera& home) {
+void Viewer::show(scene::Scene scene) {
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
-    renderer_.reset();
+    main_.drop();
+    other_.drop();
     stage_ = std::move(stage);
     window_.setTitle("Limpid: " + stage_->scene().name);
-    home_ = home;
-    path_.reset();
-    facts_.cameras = {"free"};
-    for (const scene::Camera& camera : stage_->scene().cameras) facts_.cameras.push_back(camera.name);
-    facts_.cameras.insert(facts_.cameras.end(), pathNames.begin(), pathNames.end());
     speed_ = 0.25f * stage_->sphere().radius;
-    panel_.asked.measureExposure = panel_.asked.resetCamera = true;
+    facts_.lightReach = lightReach * std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
+}
+
+/// Of a scene that was not there before.
+void Viewer::goTo(const scene::Camera& home) {
+    rig_.show(*stage_, home);
+    facts_.cameras = rig_.names();
+    panel_.asked.measureExposure = panel_.asked.resetCamera = true;
 }
 
 /// An environment is put around the scene that there is; anything else is a scene.
 void Viewer::open(const std::string& file) {
     const std::string extension = fs::path(file).extension().string();
-    if (extension == ".hdr" || extension == ".exr" || extension == ".pic")
-        load(settings_.scene, file);
-    else
-        load(file, settings_.environment);
+    SceneSource source = settings_.source;
+    if (extension == ".hdr" || extension == ".exr" || extension == ".pic") {
+        source.environment = file;
+        source.background.clear();
+    } else {
+        source.scene = file;
+    }
+    load(source);
+    panel_.light = lightChoiceOf(source.light, source.background);
     facts_.message = "opened " + file;
+}
+
+/// The scene again, with another light; all else stays.
+void Viewer::relight() {
+    SceneSource source = settings_.source;
+    source.light = panel_.light.lamp();
+    source.background = panel_.light.backgroundText();
+    scene::Scene scene = load_(source);
+    const double time = playback_.time();
+    if (stage_->moves()) scene::chooseClip(scene, std::to_string(stage_->scene().clip));
+    show(std::move(scene));
+    playback_.reset(time);
+    settings_.source = source;
+}
+
+/// The next frame is the first one.
+void Viewer::startAnew() {
+    playback_.reset(playback_.time());
+    main_.drop();
+    other_.drop();
 }
 
 template <typename Function>
@@ -187,33 +234,9 @@ void Viewer::attempt(const Function& function) {
     }
 }
 
-/// Around the middle of the scene, as far as it lies ahead.
-FlyCamera Viewer::startCamera() const {
-    const scene::BoundingSphere& sphere = stage_->sphere();
-    const vec3 eye(home_.toWorld[3]), ahead = -vec3(home_.toWorld[2]);
-    return {home_, std::max(glm::dot(sphere.center - eye, ahead), 0.25f * sphere.radius)};
-}
-
-scene::Camera Viewer::cameraNow() const {
-    const auto number = static_cast<size_t>(panel_.camera);
-    if (isFree()) return camera_.camera();
-    if (path_) return path_->at(playback_.time());
-    return scene::cameraAt(stage_->scene(), stage_->scene().cameras[number - 1], playback_.time());
-}
-
-scene::CameraKey Viewer::keyNow() const {
-    scene::CameraKey key;
-    key.eye = camera_.eye();
-    key.target = camera_.eye() + camera_.forward();  // as FlyCamera::camera() has it
-    key.verticalFov = glm::radians(panel_.fovDegrees);
-    return key;
-}
-
-std::string Viewer::cameraOption() const {
-    if (isFree()) return {};
-    if (!path_) return fmt::format("--camera {}", panel_.camera - 1);
-    const std::string start = settings_.startCamera.empty() ? "" : settings_.startCamera + " ";
-    return start + "--camera-path " + facts_.cameras[static_cast<size_t>(panel_.camera)];
+CameraParams Viewer::cameraNow() const {
+    const gpu::Extent extent = panel_.render.extent;
+    return scene::cameraParams(rig_.at(*stage_, playback_.time()), extent.width, extent.height);
 }
 
 void Viewer::handleInput(double seconds) {
@@ -222,53 +245,48 @@ void Viewer::handleInput(double seconds) {
     if (pressed(GLFW_KEY_ESCAPE)) window_.close();
     if (pressed(GLFW_KEY_TAB)) panel_.shown = !panel_.shown;
     if (pressed(GLFW_KEY_SPACE)) panel_.running = !panel_.running;
-    if (!io.WantCaptureMouse) fly(io, static_cast<float>(seconds));
+    if (pressed(GLFW_KEY_P)) panel_.asked.probe = true;
+    const bool divides = display_.dragsDivider(panel_, controls_);
+    if (!io.WantCaptureMouse && !divides) fly(io, static_cast<float>(seconds));
 }
 
 void Viewer::fly(const ImGuiIO& io, float seconds) {
     const float x = io.MouseDelta.x, y = io.MouseDelta.y;
-    const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left),
-               right = ImGui::IsMouseDown(ImGuiMouseButton_Right),
-               middle = ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    // The way to where it went down is no drag.
+    const auto held = [&](int button) { return io.MouseDown[button] && io.MouseDownDuration[button] > 0.0f; };
+    const bool left = held(ImGuiMouseButton_Left), right = held(ImGuiMouseButton_Right),
+               middle = held(ImGuiMouseButton_Middle);
     const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f;
-    if (moves && !isFree()) {
-        // From where it is.
-        const scene::Camera here = cameraNow();
-        camera_ = FlyCamera(here, camera_.distance());
-        panel_.fovDegrees = glm::degrees(here.verticalFov);
-        panel_.camera = 0;
-        path_.reset();
-        playback_.reset(playback_.time());
-        renderer_.reset();
+    if (moves && !rig_.isFree()) {
+        rig_.setFree(*stage_, playback_.time());
+        panel_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+        startAnew();
     }
-    if (left) camera_.orbit(radiansAPixel * x, -radiansAPixel * y);
-    if (middle) camera_.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
+    panel_.camera = rig_.chosen();
+    FlyCamera& hand = rig_.hand();
+    if (display_.clickedTwice()) focus();
+    if (left) hand.orbit(radiansAPixel * x, -radiansAPixel * y);
+    if (middle) hand.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
     if (right) {
-        camera_.look(radiansAPixel * x, -radiansAPixel * y);
+        hand.look(radiansAPixel * x, -radiansAPixel * y);
         if (io.MouseWheel != 0.0f) speed_ *= std::pow(1.0f / zoomAStep, io.MouseWheel);
         const auto axis = [&](int more, int less) {
             return (ImGui::IsKeyDown(more) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(less) ? 1.0f : 0.0f);
         };
-        camera_.move(
+        hand.move(
             speed_ * seconds *
             vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_W, GLFW_KEY_S)));
     } else if (io.MouseWheel != 0.0f) {
-        camera_.zoom(std::pow(zoomAStep, io.MouseWheel));
+        hand.zoom(std::pow(zoomAStep, io.MouseWheel));
     }
 }
 
-void Viewer::choosePose() {
-    const size_t cameras = stage_->scene().cameras.size();
-    const auto number = static_cast<size_t>(panel_.camera);
-    path_.reset();
-    if (number > cameras) {
-        const double seconds = std::max(stage_->duration(), pathSeconds);
-        path_ = scene::builtinCameraPath(facts_.cameras[number], stage_->scene(), home_, seconds);
-        panel_.playing = true;
-    }
-    if (number == 0) camera_ = startCamera();
-    playback_.reset(playback_.time());
-    renderer_.reset();
+/// Turns to what is under the mouse.
+void Viewer::focus() {
+    if (!rig_.isFree() || panel_.render.extent.width == 0) return;
+    const auto [x, y] = display_.pixelUnderMouse(panel_.render.extent);
+    if (const auto point = pointSeen(device_, stage_->onDevice(), cameraNow(), panel_.render.extent, x, y))
+        rig_.hand().focus(*point);
 }
 
 /// What the panel asked for.
@@ -276,24 +294,28 @@ void Viewer::applyRequests() {
     PanelRequests& asked = panel_.asked;
     if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file); });
     for (const std::string& file : window_.takeDropped()) attempt([&] { open(file); });
+    if (std::exchange(asked.relight, false)) attempt([&] { relight(); });
     if (std::exchange(asked.resetCamera, false)) {
         panel_.camera = 0;
-        panel_.fovDegrees = glm::degrees(home_.verticalFov);
-        choosePose();
+        panel_.fovDegrees = glm::degrees(rig_.home().verticalFov);
+        asked.choosePose = true;
     }
-    if (std::exchange(asked.choosePose, false)) choosePose();
+    if (std::exchange(asked.choosePose, false)) {
+        rig_.choose(*stage_, panel_.camera);
+        panel_.playing |= rig_.movesOnPath();
+        asked.reset = true;
+    }
     if (std::exchange(asked.seek, false)) playback_.seek(double{panel_.time});
-    if (std::exchange(asked.reset, false)) {
-        playback_.reset(playback_.time());
-        renderer_.reset();
-    }
-    if (asked.measureExposure && renderer_ && playback_.frames() > 0) {
+    if (std::exchange(asked.reset, false)) startAnew();
+    if (asked.measureExposure && main_) {
         asked.measureExposure = false;
         measureExposure();
     }
+    if (std::exchange(asked.probe, false) && main_)
+        facts_.allValues = facts_.allValues.empty() ? display_.probeAll(main_) : std::string();
     if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
     if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
-    if (std::exchange(asked.screenshot, false) && renderer_) attempt([&] { writeScreenshot("limpid.png"); });
+    if (std::exchange(asked.screenshot, false) && main_) attempt([&] { writeScreenshot("limpid.png"); });
 }
 
 /// Settings that follow from others. Those of what cannot be done go back to what was.
@@ -308,100 +330,162 @@ void Viewer::applySettings() {
         render.jitter = static_cast<Jitter>(panel_.jitter - 1);
     else
         render.jitter = render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
-    camera_.setVerticalFov(glm::radians(panel_.fovDegrees));
-    playback_.playing = panel_.playing && (stage_->moves() || path_);
-    facts_.duration = path_ ? std::max(stage_->duration(), pathSeconds) : stage_->duration();
+    rig_.hand().setVerticalFov(glm::radians(panel_.fovDegrees));
+    playback_.playing = panel_.playing && (stage_->moves() || rig_.movesOnPath());
+    facts_.duration = rig_.movesOnPath() || stage_->moves() ? rig_.duration(*stage_) : 0.0;
     if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
     panel_.time = static_cast<float>(playback_.time());
-    const denoise::Denoiser* const denoiser = render.pipeline.denoiser;
-    const bool half = render.denoisers.kpcn.half;
-    if (!denoiser || !denoiser->network || (render.denoisers.kpcn.network && half == networkIsHalf_)) return;
-    attempt([&] { loadNetwork(device_, denoiser, settings_.weights, render.denoisers); });
-    networkIsHalf_ = half;
-    if (!render.denoisers.kpcn.network) render.pipeline = used_.render.pipeline;
+    loadNetworkFor(render.pipeline);
+    if (panel_.comparison.isOn()) loadNetworkFor(otherSettings().pipeline);
+    if (!panel_.comparison.isOn()) {
+        other_.drop();
+        scores_.clear();
+    }
 }
 
-/// Other settings than those of the last frame, as far as they make another picture.
-bool Viewer::settingsDiffer() const {
-    if (!renderer_ || panel_.samples != used_.samples || panel_.exposure != used_.exposure) return true;
-    if (!panel_.render.pipeline.accumulates()) return panel_.render != used_.render;
-    return mustReset({lastCamera_, used_.render}, {lastCamera_, panel_.render});
+/// Where there is none, what would need it is not chosen.
+void Viewer::loadNetworkFor(const Pipeline& pipeline) {
+    const denoise::Denoiser* const denoiser = pipeline.denoiser;
+    denoise::DenoiserSettings& denoisers = panel_.render.denoisers;
+    const bool half = denoisers.kpcn.half;
+    if (!denoiser || !denoiser->network || (denoisers.kpcn.network && half == networkIsHalf_)) return;
+    attempt([&] { loadNetwork(device_, denoiser, settings_.weights, denoisers); });
+    networkIsHalf_ = half;
+    if (denoisers.kpcn.network) return;
+    panel_.comparison.with = 0;
+    if (panel_.render.pipeline.denoiser == denoiser) panel_.render.pipeline = main_.settings().pipeline;
+}
+
+/// Whether there were any.
+bool Viewer::reloadShaders() {
+    if (!reload_.watches() || !main_ || !due(lastSources_, betweenSources)) return false;
+    std::vector<gpu::ShaderCode> used = main_.renderer().graph().usedShaders();
+    if (other_) {
+        const std::vector<gpu::ShaderCode> more = other_.renderer().graph().usedShaders();
+        used.insert(used.end(), more.begin(), more.end());
+    }
+    const std::optional<ShaderReload::Result> result = reload_.poll(used);
+    if (!result) return false;
+    attempt([&] {
+        if (!result->fault.empty()) throw Error(result->fault);
+        facts_.message = fmt::format("compiled {} shaders", result->compiled);
+        startAnew();
+    });
+    return true;
+}
+
+/// Whether it has just become too old to be shown.
+bool Viewer::messageAges() {
+    if (shownMessage_ != facts_.message) {
+        shownMessage_ = facts_.message;
+        messageSince_ = Clock::now();
+        facts_.messageIsOld = false;
+        return false;
+    }
+    if (facts_.messageIsOld || facts_.message.empty() || secondsSince(messageSince_) < messageSeconds)
+        return false;
+    return facts_.messageIsOld = true;
 }
 
 /// Whether the next picture would be another one, and is wanted.
-bool Viewer::mustRender() {
+bool Viewer::mustRender(const CameraParams& camera) {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return false;
-    const CameraParams now = scene::cameraParams(cameraNow(), extent.width, extent.height);
-    const bool moved = !sameCamera(now, lastCamera_);
-    if (std::exchange(panel_.asked.step, false)) return true;
-    if (settingsDiffer()) {
-        sameFrames_ = 0;
-        return true;
+    stepping_ = std::exchange(panel_.asked.step, false);
+    if (stepping_) return true;
+    bool changed = main_.differs(panel_.render, panel_.samples, panel_.exposure);
+    if (!changed && !panel_.running) return false;
+    changed = changed || !sameCamera(camera, main_.camera()) || (stage_->moves() && playback_.change()) ||
+              (rig_.movesOnPath() && playback_.playing);
+    if (changed) {
+        main_.noteChange();
+        other_.noteChange();
     }
-    if (!panel_.running) return false;
-    if (moved || (stage_->moves() && playback_.change()) || (path_ && playback_.playing)) {
-        sameFrames_ = 0;
-        return true;
-    }
-    if (settings_.quitAfter > 0) return true;
-    const uint64_t samples =
-        panel_.render.pipeline.accumulates() ? renderer_->samplesInMean() : sameFrames_ * panel_.samples;
-    return samples < static_cast<uint64_t>(panel_.maxSamples);
+    return changed || settings_.quitAfter > 0 || main_.samples() < static_cast<uint64_t>(panel_.maxSamples);
 }
 
-void Viewer::makeRenderer() {
-    if (renderer_ && panel_.samples == used_.samples) return;
-    renderer_.emplace(device_, stage_->onDevice(), panel_.render, panel_.samples);
-    launchesOfMean_ = 0;
-    playback_.reset(playback_.time());
-    renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
-        if (images.beauty) return tonemap(graph, images.beauty, panel_.exposure);
-        return tonemap(graph, images.diffuse, panel_.exposure, images.emission);
-    });
+RenderSettings Viewer::otherSettings() const {
+    RenderSettings settings = comparisonSettings(panel_.comparison, panel_.render);
+    if (panel_.jitter == 0 && !panel_.comparison.isReference())
+        settings.jitter = settings.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    return settings;
 }
 
-void Viewer::render() {
-    const auto began = Clock::now();
-    const bool changed =
-        renderer_ && (panel_.render != used_.render || panel_.fovDegrees != used_.fovDegrees);
-    makeRenderer();
-    if (renderer_->setSettings(panel_.render))
+/// `moved`: something of the scene has.
+bool Viewer::comparisonMustRender(const CameraParams& camera, bool moved) const {
+    const gpu::Extent extent = panel_.render.extent;
+    if (!panel_.comparison.isOn() || extent.width == 0 || extent.height == 0 ||
+        (!panel_.running && !stepping_))
+        return false;
+    const RenderSettings settings = otherSettings();
+    const int wanted =
+        panel_.comparison.isReference() ? panel_.comparison.referenceSamples : panel_.maxSamples;
+    return moved || other_.differs(settings, panel_.samples, panel_.exposure) ||
+           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
+}
+
+void Viewer::render(const CameraParams& camera) {
+    const bool changed = main_ && (panel_.render != main_.settings() || panel_.fovDegrees != fovOfLast_);
+    if (main_.prepare(*stage_, panel_.render, panel_.samples, panel_.exposure))
         playback_.reset(playback_.time());
     else if (changed)
         playback_.noteOtherSettings();
-    const gpu::Extent extent = panel_.render.extent;
-    const CameraParams camera = scene::cameraParams(cameraNow(), extent.width, extent.height);
     Moment moment = playback_.moment(camera);
     if (stage_->moves()) {
         if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
     }
-    if (panel_.render.pipeline.accumulates()) {
-        // A mean that starts anew starts with the first random numbers, so that it can be made again.
-        if (moment.scene || mustReset({lastCamera_, used_.render}, {camera, panel_.render}))
-            launchesOfMean_ = 0;
-        moment.number = launchesOfMean_++;
-    }
-    used_ = panel_;
-    lastCamera_ = camera;
-    renderer_->render(std::move(moment));
-    playback_.advance(camera, keyNow());
+    if (comparisonMustRender(camera, moment.scene.has_value())) renderComparison(camera, moment, false);
+    main_.render(std::move(moment));
+    fovOfLast_ = panel_.fovDegrees;
+    playback_.advance(camera, rig_.key());
     ++rendered_;
-    ++sameFrames_;
     if (std::exchange(panel_.asked.measureExposure, false)) measureExposure();
-    facts_.samplesInMean = panel_.render.pipeline.accumulates() ? renderer_->samplesInMean() : 0;
+    facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
     facts_.frames = playback_.frames();
-    if (rendered_ % framesBetweenTimes != 1) return;
-    facts_.passes = renderer_->passTimes();
-    facts_.frameMilliseconds = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+/// `alone`: the picture rests, and numbers no frames.
+void Viewer::renderComparison(const CameraParams& camera, Moment moment, bool alone) {
+    moment.camera = camera;
+    if (alone) moment.number = numbersAlone + other_.framesOfSame();
+    other_.prepare(*stage_, otherSettings(), panel_.samples, panel_.exposure);
+    other_.render(std::move(moment));
+    ++otherRendered_;
+    const std::string name = comparisonNames()[static_cast<size_t>(panel_.comparison.with)];
+    facts_.comparedWith = other_.accumulates() ? fmt::format("{}, {} samples", name, other_.samples()) : name;
+}
+
+/// Now and then while frames are rendered, and of the last ones.
+void Viewer::updateScores(bool rendering) {
+    facts_.scores = scores_.text();
+    const std::pair now(rendered_, otherRendered_);
+    if (!main_ || !other_ || scores_.busy() || scored_ == now) return;
+    if (rendering && !due(lastScores_, betweenScores)) return;
+    image::Image test = beautyOf(main_.renderer().download()),
+                 reference = beautyOf(other_.renderer().download());
+    if (test.width != reference.width || test.height != reference.height) return;
+    scored_ = now;
+    scores_.compare(std::move(test), std::move(reference), panel_.exposure, [this] { window_.wake(); });
+}
+
+void Viewer::noteTimes(bool rendered) {
+    const auto now = Clock::now();
+    if (rendered && frameBefore_)
+        facts_.timings.addFrame(std::chrono::duration<double, std::milli>(now - lastFrame_).count());
+    lastFrame_ = now;
+    frameBefore_ = rendered;
+    if (!rendered || !due(lastTimes_, betweenTimes)) return;
+    facts_.timings.addPasses(main_.renderer().passTimes());
+    facts_.memoryBytes = device_.allocatedBytes();
+    facts_.sceneBytes = stage_->onDevice().byteCount();
 }
 
 void Viewer::measureExposure() {
-    panel_.exposure = image::autoExposure(beautyOf(renderer_->download()));
+    panel_.exposure = image::autoExposure(beautyOf(main_.renderer().download()));
 }
 
 void Viewer::writeScreenshot(const fs::path& file) {
-    const RenderedLayers layers = renderer_->download();
+    const RenderedLayers layers = main_.renderer().download();
     if (file.extension() == ".exr") {
         image::writeExr(file, toLayeredImage(layers, {}, image::Storage::Float));
     } else {
@@ -412,31 +496,31 @@ void Viewer::writeScreenshot(const fs::path& file) {
 }
 
 void Viewer::copyCommand() {
-    if (!renderer_ || playback_.frames() == 0) throw Error("there is no frame yet");
-    if (isFree() && home_.orthographic)
+    if (!main_ || playback_.frames() == 0) throw Error("there is no frame yet");
+    if (rig_.isFree() && rig_.home().orthographic)
         throw Error("the command line has no orthographic camera of one's own");
     const scene::Scene& scene = stage_->scene();
-    ShownFrame frame{.scene = settings_.scene,
-                     .environment = settings_.environment,
-                     .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
-                     .weights = settings_.weights.string(),
-                     .settings = used_.render,
-                     .samples = used_.samples,
-                     .samplesInMean = renderer_->samplesInMean(),
-                     .camera = cameraOption(),
-                     .fovDegrees = used_.fovDegrees};
+    const ShownFrame frame{
+        .source = settings_.source,
+        .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
+        .weights = settings_.weights.string(),
+        .settings = main_.settings(),
+        .samples = panel_.samples,
+        .samplesInMean = main_.samples(),
+        .camera = rig_.option(settings_.startCamera),
+        .fovDegrees = fovOfLast_};
     const CommandLine command = commandLineOf(frame, playback_, pathFile);
     if (!command.problem.empty()) throw Error(command.problem);
-    if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, used_.fovDegrees));
+    if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
     window_.setClipboard(command.text);
     facts_.message = command.text;
     log::info("{}", command.text);
 }
 
 void Viewer::savePath() {
-    if (!isFree()) throw Error("only what the hand has flown can be saved");
+    if (!rig_.isFree()) throw Error("only what the hand has flown can be saved");
     if (playback_.cameras().empty()) throw Error("nothing was flown since the last reset, or too much");
-    writeTextAtomically(pathFile, pathText(playback_, used_.fovDegrees));
+    writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
     facts_.message =
         fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size());
 }
@@ -453,56 +537,16 @@ void Viewer::keep() {
 /// Whenever something is elsewhere.
 void Viewer::writeControls() {
     if (settings_.controls.empty()) return;
+    std::string values = facts_.allValues;
+    std::ranges::replace(values, '\n', ';');
     const std::string text =
-        fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\n", facts_.frames,
-                    facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe) +
+        fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n",
+                    facts_.frames, facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe, values,
+                    facts_.comparedWith) +
         controls_.text();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);
-}
-
-/// Whether an image of a pass is shown instead of the picture.
-bool Viewer::inspect() {
-    if (panel_.pass.empty() || !renderer_ || rendered_ == 0) return false;
-    const auto wanted = std::tuple(rendered_, panel_.pass, panel_.image, panel_.view);
-    if (wanted != inspected_) {
-        try {
-            images_ = renderer_->dump(panel_.pass);
-        } catch (const UsageError&) {  // of another pipeline
-            panel_.pass.clear();
-            return false;
-        }
-        facts_.images.clear();
-        for (const auto& [name, picture] : images_) facts_.images.push_back(name);
-        panel_.image = std::min(panel_.image, static_cast<int>(images_.size()) - 1);
-        inspector_.show(device_, images_[static_cast<size_t>(panel_.image)].second, panel_.view);
-        inspected_ = wanted;
-    }
-    facts_.probe = probeOf(images_[static_cast<size_t>(panel_.image)].second);
-    return true;
-}
-
-std::string Viewer::probeOf(const image::Image& picture) const {
-    const ImGuiIO& io = ImGui::GetIO();
-    const auto along = [](float mouse, float window, uint32_t pixels) {
-        return static_cast<uint32_t>(std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f) *
-                                     static_cast<float>(pixels));
-    };
-    const uint32_t x = along(io.MousePos.x, io.DisplaySize.x, picture.width),
-                   y = along(io.MousePos.y, io.DisplaySize.y, picture.height);
-    std::string text = fmt::format("({}, {}):", x, y);
-    for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
-    return text;
-}
-
-void Viewer::present() {
-    const bool inspects = inspect();
-    const gpu::Overlay overlay = interface_.end();
-    if (inspects)
-        presenter_.present(inspector_.graph(), inspector_.shown(), window_.pixels(), overlay);
-    else if (renderer_ && renderer_->displayed())
-        presenter_.present(renderer_->graph(), renderer_->displayed(), window_.pixels(), overlay);
 }
 
 void Viewer::run() {
@@ -511,23 +555,33 @@ void Viewer::run() {
     while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
         if (window_.poll(restless > 0 ? 0.0 : idleSeconds)) restless = restlessPictures;
         if (!window_.input().empty()) restless = restlessPictures;
+        if (reloadShaders() || messageAges()) restless = restlessPictures;
         if (restless == 0) continue;
-        interface_.begin();
+        display_.begin();
         const auto now = Clock::now();
+        controls_.begin();
         handleInput(std::min(std::chrono::duration<double>(now - last).count(), longestStep));
         last = now;
         drawPanel(panel_, facts_, controls_);
         applyRequests();
         applySettings();
         --restless;
-        if (mustRender()) {
-            render();
-            restless = restlessPictures;
+        const CameraParams camera = cameraNow();
+        const bool main = mustRender(camera);
+        bool other = false;
+        if (main) {
+            render(camera);
+        } else if (main_ && comparisonMustRender(camera, false)) {
+            renderComparison(camera, playback_.moment(camera), true);
+            other = true;
         }
+        if (main || other) restless = restlessPictures;
+        noteTimes(main);
+        updateScores(main || other);
         writeControls();
-        present();
+        display_.present(panel_, facts_, main_, panel_.comparison.isOn() ? &other_ : nullptr, rendered_);
     }
-    if (renderer_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
+    if (main_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
     attempt([&] { keep(); });
     device_.waitIdle();
     if (device_.validationMessages() > 0)
@@ -539,7 +593,7 @@ void Viewer::run() {
 void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const SceneLoader& load,
           const std::function<scene::Camera(const scene::Scene&)>& start, const ViewSettings& settings) {
     // Before there is a window: what is wrong with these needs none.
-    scene::Scene first = load(settings.scene, settings.environment);
+    scene::Scene first = load(settings.source);
     if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
     const scene::Camera home = start(first);
     Viewer(device, tracer, load, std::move(first), home, settings).run();

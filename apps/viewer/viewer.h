@@ -9,11 +9,12 @@
 #include "renderer/settings.h"
 #include "scene/scene.h"
 #include "scene/tracer.h"
+#include "scene_source.h"
 
 namespace limpid::viewer {
 
 struct ViewSettings {
-    std::string scene, environment;  ///< as the command line names them
+    SceneSource source;
     std::string startCamera;  ///< options of the command line that chose the camera of the first scene;
                               ///< empty: its first
     std::string animation;    ///< clip by name or number; empty: the first one
@@ -26,6 +27,7 @@ struct ViewSettings {
         controls;                   ///< file that says where the panel's controls are, for tests; empty: none
     std::filesystem::path kept;     ///< file that these are written to on leaving; empty: none
     std::filesystem::path weights;  ///< of networks; empty: those that come with Limpid
+    std::filesystem::path shaders;  ///< Limpid's src: shaders are compiled anew when saved; empty: not
     uint64_t quitAfter = 0;         ///< frames; 0: when the window is closed
     std::filesystem::path screenshot;  ///< PNG written on leaving; empty: none
 };
@@ -33,9 +35,8 @@ struct ViewSettings {
 /// How rays are traced on the device that there is.
 using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
 
-/// A complete scene (scene/prepare.h), by what the command line calls it and its environment. Throws
-/// InputError.
-using SceneLoader = std::function<scene::Scene(const std::string& scene, const std::string& environment)>;
+/// A complete scene (scene/prepare.h). Throws InputError, and UsageError.
+using SceneLoader = std::function<scene::Scene(const SceneSource& source)>;
 
 /// Opens the window and returns when it is closed. Throws Error where there is no display, or a device that
 /// cannot show pictures; and what the loader throws.

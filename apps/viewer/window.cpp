@@ -5,6 +5,7 @@
 // GLFW declares its Vulkan calls after Vulkan's header.
 #include <GLFW/glfw3.h>
 
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -62,7 +63,12 @@ void Window::listen() {
         if (!entered) of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
-        of(window).input_.add({.kind = Kind::Button, .code = button, .down = action == GLFW_PRESS});
+        Window& self = of(window);
+        const bool down = action == GLFW_PRESS;
+        self.input_.add({.kind = Kind::Button,
+                         .code = button,
+                         .down = down,
+                         .twice = down && self.isSecondClick(button)});
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
         of(window).input_.add({.kind = Kind::Wheel, .x = static_cast<float>(x), .y = static_cast<float>(y)});
@@ -71,6 +77,17 @@ void Window::listen() {
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { of(window); });
     glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { of(window); });
     glfwSetWindowCloseCallback(window_, [](GLFWwindow* window) { of(window); });
+}
+
+/// By the time of the event: frames may be slower than clicks.
+bool Window::isSecondClick(int button) {
+    constexpr double soon = 0.35, near = 6.0;  // seconds, pixels
+    Click now{button, glfwGetTime()};
+    glfwGetCursorPos(window_, &now.x, &now.y);
+    const bool second = lastClick_.button == button && now.seconds - lastClick_.seconds < soon &&
+                        std::abs(now.x - lastClick_.x) < near && std::abs(now.y - lastClick_.y) < near;
+    lastClick_ = second ? Click{} : now;
+    return second;
 }
 
 /// To which something has happened.
@@ -120,12 +137,17 @@ void Window::close() {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
+void Window::wake() {
+    touched_ = true;
+    glfwPostEmptyEvent();
+}
+
 bool Window::poll(double wait) {
     if (wait > 0.0)
         glfwWaitEventsTimeout(wait);
     else
         glfwPollEvents();
-    return std::exchange(touched_, false);
+    return touched_.exchange(false);
 }
 
 }  // namespace limpid::viewer

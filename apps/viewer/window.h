@@ -1,6 +1,7 @@
 // A window of the desktop, with a surface to present on. GLFW's only user.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -33,6 +34,8 @@ class Window {
     /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may
     /// have.
     bool poll(double wait = 0.0);
+    /// From any thread: something has happened.
+    void wake();
     /// What has been dropped on it since the last call.
     std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
     InputQueue& input() { return input_; }
@@ -42,12 +45,17 @@ class Window {
 
   private:
     void listen();
+    bool isSecondClick(int button);
     static Window& of(GLFWwindow* window);
 
     GLFWwindow* window_ = nullptr;
     std::vector<std::string> dropped_;
     InputQueue input_;
-    bool touched_ = true;
+    struct Click {
+        int button = -1;
+        double seconds = 0.0, x = 0.0, y = 0.0;
+    } lastClick_;
+    std::atomic<bool> touched_ = true;
 };
 
 }  // namespace limpid::viewer

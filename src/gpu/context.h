@@ -1,6 +1,7 @@
 // The logical device and what every object made on it needs. Shared by the objects, so that none outlives it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -28,6 +29,8 @@ class Context {
     const RayTracingLimits& rayTracing() const { return physical_.rayTracing; }
     uint64_t maxBufferBytes() const;
     const VkPhysicalDeviceMemoryProperties& memoryProperties() const { return memory_; }
+    /// Bytes of device memory that are allocated now.
+    const std::shared_ptr<std::atomic<uint64_t>>& allocated() const { return allocated_; }
     uint64_t validationMessages() const { return instance_->validationMessages(); }
 
     bool hasDebugUtils() const { return instance_->hasDebugUtils(); }
@@ -52,6 +55,7 @@ class Context {
     UniqueDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;
     bool presents_ = false;
+    std::shared_ptr<std::atomic<uint64_t>> allocated_ = std::make_shared<std::atomic<uint64_t>>(0);
 };
 
 UniqueCommandPool makeCommandPool(const Context& context, const std::string& name);

@@ -36,6 +36,10 @@ uint64_t Device::validationMessages() const {
     return impl_->context->validationMessages();
 }
 
+uint64_t Device::allocatedBytes() const {
+    return *impl_->context->allocated();
+}
+
 uint64_t Device::maxTexelBufferElements() const {
     return impl_->context->limits().maxTexelBufferElements;
 }

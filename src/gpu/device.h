@@ -85,6 +85,8 @@ class Device {
     bool isCpu() const { return info().type == "cpu"; }
     /// Messages of the validation layer so far (warnings and errors, not performance advice). Tests want 0.
     uint64_t validationMessages() const;
+    /// Device memory that is allocated now, staging and all.
+    uint64_t allocatedBytes() const;
     uint64_t maxTexelBufferElements() const;
     uint64_t maxBufferBytes() const;  ///< the smaller of maxBufferSize and maxMemoryAllocationSize
 

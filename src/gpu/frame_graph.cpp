@@ -30,9 +30,9 @@ bool sameWords(const std::vector<uint32_t>& a, std::span<const uint32_t> b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
 }
 
-bool sameCode(const Shader& shader, const std::vector<const ShaderCode*>& codes) {
-    return std::ranges::equal(shader.stages, codes, [](const Shader::Stage& stage, const ShaderCode* code) {
-        return sameWords(stage.words, code->words);
+bool sameCode(const Shader& shader, const std::vector<ShaderCode>& codes) {
+    return std::ranges::equal(shader.stages, codes, [](const Shader::Stage& stage, const ShaderCode& code) {
+        return sameWords(stage.words, code.words);
     });
 }
 
@@ -40,16 +40,17 @@ constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, Shade
                                                ShaderStage::ClosestHit, ShaderStage::AnyHit};
 
 /// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
-Shader makeShader(const std::vector<const ShaderCode*>& codes) {
+Shader makeShader(const std::vector<ShaderCode>& codes) {
     Shader shader;
-    shader.name = codes[0]->name;
+    shader.name = codes[0].name;
     for (size_t i = 0; i < codes.size(); ++i) {
-        const ShaderCode& code = *codes[i];
+        const ShaderCode& code = codes[i];
         ShaderReflection reflection = reflect(code);
         const ShaderStage wanted = codes.size() == 1 ? ShaderStage::Compute : rayStages[i];
         if (reflection.stage != wanted)
             throw Error(fmt::format("shader '{}' is of another stage than its use", code.name));
-        shader.stages.push_back({reflection.stage, {code.words.begin(), code.words.end()}});
+        shader.stages.push_back(
+            {reflection.stage, {code.words.begin(), code.words.end()}, std::string(code.name)});
         if (i == 0) {
             shader.reflection = std::move(reflection);
         } else {
@@ -118,13 +119,29 @@ uint32_t FrameGraph::Impl::indexOf(ImageHandle handle) const {
 
 /// Compares the code itself: the viewer may load changed code under the same name, even at the same address.
 std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code, const RayShaders* rays) {
-    std::vector<const ShaderCode*> codes{&code};
-    if (rays) codes.insert(codes.end(), {&rays->miss, &rays->closestHit, &rays->anyHit});
+    std::vector<ShaderCode> codes{code};
+    if (rays) codes.insert(codes.end(), {rays->miss, rays->closestHit, rays->anyHit});
+    for (ShaderCode& used : codes) {
+        if (!replacements) break;
+        const auto replacement = replacements->find(used.name);
+        if (replacement != replacements->end()) used.words = replacement->second;
+    }
     const auto found = shaders.find(code.name);
     if (found != shaders.end() && sameCode(*found->second, codes)) return found->second;
     const auto shader = std::make_shared<const Shader>(makeShader(codes));
     shaders.insert_or_assign(std::string(code.name), shader);
     return shader;
+}
+
+void FrameGraph::setReplacements(const ShaderReplacements* replacements) {
+    impl_->replacements = replacements;
+}
+
+std::vector<ShaderCode> FrameGraph::usedShaders() const {
+    std::vector<ShaderCode> codes;
+    for (const auto& [name, shader] : impl_->shaders)
+        for (const Shader::Stage& stage : shader->stages) codes.push_back({stage.name, stage.words});
+    return codes;
 }
 
 FrameGraph::FrameGraph() : impl_(std::make_unique<Impl>()) {}

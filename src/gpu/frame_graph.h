@@ -148,6 +148,13 @@ class FrameGraph {
     /// From the next frame on, every history starts anew (scene cut, changed settings).
     void resetHistories();
 
+    /// From the next dispatch on, these stand for the shaders of their names. They must outlive their use,
+    /// may change between frames, and must have the interfaces (sameInterface()) of those that they replace.
+    void setReplacements(const ShaderReplacements* replacements);
+    /// All stages of the shaders of all frames so far, replaced ones as they were; valid until another
+    /// dispatch is recorded.
+    std::vector<ShaderCode> usedShaders() const;
+
     Extent extent(ImageHandle image) const;
     Format format(ImageHandle image) const;
     const std::string& name(ImageHandle image) const;

@@ -17,6 +17,7 @@ struct Shader {
     struct Stage {
         ShaderStage stage{};
         std::vector<uint32_t> words;
+        std::string name;
     };
     std::string name;  ///< of the first stage
     std::vector<Stage> stages;
@@ -121,6 +122,7 @@ struct FrameGraph::Impl {
     std::map<std::string, uint32_t> recordedHistories;  ///< of this frame, with the index of `current`
     bool resetRequested = false;
     std::map<std::string, std::shared_ptr<const Shader>, std::less<>> shaders;
+    const ShaderReplacements* replacements = nullptr;
     std::vector<ResourceUse> imageUses;
     std::map<const BufferStorage*, ResourceUse> bufferUses;
     size_t lastBarrier = 0;  ///< the last pass that waits: all before it are done by then

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <optional>
 
 #include "base/error.h"
@@ -40,6 +41,12 @@ uint32_t chooseType(const Context& context, uint32_t allowed, MemoryUse use) {
     return *type;
 }
 
+/// Adds them for as long as the result lives.
+std::shared_ptr<const void> countBytes(const std::shared_ptr<std::atomic<uint64_t>>& total, uint64_t bytes) {
+    *total += bytes;
+    return {static_cast<const void*>(nullptr), [total, bytes](const void*) { *total -= bytes; }};
+}
+
 }  // namespace
 
 std::string bytesText(uint64_t bytes) {
@@ -69,7 +76,8 @@ Memory allocate(const Context& context, const VkMemoryRequirements& requirements
                                 context.info().name, bytesText(requirements.size), name, resultName(result)));
     }
     LIMPID_VK(result);
-    Memory memory{UniqueMemory(context.device(), handle), nullptr};
+    Memory memory{UniqueMemory(context.device(), handle), nullptr,
+                  countBytes(context.allocated(), requirements.size)};
     context.setName(handle, name);
     const VkMemoryPropertyFlags flags =
         context.memoryProperties().memoryTypes[info.memoryTypeIndex].propertyFlags;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include "gpu/context.h"
 
@@ -9,7 +10,8 @@ namespace limpid::gpu {
 
 struct Memory {
     UniqueMemory handle;
-    std::byte* mapped = nullptr;  ///< set if the host can see it (coherent): always mapped
+    std::byte* mapped = nullptr;                    ///< set if the host can see it (coherent): always mapped
+    std::shared_ptr<const void> counted = nullptr;  ///< its bytes, in Context::allocated()
 };
 
 enum class MemoryUse {

@@ -28,6 +28,19 @@ struct Overlay {
     std::span<const OverlayDraw> draws;
 };
 
+/// A part of a picture or of a window, from 0 to 1: its left and upper edge, and its right and lower one.
+struct Rectangle {
+    float left = 0.0f, top = 0.0f, right = 1.0f, bottom = 1.0f;
+};
+
+/// A picture in a part of the window.
+struct Pane {
+    FrameGraph* graph = nullptr;
+    ImageHandle picture;       ///< of its last executed frame; RGBA8Unorm, not in a buffer
+    Rectangle source, target;  ///< which part of the picture, and of the window
+    bool enlarge = false;      ///< pixels stay squares instead of being smoothed
+};
+
 class Presenter {
   public:
     /// `makeSurface` gets the VkInstance and returns a VkSurfaceKHR, which belongs to the presenter from then
@@ -41,10 +54,10 @@ class Presenter {
     /// RGBA8 texels of what overlays are textured with.
     void setTexture(Extent extent, std::span<const uint32_t> texels);
 
-    /// Shows an image (RGBA8Unorm, not in a buffer) of the graph's last executed frame, scaled to the window,
-    /// and the overlay over it. `window`: its size in pixels. Returns false if nothing was shown: the window
-    /// has no pixels, or has just changed its size.
-    bool present(FrameGraph& graph, ImageHandle picture, Extent window, const Overlay& overlay);
+    /// Shows the panes, each scaled to its part of the window, later ones over earlier ones, and the overlay
+    /// over all. `window`: its size in pixels. Returns false if nothing was shown: the window has no pixels,
+    /// or has just changed its size.
+    bool present(std::span<const Pane> panes, Extent window, const Overlay& overlay);
 
   private:
     struct Impl;

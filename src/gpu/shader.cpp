@@ -293,6 +293,20 @@ ShaderReflection reflect(const ShaderCode& code) {
     return Reflector(code).run();
 }
 
+bool sameInterface(const ShaderReflection& a, const ShaderReflection& b) {
+    const auto sameBinding = [](const ShaderBinding& x, const ShaderBinding& y) {
+        return x.name == y.name && x.binding == y.binding && x.kind == y.kind && x.format == y.format &&
+               x.readable == y.readable && x.writable == y.writable && x.blockSize == y.blockSize;
+    };
+    const auto sameConstant = [](const ShaderConstant& x, const ShaderConstant& y) {
+        return x.name == y.name && x.id == y.id;
+    };
+    return a.stage == b.stage && a.workgroupSize == b.workgroupSize &&
+           a.workgroupSizeIds == b.workgroupSizeIds &&
+           std::ranges::equal(a.bindings, b.bindings, sameBinding) &&
+           std::ranges::equal(a.constants, b.constants, sameConstant);
+}
+
 void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other) {
     const auto fail = [&](const std::string& name) {
         throw Error(

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -79,6 +81,12 @@ struct ShaderReflection {
 /// naming the shader if it uses what Limpid does not (sampled images, push constants, arrays of resources,
 /// another set than 0, an unlisted format, several uniform blocks, two variables at one binding).
 ShaderReflection reflect(const ShaderCode& code);
+
+/// Whether code that binds and dispatches the one can do so with the other.
+bool sameInterface(const ShaderReflection& a, const ShaderReflection& b);
+
+/// SPIR-V by the names of the shaders that it takes the place of.
+using ShaderReplacements = std::map<std::string, std::vector<uint32_t>, std::less<>>;
 
 /// What several stages of one pipeline declare together. Throws Error naming `other` if the two disagree
 /// about a binding or a constant.

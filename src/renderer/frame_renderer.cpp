@@ -100,6 +100,14 @@ RenderedLayers FrameRenderer::download() {
     return layers;
 }
 
+image::Image FrameRenderer::motion() {
+    if (!images_.motion) return {};
+    const gpu::Extent extent = graph_.extent(images_.motion);
+    image::Image motion(extent.width, extent.height, 4);
+    motion.pixels = graph_.downloadFloat(device_, images_.motion);
+    return motion;
+}
+
 RenderCounters FrameRenderer::counters() {
     return images_.counters ? sumCounters(graph_.downloadUint(device_, images_.counters)) : RenderCounters{};
 }

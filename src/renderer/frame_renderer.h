@@ -51,6 +51,9 @@ class FrameRenderer {
     /// Device memory of the images that the denoiser's passes wrote in the last frame, with its histories.
     uint64_t denoisingBytes() const;
     const gpu::FrameGraph& graph() const { return graph_; }
+    /// Of the last frame, as it lies on the device (passes/pathtrace/pathtrace.h); empty where the pipeline
+    /// makes none. Waits for the device.
+    image::Image motion();
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
         return imagesOfPass(graph_, device_, pass);
     }

@@ -1,0 +1,74 @@
+#include "camera_rig.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "scene/movement.h"
+
+namespace limpid::viewer {
+namespace {
+
+constexpr double pathSeconds = 10.0;  ///< of the built-in camera paths
+constexpr std::array<const char*, 3> pathNames{"orbit", "dolly", "shake"};
+
+/// Around the middle of the scene, as far as it lies ahead.
+FlyCamera handAt(const Stage& stage, const scene::Camera& start) {
+    const scene::BoundingSphere& sphere = stage.sphere();
+    const vec3 eye(start.toWorld[3]), ahead = -vec3(start.toWorld[2]);
+    return {start, std::max(glm::dot(sphere.center - eye, ahead), 0.25f * sphere.radius)};
+}
+
+}  // namespace
+
+void CameraRig::show(const Stage& stage, const scene::Camera& home) {
+    home_ = home;
+    names_ = {"free"};
+    for (const scene::Camera& camera : stage.scene().cameras) names_.push_back(camera.name);
+    names_.insert(names_.end(), pathNames.begin(), pathNames.end());
+    goHome(stage);
+}
+
+void CameraRig::choose(const Stage& stage, int number) {
+    chosen_ = number;
+    path_.reset();
+    if (number == 0)
+        fly_ = handAt(stage, home_);
+    else if (static_cast<size_t>(number) > stage.scene().cameras.size())
+        path_ = scene::builtinCameraPath(names_[static_cast<size_t>(number)], stage.scene(), home_,
+                                         std::max(stage.duration(), pathSeconds));
+}
+
+void CameraRig::setFree(const Stage& stage, double time) {
+    if (isFree()) return;
+    fly_ = FlyCamera(at(stage, time), fly_.distance());
+    chosen_ = 0;
+    path_.reset();
+}
+
+scene::Camera CameraRig::at(const Stage& stage, double time) const {
+    if (isFree()) return fly_.camera();
+    if (path_) return path_->at(time);
+    return scene::cameraAt(stage.scene(), stage.scene().cameras[static_cast<size_t>(chosen_) - 1], time);
+}
+
+scene::CameraKey CameraRig::key() const {
+    scene::CameraKey key;
+    key.eye = fly_.eye();
+    key.target = fly_.eye() + fly_.forward();  // as FlyCamera::camera() has it
+    key.verticalFov = fly_.camera().verticalFov;
+    return key;
+}
+
+double CameraRig::duration(const Stage& stage) const {
+    return path_ ? std::max(stage.duration(), pathSeconds) : stage.duration();
+}
+
+std::string CameraRig::option(const std::string& start) const {
+    if (isFree()) return {};
+    if (!path_) return fmt::format("--camera {}", chosen_ - 1);
+    return (start.empty() ? "" : start + " ") + "--camera-path " + names_[static_cast<size_t>(chosen_)];
+}
+
+}  // namespace limpid::viewer

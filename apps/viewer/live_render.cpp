@@ -1,0 +1,57 @@
+#include "live_render.h"
+
+#include "passes/tonemap/tonemap.h"
+
+namespace limpid::viewer {
+
+bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure) {
+    exposure_ = exposure;
+    if (renderer_ && samples == samples_) {
+        const bool anew = renderer_->setSettings(settings);
+        next_ = settings;
+        return anew;
+    }
+    renderer_.emplace(device_, stage.onDevice(), settings, samples);
+    renderer_->graph().setReplacements(&shaders_);
+    renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
+        if (images.beauty) return tonemap(graph, images.beauty, exposure_);
+        return tonemap(graph, images.diffuse, exposure_, images.emission);
+    });
+    next_ = settings;
+    samples_ = samples;
+    launches_ = framesOfSame_ = 0;
+    shown_ = false;
+    return true;
+}
+
+bool LiveRender::differs(const RenderSettings& settings, uint32_t samples, float exposure) const {
+    if (!*this || samples != samples_ || exposure != exposure_) return true;
+    if (!settings.pipeline.accumulates()) return settings != settings_;
+    return mustReset({camera_, settings_}, {camera_, settings});
+}
+
+void LiveRender::render(Moment moment) {
+    if (next_.pipeline.accumulates()) {
+        if (moment.scene || mustReset({camera_, settings_}, {moment.camera, next_})) launches_ = 0;
+        moment.number = launches_++;
+    }
+    settings_ = next_;
+    camera_ = moment.camera;
+    renderer_->render(std::move(moment));
+    shown_ = true;
+    ++framesOfSame_;
+}
+
+uint64_t LiveRender::samples() const {
+    if (!*this) return 0;
+    return accumulates() ? renderer_->samplesInMean() : framesOfSame_ * samples_;
+}
+
+gpu::Pane LiveRender::pane() {
+    gpu::Pane pane;
+    pane.graph = &renderer_->graph();
+    pane.picture = renderer_->displayed();
+    return pane;
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,57 @@
+// A picture that is rendered on and on: one pipeline and its settings, frame after frame.
+#pragma once
+
+#include <optional>
+
+#include "gpu/presenter.h"
+#include "renderer/frame_renderer.h"
+#include "stage.h"
+
+namespace limpid::viewer {
+
+class LiveRender {
+  public:
+    /// Both outlive this.
+    LiveRender(gpu::Device& device, const gpu::ShaderReplacements& shaders)
+        : device_(device), shaders_(shaders) {}
+
+    /// Before the scene goes, or to start anew.
+    void drop() { renderer_.reset(); }
+    /// It has rendered a frame since.
+    explicit operator bool() const { return renderer_ && shown_; }
+
+    /// For the frames to come. True if nothing is known of frames before: they are the first.
+    bool prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure);
+    /// Whether frames rendered so from here would differ from the last one by more than their noise.
+    bool differs(const RenderSettings& settings, uint32_t samples, float exposure) const;
+    /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`
+    /// numbers the frames of pipelines that denoise.
+    void render(Moment moment);
+    /// Something is another than it was: samples() of pipelines that denoise count from here.
+    void noteChange() { framesOfSame_ = 0; }
+    uint64_t framesOfSame() const { return framesOfSame_; }
+
+    /// Per pixel: in the mean, or in the frames since noteChange().
+    uint64_t samples() const;
+    bool accumulates() const { return settings_.pipeline.accumulates(); }
+    const RenderSettings& settings() const { return settings_; }
+    const CameraParams& camera() const { return camera_; }
+    FrameRenderer& renderer() { return *renderer_; }
+    /// Exposed and encoded.
+    gpu::Pane pane();
+
+  private:
+    gpu::Device& device_;
+    const gpu::ShaderReplacements& shaders_;
+    std::optional<FrameRenderer> renderer_;
+    RenderSettings settings_;  ///< of the last frame
+    RenderSettings next_;
+    uint32_t samples_ = 1;
+    float exposure_ = 0.0f;
+    CameraParams camera_{};
+    bool shown_ = false;
+    uint64_t launches_ = 0;  ///< of the mean
+    uint64_t framesOfSame_ = 0;
+};
+
+}  // namespace limpid::viewer

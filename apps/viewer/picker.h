@@ -1,0 +1,18 @@
+// What the camera sees through a pixel.
+#pragma once
+
+#include <optional>
+
+#include "gpu/device.h"
+#include "gpu/frame_graph.h"
+#include "scene/gpu_scene.h"
+#include "shaders/camera.h"
+
+namespace limpid::viewer {
+
+/// Where the ray through the pixel's centre meets the scene, world space; none where it meets nothing. Waits
+/// for the device.
+std::optional<vec3> pointSeen(gpu::Device& device, scene::GpuScene& scene, const CameraParams& camera,
+                              gpu::Extent extent, uint32_t x, uint32_t y);
+
+}  // namespace limpid::viewer
