@@ -49,6 +49,9 @@ class DrivenViewer {
                   "'",
               true);
         waitFor("the panel", [&] { return number("frames") > 0; });
+        findWindow();
+    }
+    void findWindow() {
         window_ = output("xdotool search --name Limpid | tail -1");
         xdotool("windowfocus " + window_ + " sleep 0.5");
     }
@@ -119,6 +122,8 @@ class DrivenViewer {
     void xdotool(const std::string& arguments) const {
         shell("DISPLAY=" + display_ + " xdotool " + arguments);
     }
+    /// A program, on its display.
+    void run(const std::string& command) const { shell("DISPLAY=" + display_ + " " + command); }
     const std::string& window() const { return window_; }
 
     /// The bytes of limpid.png, once `samples` are in the picture and nothing is rendered any more.

@@ -29,7 +29,7 @@ struct ViewOptions {
     std::string settings = "auto", animation, weights, screenshot, controls, shaders;
     std::vector<std::string> presets, assignments;
     uint32_t width = 1280, height = 720, seed = 0;
-    uint64_t frames = 0;
+    uint64_t frames = 0, loseDeviceAt = 0;
 };
 
 #ifdef LIMPID_HAVE_VIEWER
@@ -48,6 +48,7 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
         .weights = o.weights,
         .shaders = o.shaders,
         .quitAfter = o.frames,
+        .loseDeviceAt = o.loseDeviceAt,
         .screenshot = o.screenshot};
     if (o.settings != "none")
         settings.kept = o.settings == "auto" ? viewer::keptSettingsFile() : std::filesystem::path(o.settings);
@@ -121,6 +122,8 @@ void addViewCommand(CLI::App& app) {
                         "Limpid's src folder: shaders are compiled anew (by glslc) when they are saved");
     command->add_option("--controls", o->controls,
                         "For tests: a file that says where in the window each control is");
+    command->add_option("--lose-device", o->loseDeviceAt,
+                        "For tests: after so many frames, as if it were lost");
     command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");
     command->add_option("--screenshot", o->screenshot, "PNG to write on leaving");
     addDeviceOptions(*command, o->device);

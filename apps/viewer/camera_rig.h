@@ -30,6 +30,7 @@ class CameraRig {
     /// Of the free one.
     scene::CameraKey key() const;
     FlyCamera& hand() { return fly_; }
+    const FlyCamera& hand() const { return fly_; }
     const scene::Camera& home() const { return home_; }
     bool movesOnPath() const { return path_.has_value(); }
     /// Of the clip, or at least of the path.

@@ -143,7 +143,8 @@ bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main, ui
         facts.images.clear();
         for (const auto& [name, picture] : images_) facts.images.push_back(name);
         panel.image = std::min(panel.image, static_cast<int>(images_.size()) - 1);
-        inspector_.show(device_, images_[static_cast<size_t>(panel.image)].second, panel.view);
+        const image::Image& shown = images_[static_cast<size_t>(panel.image)].second;
+        inspector_.show(device_, shownTexels(shown, panel.view), {shown.width, shown.height});
         inspected_ = wanted;
     }
     facts.probe = probeOf(images_[static_cast<size_t>(panel.image)].second);
@@ -206,7 +207,7 @@ void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, Li
     const bool inspects = inspect(panel, facts, main, rendered);
     std::vector<gpu::Pane> panes;
     if (inspects)
-        panes.push_back({&inspector_.graph(), inspector_.shown(), {}, {}});
+        panes.push_back(inspector_.pane());
     else if (main)
         panes.push_back(main.pane());
     if (panes.empty()) {

@@ -8,6 +8,7 @@
 #include "interface.h"
 #include "live_render.h"
 #include "panel.h"
+#include "texels.h"
 
 namespace limpid::viewer {
 
@@ -51,7 +52,7 @@ class Display {
     gpu::Device& device_;
     gpu::Presenter presenter_;
     Interface interface_;
-    Inspector inspector_;
+    Texels inspector_;
     std::vector<std::pair<std::string, image::Image>> images_;  ///< of the pass that is inspected
     std::tuple<uint64_t, std::string, int, InspectorView> inspected_;
     image::Image motion_;

@@ -48,12 +48,4 @@ std::vector<uint32_t> shownTexels(const image::Image& picture, const InspectorVi
     return texels;
 }
 
-void Inspector::show(gpu::Device& device, const image::Image& picture, const InspectorView& view) {
-    graph_.beginFrame();
-    shown_ = graph_.transient("inspected", gpu::Format::RGBA8Unorm, {picture.width, picture.height});
-    const std::vector<uint32_t> texels = shownTexels(picture, view);
-    graph_.upload(shown_, std::as_bytes(std::span(texels)));
-    graph_.execute(device);
-}
-
 }  // namespace limpid::viewer

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "gpu/frame_graph.h"
 #include "image/image.h"
 
 namespace limpid::viewer {
@@ -23,17 +22,5 @@ struct InspectorView {
 /// RGBA8, red in the lowest byte, encoded sRGB. Values below 0 are black; what is no finite number is
 /// magenta.
 std::vector<uint32_t> shownTexels(const image::Image& picture, const InspectorView& view);
-
-/// A frame graph of its own, that a presenter can show.
-class Inspector {
-  public:
-    void show(gpu::Device& device, const image::Image& picture, const InspectorView& view);
-    gpu::FrameGraph& graph() { return graph_; }
-    gpu::ImageHandle shown() const { return shown_; }
-
-  private:
-    gpu::FrameGraph graph_;
-    gpu::ImageHandle shown_;
-};
 
 }  // namespace limpid::viewer

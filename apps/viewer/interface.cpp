@@ -6,10 +6,13 @@
 #include <backends/imgui_impl_glfw.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace limpid::viewer {
 namespace {
+
+constexpr float letterPixels = 13.0f;  ///< the size that ImGui's own font is drawn for
 
 static_assert(sizeof(ImDrawVert) == sizeof(gpu::OverlayVertex) && sizeof(ImDrawIdx) == sizeof(uint16_t));
 
@@ -22,6 +25,11 @@ Interface::Interface(Window& window, gpu::Presenter& presenter) : window_(window
     io.IniFilename = nullptr;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     ImGui::StyleColorsDark();
+    const float scale = window.scale();
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImFontConfig font;
+    font.SizePixels = std::round(letterPixels * scale);
+    io.Fonts->AddFontDefault(&font);
     ImGui_ImplGlfw_InitForVulkan(window.handle(), false);  // the queue has the events
     unsigned char* texels = nullptr;
     int width = 0, height = 0;

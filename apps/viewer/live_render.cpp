@@ -1,5 +1,7 @@
 #include "live_render.h"
 
+#include "image/png.h"
+#include "image/tonemap.h"
 #include "passes/tonemap/tonemap.h"
 
 namespace limpid::viewer {
@@ -24,8 +26,8 @@ bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t 
     return true;
 }
 
-bool LiveRender::differs(const RenderSettings& settings, uint32_t samples, float exposure) const {
-    if (!*this || samples != samples_ || exposure != exposure_) return true;
+bool LiveRender::differs(const RenderSettings& settings, uint32_t samples) const {
+    if (!*this || samples != samples_) return true;
     if (!settings.pipeline.accumulates()) return settings != settings_;
     return mustReset({camera_, settings_}, {camera_, settings});
 }
@@ -38,6 +40,7 @@ void LiveRender::render(Moment moment) {
     settings_ = next_;
     camera_ = moment.camera;
     renderer_->render(std::move(moment));
+    exposed_.reset();
     shown_ = true;
     ++framesOfSame_;
 }
@@ -47,7 +50,16 @@ uint64_t LiveRender::samples() const {
     return accumulates() ? renderer_->samplesInMean() : framesOfSame_ * samples_;
 }
 
+void LiveRender::expose(float stops) {
+    if (stops == exposure_) return;
+    exposure_ = stops;
+    const image::ByteImage bytes = image::toBytes(image::tonemap(beautyOf(renderer_->download()), stops));
+    exposed_.emplace();
+    exposed_->show(device_, packedTexels(bytes), {bytes.width, bytes.height});
+}
+
 gpu::Pane LiveRender::pane() {
+    if (exposed_) return exposed_->pane();
     gpu::Pane pane;
     pane.graph = &renderer_->graph();
     pane.picture = renderer_->displayed();

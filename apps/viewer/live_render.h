@@ -6,6 +6,7 @@
 #include "gpu/presenter.h"
 #include "renderer/frame_renderer.h"
 #include "stage.h"
+#include "texels.h"
 
 namespace limpid::viewer {
 
@@ -23,7 +24,7 @@ class LiveRender {
     /// For the frames to come. True if nothing is known of frames before: they are the first.
     bool prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure);
     /// Whether frames rendered so from here would differ from the last one by more than their noise.
-    bool differs(const RenderSettings& settings, uint32_t samples, float exposure) const;
+    bool differs(const RenderSettings& settings, uint32_t samples) const;
     /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`
     /// numbers the frames of pipelines that denoise.
     void render(Moment moment);
@@ -37,6 +38,8 @@ class LiveRender {
     const RenderSettings& settings() const { return settings_; }
     const CameraParams& camera() const { return camera_; }
     FrameRenderer& renderer() { return *renderer_; }
+    /// Another exposure of the last frame, which is not rendered for that. Waits for the device.
+    void expose(float stops);
     /// Exposed and encoded.
     gpu::Pane pane();
 
@@ -48,6 +51,7 @@ class LiveRender {
     RenderSettings next_;
     uint32_t samples_ = 1;
     float exposure_ = 0.0f;
+    std::optional<Texels> exposed_;  ///< instead of the frame's own picture
     CameraParams camera_{};
     bool shown_ = false;
     uint64_t launches_ = 0;  ///< of the mean

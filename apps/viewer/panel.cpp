@@ -69,8 +69,6 @@ void drawInspector(PanelState& state, const PanelFacts& facts, Controls& control
     ImGui::TextUnformatted(facts.probe.c_str());
 }
 
-constexpr float graphWidth = 80.0f;
-
 void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {
     const float most = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
     ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
@@ -96,6 +94,7 @@ void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) 
     ImGui::TextUnformatted(memory.c_str());
     controls.note("memory", memory);
     if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_RowBg)) return;
+    const float graphWidth = 6.0f * ImGui::GetFontSize();
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("graph", ImGuiTableColumnFlags_WidthFixed, graphWidth);
     ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
@@ -248,8 +247,9 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     drawMessages(facts);
     if (!state.shown) return;
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({380, std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
-                             ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(
+        {29.0f * ImGui::GetFontSize(), std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
+        ImGuiCond_FirstUseEver);
     ImGui::Begin("Limpid");
     ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // what is left of their names
     drawFacts(state, facts);

@@ -50,6 +50,7 @@ constexpr double betweenSources = 0.5;      ///< seconds between looks at the sh
 constexpr float lightReach = 3.0f;          ///< of the scene's radius
 constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
 constexpr double messageSeconds = 20.0;
+constexpr double leastSecondsOfADevice = 2.0;  ///< lost sooner, another one is lost, too
 constexpr const char* pathFile = "flown.json";
 
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
@@ -73,6 +74,11 @@ class Viewer {
     Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
            const scene::Camera& home, const ViewSettings& settings);
     void run();
+    /// To go on from.
+    ViewSettings settingsNow() const;
+    const CameraRig& rig() const { return rig_; }
+    double secondsOpen() const { return secondsSince(opened_); }
+    void takeHand(const FlyCamera& hand);
 
   private:
     void load(const SceneSource& source);
@@ -101,7 +107,6 @@ class Viewer {
     void writeScreenshot(const fs::path& file);
     void copyCommand();
     void savePath();
-    void keep();
     void writeControls();
     /// Runs what may fail for reasons of the user's; says so in the window.
     template <typename Function>
@@ -131,6 +136,7 @@ class Viewer {
     std::pair<uint64_t, uint64_t> scored_;  ///< rendered_ and otherRendered_ of the last scores
     Clock::time_point lastTimes_{}, lastScores_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
+    const Clock::time_point opened_ = Clock::now();
     bool stepping_ = false;  ///< one frame, though rendering stands still
     std::string shownMessage_;
     Clock::time_point messageSince_{};
@@ -393,10 +399,10 @@ bool Viewer::mustRender(const CameraParams& camera) {
     if (extent.width == 0 || extent.height == 0) return false;
     stepping_ = std::exchange(panel_.asked.step, false);
     if (stepping_) return true;
-    bool changed = main_.differs(panel_.render, panel_.samples, panel_.exposure);
+    bool changed = main_.differs(panel_.render, panel_.samples);
     if (!changed && !panel_.running) return false;
     changed = changed || !sameCamera(camera, main_.camera()) || (stage_->moves() && playback_.change()) ||
-              (rig_.movesOnPath() && playback_.playing);
+              playback_.playing;
     if (changed) {
         main_.noteChange();
         other_.noteChange();
@@ -420,11 +426,13 @@ bool Viewer::comparisonMustRender(const CameraParams& camera, bool moved) const 
     const RenderSettings settings = otherSettings();
     const int wanted =
         panel_.comparison.isReference() ? panel_.comparison.referenceSamples : panel_.maxSamples;
-    return moved || other_.differs(settings, panel_.samples, panel_.exposure) ||
-           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
+    return moved || other_.differs(settings, panel_.samples) || !sameCamera(camera, other_.camera()) ||
+           other_.samples() < static_cast<uint64_t>(wanted);
 }
 
 void Viewer::render(const CameraParams& camera) {
+    if (settings_.loseDeviceAt > 0 && rendered_ == settings_.loseDeviceAt)
+        throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (panel_.render != main_.settings() || panel_.fovDegrees != fovOfLast_);
     if (main_.prepare(*stage_, panel_.render, panel_.samples, panel_.exposure))
         playback_.reset(playback_.time());
@@ -525,13 +533,22 @@ void Viewer::savePath() {
         fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size());
 }
 
-void Viewer::keep() {
+ViewSettings Viewer::settingsNow() const {
     ViewSettings settings = settings_;
     settings.render = panel_.render;
+    settings.render.extent = window_.pixels();
     settings.samples = panel_.samples;
     settings.maxSamples = static_cast<uint64_t>(panel_.maxSamples);
     settings.shrink = panel_.shrink;
-    keepSettings(settings_.kept, settings);
+    return settings;
+}
+
+/// From the viewer of a device that was lost.
+void Viewer::takeHand(const FlyCamera& hand) {
+    panel_.asked.resetCamera = false;
+    panel_.fovDegrees = glm::degrees(hand.camera().verticalFov);
+    rig_.hand() = hand;
+    facts_.fault = "the device was lost; everything was set up anew";
 }
 
 /// Whenever something is elsewhere.
@@ -575,6 +592,9 @@ void Viewer::run() {
             renderComparison(camera, playback_.moment(camera), true);
             other = true;
         }
+        for (LiveRender* live : {&main_, &other_}) {
+            if (*live) live->expose(panel_.exposure);
+        }
         if (main || other) restless = restlessPictures;
         noteTimes(main);
         updateScores(main || other);
@@ -582,10 +602,26 @@ void Viewer::run() {
         display_.present(panel_, facts_, main_, panel_.comparison.isOn() ? &other_ : nullptr, rendered_);
     }
     if (main_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
-    attempt([&] { keep(); });
+    attempt([&] { keepSettings(settings_.kept, settingsNow()); });
     device_.waitIdle();
     if (device_.validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device_.validationMessages()));
+}
+
+/// The same again on another device, or on the same one if it has come back.
+std::unique_ptr<Viewer> afterLoss(const gpu::DeviceOptions& device, const TracerChoice& tracer,
+                                  const SceneLoader& load, std::unique_ptr<Viewer> lost) {
+    ViewSettings now = lost->settingsNow();
+    now.loseDeviceAt = 0;
+    now.render.denoisers.kpcn.network.reset();  // lies on the device that was lost
+    const FlyCamera hand = lost->rig().hand();
+    lost.reset();
+    scene::Scene scene = load(now.source);
+    if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
+    const scene::Camera home = scene.cameras.front();
+    auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(scene), home, now);
+    viewer->takeHand(hand);
+    return viewer;
 }
 
 }  // namespace
@@ -596,7 +632,16 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
     scene::Scene first = load(settings.source);
     if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
     const scene::Camera home = start(first);
-    Viewer(device, tracer, load, std::move(first), home, settings).run();
+    auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(first), home, settings);
+    for (;;) {
+        try {
+            return viewer->run();
+        } catch (const gpu::DeviceLost& fault) {
+            if (viewer->secondsOpen() < leastSecondsOfADevice) throw;
+            log::error("{}; setting everything up anew", fault.what());
+        }
+        viewer = afterLoss(device, tracer, load, std::move(viewer));
+    }
 }
 
 }  // namespace limpid::viewer

@@ -29,6 +29,7 @@ struct ViewSettings {
     std::filesystem::path weights;  ///< of networks; empty: those that come with Limpid
     std::filesystem::path shaders;  ///< Limpid's src: shaders are compiled anew when saved; empty: not
     uint64_t quitAfter = 0;         ///< frames; 0: when the window is closed
+    uint64_t loseDeviceAt = 0;      ///< for tests: after so many frames, as if; 0: never
     std::filesystem::path screenshot;  ///< PNG written on leaving; empty: none
 };
 

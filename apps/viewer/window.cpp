@@ -5,6 +5,7 @@
 // GLFW declares its Vulkan calls after Vulkan's header.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -119,6 +120,16 @@ gpu::Extent Window::pixels() const {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+float Window::scale() const {
+    float content = 1.0f, unused = 1.0f;
+    glfwGetWindowContentScale(window_, &content, &unused);
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    const uint32_t pixelsAcross = pixels().width;
+    if (width <= 0 || pixelsAcross == 0) return std::max(content, 1.0f);
+    return std::max(content * static_cast<float>(width) / static_cast<float>(pixelsAcross), 1.0f);
 }
 
 void Window::setClipboard(const std::string& text) const {

@@ -29,6 +29,8 @@ class Window {
     uint64_t makeSurface(void* instance) const;
 
     gpu::Extent pixels() const;  ///< 0 while it is minimised
+    /// How much larger than their nominal size letters should be, in the units of mouse positions.
+    float scale() const;
     bool closed() const;
     void close();
     /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may

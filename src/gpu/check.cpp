@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "gpu/device.h"
 
 namespace limpid::gpu {
 namespace {
@@ -79,8 +80,10 @@ std::string_view resultMeaning(VkResult result) {
 void checkResult(VkResult result, const char* expression, const char* file, int line) {
     if (result == VK_SUCCESS) return;
     const std::string_view meaning = resultMeaning(result);
-    throw Error(fmt::format("{}{}{} returned {} ({}:{})", meaning, meaning.empty() ? "" : ": ", expression,
-                            resultName(result), sourcePath(file), line));
+    const std::string text = fmt::format("{}{}{} returned {} ({}:{})", meaning, meaning.empty() ? "" : ": ",
+                                         expression, resultName(result), sourcePath(file), line);
+    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text);
+    throw Error(text);
 }
 
 void logResult(VkResult result, const char* expression) noexcept {

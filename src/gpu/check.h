@@ -15,7 +15,8 @@ std::string resultName(VkResult result);
 /// meaning.
 std::string_view resultMeaning(VkResult result);
 
-/// Throws Error with the meaning, the name, the call and its place unless `result` is VK_SUCCESS.
+/// Throws Error (DeviceLost if that is it) with the meaning, the name, the call and its place unless `result`
+/// is VK_SUCCESS.
 void checkResult(VkResult result, const char* expression, const char* file, int line);
 
 /// For destructors, which must not throw: logs instead.

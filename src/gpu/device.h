@@ -11,9 +11,17 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "gpu/shader.h"
 
 namespace limpid::gpu {
+
+/// The device does nothing any more: its driver has crashed, or has been reset. All that was made on it is
+/// gone; a new Device may work.
+class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
 
 /// What `limpid info` lists of a physical device.
 struct DeviceInfo {

@@ -1,0 +1,190 @@
+// What the window offers besides pictures: comparisons, lights, shaders compiled anew, and getting over
+// faults.
+#include <gmock/gmock.h>
+
+#include "view_fixture.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+class ViewToolsTest : public ViewTest {
+  protected:
+    /// Limpid's shaders, to be changed.
+    fs::path copiedShaders() const {
+        const fs::path from = fs::path(LIMPID_SOURCE_DIR) / "src", to = folder_ / "src";
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(from)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".comp" && extension != ".glsl" && extension != ".h") continue;
+            const fs::path target = to / fs::relative(entry.path(), from);
+            fs::create_directories(target.parent_path());
+            fs::copy_file(entry.path(), target);
+        }
+        return to;
+    }
+    /// In the world; of the gbuffer pipeline.
+    static std::vector<double> positionUnderMouse(const DrivenViewer& viewer) {
+        viewer.xdotool("key p");
+        viewer.waitFor("values", [&] { return !viewer.fact("values").empty(); });
+        const std::string values = viewer.fact("values"), name = "gbuffer/position: ";
+        viewer.xdotool("key p");
+        viewer.waitFor("no values", [&] { return viewer.fact("values").empty(); });
+        std::vector<double> position(3);
+        std::istringstream numbers(values.substr(values.find(name) + name.size()));
+        for (double& p : position) numbers >> p;
+        return position;
+    }
+    static void save(const fs::path& file, const std::string& text) {
+        std::ofstream(file) << text;
+        fs::last_write_time(file, fs::file_time_type::clock::now());
+    }
+};
+
+TEST_F(ViewToolsTest, ComparesWithAReference) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 6 --pipeline svgf");
+    viewer.choose("compare with", "reference");
+    viewer.waitFor("the reference", [&] { return viewer.controls().contains("reference samples"); });
+    viewer.press("reference samples", 0.3);
+    viewer.waitFor("the reference to converge", [&] {
+        const std::string made = viewer.fact("compared");
+        return made.starts_with("reference, ") &&
+               std::stoi(made.substr(11)) >= std::stoi(viewer.value("reference samples"));
+    });
+    viewer.waitFor("scores", [&] { return viewer.value("scores").starts_with("PSNR"); });
+    EXPECT_GT(std::stod(viewer.value("scores").substr(5)), 15.0);
+    const std::string one = viewer.settledPicture();  // the screenshot is of the picture alone
+
+    viewer.xdotool("mousemove 440 1600 sleep 0.2 key Tab");
+    viewer.waitFor("the panel to go", [&] { return !viewer.controls().contains("pipeline"); });
+    const Control divider = viewer.at("divider");
+    const auto from = std::to_string(static_cast<int>(0.5f * (divider.left + divider.right)));
+    viewer.xdotool("mousemove " + from +
+                   " 1600 sleep 0.2 mousedown 1 sleep 0.2 mousemove 440 1600 sleep 0.2 mouseup 1");
+    viewer.waitFor("the divider", [&] { return viewer.value("divider") > divider.value; });
+    viewer.xdotool("key Tab");
+    viewer.waitFor("the panel", [&] { return viewer.controls().contains("pipeline"); });
+    EXPECT_EQ(viewer.settledPicture(), one) << "the divider must not move the camera";
+
+    viewer.choose("compare with", "atrous");
+    viewer.waitFor("another", [&] { return viewer.fact("compared") == "atrous"; });
+    viewer.choose("compare with", "nothing");
+    EXPECT_FALSE(viewer.controls().contains("scores"));
+    EXPECT_EQ(viewer.settledPicture(), one);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, LightsComeAndGo) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 4");
+    const std::string start = viewer.settledPicture();
+    open(viewer, "light");
+    viewer.choose("light.kind", "a point more");
+    const std::string lit = viewer.settledPicture();
+    EXPECT_NE(lit, start);
+    change(viewer, "light.intensity");
+    EXPECT_NE(viewer.settledPicture(), lit);
+    viewer.click("copy command line");
+    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
+    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --light point,0,1,0,"));
+    viewer.choose("light.kind", "the scene's alone");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    viewer.click("light.background of its own");
+    viewer.waitFor("a background", [&] { return viewer.controls().contains("light.red"); });
+    EXPECT_NE(viewer.settledPicture(), start);
+    viewer.click("light.background of its own");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, TheMagnifierTheArrowsAndTheProbe) {
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --pipeline svgf");
+    viewer.click("magnifier");
+    viewer.click("arrows");
+    viewer.choose("compare with", "path");
+    viewer.click("playing");
+    viewer.waitFor("frames", [&] { return viewer.number("frames") > 20; });
+    for (const std::string place : {"5 5", "455 1695", "430 850"})
+        viewer.xdotool("mousemove " + place + " sleep 0.3");
+    viewer.xdotool("key p");
+    viewer.waitFor("values", [&] { return !viewer.fact("values").empty(); });
+    EXPECT_THAT(viewer.fact("values"), HasSubstr("pixel (53, 106)"));
+    EXPECT_THAT(viewer.fact("values"), HasSubstr("pathtrace/normal: "));
+    viewer.xdotool("key p");
+    viewer.waitFor("no values", [&] { return viewer.fact("values").empty(); });
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, LooksAtWhatIsClickedTwice) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2 --pipeline gbuffer");
+    viewer.settledPicture();
+    viewer.xdotool("mousemove 420 1000 sleep 0.3");
+    const std::vector<double> clicked = positionUnderMouse(viewer);
+    viewer.xdotool("click 1 sleep 0.05 click 1 sleep 0.3");
+    viewer.settledPicture();
+    viewer.xdotool("mousemove 230 850 sleep 0.3");  // the middle
+    const std::vector<double> middle = positionUnderMouse(viewer);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(middle[i], clicked[i], 0.02) << i;
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, ShadersAreCompiledWhenTheyAreSaved) {
+    const fs::path file = copiedShaders() / "passes/pathtrace/pathtrace_pixel.glsl";
+    std::ifstream stream(file);
+    const std::string source{std::istreambuf_iterator<char>(stream), {}};
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --shaders src");
+    const std::string start = viewer.settledPicture();
+
+    save(file, source + "\nthis is no GLSL\n");
+    viewer.waitFor("a fault", [&] { return !viewer.fact("fault").empty(); });
+    EXPECT_THAT(viewer.fact("fault"), HasSubstr("pathtrace_pixel.glsl"));
+    EXPECT_EQ(viewer.settledPicture(), start) << "the old shader goes on";
+
+    const std::string place = "void tracePixel(uvec2 pixel) {";
+    ASSERT_NE(source.find(place), std::string::npos);
+    std::string darker = source;
+    darker.replace(darker.find(place), place.size(), place + "\n    if (pixel.x % 2u == 0u) return;\n");
+    save(file, darker);
+    viewer.waitFor("compilation", [&] { return viewer.fact("message").starts_with("compiled"); });
+    EXPECT_EQ(viewer.fact("fault"), "");
+    EXPECT_NE(viewer.settledPicture(), start);
+
+    save(file, source);
+    viewer.waitFor("compilation", [&] { return viewer.fact("message").starts_with("compiled"); });
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, FilesAreDroppedOnIt) {
+#ifdef LIMPID_DROP_FILES
+    put("broken.gltf", "{\"asset\": {");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+    const std::string start = viewer.settledPicture();
+    viewer.run(std::string("'") + LIMPID_DROP_FILES + "' " + viewer.window() + " " + path("broken.gltf"));
+    viewer.waitFor("a fault", [&] { return !viewer.fact("fault").empty(); });
+    EXPECT_THAT(viewer.fact("fault"), HasSubstr("broken.gltf"));
+    EXPECT_EQ(viewer.settledPicture(), start);
+    put("lone.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    viewer.run(std::string("'") + LIMPID_DROP_FILES + "' " + viewer.window() + " " + path("lone.obj"));
+    viewer.waitFor("the scene", [&] { return viewer.fact("message").find("lone.obj") != std::string::npos; });
+    EXPECT_EQ(viewer.fact("fault"), "");
+    EXPECT_NE(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+#else
+    GTEST_SKIP() << "NOT TESTED: built without libx11-dev, which the test drops files with.";
+#endif
+}
+
+TEST_F(ViewToolsTest, GoesOnWhenTheDeviceIsLost) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 4000 --lose-device 600 --pipeline atrous");
+    viewer.waitFor("the loss",
+                   [&] { return viewer.get("log").find("setting everything up anew") != std::string::npos; });
+    viewer.waitFor("a new window", [&] { return viewer.fact("fault").find("lost") != std::string::npos; });
+    EXPECT_EQ(viewer.value("pipeline"), "atrous");
+    viewer.findWindow();
+    viewer.click("running");
+    viewer.settledPicture();
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+}  // namespace
+}  // namespace limpid
