@@ -2,6 +2,7 @@
 // faults.
 #include <gmock/gmock.h>
 
+#include "image/exr.h"
 #include "view_fixture.h"
 
 namespace limpid {
@@ -93,6 +94,45 @@ TEST_F(ViewToolsTest, LightsComeAndGo) {
     EXPECT_NE(viewer.settledPicture(), start);
     viewer.click("light.background of its own");
     EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, LayersGoIntoTheFile) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --light point,0.5,1,0.5,0.2");
+    viewer.settledPicture();
+    viewer.click("EXR");
+    viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
+    viewer.click("layers");
+    viewer.waitFor("layers", [&] { return viewer.value("layers") == "on"; });
+    viewer.settledPicture();
+    viewer.click("EXR");
+    viewer.waitFor("another file", [&] { return viewer.fact("message") == "wrote limpid-2.exr"; });
+    const image::LayeredImage plain = image::readExr(path("limpid.exr")),
+                              layered = image::readExr(path("limpid-2.exr"));
+    EXPECT_EQ(plain.channels.size(), 4u);
+    EXPECT_GT(layered.channels.size(), 20u);
+    viewer.click("copy command line");
+    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
+    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                     viewer.fact("message").substr(7) + " --device cpu --float");
+    ASSERT_EQ(result.code, 0) << result.output;
+    const image::LayeredImage again = image::readExr(path("frame.exr"));
+    for (const char* channel : {"R", "diffuse.G", "normal.Z"})
+        EXPECT_EQ(again.find(channel)->values, layered.find(channel)->values) << channel;
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewToolsTest, SeesEverything) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3");
+    const std::string start = viewer.settledPicture();
+    viewer.xdotool("mousemove 420 1000 click 4 click 4 sleep 0.3");
+    EXPECT_NE(viewer.settledPicture(), start);
+    viewer.click("see everything");
+    const std::string all = viewer.settledPicture();
+    viewer.xdotool("mousemove 420 1000 click 5 sleep 0.3");
+    EXPECT_NE(viewer.settledPicture(), all);
+    viewer.click("see everything");
+    EXPECT_EQ(viewer.settledPicture(), all);
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 

@@ -40,6 +40,11 @@ void CameraRig::choose(const Stage& stage, int number) {
                                          std::max(stage.duration(), pathSeconds));
 }
 
+void CameraRig::stand(const Stage& stage, const scene::Camera& camera) {
+    choose(stage, 0);
+    fly_ = handAt(stage, camera);
+}
+
 void CameraRig::setFree(const Stage& stage, double time) {
     if (isFree()) return;
     fly_ = FlyCamera(at(stage, time), fly_.distance());

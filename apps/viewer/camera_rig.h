@@ -23,6 +23,8 @@ class CameraRig {
     void choose(const Stage& stage, int number);
     /// From where it is. Nothing if it is free.
     void setFree(const Stage& stage, double time);
+    /// Free, from there.
+    void stand(const Stage& stage, const scene::Camera& camera);
     /// Back to where it started.
     void goHome(const Stage& stage) { choose(stage, 0); }
 

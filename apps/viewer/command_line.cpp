@@ -66,6 +66,7 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
                                s.pipeline.name(), s.extent.width, s.extent.height, s.seed, nameOf(s.jitter),
                                accumulates ? frame.samplesInMean : frame.samples);
     if (accumulates) result.text += " --progressive";
+    if (s.layers) result.text += " --aov all";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
     if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);
     result.text += timesOf(frame, playback, frames, result);

@@ -41,6 +41,15 @@ TEST_F(CommandLineTest, AStillHasItsCameraAndSamples) {
     EXPECT_THAT(text(), Not(HasSubstr("--set")));
 }
 
+TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
+    frame_.source.light = "sun,0,1,0,2";
+    frame_.source.background = "1,1,1";
+    frame_.settings.layers = true;
+    frames(1, false);
+    EXPECT_THAT(text(), HasSubstr("--light sun,0,1,0,2 --background 1,1,1"));
+    EXPECT_THAT(text(), HasSubstr("--aov all"));
+}
+
 TEST_F(CommandLineTest, HistoriesNeedAllFrames) {
     frame_.settings.pipeline = parsePipeline("svgf");
     assign(frame_.settings, "svgf.levels=3");

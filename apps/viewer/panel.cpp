@@ -173,6 +173,11 @@ void drawDisplay(PanelState& state, Controls& controls) {
     ImGui::SameLine();
     asked.screenshot |= controls.button("screenshot");
     ImGui::SameLine();
+    asked.exr |= controls.button("EXR");
+    ImGui::SameLine();
+    controls.checkbox("layers", state.render.layers);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("in the EXR file; the path tracer alone is slower with them");
     asked.command |= controls.button("copy command line");
 }
 
@@ -194,6 +199,8 @@ void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) 
     asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
     controls.slider("field of view", state.fovDegrees, 5.0f, 150.0f, "%.1f");
     asked.resetCamera |= controls.button("reset camera");
+    ImGui::SameLine();
+    asked.seeAll |= controls.button("see everything");
     ImGui::SameLine();
     asked.savePath |= controls.button("save path flown");
 }

@@ -16,7 +16,7 @@ namespace limpid::viewer {
 
 /// Asked for; whoever does it clears it.
 struct PanelRequests {
-    bool measureExposure = false, resetCamera = false, screenshot = false, command = false, savePath = false;
+    bool measureExposure = false, resetCamera = false, screenshot = false, exr = false, command = false, savePath = false;
     bool reset = false;       ///< start anew: histories, means, the frame's number
     bool step = false;        ///< one frame, though rendering stands still
     bool seek = false;        ///< to PanelState::time
@@ -24,6 +24,7 @@ struct PanelRequests {
     bool open = false;        ///< PanelState::file
     bool relight = false;     ///< PanelState::light is another one
     bool probe = false;       ///< all values under the mouse
+    bool seeAll = false;      ///< a camera from where everything is seen
 };
 
 /// What the panel shows and changes.

@@ -29,6 +29,7 @@
 #include "renderer/network_file.h"
 #include "renderer/reset_rule.h"
 #include "scene/camera.h"
+#include "scene/framing.h"
 #include "scene/movement.h"
 #include "shader_reload.h"
 #include "stage.h"
@@ -67,6 +68,13 @@ bool due(Clock::time_point& last, double seconds) {
     if (secondsSince(last) < seconds) return false;
     last = Clock::now();
     return true;
+}
+
+/// In the working folder: with a number where there is one of that name already.
+fs::path unusedFile(const std::string& stem, const std::string& extension) {
+    fs::path file = stem + extension;
+    for (int number = 2; fs::exists(file); ++number) file = fmt::format("{}-{}{}", stem, number, extension);
+    return file;
 }
 
 class Viewer {
@@ -311,6 +319,12 @@ void Viewer::applyRequests() {
         panel_.playing |= rig_.movesOnPath();
         asked.reset = true;
     }
+    if (std::exchange(asked.seeAll, false)) {
+        rig_.stand(*stage_, scene::frameScene(stage_->scene()));
+        panel_.camera = 0;
+        panel_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+        asked.reset = true;
+    }
     if (std::exchange(asked.seek, false)) playback_.seek(double{panel_.time});
     if (std::exchange(asked.reset, false)) startAnew();
     if (asked.measureExposure && main_) {
@@ -321,7 +335,10 @@ void Viewer::applyRequests() {
         facts_.allValues = facts_.allValues.empty() ? display_.probeAll(main_) : std::string();
     if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
     if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
-    if (std::exchange(asked.screenshot, false) && main_) attempt([&] { writeScreenshot("limpid.png"); });
+    if (std::exchange(asked.screenshot, false) && main_)
+        attempt([&] { writeScreenshot(unusedFile("limpid", ".png")); });
+    if (std::exchange(asked.exr, false) && main_)
+        attempt([&] { writeScreenshot(unusedFile("limpid", ".exr")); });
 }
 
 /// Settings that follow from others. Those of what cannot be done go back to what was.
@@ -495,7 +512,9 @@ void Viewer::measureExposure() {
 void Viewer::writeScreenshot(const fs::path& file) {
     const RenderedLayers layers = main_.renderer().download();
     if (file.extension() == ".exr") {
-        image::writeExr(file, toLayeredImage(layers, {}, image::Storage::Float));
+        const RenderSettings& settings = main_.settings();
+        const auto names = settings.layers ? settings.pipeline.layers() : std::vector<std::string>();
+        image::writeExr(file, toLayeredImage(layers, names, image::Storage::Float));
     } else {
         image::writePng(file, image::toBytes(image::tonemap(beautyOf(layers), panel_.exposure)));
     }
