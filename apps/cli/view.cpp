@@ -114,9 +114,9 @@ void addViewCommand(CLI::App& app) {
     command->add_option("--seed", o->seed, "Another seed, other noise (0)");
     command->add_option("--animation", o->animation, "Clip by name or number; default: the first");
     command
-        ->add_option(
-            "--shrink", o->shrink,
-            "The picture has 2^N times fewer pixels along each axis than the window, for slow devices (0)")
+        ->add_option("--shrink", o->shrink,
+                     "The picture has 2^N times fewer pixels along each axis than the window, for slow "
+                     "devices (0; on CPUs as it needs to stay fluent)")
         ->check(CLI::Range(0, 3));
     command->add_option("--shaders", o->shaders,
                         "Limpid's src folder: shaders are compiled anew (by glslc) when they are saved");

@@ -59,6 +59,8 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
         ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str(), ImGuiComboFlags_HeightLarge);
     note(name, choices[static_cast<size_t>(chosen)]);
     if (!open) return false;
+    // Its place is found out in the first frame, in which it is not shown.
+    const bool appears = ImGui::IsWindowAppearing();
     bool changed = false;
     for (size_t i = 0; i < choices.size(); ++i) {
         const auto number = static_cast<int>(i);
@@ -66,7 +68,7 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
             changed = number != chosen;
             chosen = number;
         }
-        note(std::string(name) + "=" + choices[i]);
+        if (!appears) note(std::string(name) + "=" + choices[i]);
     }
     ImGui::EndCombo();
     return changed;

@@ -77,6 +77,16 @@ fs::path unusedFile(const std::string& stem, const std::string& extension) {
     return file;
 }
 
+/// What keeps a window answering.
+int shrinkFor(const gpu::Device& device, gpu::Extent window) {
+    constexpr uint64_t mostPixels = 300'000;
+    int shrink = 0;
+    while (device.isCpu() && shrink < 3 &&
+           (uint64_t{window.width} * window.height >> 2 * shrink) > mostPixels)
+        ++shrink;
+    return shrink;
+}
+
 class Viewer {
   public:
     Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
@@ -164,7 +174,7 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
     panel_.render = settings.render;
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
-    panel_.shrink = settings.shrink;
+    panel_.shrink = settings.shrink >= 0 ? settings.shrink : shrinkFor(device_, window_.pixels());
     panel_.light = lightChoiceOf(settings.source.light, settings.source.background);
     facts_.device = device_.info().name;
     show(std::move(first));
@@ -199,6 +209,7 @@ void Viewer::show(scene::Scene scene) {
 void Viewer::goTo(const scene::Camera& home) {
     rig_.show(*stage_, home);
     facts_.cameras = rig_.names();
+    facts_.duration = stage_->duration();
     panel_.asked.measureExposure = panel_.asked.resetCamera = true;
 }
 

@@ -22,7 +22,9 @@ struct ViewSettings {
     uint32_t samples = 1;     ///< per pixel and frame
     /// Frames in which nothing changes, times samples; then nothing is computed until something does.
     uint64_t maxSamples = 4096;
-    int shrink = 0;  ///< 2^shrink pixels of the window for one of the picture's, along each axis
+    /// 2^shrink pixels of the window for one of the picture's, along each axis. Below 0: 0, but on CPUs so
+    /// much that the picture has at most 300,000 pixels.
+    int shrink = -1;
     std::filesystem::path
         controls;                   ///< file that says where the panel's controls are, for tests; empty: none
     std::filesystem::path kept;     ///< file that these are written to on leaving; empty: none
