@@ -35,8 +35,7 @@ bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
         case Kind::Button:
             // The interface finds out what is under the mouse before a button counts; and what was moved
             // before a release was moved with the button down.
-            return (earlier.kind == Kind::Button && earlier.code == later.code) ||
-                   earlier.kind == Kind::Move;
+            return (earlier.kind == Kind::Button && earlier.code == later.code) || earlier.kind == Kind::Move;
         case Kind::Wheel:
             return false;
         case Kind::Key:

@@ -43,6 +43,7 @@ void LiveRender::render(Moment moment) {
     exposed_.reset();
     shown_ = true;
     ++framesOfSame_;
+    ++frames_;
 }
 
 uint64_t LiveRender::samples() const {

@@ -31,6 +31,7 @@ class LiveRender {
     /// Something is another than it was: samples() of pipelines that denoise count from here.
     void noteChange() { framesOfSame_ = 0; }
     uint64_t framesOfSame() const { return framesOfSame_; }
+    uint64_t frames() const { return frames_; }  ///< ever
 
     /// Per pixel: in the mean, or in the frames since noteChange().
     uint64_t samples() const;
@@ -56,6 +57,7 @@ class LiveRender {
     bool shown_ = false;
     uint64_t launches_ = 0;  ///< of the mean
     uint64_t framesOfSame_ = 0;
+    uint64_t frames_ = 0;
 };
 
 }  // namespace limpid::viewer

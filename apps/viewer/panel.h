@@ -16,7 +16,8 @@ namespace limpid::viewer {
 
 /// Asked for; whoever does it clears it.
 struct PanelRequests {
-    bool measureExposure = false, resetCamera = false, screenshot = false, exr = false, command = false, savePath = false;
+    bool measureExposure = false, resetCamera = false, screenshot = false, exr = false, command = false,
+         savePath = false;
     bool reset = false;       ///< start anew: histories, means, the frame's number
     bool step = false;        ///< one frame, though rendering stands still
     bool seek = false;        ///< to PanelState::time

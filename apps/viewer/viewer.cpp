@@ -17,14 +17,14 @@
 #include "command_line.h"
 #include "controls.h"
 #include "display.h"
-#include "image/exr.h"
-#include "image/png.h"
 #include "image/tonemap.h"
 #include "kept_settings.h"
 #include "light_choice.h"
+#include "live_comparison.h"
 #include "live_render.h"
 #include "panel.h"
 #include "picker.h"
+#include "picture_files.h"
 #include "playback.h"
 #include "renderer/network_file.h"
 #include "renderer/reset_rule.h"
@@ -42,14 +42,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr float radiansAPixel = 0.005f;
 constexpr float zoomAStep = 0.85f;
-constexpr double idleSeconds = 1.0;         ///< between looks at the window while nothing is computed
-constexpr double longestStep = 0.1;         ///< seconds that a key moves the camera in one picture
-constexpr int restlessPictures = 4;         ///< drawn after the last event: until the panel has settled
-constexpr double betweenTimes = 0.25;       ///< seconds; reading the passes' times waits for the device
-constexpr double betweenScores = 1.0;       ///< seconds
-constexpr double betweenSources = 0.5;      ///< seconds between looks at the shaders' files
-constexpr float lightReach = 3.0f;          ///< of the scene's radius
-constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
+constexpr double idleSeconds = 1.0;     ///< between looks at the window while nothing is computed
+constexpr double longestStep = 0.1;     ///< seconds that a key moves the camera in one picture
+constexpr int restlessPictures = 4;     ///< drawn after the last event: until the panel has settled
+constexpr double betweenTimes = 0.25;   ///< seconds; reading the passes' times waits for the device
+constexpr double betweenSources = 0.5;  ///< seconds between looks at the shaders' files
+constexpr float lightReach = 3.0f;      ///< of the scene's radius
 constexpr double messageSeconds = 20.0;
 constexpr double leastSecondsOfADevice = 2.0;  ///< lost sooner, another one is lost, too
 constexpr const char* pathFile = "flown.json";
@@ -68,13 +66,6 @@ bool due(Clock::time_point& last, double seconds) {
     if (secondsSince(last) < seconds) return false;
     last = Clock::now();
     return true;
-}
-
-/// In the working folder: with a number where there is one of that name already.
-fs::path unusedFile(const std::string& stem, const std::string& extension) {
-    fs::path file = stem + extension;
-    for (int number = 2; fs::exists(file); ++number) file = fmt::format("{}-{}{}", stem, number, extension);
-    return file;
 }
 
 /// What keeps a window answering.
@@ -115,14 +106,10 @@ class Viewer {
     bool messageAges();
     CameraParams cameraNow() const;
     bool mustRender(const CameraParams& camera);
-    bool comparisonMustRender(const CameraParams& camera, bool moved) const;
-    RenderSettings otherSettings() const;
     void render(const CameraParams& camera);
-    void renderComparison(const CameraParams& camera, Moment moment, bool alone);
-    void updateScores(bool rendering);
     void noteTimes(bool rendered);
     void measureExposure();
-    void writeScreenshot(const fs::path& file);
+    void save(const fs::path& file);
     void copyCommand();
     void savePath();
     void writeControls();
@@ -144,15 +131,13 @@ class Viewer {
     Controls controls_;
     std::string controlsText_;  ///< as last written
     ShaderReload reload_;
-    LiveRender main_, other_;
-    LiveScores scores_;
+    LiveRender main_;
+    LiveComparison comparison_;
     float fovOfLast_ = 0.0f;  ///< degrees
     bool networkIsHalf_ = true;
     float speed_ = 1.0f;     ///< world units a second
     uint64_t rendered_ = 0;  ///< frames, ever
-    uint64_t otherRendered_ = 0;
-    std::pair<uint64_t, uint64_t> scored_;  ///< rendered_ and otherRendered_ of the last scores
-    Clock::time_point lastTimes_{}, lastScores_{}, lastSources_{}, lastFrame_{};
+    Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     const Clock::time_point opened_ = Clock::now();
     bool stepping_ = false;  ///< one frame, though rendering stands still
@@ -170,7 +155,7 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       display_(window_, device_),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),
-      other_(device_, reload_.replacements()) {
+      comparison_(device_, reload_.replacements()) {
     panel_.render = settings.render;
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
@@ -197,7 +182,7 @@ void Viewer::show(scene::Scene scene) {
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
     main_.drop();
-    other_.drop();
+    comparison_.drop();
     stage_ = std::move(stage);
     window_.setTitle("Limpid: " + stage_->scene().name);
     speed_ = 0.25f * stage_->sphere().radius;
@@ -245,7 +230,7 @@ void Viewer::relight() {
 void Viewer::startAnew() {
     playback_.reset(playback_.time());
     main_.drop();
-    other_.drop();
+    comparison_.drop();
 }
 
 template <typename Function>
@@ -346,10 +331,8 @@ void Viewer::applyRequests() {
         facts_.allValues = facts_.allValues.empty() ? display_.probeAll(main_) : std::string();
     if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
     if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
-    if (std::exchange(asked.screenshot, false) && main_)
-        attempt([&] { writeScreenshot(unusedFile("limpid", ".png")); });
-    if (std::exchange(asked.exr, false) && main_)
-        attempt([&] { writeScreenshot(unusedFile("limpid", ".exr")); });
+    if (std::exchange(asked.screenshot, false) && main_) attempt([&] { save(unusedFile("limpid", ".png")); });
+    if (std::exchange(asked.exr, false) && main_) attempt([&] { save(unusedFile("limpid", ".exr")); });
 }
 
 /// Settings that follow from others. Those of what cannot be done go back to what was.
@@ -370,11 +353,10 @@ void Viewer::applySettings() {
     if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
     panel_.time = static_cast<float>(playback_.time());
     loadNetworkFor(render.pipeline);
-    if (panel_.comparison.isOn()) loadNetworkFor(otherSettings().pipeline);
-    if (!panel_.comparison.isOn()) {
-        other_.drop();
-        scores_.clear();
-    }
+    if (panel_.comparison.isOn())
+        loadNetworkFor(settingsOfComparison(panel_).pipeline);
+    else
+        comparison_.drop();
 }
 
 /// Where there is none, what would need it is not chosen.
@@ -394,8 +376,8 @@ void Viewer::loadNetworkFor(const Pipeline& pipeline) {
 bool Viewer::reloadShaders() {
     if (!reload_.watches() || !main_ || !due(lastSources_, betweenSources)) return false;
     std::vector<gpu::ShaderCode> used = main_.renderer().graph().usedShaders();
-    if (other_) {
-        const std::vector<gpu::ShaderCode> more = other_.renderer().graph().usedShaders();
+    if (LiveRender* const other = comparison_.picture()) {
+        const std::vector<gpu::ShaderCode> more = other->renderer().graph().usedShaders();
         used.insert(used.end(), more.begin(), more.end());
     }
     const std::optional<ShaderReload::Result> result = reload_.poll(used);
@@ -433,29 +415,9 @@ bool Viewer::mustRender(const CameraParams& camera) {
               playback_.playing;
     if (changed) {
         main_.noteChange();
-        other_.noteChange();
+        comparison_.noteChange();
     }
     return changed || settings_.quitAfter > 0 || main_.samples() < static_cast<uint64_t>(panel_.maxSamples);
-}
-
-RenderSettings Viewer::otherSettings() const {
-    RenderSettings settings = comparisonSettings(panel_.comparison, panel_.render);
-    if (panel_.jitter == 0 && !panel_.comparison.isReference())
-        settings.jitter = settings.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
-    return settings;
-}
-
-/// `moved`: something of the scene has.
-bool Viewer::comparisonMustRender(const CameraParams& camera, bool moved) const {
-    const gpu::Extent extent = panel_.render.extent;
-    if (!panel_.comparison.isOn() || extent.width == 0 || extent.height == 0 ||
-        (!panel_.running && !stepping_))
-        return false;
-    const RenderSettings settings = otherSettings();
-    const int wanted =
-        panel_.comparison.isReference() ? panel_.comparison.referenceSamples : panel_.maxSamples;
-    return moved || other_.differs(settings, panel_.samples) || !sameCamera(camera, other_.camera()) ||
-           other_.samples() < static_cast<uint64_t>(wanted);
 }
 
 void Viewer::render(const CameraParams& camera) {
@@ -470,7 +432,8 @@ void Viewer::render(const CameraParams& camera) {
     if (stage_->moves()) {
         if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
     }
-    if (comparisonMustRender(camera, moment.scene.has_value())) renderComparison(camera, moment, false);
+    if (comparison_.mustRender(panel_, camera, moment.scene.has_value(), stepping_))
+        comparison_.render(*stage_, panel_, moment, false);
     main_.render(std::move(moment));
     fovOfLast_ = panel_.fovDegrees;
     playback_.advance(camera, rig_.key());
@@ -478,30 +441,6 @@ void Viewer::render(const CameraParams& camera) {
     if (std::exchange(panel_.asked.measureExposure, false)) measureExposure();
     facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
     facts_.frames = playback_.frames();
-}
-
-/// `alone`: the picture rests, and numbers no frames.
-void Viewer::renderComparison(const CameraParams& camera, Moment moment, bool alone) {
-    moment.camera = camera;
-    if (alone) moment.number = numbersAlone + other_.framesOfSame();
-    other_.prepare(*stage_, otherSettings(), panel_.samples, panel_.exposure);
-    other_.render(std::move(moment));
-    ++otherRendered_;
-    const std::string name = comparisonNames()[static_cast<size_t>(panel_.comparison.with)];
-    facts_.comparedWith = other_.accumulates() ? fmt::format("{}, {} samples", name, other_.samples()) : name;
-}
-
-/// Now and then while frames are rendered, and of the last ones.
-void Viewer::updateScores(bool rendering) {
-    facts_.scores = scores_.text();
-    const std::pair now(rendered_, otherRendered_);
-    if (!main_ || !other_ || scores_.busy() || scored_ == now) return;
-    if (rendering && !due(lastScores_, betweenScores)) return;
-    image::Image test = beautyOf(main_.renderer().download()),
-                 reference = beautyOf(other_.renderer().download());
-    if (test.width != reference.width || test.height != reference.height) return;
-    scored_ = now;
-    scores_.compare(std::move(test), std::move(reference), panel_.exposure, [this] { window_.wake(); });
 }
 
 void Viewer::noteTimes(bool rendered) {
@@ -520,17 +459,10 @@ void Viewer::measureExposure() {
     panel_.exposure = image::autoExposure(beautyOf(main_.renderer().download()));
 }
 
-void Viewer::writeScreenshot(const fs::path& file) {
-    const RenderedLayers layers = main_.renderer().download();
-    if (file.extension() == ".exr") {
-        const RenderSettings& settings = main_.settings();
-        const auto names = settings.layers ? settings.pipeline.layers() : std::vector<std::string>();
-        image::writeExr(file, toLayeredImage(layers, names, image::Storage::Float));
-    } else {
-        image::writePng(file, image::toBytes(image::tonemap(beautyOf(layers), panel_.exposure)));
-    }
+void Viewer::save(const fs::path& file) {
+    savePicture(file, main_, panel_.exposure);
     facts_.message = "wrote " + file.string();
-    log::info("wrote {}", file.string());
+    log::info("{}", facts_.message);
 }
 
 void Viewer::copyCommand() {
@@ -618,20 +550,20 @@ void Viewer::run() {
         bool other = false;
         if (main) {
             render(camera);
-        } else if (main_ && comparisonMustRender(camera, false)) {
-            renderComparison(camera, playback_.moment(camera), true);
+        } else if (main_ && comparison_.mustRender(panel_, camera, false, stepping_)) {
+            comparison_.render(*stage_, panel_, playback_.moment(camera), true);
             other = true;
         }
-        for (LiveRender* live : {&main_, &other_}) {
-            if (*live) live->expose(panel_.exposure);
-        }
+        if (main_) main_.expose(panel_.exposure);
         if (main || other) restless = restlessPictures;
         noteTimes(main);
-        updateScores(main || other);
+        comparison_.update(main_, panel_.exposure, main || other, [this] { window_.wake(); });
+        facts_.comparedWith = comparison_.name();
+        facts_.scores = comparison_.scores();
         writeControls();
-        display_.present(panel_, facts_, main_, panel_.comparison.isOn() ? &other_ : nullptr, rendered_);
+        display_.present(panel_, facts_, main_, comparison_.picture(), rendered_);
     }
-    if (main_ && !settings_.screenshot.empty()) writeScreenshot(settings_.screenshot);
+    if (main_ && !settings_.screenshot.empty()) save(settings_.screenshot);
     attempt([&] { keepSettings(settings_.kept, settingsNow()); });
     device_.waitIdle();
     if (device_.validationMessages() > 0)

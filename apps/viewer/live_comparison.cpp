@@ -1,0 +1,59 @@
+#include "live_comparison.h"
+
+#include <fmt/format.h>
+
+namespace limpid::viewer {
+namespace {
+
+constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
+constexpr std::chrono::seconds betweenScores(1);
+
+}  // namespace
+
+RenderSettings settingsOfComparison(const PanelState& panel) {
+    RenderSettings settings = comparisonSettings(panel.comparison, panel.render);
+    if (panel.jitter == 0 && !panel.comparison.isReference())
+        settings.jitter = settings.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    return settings;
+}
+
+void LiveComparison::drop() {
+    other_.drop();
+    scores_.clear();
+    name_.clear();
+}
+
+bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& camera, bool moved,
+                                bool stepping) const {
+    const gpu::Extent extent = panel.render.extent;
+    if (!panel.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
+    if (!panel.running && !stepping) return false;
+    const int wanted = panel.comparison.isReference() ? panel.comparison.referenceSamples : panel.maxSamples;
+    return moved || other_.differs(settingsOfComparison(panel), panel.samples) ||
+           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
+}
+
+void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment, bool alone) {
+    if (alone) moment.number = numbersAlone + other_.framesOfSame();
+    other_.prepare(stage, settingsOfComparison(panel), panel.samples, panel.exposure);
+    other_.render(std::move(moment));
+    ++frames_;
+    name_ = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
+    if (other_.accumulates()) name_ += fmt::format(", {} samples", other_.samples());
+}
+
+void LiveComparison::update(LiveRender& main, float exposure, bool rendering, std::function<void()> wake) {
+    if (!main || !other_) return;
+    other_.expose(exposure);
+    const std::pair now(main.frames(), frames_);
+    const auto time = std::chrono::steady_clock::now();
+    if (scores_.busy() || scored_ == now || (rendering && time - lastScores_ < betweenScores)) return;
+    lastScores_ = time;
+    image::Image test = beautyOf(main.renderer().download()),
+                 reference = beautyOf(other_.renderer().download());
+    if (test.width != reference.width || test.height != reference.height) return;
+    scored_ = now;
+    scores_.compare(std::move(test), std::move(reference), exposure, std::move(wake));
+}
+
+}  // namespace limpid::viewer
