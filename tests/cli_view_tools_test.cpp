@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "image/exr.h"
+#include "image/metrics.h"
+#include "image/picture.h"
 #include "view_fixture.h"
 
 namespace limpid {
@@ -72,6 +74,93 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
     viewer.choose("compare with", "nothing");
     EXPECT_FALSE(viewer.controls().contains("scores"));
     EXPECT_EQ(viewer.settledPicture(), one);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+#ifdef LIMPID_WINDOW_PIXELS
+/// What X has of the window.
+class WindowPixels {
+  public:
+    WindowPixels(const DrivenViewer& viewer, const fs::path& file) {
+        viewer.run(std::string("'") + LIMPID_WINDOW_PIXELS + "' " + viewer.window() + " > '" + file.string() +
+                   "'");
+        std::ifstream stream(file, std::ios::binary);
+        std::string magic;
+        int most = 0;
+        stream >> magic >> width_ >> height_ >> most;
+        stream.get();
+        bytes_.assign(std::istreambuf_iterator<char>(stream), {});
+    }
+    /// The largest difference of a channel, in steps of 1/255, to an encoded picture's pixel.
+    int difference(uint32_t x, uint32_t y, const image::Image& picture, uint32_t px, uint32_t py) const {
+        int most = 0;
+        for (uint32_t c = 0; c < 3; ++c) {
+            const auto shown = static_cast<unsigned char>(bytes_.at(3 * (size_t{y} * width_ + x) + c));
+            most = std::max(
+                most, std::abs(int{shown} - static_cast<int>(std::lround(255.0f * picture.at(px, py, c)))));
+        }
+        return most;
+    }
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+
+  private:
+    uint32_t width_ = 0, height_ = 0;
+    std::string bytes_;
+};
+
+TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1", 0);
+    viewer.settledPicture();
+    const image::Image picture = image::displayEncode(image::readPicture(path("limpid.png")).linear, 0.0f);
+    const auto worst = [&](uint32_t left, uint32_t right) {
+        const WindowPixels shown(viewer, folder_ / "shown.ppm");
+        EXPECT_EQ(shown.width(), picture.width);
+        EXPECT_EQ(shown.height(), picture.height);
+        int most = 0;
+        for (uint32_t y = 1100; y < 1600; ++y)
+            for (uint32_t x = left; x < right; ++x)
+                most = std::max(most, shown.difference(x, y, picture, x, y));
+        return most;
+    };
+    const auto hidePanel = [&](bool hidden) {
+        viewer.xdotool("mousemove 200 800 sleep 0.2 key Tab");
+        viewer.waitFor("the panel", [&] { return viewer.controls().contains("pipeline") != hidden; });
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+    };
+    hidePanel(true);
+    EXPECT_LE(worst(0, 460), 1);
+    hidePanel(false);
+    viewer.choose("compare with", "ao");
+    viewer.waitFor("the other side", [&] { return viewer.fact("compared") == "ao, 1 samples"; });
+    viewer.click("magnifier");
+    viewer.waitFor("the magnifier", [&] { return viewer.value("magnifier") == "on"; });
+    hidePanel(true);
+    EXPECT_LE(worst(0, 290), 1) << "left of the divider";  // which is at 299
+    EXPECT_GT(worst(310, 460), 30) << "right of it";
+    // Two squares of 210 pixels, tenfold, stand below the mouse and end at the window's edge.
+    const WindowPixels shown(viewer, folder_ / "shown.ppm");
+    EXPECT_LE(shown.difference(105, 929, picture, 200, 800), 1);
+    EXPECT_LE(shown.difference(55, 879, picture, 195, 795), 1);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+#endif
+
+TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 2");
+    viewer.choose("jitter", "off");
+    for (const char* name : {"most samples", "seed", "exposure, stops", "time, s", "field of view"})
+        change(viewer, name);
+    open(viewer, "light");
+    viewer.choose("light.kind", "a sun more");
+    viewer.click("light.background of its own");
+    viewer.waitFor("a background", [&] { return viewer.controls().contains("light.red"); });
+    for (const char* name : {"x", "y", "z", "intensity", "red", "green", "blue"})
+        change(viewer, std::string("light.") + name);
+    change(viewer, "samples a frame");
+    viewer.choose("resolution", "1/4");
+    viewer.settledPicture();
+    EXPECT_EQ(viewer.fact("fault"), "");
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 

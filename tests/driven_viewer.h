@@ -31,8 +31,9 @@ class DrivenViewer {
         return {};
     }
 
-    /// `folder` gets its files; a window of 460x1700 pixels is 57x212 of the picture.
-    DrivenViewer(const fs::path& folder, const std::string& arguments) : folder_(folder) {
+    /// `folder` gets its files; a window of 460x1700 pixels, each 2^shrink of which, along each axis, are one
+    /// of the picture's.
+    DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3) : folder_(folder) {
         const std::string in = "cd '" + folder_.string() + "' && ";
         shell(in +
               "rm -f display controls code log; Xvfb -displayfd 3 -screen 0 1000x1800x24 3>display "
@@ -42,7 +43,9 @@ class DrivenViewer {
         waitFor("a display", [&] { return !get("display").empty() && get("display").back() == '\n'; });
         display_ = ":" + get("display").substr(0, get("display").find('\n'));
         shell(in + "DISPLAY=" + display_ + " LIMPID_VALIDATION=1 '" + LIMPID_PROGRAM + "' view " + arguments +
-                  " --settings kept.json --device cpu --width 460 --height 1700 --shrink 3 --controls "
+                  " --settings kept.json --device cpu --width 460 --height 1700 --shrink " +
+                  std::to_string(shrink) +
+                  " --controls "
                   "controls >log 2>&1 & echo "
                   "$! > '" +
                   (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +

@@ -30,7 +30,7 @@ class ViewTest : public CliTest {
                 viewer.click(name);
             else
                 viewer.press(name, share);
-            for (int i = 0; i < 10 && viewer.value(name) == before; ++i)
+            for (int i = 0; i < 60 && viewer.value(name) == before; ++i)
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
             if (viewer.value(name) != before) return;
         }
