@@ -1,6 +1,5 @@
 // Drops files on a window of X11, as a file manager does (XDND version 5): drop_files WINDOW FILE...
 // For tests of the viewer; exits 0 once the window says that it has taken them.
-#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <poll.h>
 

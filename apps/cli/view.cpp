@@ -125,7 +125,7 @@ void addViewCommand(CLI::App& app) {
     command->add_option("--lose-device", o->loseDeviceAt,
                         "For tests: after so many frames, as if it were lost");
     command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");
-    command->add_option("--screenshot", o->screenshot, "PNG to write on leaving");
+    command->add_option("--screenshot", o->screenshot, "PNG or EXR to write on leaving");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

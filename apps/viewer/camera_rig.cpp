@@ -24,10 +24,20 @@ FlyCamera handAt(const Stage& stage, const scene::Camera& start) {
 
 void CameraRig::show(const Stage& stage, const scene::Camera& home) {
     home_ = home;
+    nameAll(stage);
+    goHome(stage);
+}
+
+void CameraRig::nameAll(const Stage& stage) {
     names_ = {"free"};
     for (const scene::Camera& camera : stage.scene().cameras) names_.push_back(camera.name);
     names_.insert(names_.end(), pathNames.begin(), pathNames.end());
-    goHome(stage);
+}
+
+void CameraRig::keep(const Stage& stage) {
+    const size_t before = names_.size();
+    nameAll(stage);
+    if (!isFree() && names_.size() != before) goHome(stage);
 }
 
 void CameraRig::choose(const Stage& stage, int number) {

@@ -16,6 +16,8 @@ class CameraRig {
     /// Another scene; `home` is where a free camera starts.
     void show(const Stage& stage, const scene::Camera& home);
 
+    /// The same scene again, or nearly: what has been chosen stays, as far as it is there.
+    void keep(const Stage& stage);
     /// "free", the scene's cameras, the built-in paths: what choose() takes the number of.
     const std::vector<std::string>& names() const { return names_; }
     bool isFree() const { return chosen_ == 0; }
@@ -41,6 +43,7 @@ class CameraRig {
     std::string option(const std::string& start) const;
 
   private:
+    void nameAll(const Stage& stage);
     scene::Camera home_;
     FlyCamera fly_{scene::Camera{}, 1.0f};
     std::optional<scene::CameraPath> path_;

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
 
-#include "base/error.h"
 #include "image/metrics.h"
 
 namespace limpid::viewer {
@@ -32,29 +32,34 @@ RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSe
     return other;
 }
 
-void LiveScores::compare(image::Image test, image::Image reference, float exposure,
-                         std::function<void()> wake) {
+void LiveScores::compare(image::Image test, image::Image reference, float exposure) {
     if (busy()) return;
-    pending_ = std::async(std::launch::async, [test = std::move(test), reference = std::move(reference),
-                                               exposure, wake = std::move(wake)] {
-        std::string result;
-        try {
-            const image::Image shown = image::displayEncode(test, exposure),
-                               wanted = image::displayEncode(reference, exposure);
-            result = fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", image::psnr(shown, wanted),
-                                 image::mean(image::flip(shown, wanted)));
-        } catch (const Error& fault) {
-            result = fault.what();
-        }
-        wake();
-        return result;
-    });
+    discards_ = false;
+    pending_ =
+        std::async(std::launch::async,
+                   [test = std::move(test), reference = std::move(reference), exposure]() -> std::string {
+                       try {
+                           const image::Image shown = image::displayEncode(test, exposure),
+                                              wanted = image::displayEncode(reference, exposure);
+                           return fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", image::psnr(shown, wanted),
+                                              image::mean(image::flip(shown, wanted)));
+                       } catch (const std::exception& fault) {
+                           return fault.what();
+                       }
+                   });
 }
 
-const std::string& LiveScores::text() {
-    if (busy() && pending_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        text_ = pending_.get();
-    return text_;
+bool LiveScores::finish() {
+    if (!busy() || pending_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    const std::string result = pending_.get();
+    if (discards_) return false;
+    text_ = result;
+    return true;
+}
+
+void LiveScores::clear() {
+    text_.clear();
+    discards_ = true;
 }
 
 }  // namespace limpid::viewer

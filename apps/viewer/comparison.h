@@ -28,16 +28,20 @@ RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSe
 /// PSNR and FLIP of one picture against another, computed beside the rendering.
 class LiveScores {
   public:
-    /// Compares, unless it still does. `wake` is called, from another thread, when it is done.
-    void compare(image::Image test, image::Image reference, float exposure, std::function<void()> wake);
+    /// Begins to, unless it still does.
+    void compare(image::Image test, image::Image reference, float exposure);
     bool busy() const { return pending_.valid(); }
+    /// Whether there is a result that there was not at the last call.
+    bool finish();
     /// The last result; empty before the first.
-    const std::string& text();
-    void clear() { text_.clear(); }
+    const std::string& text() const { return text_; }
+    /// What is being computed counts no more.
+    void clear();
 
   private:
     std::future<std::string> pending_;
     std::string text_;
+    bool discards_ = false;
 };
 
 }  // namespace limpid::viewer

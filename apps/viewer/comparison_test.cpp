@@ -33,14 +33,17 @@ TEST(LiveScores, AreThoseOfTheDisplayedPictures) {
     // 0.25 and 0.36 of linear light at two stops less: sRGB code values 0.2771 and 0.3317.
     const image::Image test(16, 16, 3, 0.25f), reference(16, 16, 3, 0.36f);
     LiveScores scores;
-    std::atomic<bool> done = false;
-    scores.compare(test, reference, -2.0f, [&] { done = true; });
-    while (scores.busy()) {
-        scores.text();
-        std::this_thread::yield();
-    }
-    EXPECT_TRUE(done);
+    scores.compare(test, reference, -2.0f);
+    while (!scores.finish()) std::this_thread::yield();
     EXPECT_EQ(scores.text().substr(0, 10), "PSNR 25.27");
+}
+
+TEST(LiveScores, WhatIsNoLongerWantedIsDiscarded) {
+    LiveScores scores;
+    scores.compare(image::Image(16, 16, 3, 0.25f), image::Image(16, 16, 3, 0.36f), 0.0f);
+    scores.clear();
+    while (scores.busy()) EXPECT_FALSE(scores.finish());
+    EXPECT_EQ(scores.text(), "");
 }
 
 }  // namespace

@@ -33,7 +33,6 @@ class Controls {
     void note(const std::string& name, const std::string& value, float left, float top, float right,
               float bottom);
 
-    const std::vector<DrawnControl>& drawn() const { return drawn_; }
     /// One a line: left, top, right, bottom, name, value; between tabs.
     std::string text() const;
 

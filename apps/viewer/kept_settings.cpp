@@ -20,7 +20,7 @@ void restore(const json& kept, ViewSettings& settings) {
     settings.render.pipeline = parsePipeline(kept.at("pipeline").get<std::string>());
     settings.samples = std::clamp(kept.at("samples").get<uint32_t>(), 1u, 64u);
     settings.maxSamples = std::max<uint64_t>(kept.at("max_samples").get<uint64_t>(), 1);
-    settings.shrink = std::clamp(kept.at("shrink").get<int>(), 0, 3);
+    settings.shrink = std::clamp(kept.at("shrink").get<int>(), -1, 3);
     for (const json& text : kept.at("parameters")) assign(settings.render, text.get<std::string>());
 }
 

@@ -17,43 +17,52 @@ RenderSettings settingsOfComparison(const PanelState& panel) {
     return settings;
 }
 
+RenderSettings LiveComparison::settings(const PanelState& panel) const {
+    RenderSettings settings = settingsOfComparison(panel);
+    const denoise::Denoiser* const denoiser = settings.pipeline.denoiser;
+    settings.denoisers.kpcn.network = denoiser && denoiser->network ? network_ : nullptr;
+    return settings;
+}
+
 void LiveComparison::drop() {
     other_.drop();
     scores_.clear();
     name_.clear();
 }
 
-bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& camera, bool moved,
-                                bool stepping) const {
+bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& camera, bool moved) const {
     const gpu::Extent extent = panel.render.extent;
     if (!panel.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
-    if (!panel.running && !stepping) return false;
     const int wanted = panel.comparison.isReference() ? panel.comparison.referenceSamples : panel.maxSamples;
-    return moved || other_.differs(settingsOfComparison(panel), panel.samples) ||
-           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
+    return moved || other_.differs(settings(panel), panel.samples) || !sameCamera(camera, other_.camera()) ||
+           other_.samples() < static_cast<uint64_t>(wanted);
 }
 
 void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment, bool alone) {
+    const RenderSettings now = settings(panel);
+    if (other_.differs(now, panel.samples)) other_.noteChange();
+    const std::string pipeline = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
+    if (std::exchange(pipeline_, pipeline) != pipeline) scores_.clear();
     if (alone) moment.number = numbersAlone + other_.framesOfSame();
-    other_.prepare(stage, settingsOfComparison(panel), panel.samples, panel.exposure);
+    other_.prepare(stage, now, panel.samples, panel.exposure);
     other_.render(std::move(moment));
     ++frames_;
-    name_ = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
+    name_ = pipeline;
     if (other_.accumulates()) name_ += fmt::format(", {} samples", other_.samples());
 }
 
-void LiveComparison::update(LiveRender& main, float exposure, bool rendering, std::function<void()> wake) {
+void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {
     if (!main || !other_) return;
     other_.expose(exposure);
-    const std::pair now(main.frames(), frames_);
+    const std::tuple now(main.frames(), frames_, exposure);
     const auto time = std::chrono::steady_clock::now();
     if (scores_.busy() || scored_ == now || (rendering && time - lastScores_ < betweenScores)) return;
     lastScores_ = time;
+    scored_ = now;
     image::Image test = beautyOf(main.renderer().download()),
                  reference = beautyOf(other_.renderer().download());
-    if (test.width != reference.width || test.height != reference.height) return;
-    scored_ = now;
-    scores_.compare(std::move(test), std::move(reference), exposure, std::move(wake));
+    if (test.width == reference.width && test.height == reference.height)
+        scores_.compare(std::move(test), std::move(reference), exposure);
 }
 
 }  // namespace limpid::viewer

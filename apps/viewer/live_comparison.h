@@ -13,6 +13,8 @@ RenderSettings settingsOfComparison(const PanelState& panel);
 
 class LiveComparison {
   public:
+    using Network = decltype(denoise::DenoiserSettings{}.kpcn.network);
+
     /// Both outlive this.
     LiveComparison(gpu::Device& device, const gpu::ShaderReplacements& shaders) : other_(device, shaders) {}
 
@@ -20,26 +22,33 @@ class LiveComparison {
     void drop();
     /// Something is another than it was.
     void noteChange() { other_.noteChange(); }
-    /// Whether a frame of it is wanted. `moved`: something of the scene has; `stepping`: one frame is, though
-    /// rendering stands still.
-    bool mustRender(const PanelState& panel, const CameraParams& camera, bool moved, bool stepping) const;
+    /// Of pipelines that need one; it lies on the device.
+    void setNetwork(const Network& network) { network_ = network; }
+    /// Whether a frame of it is wanted. `moved`: something of the scene has.
+    bool mustRender(const PanelState& panel, const CameraParams& camera, bool moved) const;
     /// `alone`: the picture rests, and numbers no frames.
     void render(Stage& stage, const PanelState& panel, Moment moment, bool alone);
     /// Exposes it as the picture, and scores the picture against it: now and then while frames are rendered,
-    /// and the last ones. `wake` is called, from another thread, when there are scores.
-    void update(LiveRender& main, float exposure, bool rendering, std::function<void()> wake);
+    /// and the last ones.
+    void update(LiveRender& main, float exposure, bool rendering);
+    bool isScoring() const { return scores_.busy(); }
+    /// Whether there are scores that there were not at the last call.
+    bool hasScored() { return scores_.finish(); }
 
     /// What to show; null if there is nothing.
     LiveRender* picture() { return other_ ? &other_ : nullptr; }
     const std::string& name() const { return name_; }
-    const std::string& scores() { return scores_.text(); }
+    const std::string& scores() const { return scores_.text(); }
 
   private:
     LiveRender other_;
     LiveScores scores_;
-    std::string name_;
-    uint64_t frames_ = 0;                   ///< ever
-    std::pair<uint64_t, uint64_t> scored_;  ///< both numbers of frames, of the last scores
+    RenderSettings settings(const PanelState& panel) const;
+
+    std::string pipeline_, name_;
+    Network network_;
+    uint64_t frames_ = 0;                           ///< ever
+    std::tuple<uint64_t, uint64_t, float> scored_;  ///< both numbers of frames and the exposure, of the last
     std::chrono::steady_clock::time_point lastScores_{};
 };
 

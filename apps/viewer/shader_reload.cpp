@@ -104,12 +104,18 @@ std::optional<ShaderReload::Result> ShaderReload::poll(const std::vector<gpu::Sh
         saved = true;
         pending_.insert(name);
     }
-    if (!saved) return std::nullopt;
+    std::set<std::string> wanted;
+    for (const gpu::ShaderCode& code : used) {
+        if (pending_.contains(std::string(code.name))) wanted.insert(std::string(code.name));
+    }
+    // What had a fault is not tried again before something is saved, or others are used.
+    if (wanted.empty() || (!saved && wanted == tried_)) return std::nullopt;
+    tried_ = wanted;
     gpu::ShaderReplacements made;
     try {
         for (const gpu::ShaderCode& code : used) {
             const std::string name(code.name);
-            if (!pending_.contains(name) || made.contains(name)) continue;
+            if (!wanted.contains(name) || made.contains(name)) continue;
             std::vector<uint32_t> words = compile(name);
             if (!sameInterface(gpu::reflect({name, words}), gpu::reflect(code)))
                 throw Error(name + " declares other bindings, constants or sizes: build Limpid anew");
@@ -118,7 +124,7 @@ std::optional<ShaderReload::Result> ShaderReload::poll(const std::vector<gpu::Sh
     } catch (const Error& fault) {
         return Result{0, fault.what()};
     }
-    pending_.clear();
+    for (const std::string& name : wanted) pending_.erase(name);
     const int compiled = static_cast<int>(made.size());
     made.merge(replacements_);  // the new ones stay
     replacements_ = std::move(made);

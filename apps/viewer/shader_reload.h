@@ -42,6 +42,7 @@ class ShaderReload {
     std::filesystem::path folder_;
     Time started_{};
     std::map<std::string, Time> seen_;
+    std::set<std::string> tried_;    ///< of these, at the last attempt
     std::set<std::string> pending_;  ///< saved, and not compiled without a fault since
     gpu::ShaderReplacements replacements_;
 };

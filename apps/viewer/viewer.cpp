@@ -42,14 +42,15 @@ using Clock = std::chrono::steady_clock;
 
 constexpr float radiansAPixel = 0.005f;
 constexpr float zoomAStep = 0.85f;
-constexpr double idleSeconds = 1.0;     ///< between looks at the window while nothing is computed
-constexpr double longestStep = 0.1;     ///< seconds that a key moves the camera in one picture
-constexpr int restlessPictures = 4;     ///< drawn after the last event: until the panel has settled
-constexpr double betweenTimes = 0.25;   ///< seconds; reading the passes' times waits for the device
-constexpr double betweenSources = 0.5;  ///< seconds between looks at the shaders' files
-constexpr float lightReach = 3.0f;      ///< of the scene's radius
+constexpr double idleSeconds = 1.0;      ///< between looks at the window while nothing is computed
+constexpr double scoringSeconds = 0.05;  ///< the same while scores are computed
+constexpr double longestStep = 0.1;      ///< seconds that a key moves the camera in one picture
+constexpr int restlessPictures = 4;      ///< drawn after the last event: until the panel has settled
+constexpr double betweenTimes = 0.25;    ///< seconds; reading the passes' times waits for the device
+constexpr double betweenSources = 0.5;   ///< seconds between looks at the shaders' files
+constexpr float lightReach = 3.0f;       ///< of the scene's radius
 constexpr double messageSeconds = 20.0;
-constexpr double leastSecondsOfADevice = 2.0;  ///< lost sooner, another one is lost, too
+constexpr uint64_t leastFramesOfADevice = 30;  ///< lost sooner, it would be lost again
 constexpr const char* pathFile = "flown.json";
 
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
@@ -59,6 +60,10 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
 
 double secondsSince(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+bool needsNetwork(const Pipeline& pipeline) {
+    return pipeline.denoiser && pipeline.denoiser->network;
 }
 
 /// True once `seconds` have gone by; then anew.
@@ -83,11 +88,18 @@ class Viewer {
     Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
            const scene::Camera& home, const ViewSettings& settings);
     void run();
-    /// To go on from.
+    uint64_t rendered() const { return rendered_; }
     ViewSettings settingsNow() const;
-    const CameraRig& rig() const { return rig_; }
-    double secondsOpen() const { return secondsSince(opened_); }
-    void takeHand(const FlyCamera& hand);
+    /// What another viewer of the same scene needs to go on as this one.
+    struct Standing {
+        PanelState panel;
+        scene::Camera home;
+        FlyCamera hand;
+        int clip;  ///< scene::none: none plays
+        double time;
+    };
+    Standing standing() const;
+    void takeOver(const Standing& standing);
 
   private:
     void load(const SceneSource& source);
@@ -101,8 +113,10 @@ class Viewer {
     void focus();
     void applyRequests();
     void applySettings();
-    void loadNetworkFor(const Pipeline& pipeline);
+    void loadNetworks();
+    bool loadNetworkFor(const Pipeline& pipeline);
     bool reloadShaders();
+    void say(const std::string& message);
     bool messageAges();
     CameraParams cameraNow() const;
     bool mustRender(const CameraParams& camera);
@@ -133,15 +147,15 @@ class Viewer {
     ShaderReload reload_;
     LiveRender main_;
     LiveComparison comparison_;
-    float fovOfLast_ = 0.0f;  ///< degrees
+    Picker picker_;
+    float fovOfLast_ = 0.0f;              ///< degrees
+    denoise::DenoiserSettings networks_;  ///< on the device
     bool networkIsHalf_ = true;
     float speed_ = 1.0f;     ///< world units a second
     uint64_t rendered_ = 0;  ///< frames, ever
+    int ownShrink_ = 0;      ///< where none is chosen
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
-    const Clock::time_point opened_ = Clock::now();
-    bool stepping_ = false;  ///< one frame, though rendering stands still
-    std::string shownMessage_;
     Clock::time_point messageSince_{};
 };
 
@@ -155,11 +169,13 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       display_(window_, device_),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),
-      comparison_(device_, reload_.replacements()) {
+      comparison_(device_, reload_.replacements()),
+      picker_(device_, reload_.replacements()) {
     panel_.render = settings.render;
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
-    panel_.shrink = settings.shrink >= 0 ? settings.shrink : shrinkFor(device_, window_.pixels());
+    ownShrink_ = shrinkFor(device_, window_.pixels());
+    panel_.shrink = settings.shrink >= 0 ? settings.shrink : ownShrink_;
     panel_.light = lightChoiceOf(settings.source.light, settings.source.background);
     facts_.device = device_.info().name;
     show(std::move(first));
@@ -185,7 +201,6 @@ void Viewer::show(scene::Scene scene) {
     comparison_.drop();
     stage_ = std::move(stage);
     window_.setTitle("Limpid: " + stage_->scene().name);
-    speed_ = 0.25f * stage_->sphere().radius;
     facts_.lightReach = lightReach * std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
 }
@@ -193,6 +208,7 @@ void Viewer::show(scene::Scene scene) {
 /// Of a scene that was not there before.
 void Viewer::goTo(const scene::Camera& home) {
     rig_.show(*stage_, home);
+    speed_ = 0.25f * stage_->sphere().radius;
     facts_.cameras = rig_.names();
     facts_.duration = stage_->duration();
     panel_.asked.measureExposure = panel_.asked.resetCamera = true;
@@ -210,7 +226,7 @@ void Viewer::open(const std::string& file) {
     }
     load(source);
     panel_.light = lightChoiceOf(source.light, source.background);
-    facts_.message = "opened " + file;
+    say("opened " + file);
 }
 
 /// The scene again, with another light; all else stays.
@@ -223,6 +239,10 @@ void Viewer::relight() {
     if (stage_->moves()) scene::chooseClip(scene, std::to_string(stage_->scene().clip));
     show(std::move(scene));
     playback_.reset(time);
+    // Its file may have changed in the meantime.
+    rig_.keep(*stage_);
+    panel_.camera = rig_.chosen();
+    facts_.cameras = rig_.names();
     settings_.source = source;
 }
 
@@ -266,7 +286,8 @@ void Viewer::fly(const ImGuiIO& io, float seconds) {
     const auto held = [&](int button) { return io.MouseDown[button] && io.MouseDownDuration[button] > 0.0f; };
     const bool left = held(ImGuiMouseButton_Left), right = held(ImGuiMouseButton_Right),
                middle = held(ImGuiMouseButton_Middle);
-    const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f;
+    const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f ||
+                       display_.clickedTwice();
     if (moves && !rig_.isFree()) {
         rig_.setFree(*stage_, playback_.time());
         panel_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
@@ -274,7 +295,7 @@ void Viewer::fly(const ImGuiIO& io, float seconds) {
     }
     panel_.camera = rig_.chosen();
     FlyCamera& hand = rig_.hand();
-    if (display_.clickedTwice()) focus();
+    if (display_.clickedTwice()) attempt([&] { focus(); });
     if (left) hand.orbit(radiansAPixel * x, -radiansAPixel * y);
     if (middle) hand.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
     if (right) {
@@ -293,9 +314,10 @@ void Viewer::fly(const ImGuiIO& io, float seconds) {
 
 /// Turns to what is under the mouse.
 void Viewer::focus() {
-    if (!rig_.isFree() || panel_.render.extent.width == 0) return;
-    const auto [x, y] = display_.pixelUnderMouse(panel_.render.extent);
-    if (const auto point = pointSeen(device_, stage_->onDevice(), cameraNow(), panel_.render.extent, x, y))
+    const gpu::Extent extent = panel_.render.extent;
+    if (extent.width == 0 || extent.height == 0) return;
+    const auto [x, y] = display_.pixelUnderMouse(extent);
+    if (const auto point = picker_.pointSeen(stage_->onDevice(), cameraNow(), extent, x, y))
         rig_.hand().focus(*point);
 }
 
@@ -352,24 +374,30 @@ void Viewer::applySettings() {
     facts_.duration = rig_.movesOnPath() || stage_->moves() ? rig_.duration(*stage_) : 0.0;
     if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
     panel_.time = static_cast<float>(playback_.time());
-    loadNetworkFor(render.pipeline);
-    if (panel_.comparison.isOn())
-        loadNetworkFor(settingsOfComparison(panel_).pipeline);
-    else
-        comparison_.drop();
+    loadNetworks();
+    if (!panel_.comparison.isOn()) comparison_.drop();
 }
 
 /// Where there is none, what would need it is not chosen.
-void Viewer::loadNetworkFor(const Pipeline& pipeline) {
-    const denoise::Denoiser* const denoiser = pipeline.denoiser;
-    denoise::DenoiserSettings& denoisers = panel_.render.denoisers;
-    const bool half = denoisers.kpcn.half;
-    if (!denoiser || !denoiser->network || (denoisers.kpcn.network && half == networkIsHalf_)) return;
-    attempt([&] { loadNetwork(device_, denoiser, settings_.weights, denoisers); });
+void Viewer::loadNetworks() {
+    RenderSettings& render = panel_.render;
+    if (!loadNetworkFor(render.pipeline)) render.pipeline = main_.settings().pipeline;
+    if (panel_.comparison.isOn() && !loadNetworkFor(settingsOfComparison(panel_).pipeline))
+        panel_.comparison.with = 0;
+    // Settings of pipelines without networks do not depend on them.
+    render.denoisers.kpcn.network = needsNetwork(render.pipeline) ? networks_.kpcn.network : nullptr;
+    comparison_.setNetwork(networks_.kpcn.network);
+}
+
+/// Whether there is one, or none is needed.
+bool Viewer::loadNetworkFor(const Pipeline& pipeline) {
+    if (!needsNetwork(pipeline)) return true;
+    const bool half = panel_.render.denoisers.kpcn.half;
+    if (networks_.kpcn.network && half == networkIsHalf_) return true;
+    networks_ = panel_.render.denoisers;
+    attempt([&] { loadNetwork(device_, pipeline.denoiser, settings_.weights, networks_); });
     networkIsHalf_ = half;
-    if (denoisers.kpcn.network) return;
-    panel_.comparison.with = 0;
-    if (panel_.render.pipeline.denoiser == denoiser) panel_.render.pipeline = main_.settings().pipeline;
+    return networks_.kpcn.network != nullptr;
 }
 
 /// Whether there were any.
@@ -384,20 +412,20 @@ bool Viewer::reloadShaders() {
     if (!result) return false;
     attempt([&] {
         if (!result->fault.empty()) throw Error(result->fault);
-        facts_.message = fmt::format("compiled {} shaders", result->compiled);
+        say(fmt::format("compiled {} shaders", result->compiled));
         startAnew();
     });
     return true;
 }
 
+void Viewer::say(const std::string& message) {
+    facts_.message = message;
+    facts_.messageIsOld = false;
+    messageSince_ = Clock::now();
+}
+
 /// Whether it has just become too old to be shown.
 bool Viewer::messageAges() {
-    if (shownMessage_ != facts_.message) {
-        shownMessage_ = facts_.message;
-        messageSince_ = Clock::now();
-        facts_.messageIsOld = false;
-        return false;
-    }
     if (facts_.messageIsOld || facts_.message.empty() || secondsSince(messageSince_) < messageSeconds)
         return false;
     return facts_.messageIsOld = true;
@@ -407,8 +435,7 @@ bool Viewer::messageAges() {
 bool Viewer::mustRender(const CameraParams& camera) {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return false;
-    stepping_ = std::exchange(panel_.asked.step, false);
-    if (stepping_) return true;
+    if (std::exchange(panel_.asked.step, false)) return true;
     bool changed = main_.differs(panel_.render, panel_.samples);
     if (!changed && !panel_.running) return false;
     changed = changed || !sameCamera(camera, main_.camera()) || (stage_->moves() && playback_.change()) ||
@@ -432,7 +459,7 @@ void Viewer::render(const CameraParams& camera) {
     if (stage_->moves()) {
         if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
     }
-    if (comparison_.mustRender(panel_, camera, moment.scene.has_value(), stepping_))
+    if (comparison_.mustRender(panel_, camera, moment.scene.has_value()))
         comparison_.render(*stage_, panel_, moment, false);
     main_.render(std::move(moment));
     fovOfLast_ = panel_.fovDegrees;
@@ -461,13 +488,13 @@ void Viewer::measureExposure() {
 
 void Viewer::save(const fs::path& file) {
     savePicture(file, main_, panel_.exposure);
-    facts_.message = "wrote " + file.string();
+    say("wrote " + file.string());
     log::info("{}", facts_.message);
 }
 
 void Viewer::copyCommand() {
     if (!main_ || playback_.frames() == 0) throw Error("there is no frame yet");
-    if (rig_.isFree() && rig_.home().orthographic)
+    if (rig_.isFree() && rig_.hand().camera().orthographic)
         throw Error("the command line has no orthographic camera of one's own");
     const scene::Scene& scene = stage_->scene();
     const ShownFrame frame{
@@ -483,7 +510,7 @@ void Viewer::copyCommand() {
     if (!command.problem.empty()) throw Error(command.problem);
     if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
     window_.setClipboard(command.text);
-    facts_.message = command.text;
+    say(command.text);
     log::info("{}", command.text);
 }
 
@@ -491,25 +518,33 @@ void Viewer::savePath() {
     if (!rig_.isFree()) throw Error("only what the hand has flown can be saved");
     if (playback_.cameras().empty()) throw Error("nothing was flown since the last reset, or too much");
     writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
-    facts_.message =
-        fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size());
+    say(fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size()));
 }
 
 ViewSettings Viewer::settingsNow() const {
     ViewSettings settings = settings_;
     settings.render = panel_.render;
-    settings.render.extent = window_.pixels();
+    if (const gpu::Extent size = window_.size(); size.width > 0 && size.height > 0)
+        settings.render.extent = size;
     settings.samples = panel_.samples;
     settings.maxSamples = static_cast<uint64_t>(panel_.maxSamples);
-    settings.shrink = panel_.shrink;
+    // What nobody has chosen is chosen by the next device.
+    settings.shrink = settings_.shrink < 0 && panel_.shrink == ownShrink_ ? -1 : panel_.shrink;
     return settings;
 }
 
-/// From the viewer of a device that was lost.
-void Viewer::takeHand(const FlyCamera& hand) {
-    panel_.asked.resetCamera = false;
-    panel_.fovDegrees = glm::degrees(hand.camera().verticalFov);
-    rig_.hand() = hand;
+Viewer::Standing Viewer::standing() const {
+    Standing now{panel_, rig_.home(), rig_.hand(), stage_->scene().clip, playback_.time()};
+    now.panel.asked = {};
+    now.panel.render.denoisers.kpcn.network.reset();  // lies on the device
+    return now;
+}
+
+void Viewer::takeOver(const Standing& standing) {
+    panel_ = standing.panel;
+    rig_.choose(*stage_, panel_.camera);
+    if (rig_.isFree()) rig_.hand() = standing.hand;
+    playback_.reset(standing.time);
     facts_.fault = "the device was lost; everything was set up anew";
 }
 
@@ -532,9 +567,10 @@ void Viewer::run() {
     auto last = Clock::now();
     int restless = restlessPictures;
     while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
-        if (window_.poll(restless > 0 ? 0.0 : idleSeconds)) restless = restlessPictures;
+        const double patience = comparison_.isScoring() ? scoringSeconds : idleSeconds;
+        if (window_.poll(restless > 0 ? 0.0 : patience)) restless = restlessPictures;
         if (!window_.input().empty()) restless = restlessPictures;
-        if (reloadShaders() || messageAges()) restless = restlessPictures;
+        if (reloadShaders() || messageAges() || comparison_.hasScored()) restless = restlessPictures;
         if (restless == 0) continue;
         display_.begin();
         const auto now = Clock::now();
@@ -550,14 +586,14 @@ void Viewer::run() {
         bool other = false;
         if (main) {
             render(camera);
-        } else if (main_ && comparison_.mustRender(panel_, camera, false, stepping_)) {
+        } else if (main_ && panel_.running && comparison_.mustRender(panel_, camera, false)) {
             comparison_.render(*stage_, panel_, playback_.moment(camera), true);
             other = true;
         }
         if (main_) main_.expose(panel_.exposure);
         if (main || other) restless = restlessPictures;
         noteTimes(main);
-        comparison_.update(main_, panel_.exposure, main || other, [this] { window_.wake(); });
+        comparison_.update(main_, panel_.exposure, main || other);
         facts_.comparedWith = comparison_.name();
         facts_.scores = comparison_.scores();
         writeControls();
@@ -575,14 +611,13 @@ std::unique_ptr<Viewer> afterLoss(const gpu::DeviceOptions& device, const Tracer
                                   const SceneLoader& load, std::unique_ptr<Viewer> lost) {
     ViewSettings now = lost->settingsNow();
     now.loseDeviceAt = 0;
-    now.render.denoisers.kpcn.network.reset();  // lies on the device that was lost
-    const FlyCamera hand = lost->rig().hand();
+    const Viewer::Standing standing = lost->standing();
+    now.render.denoisers = standing.panel.render.denoisers;
     lost.reset();
     scene::Scene scene = load(now.source);
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
-    const scene::Camera home = scene.cameras.front();
-    auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(scene), home, now);
-    viewer->takeHand(hand);
+    if (standing.clip != scene::none) scene::chooseClip(scene, std::to_string(standing.clip));
+    auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(scene), standing.home, now);
+    viewer->takeOver(standing);
     return viewer;
 }
 
@@ -599,7 +634,7 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
         try {
             return viewer->run();
         } catch (const gpu::DeviceLost& fault) {
-            if (viewer->secondsOpen() < leastSecondsOfADevice) throw;
+            if (viewer->rendered() < leastFramesOfADevice) throw;
             log::error("{}; setting everything up anew", fault.what());
         }
         viewer = afterLoss(device, tracer, load, std::move(viewer));

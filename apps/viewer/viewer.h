@@ -32,7 +32,7 @@ struct ViewSettings {
     std::filesystem::path shaders;  ///< Limpid's src: shaders are compiled anew when saved; empty: not
     uint64_t quitAfter = 0;         ///< frames; 0: when the window is closed
     uint64_t loseDeviceAt = 0;      ///< for tests: after so many frames, as if; 0: never
-    std::filesystem::path screenshot;  ///< PNG written on leaving; empty: none
+    std::filesystem::path screenshot;  ///< .png or .exr written on leaving; empty: none
 };
 
 /// How rays are traced on the device that there is.

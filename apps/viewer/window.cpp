@@ -80,12 +80,13 @@ void Window::listen() {
     glfwSetWindowCloseCallback(window_, [](GLFWwindow* window) { of(window); });
 }
 
-/// By the time of the event: frames may be slower than clicks.
+/// Events have no time but that of the poll which finds them: one of them may be a frame old.
 bool Window::isSecondClick(int button) {
     constexpr double soon = 0.35, near = 6.0;  // seconds, pixels
     Click now{button, glfwGetTime()};
     glfwGetCursorPos(window_, &now.x, &now.y);
-    const bool second = lastClick_.button == button && now.seconds - lastClick_.seconds < soon &&
+    const bool second = lastClick_.button == button &&
+                        now.seconds - lastClick_.seconds < soon + betweenPolls_ &&
                         std::abs(now.x - lastClick_.x) < near && std::abs(now.y - lastClick_.y) < near;
     lastClick_ = second ? Click{} : now;
     return second;
@@ -125,11 +126,15 @@ gpu::Extent Window::pixels() const {
 float Window::scale() const {
     float content = 1.0f, unused = 1.0f;
     glfwGetWindowContentScale(window_, &content, &unused);
+    const uint32_t across = size().width, pixelsAcross = pixels().width;
+    if (across == 0 || pixelsAcross == 0) return std::max(content, 1.0f);
+    return std::max(content * static_cast<float>(across) / static_cast<float>(pixelsAcross), 1.0f);
+}
+
+gpu::Extent Window::size() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
-    const uint32_t pixelsAcross = pixels().width;
-    if (width <= 0 || pixelsAcross == 0) return std::max(content, 1.0f);
-    return std::max(content * static_cast<float>(width) / static_cast<float>(pixelsAcross), 1.0f);
+    return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
 void Window::setClipboard(const std::string& text) const {
@@ -148,17 +153,14 @@ void Window::close() {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
-void Window::wake() {
-    touched_ = true;
-    glfwPostEmptyEvent();
-}
-
 bool Window::poll(double wait) {
+    betweenPolls_ = glfwGetTime() - polled_;
     if (wait > 0.0)
         glfwWaitEventsTimeout(wait);
     else
         glfwPollEvents();
-    return touched_.exchange(false);
+    polled_ = glfwGetTime();
+    return std::exchange(touched_, false);
 }
 
 }  // namespace limpid::viewer

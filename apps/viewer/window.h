@@ -1,7 +1,6 @@
 // A window of the desktop, with a surface to present on. GLFW's only user.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,6 +28,7 @@ class Window {
     uint64_t makeSurface(void* instance) const;
 
     gpu::Extent pixels() const;  ///< 0 while it is minimised
+    gpu::Extent size() const;    ///< in the units that it was made with
     /// How much larger than their nominal size letters should be, in the units of mouse positions.
     float scale() const;
     bool closed() const;
@@ -36,8 +36,6 @@ class Window {
     /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may
     /// have.
     bool poll(double wait = 0.0);
-    /// From any thread: something has happened.
-    void wake();
     /// What has been dropped on it since the last call.
     std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
     InputQueue& input() { return input_; }
@@ -57,7 +55,9 @@ class Window {
         int button = -1;
         double seconds = 0.0, x = 0.0, y = 0.0;
     } lastClick_;
-    std::atomic<bool> touched_ = true;
+    bool touched_ = true;
+    double polled_ = 0.0;        ///< when the last poll ended, seconds
+    double betweenPolls_ = 0.0;  ///< from there to this one
 };
 
 }  // namespace limpid::viewer

@@ -151,8 +151,8 @@ class FrameGraph {
     /// From the next dispatch on, these stand for the shaders of their names. They must outlive their use,
     /// may change between frames, and must have the interfaces (sameInterface()) of those that they replace.
     void setReplacements(const ShaderReplacements* replacements);
-    /// All stages of the shaders of all frames so far, replaced ones as they were; valid until another
-    /// dispatch is recorded.
+    /// All stages of the shaders of all frames so far, as they were last used; valid until another dispatch
+    /// is recorded.
     std::vector<ShaderCode> usedShaders() const;
 
     Extent extent(ImageHandle image) const;

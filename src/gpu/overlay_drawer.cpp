@@ -26,19 +26,30 @@ UniqueShaderModule makeModule(const Context& context, const ShaderCode& code) {
     return {context.device(), module};
 }
 
+VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const UniqueShaderModule& module) {
+    VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
+    info.stage = stage;
+    info.module = module.get();
+    info.pName = "main";
+    return info;
+}
+
+VkPipelineColorBlendAttachmentState blendOver() {
+    VkPipelineColorBlendAttachmentState over{};
+    over.blendEnable = VK_TRUE;
+    over.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+    over.dstColorBlendFactor = over.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    over.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    over.colorWriteMask = 0xF;
+    return over;
+}
+
 /// Triangles in pixels of the window, blended over what is there.
 UniquePipeline makeOverlayPipeline(const Context& context, VkPipelineLayout layout, VkFormat target) {
     const UniqueShaderModule vertex = makeModule(context, shaders::overlay_vert),
                              fragment = makeModule(context, shaders::overlay_frag);
-    std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
-    for (VkPipelineShaderStageCreateInfo& stage : stages) {
-        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stage.pName = "main";
-    }
-    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    stages[0].module = vertex.get();
-    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-    stages[1].module = fragment.get();
+    const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex),
+                            stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
     const VkVertexInputBindingDescription vertices{0, sizeof(OverlayVertex), VK_VERTEX_INPUT_RATE_VERTEX};
     const std::array<VkVertexInputAttributeDescription, 3> attributes{{{0, 0, VK_FORMAT_R32G32_SFLOAT, 0},
                                                                        {1, 0, VK_FORMAT_R32G32_SFLOAT, 8},
@@ -57,12 +68,7 @@ UniquePipeline makeOverlayPipeline(const Context& context, VkPipelineLayout layo
     raster.lineWidth = 1.0f;
     VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineColorBlendAttachmentState over{};
-    over.blendEnable = VK_TRUE;
-    over.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
-    over.dstColorBlendFactor = over.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-    over.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    over.colorWriteMask = 0xF;
+    const VkPipelineColorBlendAttachmentState over = blendOver();
     VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     blend.attachmentCount = 1;
     blend.pAttachments = &over;
