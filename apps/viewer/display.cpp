@@ -178,13 +178,12 @@ void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) 
     }
 }
 
-void Display::drawDivider(const PanelState& panel, const PanelFacts& facts) const {
+void Display::drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList& marks = *ImGui::GetBackgroundDrawList();
     const float at = panel.divider * size.x;
     marks.AddLine({at, 0.0f}, {at, size.y}, shadowColor, 3.0f);
     marks.AddLine({at, 0.0f}, {at, size.y}, lineColor, 1.0f);
-    const std::string left(panel.render.pipeline.name());
     const float width = ImGui::CalcTextSize(left.c_str()).x;
     drawLabel(marks, {at - width - 12.0f, 8.0f}, left);
     drawLabel(marks, {at + 12.0f, 8.0f}, facts.comparedWith);
@@ -220,7 +219,9 @@ void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, Li
         const gpu::Pane whole = panes.front();
         const auto both = splitPanes(whole, other->pane(), picture, panel.divider);
         panes.assign(both.begin(), both.end());
-        drawDivider(panel, facts);
+        drawDivider(inspects ? facts.images[static_cast<size_t>(panel.image)]
+                             : std::string(panel.render.pipeline.name()),
+                    panel, facts);
     }
     if (panel.magnifier) drawMagnifier(panes, picture);
     presenter_.present(panes, window_.pixels(), interface_.end());

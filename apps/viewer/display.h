@@ -45,7 +45,8 @@ class Display {
     std::string probeOf(const image::Image& picture) const;
     static std::string valuesAt(const image::Image& picture, uint32_t x, uint32_t y);
     void drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const;
-    void drawDivider(const PanelState& panel, const PanelFacts& facts) const;
+    /// `left` and the comparison's name stand beside it.
+    void drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const;
     void drawArrows(LiveRender& main, uint64_t rendered);
 
     Window& window_;
