@@ -160,6 +160,10 @@ TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
     EXPECT_LE(shown.difference(55, 879, picture, 195, 795), 1);
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
+#else
+TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
+    GTEST_SKIP() << "NOT TESTED: built without libx11-dev, which the test reads the window with.";
+}
 #endif
 
 TEST_F(ViewToolsTest, EverySliderCanBeMoved) {

@@ -15,7 +15,6 @@ std::vector<std::string> comparisonNames();
 struct ComparisonChoice {
     int with = 0;                 ///< of comparisonNames()
     int referenceSamples = 1024;  ///< per pixel; then it is done
-    bool operator==(const ComparisonChoice&) const = default;
 
     bool isOn() const { return with != 0; }
     bool isReference() const;

@@ -130,9 +130,9 @@ std::string Display::probeAll(LiveRender& main) const {
 }
 
 /// Whether an image of a pass is shown instead of the picture.
-bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main, uint64_t rendered) {
+bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main) {
     if (panel.pass.empty() || !main) return false;
-    const auto wanted = std::tuple(rendered, panel.pass, panel.image, panel.view);
+    const auto wanted = std::tuple(main.frames(), panel.pass, panel.image, panel.view);
     if (wanted != inspected_) {
         try {
             images_ = main.renderer().dump(panel.pass);
@@ -189,8 +189,8 @@ void Display::drawDivider(const std::string& left, const PanelState& panel, cons
     drawLabel(marks, {at + 12.0f, 8.0f}, facts.comparedWith);
 }
 
-void Display::drawArrows(LiveRender& main, uint64_t rendered) {
-    if (std::exchange(motionOf_, rendered) != rendered) motion_ = main.renderer().motion();
+void Display::drawArrows(LiveRender& main) {
+    if (std::exchange(motionOf_, main.frames()) != main.frames()) motion_ = main.renderer().motion();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList& marks = *ImGui::GetBackgroundDrawList();
     for (const Arrow& arrow : motionArrows(motion_, size.x, size.y)) {
@@ -201,9 +201,8 @@ void Display::drawArrows(LiveRender& main, uint64_t rendered) {
     }
 }
 
-void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other,
-                      uint64_t rendered) {
-    const bool inspects = inspect(panel, facts, main, rendered);
+void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other) {
+    const bool inspects = inspect(panel, facts, main);
     std::vector<gpu::Pane> panes;
     if (inspects)
         panes.push_back(inspector_.pane());
@@ -214,7 +213,7 @@ void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, Li
         return;
     }
     const gpu::Extent picture = extentOf(panes.front());
-    if (panel.arrows) drawArrows(main, rendered);
+    if (panel.arrows) drawArrows(main);
     if (other && *other) {
         const gpu::Pane whole = panes.front();
         const auto both = splitPanes(whole, other->pane(), picture, panel.divider);

@@ -31,23 +31,21 @@ class Display {
     bool clickedTwice() const { return interface_.clickedTwice(); }
     /// Whether the mouse moves the divider, and so not the camera.
     bool dragsDivider(PanelState& panel, Controls& controls);
-    /// The frame ends and is shown. `other`: what the picture is compared with, or null; `rendered`: another
-    /// number, other pictures.
-    void present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other,
-                 uint64_t rendered);
+    /// The frame ends and is shown. `other`: what the picture is compared with, or null.
+    void present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other);
     /// Of all images of all passes, the values under the mouse, one a line.
     std::string probeAll(LiveRender& main) const;
     /// The pixel of the picture under the mouse.
     std::array<uint32_t, 2> pixelUnderMouse(gpu::Extent picture) const;
 
   private:
-    bool inspect(PanelState& panel, PanelFacts& facts, LiveRender& main, uint64_t rendered);
+    bool inspect(PanelState& panel, PanelFacts& facts, LiveRender& main);
     std::string probeOf(const image::Image& picture) const;
     static std::string valuesAt(const image::Image& picture, uint32_t x, uint32_t y);
     void drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const;
     /// `left` and the comparison's name stand beside it.
     void drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const;
-    void drawArrows(LiveRender& main, uint64_t rendered);
+    void drawArrows(LiveRender& main);
 
     Window& window_;
     gpu::Device& device_;

@@ -13,7 +13,6 @@ struct LightChoice {
     float intensity = 1.0f;
     bool hasBackground = false;
     vec3 background{0.5f};
-    bool operator==(const LightChoice&) const = default;
     /// As on the command line; empty: none.
     std::string lamp() const;
     std::string backgroundText() const;

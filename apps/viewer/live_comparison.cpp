@@ -10,17 +10,11 @@ constexpr std::chrono::seconds betweenScores(1);
 
 }  // namespace
 
-RenderSettings settingsOfComparison(const PanelState& panel) {
+RenderSettings settingsOfComparison(const PanelState& panel, const Networks& networks) {
     RenderSettings settings = comparisonSettings(panel.comparison, panel.render);
     if (panel.jitter == 0 && !panel.comparison.isReference())
         settings.jitter = settings.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
-    return settings;
-}
-
-RenderSettings LiveComparison::settings(const PanelState& panel) const {
-    RenderSettings settings = settingsOfComparison(panel);
-    const denoise::Denoiser* const denoiser = settings.pipeline.denoiser;
-    settings.denoisers.kpcn.network = denoiser && denoiser->network ? network_ : nullptr;
+    networks.set(settings);
     return settings;
 }
 
@@ -34,12 +28,12 @@ bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& cam
     const gpu::Extent extent = panel.render.extent;
     if (!panel.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
     const int wanted = panel.comparison.isReference() ? panel.comparison.referenceSamples : panel.maxSamples;
-    return moved || other_.differs(settings(panel), panel.samples) || !sameCamera(camera, other_.camera()) ||
-           other_.samples() < static_cast<uint64_t>(wanted);
+    return moved || other_.differs(settingsOfComparison(panel, networks_), panel.samples) ||
+           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
 }
 
 void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment, bool alone) {
-    const RenderSettings now = settings(panel);
+    const RenderSettings now = settingsOfComparison(panel, networks_);
     if (other_.differs(now, panel.samples)) other_.noteChange();
     const std::string pipeline = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
     if (std::exchange(pipeline_, pipeline) != pipeline) scores_.clear();

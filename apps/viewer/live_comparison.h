@@ -4,26 +4,24 @@
 #include <chrono>
 
 #include "live_render.h"
+#include "networks.h"
 #include "panel.h"
 
 namespace limpid::viewer {
 
 /// Of what the panel's picture is compared with.
-RenderSettings settingsOfComparison(const PanelState& panel);
+RenderSettings settingsOfComparison(const PanelState& panel, const Networks& networks);
 
 class LiveComparison {
   public:
-    using Network = decltype(denoise::DenoiserSettings{}.kpcn.network);
-
-    /// Both outlive this.
-    LiveComparison(gpu::Device& device, const gpu::ShaderReplacements& shaders) : other_(device, shaders) {}
+    /// All outlive this.
+    LiveComparison(gpu::Device& device, const gpu::ShaderReplacements& shaders, const Networks& networks)
+        : other_(device, shaders), networks_(networks) {}
 
     /// Before the scene goes, to start anew, or because nothing is compared any more.
     void drop();
     /// Something is another than it was.
     void noteChange() { other_.noteChange(); }
-    /// Of pipelines that need one; it lies on the device.
-    void setNetwork(const Network& network) { network_ = network; }
     /// Whether a frame of it is wanted. `moved`: something of the scene has.
     bool mustRender(const PanelState& panel, const CameraParams& camera, bool moved) const;
     /// `alone`: the picture rests, and numbers no frames.
@@ -43,10 +41,8 @@ class LiveComparison {
   private:
     LiveRender other_;
     LiveScores scores_;
-    RenderSettings settings(const PanelState& panel) const;
-
     std::string pipeline_, name_;
-    Network network_;
+    const Networks& networks_;
     uint64_t frames_ = 0;                           ///< ever
     std::tuple<uint64_t, uint64_t, float> scored_;  ///< both numbers of frames and the exposure, of the last
     std::chrono::steady_clock::time_point lastScores_{};

@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 
+#include "base/bytes_text.h"
 #include "renderer/parameters.h"
 
 namespace limpid::viewer {
@@ -73,12 +74,6 @@ void plot(const char* name, const Track& track, ImVec2 size, const char* text = 
     const float most = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
     ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
                      1.1f * most, size);
-}
-
-std::string bytesText(uint64_t bytes) {
-    const double kibibytes = static_cast<double>(bytes) / 1024.0;
-    return kibibytes < 1024.0 ? fmt::format("{:.1f} KiB", kibibytes)
-                              : fmt::format("{:.1f} MiB", kibibytes / 1024.0);
 }
 
 /// A click on one shows its images, another one the picture again.

@@ -22,11 +22,11 @@
 #include "light_choice.h"
 #include "live_comparison.h"
 #include "live_render.h"
+#include "networks.h"
 #include "panel.h"
 #include "picker.h"
 #include "picture_files.h"
 #include "playback.h"
-#include "renderer/network_file.h"
 #include "renderer/reset_rule.h"
 #include "scene/camera.h"
 #include "scene/framing.h"
@@ -62,10 +62,6 @@ double secondsSince(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
-bool needsNetwork(const Pipeline& pipeline) {
-    return pipeline.denoiser && pipeline.denoiser->network;
-}
-
 /// True once `seconds` have gone by; then anew.
 bool due(Clock::time_point& last, double seconds) {
     if (secondsSince(last) < seconds) return false;
@@ -88,7 +84,7 @@ class Viewer {
     Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
            const scene::Camera& home, const ViewSettings& settings);
     void run();
-    uint64_t rendered() const { return rendered_; }
+    uint64_t rendered() const { return main_.frames(); }
     ViewSettings settingsNow() const;
     /// What another viewer of the same scene needs to go on as this one.
     struct Standing {
@@ -114,7 +110,6 @@ class Viewer {
     void applyRequests();
     void applySettings();
     void loadNetworks();
-    bool loadNetworkFor(const Pipeline& pipeline);
     bool reloadShaders();
     void say(const std::string& message);
     bool messageAges();
@@ -127,9 +122,9 @@ class Viewer {
     void copyCommand();
     void savePath();
     void writeControls();
-    /// Runs what may fail for reasons of the user's; says so in the window.
+    /// Runs what may fail for reasons of the user's; says so in the window. Whether it did not.
     template <typename Function>
-    void attempt(const Function& function);
+    bool attempt(const Function& function);
 
     ViewSettings settings_;
     TracerChoice tracer_;
@@ -146,14 +141,12 @@ class Viewer {
     std::string controlsText_;  ///< as last written
     ShaderReload reload_;
     LiveRender main_;
+    Networks networks_;
     LiveComparison comparison_;
     Picker picker_;
-    float fovOfLast_ = 0.0f;              ///< degrees
-    denoise::DenoiserSettings networks_;  ///< on the device
-    bool networkIsHalf_ = true;
-    float speed_ = 1.0f;     ///< world units a second
-    uint64_t rendered_ = 0;  ///< frames, ever
-    int ownShrink_ = 0;      ///< where none is chosen
+    float fovOfLast_ = 0.0f;  ///< degrees
+    float speed_ = 1.0f;      ///< world units a second
+    int ownShrink_ = 0;       ///< where none is chosen
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
@@ -169,7 +162,8 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       display_(window_, device_),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),
-      comparison_(device_, reload_.replacements()),
+      networks_(device_, settings.weights),
+      comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()) {
     panel_.render = settings.render;
     panel_.samples = settings.samples;
@@ -254,13 +248,15 @@ void Viewer::startAnew() {
 }
 
 template <typename Function>
-void Viewer::attempt(const Function& function) {
+bool Viewer::attempt(const Function& function) {
     try {
         facts_.fault.clear();
         function();
+        return true;
     } catch (const Error& fault) {
         facts_.fault = fault.what();
         log::warn("{}", fault.what());
+        return false;
     }
 }
 
@@ -381,23 +377,14 @@ void Viewer::applySettings() {
 /// Where there is none, what would need it is not chosen.
 void Viewer::loadNetworks() {
     RenderSettings& render = panel_.render;
-    if (!loadNetworkFor(render.pipeline)) render.pipeline = main_.settings().pipeline;
-    if (panel_.comparison.isOn() && !loadNetworkFor(settingsOfComparison(panel_).pipeline))
+    const auto have = [&](const Pipeline& pipeline) {
+        return !networks_.lacks(pipeline, render.denoisers) ||
+               attempt([&] { networks_.load(pipeline, render.denoisers); });
+    };
+    if (!have(render.pipeline)) render.pipeline = main_.settings().pipeline;
+    networks_.set(render);
+    if (panel_.comparison.isOn() && !have(settingsOfComparison(panel_, networks_).pipeline))
         panel_.comparison.with = 0;
-    // Settings of pipelines without networks do not depend on them.
-    render.denoisers.kpcn.network = needsNetwork(render.pipeline) ? networks_.kpcn.network : nullptr;
-    comparison_.setNetwork(networks_.kpcn.network);
-}
-
-/// Whether there is one, or none is needed.
-bool Viewer::loadNetworkFor(const Pipeline& pipeline) {
-    if (!needsNetwork(pipeline)) return true;
-    const bool half = panel_.render.denoisers.kpcn.half;
-    if (networks_.kpcn.network && half == networkIsHalf_) return true;
-    networks_ = panel_.render.denoisers;
-    attempt([&] { loadNetwork(device_, pipeline.denoiser, settings_.weights, networks_); });
-    networkIsHalf_ = half;
-    return networks_.kpcn.network != nullptr;
 }
 
 /// Whether there were any.
@@ -448,7 +435,7 @@ bool Viewer::mustRender(const CameraParams& camera) {
 }
 
 void Viewer::render(const CameraParams& camera) {
-    if (settings_.loseDeviceAt > 0 && rendered_ == settings_.loseDeviceAt)
+    if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
         throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (panel_.render != main_.settings() || panel_.fovDegrees != fovOfLast_);
     if (main_.prepare(*stage_, panel_.render, panel_.samples, panel_.exposure))
@@ -464,7 +451,6 @@ void Viewer::render(const CameraParams& camera) {
     main_.render(std::move(moment));
     fovOfLast_ = panel_.fovDegrees;
     playback_.advance(camera, rig_.key());
-    ++rendered_;
     if (std::exchange(panel_.asked.measureExposure, false)) measureExposure();
     facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
     facts_.frames = playback_.frames();
@@ -566,7 +552,7 @@ void Viewer::writeControls() {
 void Viewer::run() {
     auto last = Clock::now();
     int restless = restlessPictures;
-    while (!window_.closed() && (settings_.quitAfter == 0 || rendered_ < settings_.quitAfter)) {
+    while (!window_.closed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
         const double patience = comparison_.isScoring() ? scoringSeconds : idleSeconds;
         if (window_.poll(restless > 0 ? 0.0 : patience)) restless = restlessPictures;
         if (!window_.input().empty()) restless = restlessPictures;
@@ -597,7 +583,7 @@ void Viewer::run() {
         facts_.comparedWith = comparison_.name();
         facts_.scores = comparison_.scores();
         writeControls();
-        display_.present(panel_, facts_, main_, comparison_.picture(), rendered_);
+        display_.present(panel_, facts_, main_, comparison_.picture());
     }
     if (main_ && !settings_.screenshot.empty()) save(settings_.screenshot);
     attempt([&] { keepSettings(settings_.kept, settingsNow()); });

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <optional>
 
+#include "base/bytes_text.h"
 #include "base/error.h"
 #include "gpu/check.h"
 
@@ -48,14 +49,6 @@ std::shared_ptr<const void> countBytes(const std::shared_ptr<std::atomic<uint64_
 }
 
 }  // namespace
-
-std::string bytesText(uint64_t bytes) {
-    constexpr const char* units[] = {"bytes", "KiB", "MiB", "GiB"};
-    double value = static_cast<double>(bytes);
-    size_t unit = 0;
-    for (; value >= 1024.0 && unit + 1 < std::size(units); ++unit) value /= 1024.0;
-    return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.1f} {}", value, units[unit]);
-}
 
 Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
                 const std::string& name, bool addressed) {

@@ -30,7 +30,4 @@ constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
 
-/// "12.5 MiB": for messages.
-std::string bytesText(uint64_t bytes);
-
 }  // namespace limpid::gpu

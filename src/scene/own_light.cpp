@@ -1,7 +1,9 @@
 #include "scene/own_light.h"
 
+#include <charconv>
 #include <cmath>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
@@ -14,13 +16,10 @@ std::vector<float> numbers(const std::string& text) {
     std::vector<float> result;
     std::istringstream stream(text);
     for (std::string part; std::getline(stream, part, ',');) {
-        try {
-            size_t used = 0;
-            result.push_back(std::stof(part, &used));
-            if (used != part.size() || !std::isfinite(result.back())) return {};
-        } catch (const std::exception&) {
-            return {};
-        }
+        float value = 0.0f;
+        const auto [end, fault] = std::from_chars(part.data(), part.data() + part.size(), value);
+        if (fault != std::errc() || end != part.data() + part.size() || !std::isfinite(value)) return {};
+        result.push_back(value);
     }
     return result;
 }

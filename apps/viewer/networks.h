@@ -1,0 +1,32 @@
+// Networks that pipelines of the window need, as far as they are on the device.
+#pragma once
+
+#include <filesystem>
+
+#include "gpu/device.h"
+#include "renderer/settings.h"
+
+namespace limpid::viewer {
+
+class Networks {
+  public:
+    /// `weights`: empty: those that come with Limpid. The device outlives this.
+    Networks(gpu::Device& device, std::filesystem::path weights)
+        : device_(device), weights_(std::move(weights)) {}
+
+    /// Whether the pipeline needs one that is not there in the precision of `settings`.
+    bool lacks(const Pipeline& pipeline, const denoise::DenoiserSettings& settings) const;
+    /// Of a pipeline that lacks one. Throws InputError as renderer/network_file.h does; then what was there
+    /// stays, and stands for that precision.
+    void load(const Pipeline& pipeline, const denoise::DenoiserSettings& settings);
+    /// Sets the network that the settings' pipeline needs, or none: settings of the others do not depend on
+    /// it.
+    void set(RenderSettings& settings) const;
+
+  private:
+    gpu::Device& device_;
+    std::filesystem::path weights_;
+    denoise::DenoiserSettings loaded_;
+};
+
+}  // namespace limpid::viewer
