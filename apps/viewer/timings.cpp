@@ -4,6 +4,16 @@
 
 namespace limpid::viewer {
 
+double secondsSince(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+bool due(Clock::time_point& last, double seconds) {
+    if (secondsSince(last) < seconds) return false;
+    last = Clock::now();
+    return true;
+}
+
 void Track::add(float value) {
     if (values_.size() == most) values_.erase(values_.begin());
     values_.push_back(value);

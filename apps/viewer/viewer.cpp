@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -33,15 +32,13 @@
 #include "scene/movement.h"
 #include "shader_reload.h"
 #include "stage.h"
+#include "steering.h"
 
 namespace limpid::viewer {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
-constexpr float radiansAPixel = 0.005f;
-constexpr float zoomAStep = 0.85f;
 constexpr double idleSeconds = 1.0;      ///< between looks at the window while nothing is computed
 constexpr double scoringSeconds = 0.05;  ///< the same while scores are computed
 constexpr double longestStep = 0.1;      ///< seconds that a key moves the camera in one picture
@@ -56,17 +53,6 @@ constexpr const char* pathFile = "flown.json";
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     options.surfaceExtensions = Window::surfaceExtensions();
     return options;
-}
-
-double secondsSince(Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
-}
-
-/// True once `seconds` have gone by; then anew.
-bool due(Clock::time_point& last, double seconds) {
-    if (secondsSince(last) < seconds) return false;
-    last = Clock::now();
-    return true;
 }
 
 /// What keeps a window answering.
@@ -105,7 +91,7 @@ class Viewer {
     void relight();
     void startAnew();
     void handleInput(double seconds);
-    void fly(const ImGuiIO& io, float seconds);
+    void fly(float seconds);
     void focus();
     void applyRequests();
     void applySettings();
@@ -273,39 +259,19 @@ void Viewer::handleInput(double seconds) {
     if (pressed(GLFW_KEY_SPACE)) panel_.running = !panel_.running;
     if (pressed(GLFW_KEY_P)) panel_.asked.probe = true;
     const bool divides = display_.dragsDivider(panel_, controls_);
-    if (!io.WantCaptureMouse && !divides) fly(io, static_cast<float>(seconds));
+    if (!io.WantCaptureMouse && !divides) fly(static_cast<float>(seconds));
 }
 
-void Viewer::fly(const ImGuiIO& io, float seconds) {
-    const float x = io.MouseDelta.x, y = io.MouseDelta.y;
-    // The way to where it went down is no drag.
-    const auto held = [&](int button) { return io.MouseDown[button] && io.MouseDownDuration[button] > 0.0f; };
-    const bool left = held(ImGuiMouseButton_Left), right = held(ImGuiMouseButton_Right),
-               middle = held(ImGuiMouseButton_Middle);
-    const bool moves = ((left || middle) && (x != 0.0f || y != 0.0f)) || right || io.MouseWheel != 0.0f ||
-                       display_.clickedTwice();
-    if (moves && !rig_.isFree()) {
+void Viewer::fly(float seconds) {
+    const Steering steering = Steering::now();
+    if ((steering.moves() || display_.clickedTwice()) && !rig_.isFree()) {
         rig_.setFree(*stage_, playback_.time());
         panel_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
         startAnew();
     }
     panel_.camera = rig_.chosen();
-    FlyCamera& hand = rig_.hand();
     if (display_.clickedTwice()) attempt([&] { focus(); });
-    if (left) hand.orbit(radiansAPixel * x, -radiansAPixel * y);
-    if (middle) hand.pan(x / io.DisplaySize.y, -y / io.DisplaySize.y);
-    if (right) {
-        hand.look(radiansAPixel * x, -radiansAPixel * y);
-        if (io.MouseWheel != 0.0f) speed_ *= std::pow(1.0f / zoomAStep, io.MouseWheel);
-        const auto axis = [&](int more, int less) {
-            return (ImGui::IsKeyDown(more) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(less) ? 1.0f : 0.0f);
-        };
-        hand.move(
-            speed_ * seconds *
-            vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_W, GLFW_KEY_S)));
-    } else if (io.MouseWheel != 0.0f) {
-        hand.zoom(std::pow(zoomAStep, io.MouseWheel));
-    }
+    steering.apply(rig_.hand(), seconds, speed_);
 }
 
 /// Turns to what is under the mouse.
