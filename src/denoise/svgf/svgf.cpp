@@ -131,6 +131,7 @@ class Svgf {
         params.alphaFast = settings_.alphaFast;
         params.steadyShare = steadyShare();
         params.antilag = settings_.antilag;
+        params.antilagNoise = settings_.antilagNoise;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
@@ -177,7 +178,8 @@ class Svgf {
     }
 
     void recordTiles(const Signal& signal, ImageHandle moments, ImageHandle tiles) {
-        const SvgfTilesParams params{extent_.width, extent_.height, steadyShare(), settings_.antilag};
+        const SvgfTilesParams params{extent_.width, extent_.height, steadyShare(), settings_.antilag,
+                                     settings_.antilagNoise};
         graph_.dispatch({.pass = "svgf/tiles " + signal.name,
                          .shader = shaders::svgf_tiles_comp,
                          .bindings = {{"moments", moments}, {"tiles", tiles}},
@@ -299,6 +301,8 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("antilag", &S::antilag, 0.0, 1e6, "",
               "history that is forgotten per relative change of light beyond noise; higher follows changes "
               "sooner and is noisier; 0 is off");
+        t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
+              "... of the mean over a tile count as noise; lower sees smaller changes and takes noise for some");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",

@@ -22,6 +22,7 @@ struct SvgfSettings {
     bool search = true;
     bool reflections = true;
     float antilag = 16.0f;
+    float antilagNoise = 3.0f;
     int levels = 4;
     int historyLevel = 0;
     bool wide = false;

@@ -16,7 +16,6 @@ LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_LAG_SIGMAS = 3.0;  // of noise that are no lag
 LIMPID_CONST float SVGF_LEAST_SLOPE =
     0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
@@ -42,6 +41,7 @@ struct SvgfReprojectParams {
     float longest;      // frames
     float steadyShare;  // as SvgfTilesParams
     float antilag;
+    float antilagNoise;
 };
 
 struct SvgfTilesParams {
@@ -49,6 +49,7 @@ struct SvgfTilesParams {
     uint height;
     float steadyShare;  // of the samples' variance that fast minus slow mean has
     float antilag;
+    float antilagNoise;  // deviations that are no lag
 };
 
 struct SvgfFilterParams {

@@ -23,5 +23,5 @@ void main() {
             add(sums, tileSumsOf(all(lessThan(at, size)) ? m : vec4(0.0)));
         }
     }
-    imageStore(tiles, tile, vec4(lagOf(sums, params.steadyShare, params.antilag)));
+    imageStore(tiles, tile, vec4(lagOf(sums, params.steadyShare, params.antilag, params.antilagNoise)));
 }

@@ -16,7 +16,7 @@ void add(inout TileSums sums, TileSums other) {
     sums = TileSums(sums.lag + other.lag, sums.noise + other.noise, sums.light + other.light);
 }
 
-float lagOf(TileSums sums, float steadyShare, float antilag) {
-    const float excess = max(abs(sums.lag) - SVGF_LAG_SIGMAS * sqrt(steadyShare * sums.noise), 0.0);
+float lagOf(TileSums sums, float steadyShare, float antilag, float antilagNoise) {
+    const float excess = max(abs(sums.lag) - antilagNoise * sqrt(steadyShare * sums.noise), 0.0);
     return sums.light > 0.0 ? min(antilag * excess / sums.light, 1.0) : 0.0;
 }
