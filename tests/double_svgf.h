@@ -16,7 +16,7 @@ struct DoubleSvgfParams {
     double normalTest = 0.95, depthTest = 0.02;
     bool relative = true, search = true;
     bool reflections = true;
-    double antilag = 2.0;
+    double antilag = 2.0, antilagNoise = 3.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     int blurLevels = 1;
     bool boost = true, wide = true, position = false;
@@ -77,6 +77,8 @@ inline double luminance(const dvec3& color) {
 /// sigma of one pixel's moments. `error` is added to m2 - m1^2 before anything else: the bounds of what
 /// float32 may make of the difference.
 double svgfDeviation(double m1, double m2, double error = 0.0);
+/// By which the deviation is multiplied.
+double svgfBoost(double frames, bool boost);
 
 /// Steps 2 and 3.
 SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,

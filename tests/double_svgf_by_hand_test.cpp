@@ -34,7 +34,8 @@ class SvgfByHand : public testing::Test {
     SvgfAccumulated accumulate() const { return svgfAccumulate(frame, SvgfSignal::Diffuse, before, params); }
     void expect(const dvec3& color, const dvec4& moments) const {
         const SvgfAccumulated result = accumulate();
-        const double sigma = std::sqrt(std::max(moments.y - moments.x * moments.x, 0.0));
+        const double ofOne = std::sqrt(std::max(moments.y - moments.x * moments.x, 0.0));
+        const double sigma = ofOne * 2.0 / std::sqrt(std::max(moments.w, 1.0));
         EXPECT_LT(glm::distance(result.color[middle], dvec4(color, sigma)), 1e-6);
         EXPECT_LT(glm::distance(result.moments[middle], moments), 1e-6);
         EXPECT_FALSE(result.pixels[middle].doubtful);
@@ -55,6 +56,9 @@ TEST_F(SvgfByHand, Accumulation) {
     expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 0.45, 6 + 2, 3.5 + 0.25, 5));
     params.alphaMoments = 0.5;  // at least four frames
     expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 1.125, 6 + 5, 3.5 + 0.25, 4));
+    const double sigma = accumulate().color[middle].w;  // of four frames: as of one
+    params.boost = false;
+    EXPECT_DOUBLE_EQ(accumulate().color[middle].w, sigma);
 }
 
 TEST_F(SvgfByHand, NothingFound) {

@@ -183,7 +183,7 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
         const double n = moments[p].w;
         if (!neighbours.sees(p) || n >= youngFrames) continue;
         const Deviation around = deviationAround(neighbours, p, moments);
-        const double boost = params.boost ? 2.0 / std::sqrt(std::max(n, 1.0)) : 1.0;
+        const double boost = svgfBoost(n, params.boost);
         result.color[p].w = std::min(boost * around.sigma, largestHalf);
         result.error[p] = boost * boost * around.error;
     }

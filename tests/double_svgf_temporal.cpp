@@ -204,7 +204,8 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
         update(sample.x, old, color, moments, pixel);
     }
     color = glm::clamp(color, -largestHalf, largestHalf);
-    color.w = svgfDeviation(moments.x, moments.y);
+    color.w =
+        std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
     pixel.colorSlope.w = 0.0;
 }
 
@@ -257,6 +258,10 @@ double svgfDeviation(double m1, double m2, double error) {
     return std::min(std::sqrt(std::max(m2 - m1 * m1 + error, 0.0)), largestHalf);
 }
 
+double svgfBoost(double frames, bool boost) {
+    return boost ? 2.0 / std::sqrt(std::max(frames, 1.0)) : 1.0;
+}
+
 SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,
                                const SvgfHistory& previous, const DoubleSvgfParams& params) {
     const bool fits = previous.width == frame.width && previous.height == frame.height;
@@ -292,10 +297,11 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
             result.error.push_back(0.0);
             continue;
         }
-        const double noise = std::sqrt(k * s.variance), excess = std::abs(s.lag) - 3.0 * noise;
+        const double noise = std::sqrt(k * s.variance),
+                     excess = std::abs(s.lag) - params.antilagNoise * noise;
         const double lag = std::min(1.0, params.antilag * std::max(excess, 0.0) / s.size);
         const double excessError =
-            rounding * s.lagMagnitude + 3.0 * rootError(k * s.variance, k * rounding * s.m2);
+            rounding * s.lagMagnitude + params.antilagNoise * rootError(k * s.variance, k * rounding * s.m2);
         result.tiles.push_back(lag);
         result.error.push_back(params.antilag * excessError / s.size + 1e-5 * lag);
     }

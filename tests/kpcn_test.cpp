@@ -90,11 +90,18 @@ bool single(KpcnPrecision precision) {
     return precision == KpcnPrecision::Float || precision == KpcnPrecision::Host;
 }
 
-/// Root of the squared differences over that of the squares.
-double relativeError(const std::vector<float>& picture, const std::vector<float>& truth) {
+/// Of the fourth of four floats a pixel.
+std::vector<float> alphaOf(const std::vector<float>& texels) {
+    std::vector<float> result;
+    for (size_t i = 3; i < texels.size(); i += 4) result.push_back(texels[i]);
+    return result;
+}
+
+/// Root of the squared differences over that of the squares. Of texels the color counts, of numbers each.
+double relativeError(const std::vector<float>& picture, const std::vector<float>& truth, bool texels = true) {
     double differences = 0.0, squares = 0.0;
     for (size_t i = 0; i < truth.size(); ++i) {
-        if (i % 4 == 3) continue;
+        if (texels && i % 4 == 3) continue;
         differences += std::pow(double{picture[i]} - double{truth[i]}, 2);
         squares += std::pow(double{truth[i]}, 2);
     }
@@ -120,6 +127,7 @@ class KpcnTest : public DenoiseTest {
     DenoiserSettings settingsWith(const KpcnWeights& weights, KpcnPrecision precision, int tile = 512) {
         DenoiserSettings settings;
         settings.kpcn.standardErrors = 0.0f;  // the network alone
+        settings.kpcn.levels = 0;
         settings.kpcn.tile = tile;
         settings.kpcn.network = std::make_shared<KpcnNetwork>(device(), weights, precision);
         return settings;
@@ -157,6 +165,114 @@ TEST_F(KpcnTest, IsWhatPyTorchComputes) {
                 const std::vector<float> clean = graph_.downloadFloat(device(), sideOf(which, precision));
                 EXPECT_LT(relativeError(clean, pixelsOf(cases, name + "/" + which + ".clean", "")), most)
                     << what;
+                const std::vector<float> deviations =
+                    neural::valuesOf(cases.tensors.at(name + "/" + which + ".deviation"));
+                EXPECT_LT(relativeError(alphaOf(clean), deviations, false), most) << what;
+            }
+        }
+    }
+}
+
+/// One level after the kernels, by the formula of docs/kpcn.md in double precision.
+class DoubleLevel {
+  public:
+    DoubleLevel(const HostFrame& frame, bool specular, int step, double phiColor)
+        : frame_(frame), specular_(specular), step_(step), phiColor_(phiColor) {}
+
+    /// `clean`: light and deviation. Texel by texel.
+    std::vector<dvec4> operator()(const std::vector<dvec4>& clean) const {
+        std::vector<dvec4> result;
+        for (int y = 0; y < static_cast<int>(frame_.height); ++y) {
+            for (int x = 0; x < static_cast<int>(frame_.width); ++x) result.push_back(filtered(clean, x, y));
+        }
+        return result;
+    }
+
+  private:
+    size_t at(int x, int y) const { return static_cast<size_t>(y) * frame_.width + static_cast<size_t>(x); }
+    bool inside(int x, int y) const {
+        return x >= 0 && y >= 0 && x < static_cast<int>(frame_.width) && y < static_cast<int>(frame_.height);
+    }
+    double distance(int x, int y) const { return double{frame_.depth[4 * at(x, y)]}; }
+    dvec3 normal(int x, int y) const {
+        const float* n = &frame_.normal[4 * at(x, y)];
+        return glm::normalize(dvec3(n[0], n[1], n[2]));
+    }
+    dvec3 albedo(int x, int y) const {
+        const float* a = &frame_.albedo[4 * at(x, y)];
+        return dvec3(a[0], a[1], a[2]) + 0.00316;
+    }
+    /// Of light at (x, y).
+    double luminance(dvec3 light, int x, int y) const {
+        const dvec3 weights(0.2126, 0.7152, 0.0722);
+        if (specular_) return glm::dot(light, weights);
+        return glm::dot(light * albedo(x, y), weights) / glm::dot(albedo(x, y), weights);
+    }
+
+    /// Beyond the border lies what lies at it.
+    double slope(int x, int y, int dx, int dy) const {
+        const double after = inside(x + dx, y + dy) ? distance(x + dx, y + dy) - distance(x, y) : 0.0;
+        const double before = inside(x - dx, y - dy) ? distance(x, y) - distance(x - dx, y - dy) : 0.0;
+        return std::abs(after) < std::abs(before) ? after : before;
+    }
+    double surfaceWeight(int x, int y, int dx, int dy) const {
+        const double here = distance(x, y), there = distance(x + dx, y + dy);
+        if ((here > 0.0) != (there > 0.0)) return 0.0;
+        if (here <= 0.0) return 1.0;
+        const double expected = here + dx * slope(x, y, 1, 0) + dy * slope(x, y, 0, 1);
+        const double bend = 1.0 - glm::dot(normal(x, y), normal(x + dx, y + dy));
+        const dvec3 colors = (albedo(x + dx, y + dy) - albedo(x, y)) / (0.05 * albedo(x, y));
+        return std::exp(-std::pow((there - expected) / (0.005 * here), 2.0) - 64.0 * bend -
+                        glm::dot(colors, colors));
+    }
+    dvec4 filtered(const std::vector<dvec4>& clean, int x, int y) const {
+        const double spline[] = {1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
+        const dvec4 own = clean[at(x, y)];
+        dvec3 sum(0.0);
+        double weights = 0.0, squares = 0.0;
+        for (int k = 0; k < 25; ++k) {
+            const int dx = step_ * (k % 5 - 2), dy = step_ * (k / 5 - 2);
+            if (!inside(x + dx, y + dy)) continue;
+            const dvec4 other = clean[at(x + dx, y + dy)];
+            const double apart = luminance(dvec3(other - own), x, y) / (phiColor_ * own.w + 1e-6);
+            const double weight =
+                spline[k % 5] * spline[k / 5] * surfaceWeight(x, y, dx, dy) * std::exp(-apart * apart);
+            sum += weight * dvec3(other);
+            weights += weight;
+            squares += weight * weight * other.w * other.w;
+        }
+        return {sum / weights, std::sqrt(squares) / weights};
+    }
+
+    const HostFrame& frame_;
+    bool specular_;
+    int step_;
+    double phiColor_;
+};
+
+TEST_F(KpcnTest, LevelsAgreeWithDoublePrecision) {
+    const HostFrame frame = frameOf(neural::readTensorFile(dataFolder + "kpcn_cases.safetensors"), "small");
+    for (const KpcnPrecision precision : precisions()) {
+        DenoiserSettings settings = settingsWith(weightsOf("small"), precision);
+        settings.kpcn.levels = 2;
+        settings.kpcn.phiColor = 1.5f;
+        denoise(method(), frame, settings);
+        for (const std::string side : {"diffuse", "specular"}) {
+            std::vector<dvec4> before = download(sideOf(side, precision));
+            for (int number = 1; number <= 2; ++number) {
+                const std::string pass = "kpcn/" + side + " level " + std::to_string(number);
+                const std::vector<dvec4> after = download(pass, pass);
+                const std::vector<dvec4> truth =
+                    DoubleLevel(frame, side == "specular", 4 << number, 1.5)(before);
+                double moved = 0.0;
+                for (size_t p = 0; p < truth.size(); ++p) {
+                    moved += glm::length(truth[p] - before[p]) / static_cast<double>(truth.size());
+                    for (int c = 0; c < 4; ++c)
+                        ASSERT_NEAR(after[p][c], truth[p][c], 1e-4 * (std::abs(truth[p][c]) + 0.01))
+                            << pass << ", pixel " << p << ", " << denoise::toString(precision);
+                }
+                EXPECT_GT(moved, 1e-3) << pass;
+                before = after;
             }
         }
     }

@@ -24,6 +24,7 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .search = s.search,
             .reflections = s.reflections,
             .antilag = double{s.antilag},
+            .antilagNoise = double{s.antilagNoise},
             .phiColor = double{s.phiColor},
             .phiNormal = double{s.phiNormal},
             .phiDepth = double{s.phiDepth},
@@ -186,7 +187,9 @@ void SvgfPassTest::compareAccumulated(const HostFrame& frame, const Signal& sign
         if (pixel.failure == 1) {
             ASSERT_EQ(is.color[p].w, -1.0) << p;
         } else if (m.w >= 4.0) {
-            ASSERT_PRED3(isDeviation, is.color[p].w, svgfDeviation(m.x, m.y), 1e-6 * m.y) << p;
+            const double boost = svgfBoost(m.w, params_.boost);
+            const double expectedDeviation = std::min(boost * svgfDeviation(m.x, m.y), 65504.0);
+            ASSERT_PRED3(isDeviation, is.color[p].w, expectedDeviation, boost * boost * 1e-6 * m.y) << p;
         }
         doubtful += pixel.doubtful;
         if (pixel.doubtful) continue;

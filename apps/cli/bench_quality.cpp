@@ -61,13 +61,10 @@ class Judge {
                                   .relMse = c.relMse,
                                   .flip = c.flip};
         scores.invalidPixels = c.invalidPixels;
-        Shown shown{shownWithNoiseOf(reference, picture, c.shownTest, stops_), std::move(c.shownReference)};
-        if (before_) {
-            const auto reprojection =
-                image::reproject(reference.geometry, references_[frame - first_ - 1].geometry);
-            scores.flicker =
-                image::flicker(shown.test, before_->test, shown.reference, before_->reference, reprojection);
-        }
+        Shown shown{std::move(c.shownTest), {}, std::move(c.shownReference), {}};
+        shown.noisyTest = shownWithNoiseOf(reference, picture, shown.test, stops_);
+        shown.noisyReference = shownWithNoiseOf(reference, reference.picture, shown.reference, stops_);
+        if (before_) scoreChange(scores, shown, frame);
         before_ = std::move(shown);
         method.scores.push_back(scores);
         method.last = std::move(picture);
@@ -76,8 +73,22 @@ class Judge {
 
   private:
     struct Shown {
-        Image test, reference;
+        Image test, noisyTest, reference, noisyReference;
     };
+
+    void scoreChange(image::FrameScores& scores, const Shown& now, uint64_t frame) const {
+        const Shown& before = *before_;
+        const auto reprojection =
+            image::reproject(references_[frame - first_].geometry, references_[frame - first_ - 1].geometry);
+        scores.flicker =
+            image::flicker(now.noisyTest, before.noisyTest, now.reference, before.reference, reprojection);
+        scores.temporalError =
+            image::temporalError(now.test, before.test, now.reference, before.reference, reprojection);
+        // What a perfect test would have.
+        const auto ofNoise = image::temporalError(now.noisyReference, before.noisyReference, now.reference,
+                                                  before.reference, reprojection);
+        if (scores.temporalError && ofNoise) *scores.temporalError -= *ofNoise;
+    }
 
     const std::vector<Reference>& references_;
     uint64_t first_;

@@ -44,9 +44,17 @@ struct QualityOptions {
 };
 
 /// SVGF as others have it, and without each thing that Limpid adds to the paper.
-constexpr std::array svgfSteps{"preset=paper",      "preset=cis565",        "svgf.antilag=0",
-                               "svgf.boost=off",    "svgf.blur_levels=10",  "svgf.wide=on",
-                               "svgf.separate=off", "svgf.reflections=off", "pathtrace.through_mirrors=off"};
+constexpr std::array svgfSteps{"preset=paper",
+                               "preset=cis565",
+                               "svgf.antilag=0",
+                               "svgf.alpha=0.15,svgf.alpha_moments=0.2",
+                               "svgf.antilag_noise=3",
+                               "svgf.boost=off",
+                               "svgf.blur_levels=10",
+                               "svgf.wide=on",
+                               "svgf.separate=off",
+                               "svgf.reflections=off",
+                               "pathtrace.through_mirrors=off"};
 
 /// `texts` by commas: group.name=value, or preset=name.
 QualityMethod variantOf(RenderSettings settings, const std::string& texts) {
@@ -167,11 +175,12 @@ void printSequence(const MeasuredSequence& measured) {
     const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
     for (const MethodQuality& method : quality.methods) {
         const double psnr = meanOf(method, "psnr").value_or(0.0);
-        fmt::print("  {:<28}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
+        fmt::print("  {:<28}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
                    image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
                    cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
                    cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
-                   cell(denoisingMs(method), 10, 3), cell(bytesPerPixel(method), 9, 0));
+                   cell(meanOf(method, "temporal_error"), 10, 5), cell(denoisingMs(method), 10, 3),
+                   cell(bytesPerPixel(method), 9, 0));
     }
     std::fflush(stdout);  // a run may take long, and may be stopped
 }
@@ -191,9 +200,9 @@ void printRanking(const QualityRun& run) {
 void printHead(const QualityRun& run) {
     fmt::print(
         "{}, {}x{}, {} samples a frame, references of {}\n  {:<28}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
-        "{:>10}{:>9}\n",
+        "{:>10}{:>10}{:>9}\n",
         run.device, run.extent.width, run.extent.height, run.samples, run.referenceSamples, "method",
-        "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker", "filter ms", "B/pixel");
+        "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker", "temporal", "filter ms", "B/pixel");
 }
 
 /// Noisy, every method, reference, side by side.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -64,12 +65,17 @@ Json frameJson(const FrameScores& frame) {
     return json;
 }
 
+size_t widthOf(const Metric& metric) {
+    return std::max<size_t>(11, metric.name.size() + 2);
+}
+
 /// A cell of the table: as wide as its column, "-" where there is no value.
 std::string cell(const Metric& metric, std::optional<double> value) {
-    if (!value) return fmt::format("{:>11}", "-");
-    if (metric.name == "psnr") return fmt::format("{:>11.4f}", *value);
-    if (metric.name == "relmse") return fmt::format("{:>11.5g}", *value);
-    return fmt::format("{:>11.6f}", *value);
+    const size_t width = widthOf(metric);
+    if (!value) return fmt::format("{:>{}}", "-", width);
+    if (metric.name == "psnr") return fmt::format("{:>{}.4f}", *value, width);
+    if (metric.name == "relmse") return fmt::format("{:>{}.5g}", *value, width);
+    return fmt::format("{:>{}.6f}", *value, width);
 }
 
 std::string row(const std::string& head, const auto& cellOf) {
@@ -137,7 +143,7 @@ std::string sequenceJson(std::span<const FrameScores> frames, const SequenceFact
 }
 
 std::string sequenceTable(std::span<const FrameScores> frames, const SequenceFacts& facts) {
-    std::string text = row("frame", [](const Metric& m) { return fmt::format("{:>11}", m.name); });
+    std::string text = row("frame", [](const Metric& m) { return fmt::format("{:>{}}", m.name, widthOf(m)); });
     for (const FrameScores& frame : frames) {
         text += row(std::to_string(frame.frame), [&](const Metric& m) { return cell(m, m.of(frame)); });
     }
@@ -148,7 +154,7 @@ std::string sequenceTable(std::span<const FrameScores> frames, const SequenceFac
     });
     text += row("at frame", [&](const Metric& m) {
         const auto worst = image::worstOf(m, frames);
-        return fmt::format("{:>11}", worst ? std::to_string(worst->frame) : "-");
+        return fmt::format("{:>{}}", worst ? std::to_string(worst->frame) : "-", widthOf(m));
     });
     text += fmt::format("exposure  {:+.4f} stops\n", facts.exposure);
     text += fmt::format("size      {}x{}\n", facts.width, facts.height);

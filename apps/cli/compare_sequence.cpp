@@ -146,6 +146,8 @@ class SequenceComparison {
         const image::Reprojection reprojection = reprojectionOf(*scores.motion, *before_, test, reference);
         scores.flicker = image::flicker(c.shownTest, before_->shownTest, c.shownReference,
                                         before_->shownReference, reprojection);
+        scores.temporalError = image::temporalError(c.shownTest, before_->shownTest, c.shownReference,
+                                                    before_->shownReference, reprojection);
         scores.flickerPixels =
             static_cast<double>(reprojection.used) / static_cast<double>(reprojection.sources.size());
     }

@@ -107,6 +107,13 @@ void checkSizes(const Geometry& now, const Geometry& before) {
     }
 }
 
+Image difference(const Image& a, const Image& b) {
+    if (a.pixels.size() != b.pixels.size()) throw Error("pictures of different sizes have no difference");
+    Image result = a;
+    for (size_t i = 0; i < a.pixels.size(); ++i) result.pixels[i] -= b.pixels[i];
+    return result;
+}
+
 size_t countUsed(const Reprojection& r) {
     const auto used = [](const Reprojection::Source& source) { return !excluded(source); };
     return static_cast<size_t>(std::count_if(r.sources.begin(), r.sources.end(), used));
@@ -176,6 +183,11 @@ std::optional<double> flicker(const Image& test, const Image& testBefore, const 
     const auto ofReference = temporalChange(reference, referenceBefore, reprojection);
     if (!ofTest || !ofReference) return std::nullopt;
     return *ofTest - *ofReference;
+}
+
+std::optional<double> temporalError(const Image& test, const Image& testBefore, const Image& reference,
+                                    const Image& referenceBefore, const Reprojection& reprojection) {
+    return temporalChange(difference(test, reference), difference(testBefore, referenceBefore), reprojection);
 }
 
 }  // namespace limpid::image

@@ -49,4 +49,10 @@ std::optional<double> temporalChange(const Image& now, const Image& before, cons
 std::optional<double> flicker(const Image& test, const Image& testBefore, const Image& reference,
                               const Image& referenceBefore, const Reprojection& reprojection);
 
+/// temporalChange of the error, test minus reference: what changes in one of them and not in the other, be it
+/// noise or lag, which flicker() sets off against each other. Pictures as for flicker(); in [0,2], 0 if the
+/// error stays as it is.
+std::optional<double> temporalError(const Image& test, const Image& testBefore, const Image& reference,
+                                    const Image& referenceBefore, const Reprojection& reprojection);
+
 }  // namespace limpid::image

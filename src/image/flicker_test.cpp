@@ -110,6 +110,22 @@ TEST(Flicker, AConstantErrorHasNone) {
     EXPECT_NEAR(psnr(testNow, now), 20.0, 1e-3);
 }
 
+TEST(TemporalError, NoiseAndLagCountAlike) {
+    const Image dark(8, 8, 3, 0.25f), bright(8, 8, 3, 0.5f), steady(8, 8, 3, 0.375f);
+    const Reprojection still = stillReprojection(8, 8);
+    EXPECT_EQ(temporalError(bright, dark, bright, dark, still), 0.0) << "a light that is switched on";
+    EXPECT_EQ(temporalError(dark, dark, bright, dark, still), 0.25) << "the test lags behind";
+    EXPECT_EQ(temporalError(bright, dark, steady, steady, still), 0.25) << "the test is not steady";
+    EXPECT_EQ(temporalError(bright, bright, dark, dark, still), 0.0) << "a constant error";
+    Image half = steady;  // noise in one half of the picture, lag in the other: they do not cancel
+    std::fill_n(half.pixels.begin(), half.pixels.size() / 2, 0.25f);
+    Image reference = steady;
+    std::fill(reference.pixels.begin() + static_cast<std::ptrdiff_t>(reference.pixels.size() / 2),
+              reference.pixels.end(), 0.25f);
+    EXPECT_EQ(flicker(half, steady, reference, steady, still), 0.0);
+    EXPECT_EQ(temporalError(half, steady, reference, steady, still), 0.125);
+}
+
 TEST(Flicker, OfTheReferenceIsSubtracted) {
     const Image dark(8, 8, 3, 0.25f), bright(8, 8, 3, 0.5f);
     const Reprojection still = stillReprojection(8, 8);

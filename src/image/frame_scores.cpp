@@ -2,15 +2,16 @@
 
 namespace limpid::image {
 
-const std::array<Metric, 6>& sequenceMetrics() {
+const std::array<Metric, 7>& sequenceMetrics() {
     using Value = std::optional<double>;
-    static const std::array<Metric, 6> metrics = {{
+    static const std::array<Metric, 7> metrics = {{
         {"psnr", true, [](const FrameScores& s) -> Value { return s.psnr; }},
         {"ssim", true, [](const FrameScores& s) -> Value { return s.ssim; }},
         {"relmse", false, [](const FrameScores& s) -> Value { return s.relMse; }},
         {"flip", false, [](const FrameScores& s) -> Value { return s.flip; }},
         {"hdr_flip", false, [](const FrameScores& s) -> Value { return s.hdrFlip; }},
         {"flicker", false, [](const FrameScores& s) -> Value { return s.flicker; }},
+        {"temporal_error", false, [](const FrameScores& s) -> Value { return s.temporalError; }},
     }};
     return metrics;
 }

@@ -19,9 +19,10 @@ struct FrameScores {
     double psnr = 0.0, ssim = 0.0, relMse = 0.0, flip = 0.0;  ///< as in Comparison
     std::optional<double> hdrFlip;  ///< none unless both pictures are scene-referred
     std::optional<HdrFlipExposures> hdrExposures;
-    std::optional<double> flicker;       ///< none in the first frame, or where no pixel has a place before
-    double flickerPixels = 0.0;          ///< share of the pixels that flicker was measured on
-    std::optional<MotionSource> motion;  ///< none in the first frame
+    std::optional<double> flicker;        ///< none in the first frame, or where no pixel has a place before
+    std::optional<double> temporalError;  ///< likewise
+    double flickerPixels = 0.0;           ///< share of the pixels that flicker was measured on
+    std::optional<MotionSource> motion;   ///< none in the first frame
     uint64_t invalidPixels = 0;
 };
 
@@ -32,8 +33,8 @@ struct Metric {
     std::optional<double> (*of)(const FrameScores& scores);
 };
 
-/// psnr, ssim, relmse, flip, hdr_flip, flicker.
-const std::array<Metric, 6>& sequenceMetrics();
+/// psnr, ssim, relmse, flip, hdr_flip, flicker, temporal_error.
+const std::array<Metric, 7>& sequenceMetrics();
 
 /// Arithmetic mean over the frames that have the metric; none if no frame has it. One frame equal to its
 /// reference (PSNR infinite) makes the mean PSNR infinite.

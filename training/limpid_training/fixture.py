@@ -3,13 +3,14 @@
     python3 -m limpid_training.fixture ../tests/data
 
 kpcn_small.safetensors: a small network with random weights. kpcn_cases.safetensors: frames ("CASE/LAYER" as in a dataset, in single
-precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean"."""
+precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean" and its standard error "CASE/SIDE.deviation"."""
 
 import argparse
 import json
 import os
 
 import torch
+from torch.nn import functional
 
 from . import features, tensor_file
 from .network import Kpcn
@@ -58,6 +59,24 @@ def load(path):
     return net
 
 
+def deviation(logits, variance):
+    """Of the mean that apply_kernel() makes of light with this `variance`, whose pixels' noise is independent: all at once."""
+    width = round(logits.shape[1] ** 0.5)
+    rows, columns = variance.shape[2:]
+
+    def taps(image):
+        return functional.unfold(image, width, padding=width // 2).view(1, width * width, rows, columns)
+
+    weights = torch.softmax(logits.masked_fill(taps(torch.ones_like(variance)) == 0, -torch.inf), dim=1)
+    return (weights**2 * taps(variance)).sum(dim=1, keepdim=True).sqrt()
+
+
+def variances(layers):
+    """Of each side's light as features.to_network() has it, to first order."""
+    specular = layers["specular.variance"] / (1.0 + features.luminance(layers["specular"])) ** 2
+    return {"diffuse": layers["diffuse.variance"] / (features.luminance(layers["albedo"]) + features.EPSILON) ** 2, "specular": specular}
+
+
 @torch.no_grad()
 def cases(networks):
     """Tensors by the names in kpcn_cases.safetensors. In double precision."""
@@ -65,9 +84,13 @@ def cases(networks):
     result = {}
     for name, (rows, columns) in CASES.items():
         layers = frame(rows, columns, generator)
-        prepared = features.prepare({layer: image.double() for layer, image in layers.items()})
+        exact = {layer: image.double() for layer, image in layers.items()}
+        prepared, variance = features.prepare(exact), variances(exact)
         net = networks[name].double()
-        clean = {side + ".clean": net.side(side, prepared) for side in features.SIDES}
+        clean = {}
+        for side in features.SIDES:
+            clean[side + ".clean"], logits = net.side_and_logits(side, prepared)
+            clean[side + ".deviation"] = deviation(logits.double(), variance[side])
         clean["clean"] = net(prepared)
         for layer, image in {**layers, **clean}.items():
             result[f"{name}/{layer}"] = image[0].float()

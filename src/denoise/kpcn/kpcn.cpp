@@ -18,6 +18,8 @@
 #include "kpcn_kernel_float.comp.h"
 #include "kpcn_kernel_matrix.comp.h"
 #include "kpcn_largest.comp.h"
+#include "kpcn_level.comp.h"
+#include "kpcn_level_buffers.comp.h"
 
 namespace limpid::denoise {
 namespace {
@@ -29,6 +31,7 @@ using gpu::FrameGraph;
 using gpu::ImageHandle;
 
 constexpr uint32_t leastSamplesForErrors = 8;
+constexpr int firstStep = 8;  // pixels; of levels: kernels reach 10
 constexpr const char* sideNames[] = {"diffuse", "specular"};
 constexpr uint32_t reach = KPCN_TAPS / 2;
 constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
@@ -100,7 +103,7 @@ class Recorder {
           input_(input),
           network_(*settings.network),
           shaders_(shadersOf(network_.precision())),
-          standardErrors_(settings.standardErrors),
+          settings_(settings),
           picture_(graph.extent(input.depth)) {
         const auto hidden = static_cast<uint32_t>(network_.layers(0).size()) - 1;
         margin_ = std::max(reach * (hidden + 1), network_.kernelWidth() / 2);
@@ -127,6 +130,7 @@ class Recorder {
                                 std::min(tile_.height, picture_.height - top)},
                                largest, clean[side]);
             }
+            clean[side] = levels(side, clean[side]);
         }
         return compose(clean);
     }
@@ -220,6 +224,30 @@ class Recorder {
                       {{"inputs", channels_[(layers.size() - 1) % 2]}, {"light", light_}, {"clean", clean}});
     }
 
+    /// What a kernel of its size leaves of the noise.
+    ImageHandle levels(size_t side, ImageHandle clean) {
+        for (int i = 0; i < settings_.levels; ++i) {
+            const std::string name =
+                std::string("kpcn/") + sideNames[side] + " level " + std::to_string(i + 1);
+            const ImageHandle next = graph_.transient(name, Format::RGBA32Float, picture_,
+                                                      onHost() ? Backing::Buffer : Backing::Image);
+            const KpcnLevelParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
+                                         firstStep << i, settings_.phiColor, static_cast<uint32_t>(side)};
+            graph_.dispatch({.pass = name,
+                             .shader = onHost() ? shaders::kpcn_level_buffers_comp : shaders::kpcn_level_comp,
+                             .bindings = {{"clean", clean},
+                                          {"filtered", next},
+                                          {"normal", input_.normal},
+                                          {"depth", input_.depth},
+                                          {"albedo", input_.albedo}},
+                             .params = gpu::paramsOf(params),
+                             .constants = {},
+                             .extent = picture_});
+            clean = next;
+        }
+        return clean;
+    }
+
     bool onHost() const { return network_.precision() == KpcnPrecision::Host; }
 
     void layersOnHost(size_t side, const Tile& tile, ImageHandle clean, const std::string& prefix) {
@@ -279,9 +307,9 @@ class Recorder {
     ImageHandle compose(const std::array<ImageHandle, 2>& clean) {
         const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
         // Few samples say little about their error: a light that all of them missed has none.
-        const KpcnComposeParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
-                                       ofMean(),
-                                       input_.samples >= leastSamplesForErrors ? standardErrors_ : 0.0f};
+        const KpcnComposeParams params{
+            static_cast<int>(picture_.width), static_cast<int>(picture_.height), ofMean(),
+            input_.samples >= leastSamplesForErrors ? settings_.standardErrors : 0.0f};
         graph_.dispatch({.pass = "kpcn/compose",
                          .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
                          .bindings = {{"diffuse", clean[0]},
@@ -301,7 +329,7 @@ class Recorder {
     const DenoiserInput& input_;
     const KpcnNetwork& network_;
     const Shaders& shaders_;
-    float standardErrors_;
+    const KpcnSettings& settings_;
     Extent picture_;
     uint32_t margin_ = 0;  ///< that a tile's features need around it
     Extent tile_;
@@ -323,6 +351,8 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
               "less keeps sharp "
               "reflections and small lights, more removes fireflies; 0: as far as the network likes");
+        t.add("levels", &S::levels, 0, 4, "levels", "of the filter");
+        t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations", "tolerated");
         t.add("half", &S::half, "half precision; off: single precision, slower");
         return t;
     }();

@@ -19,7 +19,7 @@ layout(set = 0, binding = 7, scalar) writeonly buffer lightTexels { vec4 texels[
 struct Seen {
     vec4 light, albedo, normal;  // alpha: variance
     vec2 depth;                  // and variance
-    vec3 averaged;
+    vec4 averaged;
 };
 
 float varianceOf(float deviation) {
@@ -43,7 +43,7 @@ Seen seenAt(ivec2 pixel) {
     }
     const float slope = 1.0 + luminance(linear);
     seen.light = vec4(log(1.0 + linear), variance / (slope * slope));
-    seen.averaged = params.specular == 0u ? linear : seen.light.rgb;
+    seen.averaged = params.specular == 0u ? vec4(linear, variance) : seen.light;
     const vec4 n = imageLoad(normal, pixel);
     seen.normal = vec4(finiteOr(n.xyz, vec3(0.0)), varianceOf(n.a));
     const float farthest = imageLoad(largest, ivec2(0)).x;
@@ -75,5 +75,5 @@ void main() {
     features.texels[second + 3u] = toTexel(vec4(normalY.z, here.normal.a, here.depth.x, here.depth.x - left.depth.x));
     features.texels[third] = toTexel(vec4(here.depth.x - above.depth.x, here.depth.y, 1.0, 0.0));
     for (uint i = 1u; i < 4u; ++i) features.texels[third + i] = toTexel(vec4(0.0));
-    light.texels[pixelTexel(params.region, pixel)] = vec4(here.averaged, 0.0);
+    light.texels[pixelTexel(params.region, pixel)] = here.averaged;
 }

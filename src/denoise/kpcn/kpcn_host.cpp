@@ -56,14 +56,14 @@ inline float exponential(float x) {
 class RowOfMeans {
   public:
     RowOfMeans(const KpcnHostTile& tile, uint32_t kernelWidth, std::span<const float> light)
-        : tile_(tile), kernelWidth_(kernelWidth), light_(light), sums_(5 * size_t{tile.columns}) {}
+        : tile_(tile), kernelWidth_(kernelWidth), light_(light), sums_(6 * size_t{tile.columns}) {}
 
     /// `logits`: (channels, count, columns) of which `row`, in the part the row `y`.
     void compute(std::span<const float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
         const size_t n = tile_.columns;
         std::fill(sums_.begin(), sums_.end(), 0.0f);
         float *largest = &sums_[0], *weights = &sums_[n], *red = &sums_[2 * n], *green = &sums_[3 * n],
-              *blue = &sums_[4 * n];
+              *blue = &sums_[4 * n], *squares = &sums_[5 * n];
         std::fill_n(largest, n, -1e30f);
         eachTap(logits, count, row, y, [&](const float* logit, int, int, size_t begin, size_t end) {
             for (size_t x = begin; x < end; ++x) largest[x] = std::max(largest[x], logit[x]);
@@ -78,13 +78,14 @@ class RowOfMeans {
                 red[x] += weight * at[0];
                 green[x] += weight * at[1];
                 blue[x] += weight * at[2];
+                squares[x] += weight * weight * at[3];
             }
         });
         for (size_t x = tile_.left; x < tile_.left + tile_.width; ++x, clean += 4) {
             clean[0] = red[x] / weights[x];
             clean[1] = green[x] / weights[x];
             clean[2] = blue[x] / weights[x];
-            clean[3] = 1.0f;
+            clean[3] = std::sqrt(squares[x]) / weights[x];
         }
     }
 
@@ -109,7 +110,7 @@ class RowOfMeans {
     const KpcnHostTile& tile_;
     uint32_t kernelWidth_;
     std::span<const float> light_;
-    std::vector<float> sums_;  ///< largest logit, weights, red, green, blue: a row each
+    std::vector<float> sums_;  ///< largest logit, weights, red, green, blue, weighted variances: a row each
 };
 
 }  // namespace

@@ -18,12 +18,12 @@ void main() {
             for (uint k = 0u; k < KPCN_SLAB; ++k) {
                 ivec2 tap;
                 if (kernelTap(params, first + ivec2(p, 0), tile * KPCN_SLAB + k, tap))
-                    add(means[p], sums[p][k / 4u][k % 4u], light.texels[pixelTexel(params.region, tap)].rgb);
+                    add(means[p], sums[p][k / 4u][k % 4u], light.texels[pixelTexel(params.region, tap)]);
             }
         }
     }
     for (int p = 0; p < BLOCK; ++p) {
         const ivec2 pixel = first + ivec2(p, 0);
-        if (inRegion(pixel)) imageStore(clean, pixel, vec4(means[p].sum / means[p].weights, 1.0));
+        if (inRegion(pixel)) imageStore(clean, pixel, resultOf(means[p]));
     }
 }

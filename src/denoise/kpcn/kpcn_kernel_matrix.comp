@@ -29,9 +29,9 @@ void main() {
                 const vec2 pair = unpackHalf2x16(eight[k / 2u]);
                 ivec2 tap;
                 if (kernelTap(params, pixel, tile * KPCN_SLAB + i * 8u + k, tap))
-                    add(mean, pair[k % 2u], light.texels[pixelTexel(params.region, tap)].rgb);
+                    add(mean, pair[k % 2u], light.texels[pixelTexel(params.region, tap)]);
             }
         }
     }
-    if (inRegion) imageStore(clean, pixel, vec4(mean.sum / mean.weights, 1.0));
+    if (inRegion) imageStore(clean, pixel, resultOf(mean));
 }

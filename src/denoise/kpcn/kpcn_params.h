@@ -18,6 +18,11 @@ const uint KPCN_INPUT_SLABS = 3u;
 /// Added to albedo before light is divided by it.
 const float KPCN_EPSILON = 0.00316f;
 
+/// Of the levels after the kernels: what is another surface.
+const float KPCN_LEVEL_NORMAL = 64.0f;  // sharpness of the tolerance of normals
+const float KPCN_LEVEL_DEPTH = 0.005f;  // tolerated difference of distance, of the distance
+const float KPCN_LEVEL_ALBEDO = 0.05f;  // ... and of albedo, component by component
+
 /// Where a pass works. Pixels are those of the picture.
 struct KpcnRegion {
     int left, top;         // the first pixel to compute
@@ -43,6 +48,13 @@ struct KpcnLayerParams {
 
 struct KpcnReduceParams {
     int width, height;  // of the source
+};
+
+struct KpcnLevelParams {
+    int width, height;
+    int step;        // pixels
+    float phiColor;  // deviations that luminances may differ by
+    uint specular;   // which side
 };
 
 struct KpcnComposeParams {

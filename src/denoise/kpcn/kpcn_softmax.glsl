@@ -3,21 +3,30 @@
 struct WeightedMean {
     vec3 sum;
     float weights;
+    float squares;  // of weighted variances
     float largest;
 };
 
-const WeightedMean NO_MEAN = WeightedMean(vec3(0.0), 0.0, -1e30);
+const WeightedMean NO_MEAN = WeightedMean(vec3(0.0), 0.0, 0.0, -1e30);
 
-void add(inout WeightedMean mean, float logit, vec3 value) {
+/// `value`: light, and its variance.
+void add(inout WeightedMean mean, float logit, vec4 value) {
     if (logit > mean.largest) {
         const float shrink = exp(mean.largest - logit);
         mean.sum *= shrink;
         mean.weights *= shrink;
+        mean.squares *= shrink * shrink;
         mean.largest = logit;
     }
     const float weight = exp(logit - mean.largest);
-    mean.sum += weight * value;
+    mean.sum += weight * value.rgb;
     mean.weights += weight;
+    mean.squares += weight * weight * value.a;
+}
+
+/// And its deviation.
+vec4 resultOf(WeightedMean mean) {
+    return vec4(mean.sum, sqrt(mean.squares)) / mean.weights;
 }
 
 /// The `channel`-th tap of a kernel around `pixel`, if there is one and it lies in the picture.

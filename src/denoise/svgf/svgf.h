@@ -13,8 +13,8 @@ namespace limpid::denoise {
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
-    float alpha = 0.15f;
-    float alphaMoments = 0.2f;
+    float alpha = 0.1f;
+    float alphaMoments = 0.1f;
     float alphaFast = 0.5f;
     float normalTest = 0.95f;
     float depthTest = 0.02f;
@@ -22,7 +22,7 @@ struct SvgfSettings {
     bool search = true;
     bool reflections = true;
     float antilag = 16.0f;
-    float antilagNoise = 3.0f;
+    float antilagNoise = 1.5f;
     int levels = 4;
     int historyLevel = 0;
     bool wide = false;

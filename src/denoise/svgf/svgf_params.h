@@ -15,7 +15,7 @@ LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
 // In place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
-LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_YOUNG = 4.0;  // frames of history below which the variance is estimated in space
 LIMPID_CONST float SVGF_LEAST_SLOPE =
     0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
@@ -42,6 +42,7 @@ struct SvgfReprojectParams {
     float steadyShare;  // as SvgfTilesParams
     float antilag;
     float antilagNoise;
+    uint boost;  // svgfBoost()
 };
 
 struct SvgfTilesParams {
@@ -67,6 +68,13 @@ struct SvgfModulateParams {
     uint height;
     uint demodulate;
 };
+
+#ifndef __cplusplus
+/// What a deviation is multiplied by: the longer the history, the less noise its mean has.
+float svgfBoost(uint boost, float frames) {
+    return boost != 0u ? 2.0 * inversesqrt(max(frames, 1.0)) : 1.0;
+}
+#endif
 
 #undef LIMPID_CONST
 #ifdef __cplusplus

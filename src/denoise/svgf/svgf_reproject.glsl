@@ -164,8 +164,8 @@ vec4 accumulate(ivec2 at) {
     now.moments.w *= kept;
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
-    const float deviation = min(sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0)), MAX_HALF);
-    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : deviation;
+    const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
+    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(params.boost, now.moments.w) * deviation, MAX_HALF);
     STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);
