@@ -294,31 +294,56 @@ TEST_F(KpcnTest, LightStaysNearWhatTheSamplesAreSureOf) {
     const std::vector<float> picture = denoise(method(), frame, settings);
     const std::vector<float> diffuse = graph_.downloadFloat(device(), sideOf("diffuse", precision)),
                              specular = graph_.downloadFloat(device(), sideOf("specular", precision));
-    int moved = 0;
-    const auto within = [&](const glm::dvec3& clean, const float* noisy) {
-        const glm::dvec3 light(noisy[0], noisy[1], noisy[2]), weights(0.2126, 0.7152, 0.0722);
-        const double apart = glm::dot(clean, weights) - glm::dot(light, weights);
-        const double most = 1.5 * std::sqrt(double{noisy[3]} / 8.0);
-        if (std::abs(apart) <= most) return clean;
-        ++moved;
-        return light + (clean - light) * (most / std::abs(apart));
-    };
-    for (size_t at = 0; at < picture.size(); at += 4) {
-        glm::dvec3 demodulated, logarithm, albedo;
+    // By pixel and side: the share of the way to the noisy light that is to go, positive if that is the
+    // darker.
+    const auto lights = [&](size_t at, int side) {
+        dvec3 clean, noisy;
         for (int c = 0; c < 3; ++c) {
             const size_t i = at + static_cast<size_t>(c);
-            demodulated[c] = diffuse[i];
-            logarithm[c] = specular[i];
-            albedo[c] = frame.albedo[i] + 0.00316;
+            clean[c] = side == 0 ? diffuse[i] * (frame.albedo[i] + 0.00316) : std::exp(specular[i]) - 1.0;
+            noisy[c] = side == 0 ? frame.diffuse[i] : frame.specular[i];
         }
-        const glm::dvec3 truth = within(demodulated * albedo, &frame.diffuse[at]) +
-                                 within(glm::exp(logarithm) - 1.0, &frame.specular[at]);
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(picture[at + static_cast<size_t>(c)], truth[c], 1e-4 * (1.0 + truth[c])) << at;
+        return std::pair(clean, noisy);
+    };
+    const auto wanted = [&](size_t at, int side) {
+        const auto [clean, noisy] = lights(at, side);
+        const double apart = glm::dot(clean - noisy, dvec3(0.2126, 0.7152, 0.0722));
+        const double variance = (side == 0 ? frame.diffuse : frame.specular)[at + 3] / 8.0;
+        const double share = 1.0 - 1.5 * std::sqrt(variance) / std::abs(apart);
+        return share > 0.0 ? std::copysign(share, apart) : 0.0;
+    };
+    int moved = 0, heldBack = 0;
+    const auto scattered = [&](int x, int y, int side) {
+        const auto [clean, noisy] =
+            lights(4 * (static_cast<size_t>(y) * frame.width + static_cast<size_t>(x)), side);
+        const double own = wanted(4 * (static_cast<size_t>(y) * frame.width + static_cast<size_t>(x)), side);
+        double around = 0.0;
+        for (int k = 0; k < 9; ++k) {
+            const int i = x + k % 3 - 1, j = y + k / 3 - 1;
+            if (k == 4 || i < 0 || j < 0 || i >= static_cast<int>(frame.width) ||
+                j >= static_cast<int>(frame.height))
+                continue;
+            const double other =
+                wanted(4 * (static_cast<size_t>(j) * frame.width + static_cast<size_t>(i)), side);
+            if (other * own > 0.0) around = std::max(around, std::abs(other));
+        }
+        moved += own != 0.0;
+        heldBack += around < std::abs(own);
+        return clean + (noisy - clean) * std::min(std::abs(own), around);
+    };
+    size_t at = 0;
+    for (int y = 0; y < static_cast<int>(frame.height); ++y) {
+        for (int x = 0; x < static_cast<int>(frame.width); ++x, at += 4) {
+            const dvec3 truth = scattered(x, y, 0) + scattered(x, y, 1);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(picture[at + static_cast<size_t>(c)], truth[c], 1e-4 * (1.0 + truth[c])) << at;
+        }
     }
-    const auto lights = static_cast<int>(picture.size() / 2);
-    EXPECT_GT(moved, lights / 50);
-    EXPECT_LT(moved, lights * 9 / 10);
+    const auto count = static_cast<int>(picture.size() / 2);
+    EXPECT_GT(moved, count / 50);
+    EXPECT_LT(moved, count * 9 / 10);
+    EXPECT_GT(heldBack, moved / 50);
+    EXPECT_LT(heldBack, moved / 2);
 }
 
 TEST_F(KpcnTest, TilesDoNotShow) {
@@ -388,17 +413,18 @@ TEST_F(KpcnTest, NoNanGoesInOrComesOut) {
 }
 
 TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
-    const DenoiserSettings settings = settingsWith(randomWeights(2, 100, 21), KpcnPrecision::Half, 64);
+    DenoiserSettings settings = settingsWith(randomWeights(2, 100, 21), KpcnPrecision::Half, 64);
+    settings.kpcn.levels = denoise::KpcnSettings{}.levels;
     gpu::FrameGraph graph;
     graph.beginFrame();
     denoise::DenoiserInput input = denoise::upload(graph, frontalPlane(300, 200));
     const size_t first = graph.passes().size();
     method().record(graph, input, settings);
     // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
-    // bytes, twice, and light of 16. Of the picture: distances, two sides, beauty; and the largest of 38x25,
-    // 5x4 and 1.
+    // bytes, twice, and light of 16. Of the picture: distances, two sides, two levels of each,
+    // beauty; and the largest of 38x25, 5x4 and 1.
     const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16);
-    const uint64_t images = uint64_t{300} * 200 * (4 + 3 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
+    const uint64_t images = uint64_t{300} * 200 * (4 + 7 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
     EXPECT_EQ(graph.bytesOfImagesWrittenFrom(first), buffers + images);
 }
 

@@ -351,8 +351,14 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
               "less keeps sharp "
               "reflections and small lights, more removes fireflies; 0: as far as the network likes");
-        t.add("levels", &S::levels, 0, 4, "levels", "of the filter");
-        t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations", "tolerated");
+        t.add("levels", &S::levels, 0, 6, "levels",
+              "of a filter that goes on where the network's kernels end, for flat things; the last of n "
+              "reaches "
+              "2^(n+4) - 16 pixels further");
+        t.add("phi_color", &S::phiColor, 1e-6, 1e9, "standard errors",
+              "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
+              "smoother "
+              "and blurs soft shadows");
         t.add("half", &S::half, "half precision; off: single precision, slower");
         return t;
     }();

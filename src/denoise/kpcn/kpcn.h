@@ -16,7 +16,7 @@ struct KpcnSettings {
     int tile = 512;
     float standardErrors = 6.0f;
     int levels = 2;
-    float phiColor = 2.0f;
+    float phiColor = 3.0f;
     bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
     std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
     bool operator==(const KpcnSettings&) const = default;
@@ -25,8 +25,8 @@ const ParamTable<KpcnSettings>& kpcnParams();
 
 /// The beauty, rgba32f, alpha 1, from this frame alone. `input.samples` and the variances in alpha must be
 /// true. Passes: "kpcn/distances", "kpcn/largest", of each side and tile "kpcn/diffuse features",
-/// "kpcn/diffuse hidden 1" and so on, "kpcn/diffuse kernel"; "kpcn/compose". Throws Error if there is no
-/// network.
+/// "kpcn/diffuse hidden 1" and so on, "kpcn/diffuse kernel"; of each side "kpcn/diffuse level 1" and so on;
+/// "kpcn/compose". Throws Error if there is no network.
 gpu::ImageHandle filterKpcn(gpu::FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings);
 
 }  // namespace limpid::denoise
