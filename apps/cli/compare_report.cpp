@@ -143,7 +143,8 @@ std::string sequenceJson(std::span<const FrameScores> frames, const SequenceFact
 }
 
 std::string sequenceTable(std::span<const FrameScores> frames, const SequenceFacts& facts) {
-    std::string text = row("frame", [](const Metric& m) { return fmt::format("{:>{}}", m.name, widthOf(m)); });
+    std::string text =
+        row("frame", [](const Metric& m) { return fmt::format("{:>{}}", m.name, widthOf(m)); });
     for (const FrameScores& frame : frames) {
         text += row(std::to_string(frame.frame), [&](const Metric& m) { return cell(m, m.of(frame)); });
     }
