@@ -120,10 +120,14 @@ TEST_F(CliCompareTest, FlickerFollowsTheReferencesMotion) {
     // A constant error in radiance is not quite one after sRGB, but it moves along.
     EXPECT_NEAR(steady["mean"]["flicker"].get<double>(), 0.0, 1e-7);
     EXPECT_LT(steady["mean"]["psnr"].get<double>(), 30.0);
+    EXPECT_TRUE(steady["frames"][0]["temporal_error"].is_null());
+    EXPECT_NEAR(steady["mean"]["temporal_error"].get<double>(), 0.0, 0.02);
 
     putSequences({0.0f, 0.1f, 0.1f}, true);
     const json blinking = compareJson(sequences() + " --exposure 0");
     EXPECT_GT(blinking["frames"][1]["flicker"].get<double>(), 0.05);
+    EXPECT_GT(blinking["frames"][1]["temporal_error"].get<double>(), 0.05);
+    EXPECT_LT(blinking["frames"][2]["temporal_error"].get<double>(), 0.02);
     EXPECT_NEAR(blinking["frames"][2]["flicker"].get<double>(), 0.0, 1e-7);
     EXPECT_EQ(blinking["worst"]["flicker"]["frame"], 2);
 

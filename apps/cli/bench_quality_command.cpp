@@ -43,7 +43,7 @@ struct QualityOptions {
     bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
 };
 
-/// SVGF as others have it, and without each thing that Limpid adds to the paper.
+/// SVGF as others have it, without each thing that Limpid adds to the paper, and with former defaults.
 constexpr std::array svgfSteps{"preset=paper",
                                "preset=cis565",
                                "svgf.antilag=0",
@@ -341,7 +341,8 @@ void addQualityBench(CLI::App& bench) {
     command->add_option("--variant", o->variants,
                         "The last pipeline once more with these parameters, or preset=NAME, by commas "
                         "(repeatable)");
-    command->add_flag("--steps", o->steps, "SVGF's presets, and SVGF without each step beyond its paper");
+    command->add_flag("--steps", o->steps,
+                      "SVGF's presets, and SVGF without each step beyond its paper and with former defaults");
     command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
     command->add_option("--report", o->report, "An HTML page with everything, pictures included");
     command->add_flag("--json", o->json, "One JSON object on stdout");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "scene/mesh_repair.h"
+#include "scene/occupancy.h"
 
 namespace limpid::scene {
 namespace {
@@ -162,11 +163,60 @@ Camera fromOutside(const Box& box, const vec3& towardsEye) {
     return camera;
 }
 
-Camera fromInside(const Box& box) {
+constexpr float insideFov = pi / 3;
+
+/// The distance that half of what a camera of `insideFov` shows in a picture of 16:9 exceeds.
+float medianDistance(const Occupancy& room, const mat4& view) {
+    constexpr int columns = 16, rows = 9;
+    const float slope = std::tan(0.5f * insideFov);
+    std::array<float, columns * rows> distances{};
+    for (int i = 0; i < columns * rows; ++i) {
+        const float x = (static_cast<float>(i % columns) + 0.5f) * 2.0f / columns - 1.0f;
+        const float y = (static_cast<float>(i / columns) + 0.5f) * 2.0f / rows - 1.0f;
+        const vec3 ray = slope * (x * 16.0f / 9.0f * vec3(view[0]) + y * vec3(view[1])) - vec3(view[2]);
+        distances[static_cast<size_t>(i)] = room.distanceToSomething(vec3(view[3]), glm::normalize(ray));
+    }
+    std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
+    return distances[distances.size() / 2];
+}
+
+/// Of horizontal views from a grid of places where there is some room, the one that shows the most distant
+/// things.
+mat4 openestView(const Occupancy& room, const Box& box, const mat4& otherwise) {
+    constexpr int places = 12, directions = 8, elbowRoom = 2;
+    mat4 best = otherwise;
+    float farthest = medianDistance(room, otherwise);
+    for (int i = 0; i < places * places; ++i) {
+        const vec3 at((static_cast<float>(i % places) + 0.5f) / places, 0.5f,
+                      (static_cast<float>(i / places) + 0.5f) / places);
+        const vec3 eye = box.lower + at * box.size();
+        if (!room.isFree(eye, elbowRoom)) continue;
+        for (int k = 0; k < directions; ++k) {
+            const float angle = 2.0f * pi * static_cast<float>(k) / directions;
+            const mat4 view = lookFrom(eye, {std::sin(angle), 0.0f, std::cos(angle)});
+            const float distance = medianDistance(room, view);
+            // Of equals the first: what stands a little nearer does not matter.
+            if (distance > 1.02f * farthest) {
+                best = view;
+                farthest = distance;
+            }
+        }
+    }
+    return best;
+}
+
+/// From the front, unless something stands before the eye there: a building has rooms within its box.
+Camera fromInside(const Scene& scene, const Box& box) {
+    constexpr int cells = 96;
+    constexpr float farEnough = 0.3f;  // of the box's depth
     Camera camera;
-    camera.verticalFov = pi / 3;
+    camera.verticalFov = insideFov;
     const vec3 eye = box.center() + vec3(0, 0, 0.46f * box.size().z);
     camera.toWorld = lookFrom(eye, {0, 0, 1});
+    Occupancy room(box.lower, box.upper, cells);
+    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c) { room.add(a, b, c); });
+    if (medianDistance(room, camera.toWorld) < farEnough * box.size().z)
+        camera.toWorld = openestView(room, box, camera.toWorld);
     return camera;
 }
 
@@ -187,7 +237,7 @@ Camera frame(const Scene& scene) {
     if (isExact) {
         const Walls walls = findWalls(scene, box);
         // A closed box that faces outward is a thing, not a room; thick walls face both ways.
-        if (walls.closed() && walls.facingInward > -0.5f) return fromInside(box);
+        if (walls.closed() && walls.facingInward > -0.5f) return fromInside(scene, box);
         if (const auto side = openSide(walls)) return fromOutside(box, *side);
     }
     growByClip(scene, box);

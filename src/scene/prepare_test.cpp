@@ -91,6 +91,22 @@ TEST(Prepare, StandsInsideAClosedRoomButOutsideABox) {
     EXPECT_GT(frameScene(scene).toWorld[3].z, 1.0f);
 }
 
+/// Two rooms behind each other, of which the front one is small: a closet before the eye.
+TEST(Prepare, StandsInTheLargestRoomOfABuilding) {
+    Scene scene = roomScene(0);
+    Mesh& mesh = scene.meshes[0];
+    for (vec3& p : mesh.positions) p *= vec3(4, 1, 5);
+    for (const float side : {0.0f, 0.02f}) {  // a thick wall
+        addQuad(mesh, {0, 0, 4 + side}, {4, 0, 4 + side}, {4, 1, 4 + side}, {0, 1, 4 + side});
+        addQuad(mesh, {0, 0, 4 + side}, {0, 1, 4 + side}, {4, 1, 4 + side}, {4, 0, 4 + side});
+    }
+    const mat4 camera = frameScene(scene).toWorld;
+    EXPECT_LT(camera[3].z, 4.0f) << "not in the closet";
+    const vec3 ahead = vec3(camera[3]) - 2.0f * vec3(camera[2]);
+    EXPECT_TRUE(ahead.x > 0 && ahead.x < 4 && ahead.z > 0 && ahead.z < 4) << "with two metres before it";
+    EXPECT_NEAR(camera[3].y, 0.5f, 1e-5f);
+}
+
 TEST(Prepare, FramesDegenerateScenes) {
     Scene empty;
     empty.materials.emplace_back();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <string>
 
 #include "base/error.h"
@@ -31,7 +32,6 @@ using gpu::FrameGraph;
 using gpu::ImageHandle;
 
 constexpr uint32_t leastSamplesForErrors = 8;
-constexpr int firstStep = 8;  // pixels; of levels: kernels reach 10
 constexpr const char* sideNames[] = {"diffuse", "specular"};
 constexpr uint32_t reach = KPCN_TAPS / 2;
 constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
@@ -224,15 +224,17 @@ class Recorder {
                       {{"inputs", channels_[(layers.size() - 1) % 2]}, {"light", light_}, {"clean", clean}});
     }
 
-    /// What a kernel of its size leaves of the noise.
+    /// Smooths on where kernels end: the first step is the power of 2 below their reach.
     ImageHandle levels(size_t side, ImageHandle clean) {
         for (int i = 0; i < settings_.levels; ++i) {
             const std::string name =
                 std::string("kpcn/") + sideNames[side] + " level " + std::to_string(i + 1);
             const ImageHandle next = graph_.transient(name, Format::RGBA32Float, picture_,
                                                       onHost() ? Backing::Buffer : Backing::Image);
-            const KpcnLevelParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
-                                         firstStep << i, settings_.phiColor, static_cast<uint32_t>(side)};
+            const KpcnLevelParams params{
+                static_cast<int>(picture_.width), static_cast<int>(picture_.height),
+                static_cast<int>(std::bit_floor(std::max(network_.kernelWidth() / 2, 1u)) << i),
+                settings_.phiColor, static_cast<uint32_t>(side)};
             graph_.dispatch({.pass = name,
                              .shader = onHost() ? shaders::kpcn_level_buffers_comp : shaders::kpcn_level_comp,
                              .bindings = {{"clean", clean},
@@ -350,11 +352,12 @@ const ParamTable<KpcnSettings>& kpcnParams() {
         t.add("errors", &S::standardErrors, 0.0, 100.0, "standard errors",
               "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
               "less keeps sharp "
-              "reflections and small lights, more removes fireflies; 0: as far as the network likes");
+              "reflections and small lights, more removes fireflies; 0: as far as the network likes. A pixel "
+              "whose neighbours agree with the network stays as the network has it");
         t.add("levels", &S::levels, 0, 6, "levels",
-              "of a filter that goes on where the network's kernels end, for flat things; the last of n "
-              "reaches "
-              "2^(n+4) - 16 pixels further");
+              "of a filter that goes on where the network's kernels end, for flat things; with kernels of "
+              "21x21 the "
+              "last of n reaches 2^(n+4) - 16 pixels further");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "standard errors",
               "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
               "smoother "

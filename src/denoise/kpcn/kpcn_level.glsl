@@ -1,7 +1,6 @@
 // One level of an edge-avoiding a-trous filter over what a kernel of 21x21 pixels left of the noise: docs/kpcn.md, "Beyond the kernel".
 #include "denoise/guides.glsl"
 #include "denoise/kpcn/kpcn_params.h"
-#include "shaders/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -25,14 +24,19 @@ layout(set = 0, binding = 5, rgba32f) uniform readonly image2D albedo;
 
 const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
 
+const float FARTHEST = 1e30;  // so that differences of distances are numbers
+
 struct Surface {
-    vec3 normal, albedo;  // and KPCN_EPSILON
-    float distance;  // 0: nothing is seen
+    vec3 normal, albedo;  // normal: 0 if there is none; albedo: and KPCN_EPSILON
+    float distance;       // 0: nothing is seen
 };
 
-/// `at` may lie one pixel outside the picture.
+bool inPicture(ivec2 at) {
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(params.width, params.height)));
+}
+
 float distanceAt(ivec2 at) {
-    return hitDistance(imageLoad(depth, clamp(at, ivec2(0), ivec2(params.width, params.height) - 1)));
+    return min(hitDistance(imageLoad(depth, at)), FARTHEST);
 }
 
 Surface surfaceAt(ivec2 at) {
@@ -43,7 +47,9 @@ Surface surfaceAt(ivec2 at) {
 /// How much the distance grows by a pixel along `axis`: the smaller one of the differences to both sides, for the other may be
 /// to another surface.
 float slopeAlong(ivec2 at, ivec2 axis, float here) {
-    const float after = distanceAt(at + axis) - here, before = here - distanceAt(at - axis);
+    const bool hasAfter = inPicture(at + axis), hasBefore = inPicture(at - axis);
+    const float after = hasAfter ? distanceAt(at + axis) - here : 0.0, before = hasBefore ? here - distanceAt(at - axis) : 0.0;
+    if (hasAfter != hasBefore) return hasAfter ? after : before;
     return abs(after) < abs(before) ? after : before;
 }
 
@@ -51,9 +57,12 @@ float slopeAlong(ivec2 at, ivec2 axis, float here) {
 float surfaceExponent(Surface own, vec2 slope, Surface other, ivec2 from) {
     if ((own.distance > 0.0) != (other.distance > 0.0)) return -1e30;
     if (own.distance <= 0.0) return 0.0;
+    const bool hasNormal = own.normal != vec3(0.0);
+    if (hasNormal != (other.normal != vec3(0.0))) return -1e30;
+    const float bend = hasNormal ? 1.0 - dot(own.normal, other.normal) : 0.0;
     const float away = (other.distance - own.distance - dot(slope, vec2(from))) / (KPCN_LEVEL_DEPTH * own.distance);
     const vec3 colors = (other.albedo - own.albedo) / (KPCN_LEVEL_ALBEDO * own.albedo);
-    return -away * away - dot(colors, colors) - KPCN_LEVEL_NORMAL * (1.0 - dot(own.normal, other.normal));
+    return -away * away - dot(colors, colors) - KPCN_LEVEL_NORMAL * bend;
 }
 
 /// What of light x makes its luminance, in units of its deviation. Diffuse light has a color that the surface may not reflect:
@@ -64,8 +73,8 @@ vec3 luminanceWeights(Surface own) {
 }
 
 void main() {
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = ivec2(params.width, params.height);
-    if (any(greaterThanEqual(at, size))) return;
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (!inPicture(at)) return;
     const vec4 own = LOAD(at);
     const Surface surface = surfaceAt(at);
     const vec2 slope = vec2(slopeAlong(at, ivec2(1, 0), surface.distance), slopeAlong(at, ivec2(0, 1), surface.distance));
@@ -75,7 +84,7 @@ void main() {
     for (int j = -2; j <= 2; ++j) {
         for (int i = -2; i <= 2; ++i) {
             const ivec2 from = params.step * ivec2(i, j), there = at + from;
-            if (any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, size))) continue;
+            if (!inPicture(there)) continue;
             const vec4 other = LOAD(there);
             const float apart = dot(other.rgb - own.rgb, weights);
             const float weight = B3[abs(i)] * B3[abs(j)] * exp(surfaceExponent(surface, slope, surfaceAt(there), from) - apart * apart);

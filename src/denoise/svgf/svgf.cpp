@@ -303,8 +303,9 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "history that is forgotten per relative change of light beyond noise; higher follows changes "
               "sooner and is noisier; 0 is off");
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
-              "... of the mean over a tile count as noise; lower sees smaller changes and takes noise for "
-              "some");
+              "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
+              "noise for "
+              "one");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
@@ -322,8 +323,9 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "so many first levels average the variance over 3x3 pixels before it guides them; more take "
               "longer");
         t.add("boost", &S::boost,
-              "the shorter a pixel's history, the more noise is expected of it, as of a mean of so many "
-              "frames");
+              "the noise expected of a pixel falls with the length of its history (times 2 / sqrt(frames)); "
+              "off: it "
+              "is that of one frame");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("paper", {{"alpha", "0.2"},
                            {"reflections", "off"},
