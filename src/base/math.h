@@ -6,10 +6,10 @@
 
 namespace limpid {
 
+using glm::ivec3;
 using glm::mat3;
 using glm::mat4;
 using glm::vec2;
-using glm::ivec3;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
