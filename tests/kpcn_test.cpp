@@ -319,31 +319,29 @@ TEST_F(KpcnTest, LightStaysNearWhatTheSamplesAreSureOf) {
         const double share = 1.0 - 1.5 * std::sqrt(variance) / std::abs(apart);
         return share > 0.0 ? std::copysign(share, apart) : 0.0;
     };
+    const int width = static_cast<int>(frame.width), height = static_cast<int>(frame.height);
+    const auto texelOf = [&](int x, int y) { return 4 * static_cast<size_t>(y * width + x); };
     int moved = 0, heldBack = 0;
     const auto scattered = [&](int x, int y, int side) {
-        const auto [clean, noisy] =
-            lights(4 * (static_cast<size_t>(y) * frame.width + static_cast<size_t>(x)), side);
-        const double own = wanted(4 * (static_cast<size_t>(y) * frame.width + static_cast<size_t>(x)), side);
+        const auto [clean, noisy] = lights(texelOf(x, y), side);
+        const double own = wanted(texelOf(x, y), side);
         double around = 0.0;
         for (int k = 0; k < 9; ++k) {
             const int i = x + k % 3 - 1, j = y + k / 3 - 1;
-            if (k == 4 || i < 0 || j < 0 || i >= static_cast<int>(frame.width) ||
-                j >= static_cast<int>(frame.height))
-                continue;
-            const double other =
-                wanted(4 * (static_cast<size_t>(j) * frame.width + static_cast<size_t>(i)), side);
+            if (k == 4 || i < 0 || j < 0 || i >= width || j >= height) continue;
+            const double other = wanted(texelOf(i, j), side);
             if (other * own > 0.0) around = std::max(around, std::abs(other));
         }
         moved += own != 0.0;
         heldBack += around < std::abs(own);
         return clean + (noisy - clean) * std::min(std::abs(own), around);
     };
-    size_t at = 0;
-    for (int y = 0; y < static_cast<int>(frame.height); ++y) {
-        for (int x = 0; x < static_cast<int>(frame.width); ++x, at += 4) {
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
             const dvec3 truth = scattered(x, y, 0) + scattered(x, y, 1);
+            const float* const texel = &picture[texelOf(x, y)];
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(picture[at + static_cast<size_t>(c)], truth[c], 1e-4 * (1.0 + truth[c])) << at;
+                ASSERT_NEAR(texel[c], truth[c], 1e-4 * (1.0 + truth[c])) << x << " " << y;
         }
     }
     const auto count = static_cast<int>(picture.size() / 2);

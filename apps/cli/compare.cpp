@@ -158,8 +158,8 @@ void addCompareCommand(CLI::App& app) {
         "--json", arguments->json,
         "Print one JSON object: psnr (dB; null for equal pictures, where it is infinite), ssim, "
         "relmse, flip, hdr_flip (null unless both are EXR or HDR), exposure (stops), width, height, "
-        "invalid_pixels. For a sequence: frames (an array of these, flicker and temporal_error), mean, "
-        "worst");
+        "invalid_pixels. For a sequence: frames (an array of these, flicker and temporal_error), "
+        "mean, worst");
     command->add_option(
         "--error-map", arguments->errorMap,
         "Write the FLIP error of each pixel as a PNG (magma: black 0, yellow 1); for a sequence "
@@ -169,8 +169,8 @@ void addCompareCommand(CLI::App& app) {
         ->add_option(
             "--exposure", arguments->exposure,
             "Stops for psnr, ssim, flip, flicker and temporal_error, which see the exposed picture clamped "
-            "to [0,1] and "
-            "sRGB-encoded; 'auto' brings the reference's average luminance to 0.18, for a sequence that of "
+            "to [0,1] and sRGB-encoded; 'auto' brings the reference's average luminance to 0.18, for a "
+            "sequence that of "
             "all "
             "its frames. Default: auto for an EXR or HDR reference, 0 for PNG or JPEG. relmse and hdr_flip "
             "see "

@@ -10,8 +10,7 @@ inline constexpr const char* framingCameraName = "framing";
 /// A perspective camera of that name that shows the whole scene, and all that its chosen clip moves, in a
 /// picture at least as wide as high:
 ///  - a room closed on all six sides: from inside, at the +Z wall, towards the opposite wall; if something
-///  stands
-///    near before that place, from where most can be seen;
+///    stands near before that place, from where most can be seen;
 ///  - a room with one open wall: from outside, straight through the opening;
 ///  - a scene that is flat along Z: straight from +Z;
 ///  - everything else: from the front (+Z), a little to the right and above.

@@ -35,9 +35,7 @@ void Occupancy::mark(const vec3& point) {
 
 void Occupancy::add(const vec3& a, const vec3& b, const vec3& c) {
     const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-    const float wanted = std::ceil(longest / (spacing * cellSize_));
-    if (!(wanted < 1e4f)) return;  // no number, or far larger than the box
-    const int steps = std::max(static_cast<int>(wanted), 1);
+    const int steps = std::max(static_cast<int>(std::ceil(longest / (spacing * cellSize_))), 1);
     for (int i = 0; i <= steps; ++i) {
         for (int j = 0; i + j <= steps; ++j) {
             const float u = static_cast<float>(i) / static_cast<float>(steps);

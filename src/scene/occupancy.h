@@ -14,7 +14,7 @@ class Occupancy {
     /// Of a box that is not empty; `cells` along its longest side, at least 1.
     Occupancy(const vec3& lower, const vec3& upper, int cells);
 
-    /// What the triangle touches; of what lies beyond the box the nearest cells.
+    /// What the triangle, which lies in the box, touches.
     void add(const vec3& a, const vec3& b, const vec3& c);
 
     /// Along the unit vector `direction` until something is there; 0 if the box ends first: there is nothing
@@ -23,8 +23,6 @@ class Occupancy {
 
     /// Whether all cells that are at most `cells` away along each axis are empty and in the box.
     bool isFree(const vec3& point, int cells) const;
-
-    float cellSize() const { return cellSize_; }
 
   private:
     ivec3 cellOf(const vec3& point) const { return ivec3(glm::floor((point - lower_) / cellSize_)); }

@@ -3,7 +3,8 @@
     python3 -m limpid_training.fixture ../tests/data
 
 kpcn_small.safetensors: a small network with random weights. kpcn_cases.safetensors: frames ("CASE/LAYER" as in a dataset, in single
-precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean" and its standard error "CASE/SIDE.deviation"."""
+precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean"
+and its standard error "CASE/SIDE.deviation"."""
 
 import argparse
 import json
@@ -73,8 +74,8 @@ def deviation(logits, variance):
 
 def variances(layers):
     """Of each side's light as features.to_network() has it, to first order."""
-    specular = layers["specular.variance"] / (1.0 + features.luminance(layers["specular"])) ** 2
-    return {"diffuse": layers["diffuse.variance"] / (features.luminance(layers["albedo"]) + features.EPSILON) ** 2, "specular": specular}
+    diffuse = layers["diffuse.variance"] / (features.luminance(layers["albedo"]) + features.EPSILON) ** 2
+    return {"diffuse": diffuse, "specular": features.seen("specular", layers)[1]}
 
 
 @torch.no_grad()

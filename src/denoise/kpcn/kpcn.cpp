@@ -356,12 +356,10 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "whose neighbours agree with the network stays as the network has it");
         t.add("levels", &S::levels, 0, 6, "levels",
               "of a filter that goes on where the network's kernels end, for flat things; with kernels of "
-              "21x21 the "
-              "last of n reaches 2^(n+4) - 16 pixels further");
+              "21x21 the last of n reaches 2^(n+4) - 16 pixels further");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "standard errors",
               "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
-              "smoother "
-              "and blurs soft shadows");
+              "smoother and blurs soft shadows");
         t.add("half", &S::half, "half precision; off: single precision, slower");
         return t;
     }();

@@ -23,7 +23,6 @@ layout(set = 0, binding = 4, rgba32f) uniform readonly image2D depth;
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D albedo;
 
 const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
-
 const float FARTHEST = 1e30;  // so that differences of distances are numbers
 
 struct Surface {

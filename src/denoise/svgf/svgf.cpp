@@ -132,7 +132,6 @@ class Svgf {
         params.steadyShare = steadyShare();
         params.antilag = settings_.antilag;
         params.antilagNoise = settings_.antilagNoise;
-        params.boost = settings_.boost;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
@@ -172,7 +171,8 @@ class Svgf {
                          .bindings = bindings,
                          .params = gpu::paramsOf(params),
                          .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
-                                       {"REFLECTIONS", signal.reflects ? 1u : 0u}},
+                                       {"REFLECTIONS", signal.reflects ? 1u : 0u},
+                                       {"BOOST", settings_.boost ? 1u : 0u}},
                          .extent = extent_});
         if (!buffers_) recordTiles(signal, moments.current, tiles.current);
         return {color, moments.current, feedback};
@@ -304,8 +304,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "sooner and is noisier; 0 is off");
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
-              "noise for "
-              "one");
+              "noise for one");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
@@ -324,8 +323,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "longer");
         t.add("boost", &S::boost,
               "the noise expected of a pixel falls with the length of its history (times 2 / sqrt(frames)); "
-              "off: it "
-              "is that of one frame");
+              "off: it is that of one frame");
         t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
         t.preset("paper", {{"alpha", "0.2"},
                            {"reflections", "off"},

@@ -42,7 +42,6 @@ struct SvgfReprojectParams {
     float steadyShare;  // as SvgfTilesParams
     float antilag;
     float antilagNoise;
-    uint boost;  // svgfBoost()
 };
 
 struct SvgfTilesParams {
@@ -71,8 +70,8 @@ struct SvgfModulateParams {
 
 #ifndef __cplusplus
 /// What a deviation is multiplied by: the longer the history, the less noise its mean has.
-float svgfBoost(uint boost, float frames) {
-    return boost != 0u ? 2.0 * inversesqrt(max(frames, 1.0)) : 1.0;
+float svgfBoost(bool boost, float frames) {
+    return boost ? 2.0 * inversesqrt(max(frames, 1.0)) : 1.0;
 }
 #endif
 

@@ -8,6 +8,8 @@ layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lig
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
 
+layout(constant_id = 2) const bool BOOST = true;
+
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
 };
@@ -165,7 +167,7 @@ vec4 accumulate(ivec2 at) {
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
     const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
-    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(params.boost, now.moments.w) * deviation, MAX_HALF);
+    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(BOOST, now.moments.w) * deviation, MAX_HALF);
     STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);

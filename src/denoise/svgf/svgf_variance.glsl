@@ -36,7 +36,7 @@ void estimate(ivec2 at) {
         for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
     }
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
-    const float boost = svgfBoost(BOOST ? 1u : 0u, imageLoad(moments, at).w);
+    const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);
     const vec3 light = LOAD_HALF4(color, at).rgb;
     STORE_HALF4(color, at, vec4(light, min(boost * sqrt(max(mean.y - mean.x * mean.x, 0.0)), MAX_HALF)));
 }
