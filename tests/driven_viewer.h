@@ -35,11 +35,13 @@ class DrivenViewer {
     /// of the picture's.
     DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3) : folder_(folder) {
         const std::string in = "cd '" + folder_.string() + "' && ";
-        shell(in +
-              "rm -f display controls code log; Xvfb -displayfd 3 -screen 0 1000x1800x24 3>display "
-              ">/dev/null 2>&1 & "
-              "echo $! > '" +
-              (folder_ / "xvfb.pid").string() + "'");
+        // A display that ends with its last client: the viewer must stay one all the time.
+        shell(
+            in +
+            "rm -f display controls code log; Xvfb -terminate -displayfd 3 -screen 0 1000x1800x24 3>display "
+            ">/dev/null 2>&1 & "
+            "echo $! > '" +
+            (folder_ / "xvfb.pid").string() + "'");
         waitFor("a display", [&] { return !get("display").empty() && get("display").back() == '\n'; });
         display_ = ":" + get("display").substr(0, get("display").find('\n'));
         shell(in + "DISPLAY=" + display_ + " LIMPID_VALIDATION=1 '" + LIMPID_PROGRAM + "' view " + arguments +

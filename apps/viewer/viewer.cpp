@@ -581,6 +581,7 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
     scene::Scene first = load(settings.source);
     if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
     const scene::Camera home = start(first);
+    const Desktop desktop;
     auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(first), home, settings);
     for (;;) {
         try {

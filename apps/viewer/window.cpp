@@ -24,21 +24,20 @@ namespace {
 
 }  // namespace
 
-Window::Window(const std::string& title, gpu::Extent size) {
+Desktop::Desktop() {
     if (!glfwInit()) fail("there is no display to open a window on");
+}
+
+Desktop::~Desktop() {
+    glfwTerminate();
+}
+
+Window::Window(const std::string& title, gpu::Extent size) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window_ = glfwCreateWindow(static_cast<int>(size.width), static_cast<int>(size.height), title.c_str(),
                                nullptr, nullptr);
-    if (window_) {
-        listen();
-        return;
-    }
-    try {
-        fail("no window can be opened");
-    } catch (...) {
-        glfwTerminate();
-        throw;
-    }
+    if (!window_) fail("no window can be opened");
+    listen();
 }
 
 /// A wait for events does not tell whether there were any.
@@ -101,7 +100,6 @@ Window& Window::of(GLFWwindow* window) {
 
 Window::~Window() {
     glfwDestroyWindow(window_);
-    glfwTerminate();
 }
 
 std::vector<std::string> Window::surfaceExtensions() {

@@ -14,9 +14,20 @@ struct GLFWwindow;
 
 namespace limpid::viewer {
 
-class Window {
+/// The connection to the display, which must outlive its windows. One that ends between two windows may take
+/// the display with it: X starts anew when its last client goes.
+class Desktop {
   public:
     /// Throws Error where there is no display, saying what to use instead.
+    Desktop();
+    ~Desktop();
+    Desktop(const Desktop&) = delete;
+    Desktop& operator=(const Desktop&) = delete;
+};
+
+class Window {
+  public:
+    /// While there is a Desktop. Throws Error if no window can be opened, saying what to use instead.
     Window(const std::string& title, gpu::Extent size);
     ~Window();
     Window(const Window&) = delete;
