@@ -17,6 +17,7 @@ struct DoubleSvgfParams {
     bool relative = true, search = true;
     bool reflections = true;
     double antilag = 2.0, antilagNoise = 3.0;
+    double alphaShown = 0.5, shownNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     int blurLevels = 1;
     bool boost = true, wide = true, position = false;
@@ -43,6 +44,7 @@ struct SvgfHistory {
     std::vector<dvec4> color;    ///< c; the fourth is not read
     std::vector<dvec4> moments;  ///< m1, m2, f, N
     std::vector<double> tiles;   ///< lag
+    std::vector<dvec4> shown;    ///< of step 7; the fourth is not read. None at all: black
 };
 
 struct SvgfPixel {
@@ -52,14 +54,14 @@ struct SvgfPixel {
     /// A decision was so close that float32 may take the other one: compare nothing here.
     bool doubtful = false;
     /// By how much the results change at most if the back-projected position s is off by one pixel.
-    dvec4 colorSlope{0.0}, momentsSlope{0.0};
+    dvec4 colorSlope{0.0}, momentsSlope{0.0}, shownSlope{0.0};
     /// The magnitude of what was averaged: what rounding is relative to.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
-/// c' with sigma, and the moments.
+/// c' with sigma, the moments, and h with b.
 struct SvgfAccumulated {
-    std::vector<dvec4> color, moments;
+    std::vector<dvec4> color, moments, shown;
     std::vector<SvgfPixel> pixels;
 };
 
@@ -111,7 +113,11 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
-/// Step 7; alpha 1.
+/// Step 7 for one pixel that sees something, or any of which nothing was shown (b = 1). `color`: c with
+/// sigma; `shown`: h with b.
+dvec3 svgfSteadied(const dvec4& color, const dvec4& shown, const DoubleSvgfParams& params);
+
+/// Step 8, of what step 7 made; alpha 1.
 struct SvgfFiltered {
     SvgfSignal signal;
     std::vector<dvec4> color;

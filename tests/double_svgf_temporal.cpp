@@ -1,4 +1,4 @@
-// Steps 1 to 4 and 7: what is done pixel by pixel and over time.
+// Steps 1 to 4, 7 and 8: what is done pixel by pixel and over time.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -68,7 +68,7 @@ class Accumulator {
 
   private:
     struct Old {
-        Resampled color, moments;
+        Resampled color, moments, shown;
         Sloped lag{0.0, 0.0};
     };
     std::optional<dvec3> reflectionMotion(size_t p) const;
@@ -76,6 +76,7 @@ class Accumulator {
     Old find(size_t p, SvgfPixel& pixel) const;
     Sloped lagAt(const dvec2& s) const;
     Sloped shortened(const Old& old) const;
+    dvec4 shown(const Old& old, double frames) const;
     void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
@@ -142,8 +143,11 @@ Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
 Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     const Reprojection found = reproject(p, pixel);
     if (found.failure != 0) return {};
-    return {resample(found, [&](size_t q) { return previous_.color[q]; }),
-            resample(found, [&](size_t q) { return previous_.moments[q]; }), lagAt(found.position)};
+    return {
+        resample(found, [&](size_t q) { return previous_.color[q]; }),
+        resample(found, [&](size_t q) { return previous_.moments[q]; }),
+        resample(found, [&](size_t q) { return previous_.shown.empty() ? dvec4(0.0) : previous_.shown[q]; }),
+        lagAt(found.position)};
 }
 
 /// N after anti-lag.
@@ -184,6 +188,11 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
     pixel.momentsOperands.w = old.moments.mean.w;
 }
 
+/// h with b.
+dvec4 Accumulator::shown(const Old& old, double frames) const {
+    return {dvec3(old.shown.mean), std::max(params_.alphaShown, 1.0 / std::max(frames, 1.0))};
+}
+
 void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     const SvgfSample sample = svgfSample(frame_, signal_, p, params_.demodulate);
     SvgfPixel& pixel = result.pixels[p];
@@ -192,6 +201,7 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     pixel.rejected = sample.rejected;
     if (pixel.failure == 1) {
         color = dvec4(sample.x, -1.0);
+        result.shown[p] = dvec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
     if (sample.rejected) {
@@ -203,6 +213,9 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     } else {
         update(sample.x, old, color, moments, pixel);
     }
+    result.shown[p] = shown(old, moments.w);
+    const double length = std::max(moments.w, 1.0);
+    pixel.shownSlope = dvec4(dvec3(old.shown.slope), pixel.momentsSlope.w / (length * length));
     color = glm::clamp(color, -largestHalf, largestHalf);
     color.w =
         std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
@@ -268,7 +281,7 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
     const SvgfHistory none;
     const Accumulator accumulator(frame, signal, fits ? previous : none, params);
     const std::vector<dvec4> zeros(frame.pixelCount(), dvec4(0.0));
-    SvgfAccumulated result{zeros, zeros, std::vector<SvgfPixel>(frame.pixelCount())};
+    SvgfAccumulated result{zeros, zeros, zeros, std::vector<SvgfPixel>(frame.pixelCount())};
     for (size_t p = 0; p < frame.pixelCount(); ++p) accumulator.accumulate(p, result);
     return result;
 }
@@ -306,6 +319,14 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
         result.error.push_back(params.antilag * excessError / s.size + 1e-5 * lag);
     }
     return result;
+}
+
+dvec3 svgfSteadied(const dvec4& color, const dvec4& shown, const DoubleSvgfParams& params) {
+    const dvec3 c(color), h(shown);
+    const double tolerated = params.shownNoise * std::max(color.w, 0.0) + 0.001 * std::abs(luminance(c));
+    const double change = std::abs(luminance(h) - luminance(c));
+    const double trust = change > tolerated ? tolerated / change : 1.0;
+    return c + (1.0 - shown.w) * trust * (h - c);
 }
 
 std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vector<SvgfFiltered>& signals,

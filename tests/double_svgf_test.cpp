@@ -25,7 +25,8 @@ class Sequence {
     SvgfAccumulated accumulate(const HostFrame& frame) {
         SvgfAccumulated result = svgfAccumulate(frame, signal_, history, params_);
         history = {frame.width,  frame.height,   svgfSurfaces(frame),
-                   result.color, result.moments, svgfTiles(frame, result.moments, params_).tiles};
+                   result.color, result.moments, svgfTiles(frame, result.moments, params_).tiles,
+                   result.shown};
         return result;
     }
     SvgfAccumulated next(const HostFrame& frame) {
@@ -252,7 +253,8 @@ TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
             return glm::any(glm::greaterThan(glm::abs(x - y), 1.1 * 2e-4 * slope + 1e-9));
         };
         outside += exceeds(dvec4(dvec3(a.color[p]), 0.0), dvec4(dvec3(b.color[p]), 0.0), pixel.colorSlope) ||
-                   exceeds(a.moments[p], b.moments[p], pixel.momentsSlope);
+                   exceeds(a.moments[p], b.moments[p], pixel.momentsSlope) ||
+                   exceeds(a.shown[p], b.shown[p], pixel.shownSlope);
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
     // Where s passes a pixel's centre, taps that the slope does not know come in.

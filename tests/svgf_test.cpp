@@ -25,6 +25,8 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .reflections = s.reflections,
             .antilag = double{s.antilag},
             .antilagNoise = double{s.antilagNoise},
+            .alphaShown = double{s.alphaShown},
+            .shownNoise = double{s.shownNoise},
             .phiColor = double{s.phiColor},
             .phiNormal = double{s.phiNormal},
             .phiDepth = double{s.phiDepth},
@@ -72,6 +74,7 @@ std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
 struct Stored {
     std::vector<dvec4> color, moments;
     std::vector<double> tiles;
+    std::vector<dvec4> shownPast;  ///< none if filtered light is shown as it is
 };
 
 constexpr double halfRounding = 1e-3, leastHalf = 1e-7, floatRounding = 1e-5;
@@ -119,7 +122,8 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     void compareTiles(const HostFrame& frame, const Stored& is);
     void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is);
     void compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
-                       std::vector<std::vector<dvec4>>& colors);
+                       const Stored& is, std::vector<std::vector<dvec4>>& colors);
+    bool steadies() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
 
     SvgfSettings settings_;
     DoubleSvgfParams params_;
@@ -174,6 +178,7 @@ Stored SvgfPassTest::stored(const Signal& signal) {
     const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
     if (images.size() != 1) throw Error("the variance of young pixels is not one image");
     result.color = download(images[0]);
+    if (steadies()) result.shownPast = download("svgf/reproject " + signal.name, "shown past");
     return result;
 }
 
@@ -195,7 +200,9 @@ void SvgfPassTest::compareAccumulated(const HostFrame& frame, const Signal& sign
         if (pixel.doubtful) continue;
         const bool agrees =
             isNear(is.color[p], expected.color[p], pixel.colorSlope, pixel.colorOperands, halfRounding, 3) &&
-            isNear(m, expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding, 4);
+            isNear(m, expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding, 4) &&
+            (!steadies() || isNear(is.shownPast[p], expected.shown[p], pixel.shownSlope, expected.shown[p],
+                                   halfRounding, 4));
         wrong += !agrees;
         EXPECT_TRUE(agrees || !pixel.rejected) << "too few to be let off, pixel " << p;
     }
@@ -223,15 +230,19 @@ void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surf
     }
 }
 
-/// Appends what every level stored to `colors`, which holds the first one's input.
+/// Appends what every level stored to `colors`, which holds the first one's input. The last one's is shown.
 void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
-                                 std::vector<std::vector<dvec4>>& colors) {
+                                 const Stored& is, std::vector<std::vector<dvec4>>& colors) {
     for (int i = 0; i < settings_.levels; ++i) {
         const std::string pass = "svgf/level " + std::to_string(i + 1) + " " + signal.name;
         const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy(pass);
         ASSERT_EQ(images.size(), 1u) << pass;
-        const std::vector<dvec4> expected =
+        std::vector<dvec4> expected =
             svgfLevel(frame, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
+        if (steadies() && i + 1 == settings_.levels) {
+            for (size_t p = 0; p < frame.pixelCount(); ++p)
+                expected[p] = dvec4(svgfSteadied(expected[p], is.shownPast[p], params_), expected[p].w);
+        }
         colors.push_back(download(images[0]));
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             ASSERT_TRUE(isNear(colors.back()[p], expected[p], dvec4(0.0), dvec4(0.0), halfRounding, 4))
@@ -251,10 +262,11 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         compareTiles(frame, is);
         compareYoung(frame, seen, is);
         std::vector<std::vector<dvec4>> colors{is.color};
-        if (!HasFatalFailure()) compareLevels(frame, seen, signal, colors);
+        if (!HasFatalFailure()) compareLevels(frame, seen, signal, is, colors);
         if (HasFatalFailure()) return;
         const auto fedBack = static_cast<size_t>(std::min(settings_.historyLevel, settings_.levels));
-        before_[signal.name] = {frame.width, frame.height, seen, colors[fedBack], is.moments, is.tiles};
+        before_[signal.name] = {frame.width, frame.height, seen,         colors[fedBack],
+                                is.moments,  is.tiles,     colors.back()};
         filtered.push_back({signal.signal, colors.back()});
     }
     const std::vector<dvec4> beauty = download(output_.beauty);
@@ -309,6 +321,8 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"Fast", moving, {.alpha = 0.6f, .alphaMoments = 0.5f, .alphaFast = 0.9f, .levels = 1}},
             Case{"Noiseless", {.cameraMoves = true, .noise = false}, {}},
             Case{"NoReflections", moving, {.reflections = false, .levels = 1}},
+            Case{"NotSteadied", moving, {.alphaShown = 1.0f, .levels = 2}},
+            Case{"SteadiedAndFedBack", moving, {.shownNoise = 2.0f, .levels = 2, .historyLevel = 2}},
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
             Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
@@ -408,7 +422,7 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         denoise(*method, frame, settings);
         const double bytes =
             static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
-        EXPECT_EQ(bytes, separate ? 200.25 : 120.125);
+        EXPECT_EQ(bytes, separate ? 232.25 : 136.125);
     }
 }
 

@@ -54,7 +54,8 @@ constexpr std::array svgfSteps{"preset=paper",
                                "svgf.wide=on",
                                "svgf.separate=off",
                                "svgf.reflections=off",
-                               "pathtrace.through_mirrors=off"};
+                               "pathtrace.through_mirrors=off",
+                               "svgf.alpha_shown=1"};
 
 /// `texts` by commas: group.name=value, or preset=name.
 QualityMethod variantOf(RenderSettings settings, const std::string& texts) {

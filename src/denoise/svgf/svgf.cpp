@@ -42,9 +42,11 @@ struct Surfaces {
 };
 
 struct Accumulated {
-    ImageHandle color;    ///< half4: light, deviation of its luminance in one frame
-    ImageHandle moments;  ///< rgba32f: first, second, fast first, frames
-    History feedback;     ///< of colors; `current` is what the next frame reads
+    ImageHandle color;      ///< half4: light, deviation of its luminance in one frame
+    ImageHandle moments;    ///< rgba32f: first, second, fast first, frames
+    History feedback;       ///< of colors; `current` is what the next frame reads
+    ImageHandle shown;      ///< half4: the last level's result
+    ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
 };
 
 class Svgf {
@@ -132,8 +134,18 @@ class Svgf {
         params.steadyShare = steadyShare();
         params.antilag = settings_.antilag;
         params.antilagNoise = settings_.antilagNoise;
+        params.alphaShown = settings_.alphaShown;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
+    }
+
+    /// The last of the filter's levels does.
+    bool steadies() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+
+    /// What was shown lives on as what is fed back, or by itself.
+    History shownOf(const std::string& name, const History& feedback) {
+        if (!steadies() || fedBack() == settings_.levels) return feedback;
+        return graph_.history(name + " shown", Format::RGBA16Float, extent_, input_.filters);
     }
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
@@ -144,6 +156,9 @@ class Svgf {
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
         const History tiles = graph_.history(name + " tiles", Format::R32Float, tileExtent);
+        const History shown = shownOf(name, feedback);
+        const ImageHandle shownPast = graph_.transient(name + " shown past", Format::RGBA16Float,
+                                                       steadies() ? extent_ : Extent{1, 1}, input_.filters);
         const ImageHandle color =
             fedBack() == 0
                 ? feedback.current
@@ -164,7 +179,9 @@ class Svgf {
                                            {"momentsBefore", moments.previous},
                                            {"tilesBefore", tiles.previous},
                                            {"color", color},
-                                           {"moments", moments.current}};
+                                           {"moments", moments.current},
+                                           {"shownBefore", shown.previous},
+                                           {"shownPast", shownPast}};
         if (buffers_) bindings.push_back({"tiles", tiles.current});
         graph_.dispatch({.pass = "svgf/reproject " + signal.name,
                          .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
@@ -172,10 +189,11 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
                                        {"REFLECTIONS", signal.reflects ? 1u : 0u},
-                                       {"BOOST", settings_.boost ? 1u : 0u}},
+                                       {"BOOST", settings_.boost ? 1u : 0u},
+                                       {"STEADY", steadies() ? 1u : 0u}},
                          .extent = extent_});
         if (!buffers_) recordTiles(signal, moments.current, tiles.current);
-        return {color, moments.current, feedback};
+        return {color, moments.current, feedback, shown.current, shownPast};
     }
 
     void recordTiles(const Signal& signal, ImageHandle moments, ImageHandle tiles) {
@@ -198,6 +216,7 @@ class Svgf {
         params.phiColor = settings_.phiColor;
         params.normalScale = log2e * (settings_.position ? 1.0f / settings_.phiNormal : settings_.phiNormal);
         params.depthScale = log2e / settings_.phiDepth;
+        params.shownNoise = settings_.shownNoise;
         return params;
     }
 
@@ -228,19 +247,23 @@ class Svgf {
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
+        const bool steadied = steadies() && number == settings_.levels;
         const ImageHandle filtered =
-            number == fedBack() ? accumulated.feedback.current
-                                : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
+            steadied              ? accumulated.shown
+            : number == fedBack() ? accumulated.feedback.current
+                                  : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
         const int step = 1 << (number - 1);
         const SvgfFilterParams params = filterParams(step);
         std::vector<gpu::ConstantValue> constants = filterConstants();
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
+        constants.push_back({"STEADY", steadied ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
                                       {"signal", before},
-                                      {"filtered", filtered}},
+                                      {"filtered", filtered},
+                                      {"shownPast", steadied ? accumulated.shownPast : before}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = {invocations(extent_.width, step), invocations(extent_.height, step)}});
@@ -305,6 +328,12 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
               "noise for one");
+        t.add("alpha_shown", &S::alphaShown, 1e-4, 1.0, "",
+              "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
+              "changes later; 1 (and no levels) is off");
+        t.add("shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
+              "from the filtered light at most is what was shown before, for this; higher flickers less "
+              "and follows changes later");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
@@ -330,6 +359,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
                            {"wide", "on"},
                            {"alpha_moments", "0.2"},
                            {"antilag", "0"},
+                           {"alpha_shown", "1"},
                            {"levels", "5"},
                            {"history_level", "1"},
                            {"phi_normal", "128"},
@@ -344,6 +374,7 @@ const ParamTable<SvgfSettings>& svgfParams() {
                             {"depth_test", "0.1"},
                             {"relative", "off"},
                             {"antilag", "0"},
+                            {"alpha_shown", "1"},
                             {"levels", "5"},
                             {"history_level", "1"},
                             {"wide", "on"},

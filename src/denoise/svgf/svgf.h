@@ -23,6 +23,8 @@ struct SvgfSettings {
     bool reflections = true;
     float antilag = 16.0f;
     float antilagNoise = 1.5f;
+    float alphaShown = 0.5f;
+    float shownNoise = 0.5f;
     int levels = 4;
     int historyLevel = 0;
     bool wide = false;
@@ -40,7 +42,7 @@ const ParamTable<SvgfSettings>& svgfParams();
 /// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
 /// (with filters in images; otherwise "svgf/reproject" does its work), "svgf/variance SIGNAL", "svgf/level 1
 /// SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal
-/// "svgf/SIGNAL color", "svgf/SIGNAL moments" and "svgf/SIGNAL tiles".
+/// "svgf/SIGNAL color", "svgf/SIGNAL moments", "svgf/SIGNAL tiles" and "svgf/SIGNAL shown".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 }  // namespace limpid::denoise

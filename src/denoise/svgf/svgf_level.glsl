@@ -1,10 +1,12 @@
-// One level of the variance-guided a-trous filter. docs/denoising.md, SVGF, step 6.
+// One level of the variance-guided a-trous filter. docs/denoising.md, SVGF, step 6; and of the
+// last one, step 7.
 #extension GL_EXT_control_flow_attributes : require
 #include "denoise/svgf/svgf_params.h"
 #include "shaders/filter_image.glsl"
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
+layout(constant_id = 5) const bool STEADY = false;  // beside what was shown before
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -12,6 +14,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_UINT2(1, surfaces);
 READ_HALF4(2, signal);
 WRITE_HALF4(3, filtered);
+READ_HALF4(4, shownPast);  // light | weight of this frame's beside it
 
 #include "denoise/svgf/svgf_weights.glsl"
 
@@ -93,9 +96,17 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     centre.squares += deviation * deviation;
 }
 
+/// What is shown of filtered light: what was is trusted as far as the filter's own noise reaches.
+vec3 steadied(vec4 now, vec4 past) {
+    const float l = luminance(now.rgb), change = abs(luminance(past.rgb) - l);
+    const float noise = params.shownNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
+    return mix(now.rgb, past.rgb, (1.0 - past.a) * min(noise / max(change, 1e-30), 1.0));
+}
+
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    const vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
+    vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
+    if (STEADY) result.rgb = steadied(result, LOAD_HALF4(shownPast, at));
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 

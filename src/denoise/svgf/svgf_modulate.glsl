@@ -1,4 +1,4 @@
-// The albedo back into the filtered light, and what the camera sees directly. docs/denoising.md, SVGF, step 7.
+// The albedo back into the filtered light, and what the camera sees directly. docs/denoising.md, SVGF, step 8.
 #include "denoise/guides.glsl"
 #include "denoise/svgf/svgf_params.h"
 #include "shaders/filter_image.glsl"

@@ -42,6 +42,7 @@ struct SvgfReprojectParams {
     float steadyShare;  // as SvgfTilesParams
     float antilag;
     float antilagNoise;
+    float alphaShown;
 };
 
 struct SvgfTilesParams {
@@ -60,6 +61,7 @@ struct SvgfFilterParams {
     float phiColor;
     float normalScale;  // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;   // log2(e) / phi_depth
+    float shownNoise;   // deviations
 };
 
 struct SvgfModulateParams {

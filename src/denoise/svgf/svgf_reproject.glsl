@@ -10,6 +10,8 @@ layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as
 
 layout(constant_id = 2) const bool BOOST = true;
 
+layout(constant_id = 3) const bool STEADY = false;  // what was shown is followed, too
+
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
 };
@@ -29,6 +31,8 @@ layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
 layout(set = 0, binding = 13, r32f) uniform readonly image2D tilesBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
+READ_HALF4(18, shownBefore);
+WRITE_HALF4(19, shownPast);  // light | weight of this frame's beside it
 
 /// How a surface point must have looked in the previous frame.
 struct Expected {
@@ -38,7 +42,7 @@ struct Expected {
 };
 
 struct Past {
-    vec3 color;
+    vec3 color, shown;
     vec4 moments;
 };
 
@@ -47,7 +51,7 @@ struct Taps {
     float weight;
 };
 
-const Taps NO_TAPS = Taps(Past(vec3(0.0), vec4(0.0)), 0.0);
+const Taps NO_TAPS = Taps(Past(vec3(0.0), vec3(0.0), vec4(0.0)), 0.0);
 
 void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
@@ -60,6 +64,7 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
                         imageLoad(instancesBefore, inside).x == expected.instance;
     if (!counts || weight <= 0.0) return;
     taps.sum.color += weight * LOAD_HALF4(colorBefore, inside).rgb;
+    if (STEADY) taps.sum.shown += weight * LOAD_HALF4(shownBefore, inside).rgb;
     taps.sum.moments += weight * momentsThere;
     taps.weight += weight;
 }
@@ -88,7 +93,7 @@ Past pastAt(vec2 position, Expected expected) {
         ++searched;
     } while (more);
     if (taps.weight <= 0.0) return NO_TAPS.sum;
-    return Past(taps.sum.color / taps.weight, taps.sum.moments / taps.weight);
+    return Past(taps.sum.color / taps.weight, taps.sum.shown / taps.weight, taps.sum.moments / taps.weight);
 }
 
 float tileTap(ivec2 at) {
@@ -149,7 +154,7 @@ Past accumulated(Past past, vec3 x) {
     const float frames = min(past.moments.w + 1.0, params.longest);
     const float l = luminance(x);
     const vec3 alphas = max(vec3(params.alphaMoments, params.alphaMoments, params.alphaFast), 1.0 / frames);
-    return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)),
+    return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)), past.shown,
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
 }
 
@@ -169,6 +174,7 @@ vec4 accumulate(ivec2 at) {
     const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
     const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(BOOST, now.moments.w) * deviation, MAX_HALF);
     STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
+    if (STEADY) STORE_HALF4(shownPast, at, vec4(now.shown, max(params.alphaShown, 1.0 / max(now.moments.w, 1.0))));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);
     return stored;
