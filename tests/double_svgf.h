@@ -44,7 +44,7 @@ struct SvgfHistory {
     std::vector<dvec4> color;    ///< c; the fourth is not read
     std::vector<dvec4> moments;  ///< m1, m2, f, N
     std::vector<double> tiles;   ///< lag
-    std::vector<dvec4> shown;    ///< of step 7; the fourth is not read. None at all: black
+    std::vector<dvec4> shown;  ///< of step 7; the fourth is not read. None at all if nothing was shown so far
 };
 
 struct SvgfPixel {
@@ -54,14 +54,14 @@ struct SvgfPixel {
     /// A decision was so close that float32 may take the other one: compare nothing here.
     bool doubtful = false;
     /// By how much the results change at most if the back-projected position s is off by one pixel.
-    dvec4 colorSlope{0.0}, momentsSlope{0.0}, shownSlope{0.0};
+    dvec4 colorSlope{0.0}, momentsSlope{0.0}, shownPastSlope{0.0};
     /// The magnitude of what was averaged: what rounding is relative to.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
 /// c' with sigma, the moments, and h with b.
 struct SvgfAccumulated {
-    std::vector<dvec4> color, moments, shown;
+    std::vector<dvec4> color, moments, shownPast;
     std::vector<SvgfPixel> pixels;
 };
 
@@ -113,9 +113,8 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
-/// Step 7 for one pixel that sees something, or any of which nothing was shown (b = 1). `color`: c with
-/// sigma; `shown`: h with b.
-dvec3 svgfSteadied(const dvec4& color, const dvec4& shown, const DoubleSvgfParams& params);
+/// Step 7 for one pixel that sees something. `color`: c with sigma; `past`: h with b.
+dvec3 svgfShown(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);
 
 /// Step 8, of what step 7 made; alpha 1.
 struct SvgfFiltered {

@@ -76,7 +76,7 @@ class Accumulator {
     Old find(size_t p, SvgfPixel& pixel) const;
     Sloped lagAt(const dvec2& s) const;
     Sloped shortened(const Old& old) const;
-    dvec4 shown(const Old& old, double frames) const;
+    dvec4 shownPast(const Old& old, double frames) const;
     void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
@@ -189,7 +189,8 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
 }
 
 /// h with b.
-dvec4 Accumulator::shown(const Old& old, double frames) const {
+dvec4 Accumulator::shownPast(const Old& old, double frames) const {
+    if (previous_.shown.empty()) return {0.0, 0.0, 0.0, 1.0};
     return {dvec3(old.shown.mean), std::max(params_.alphaShown, 1.0 / std::max(frames, 1.0))};
 }
 
@@ -201,7 +202,7 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     pixel.rejected = sample.rejected;
     if (pixel.failure == 1) {
         color = dvec4(sample.x, -1.0);
-        result.shown[p] = dvec4(0.0, 0.0, 0.0, 1.0);
+        result.shownPast[p] = dvec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
     if (sample.rejected) {
@@ -213,9 +214,10 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     } else {
         update(sample.x, old, color, moments, pixel);
     }
-    result.shown[p] = shown(old, moments.w);
+    result.shownPast[p] = shownPast(old, moments.w);
     const double length = std::max(moments.w, 1.0);
-    pixel.shownSlope = dvec4(dvec3(old.shown.slope), pixel.momentsSlope.w / (length * length));
+    if (!previous_.shown.empty())
+        pixel.shownPastSlope = dvec4(dvec3(old.shown.slope), pixel.momentsSlope.w / (length * length));
     color = glm::clamp(color, -largestHalf, largestHalf);
     color.w =
         std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
@@ -321,12 +323,12 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
     return result;
 }
 
-dvec3 svgfSteadied(const dvec4& color, const dvec4& shown, const DoubleSvgfParams& params) {
-    const dvec3 c(color), h(shown);
+dvec3 svgfShown(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params) {
+    const dvec3 c(color), h(past);
     const double tolerated = params.shownNoise * std::max(color.w, 0.0) + 0.001 * std::abs(luminance(c));
     const double change = std::abs(luminance(h) - luminance(c));
     const double trust = change > tolerated ? tolerated / change : 1.0;
-    return c + (1.0 - shown.w) * trust * (h - c);
+    return c + (1.0 - past.w) * trust * (h - c);
 }
 
 std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vector<SvgfFiltered>& signals,

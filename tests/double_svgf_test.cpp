@@ -26,7 +26,7 @@ class Sequence {
         SvgfAccumulated result = svgfAccumulate(frame, signal_, history, params_);
         history = {frame.width,  frame.height,   svgfSurfaces(frame),
                    result.color, result.moments, svgfTiles(frame, result.moments, params_).tiles,
-                   result.shown};
+                   result.color};
         return result;
     }
     SvgfAccumulated next(const HostFrame& frame) {
@@ -254,7 +254,7 @@ TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
         };
         outside += exceeds(dvec4(dvec3(a.color[p]), 0.0), dvec4(dvec3(b.color[p]), 0.0), pixel.colorSlope) ||
                    exceeds(a.moments[p], b.moments[p], pixel.momentsSlope) ||
-                   exceeds(a.shown[p], b.shown[p], pixel.shownSlope);
+                   exceeds(a.shownPast[p], b.shownPast[p], pixel.shownPastSlope);
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
     // Where s passes a pixel's centre, taps that the slope does not know come in.

@@ -2,6 +2,7 @@
 // what the device stored in the frame before.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -45,6 +46,7 @@ struct Case {
     int resizeAt = -1;     ///< from this frame on the picture is smaller
     int jumpAt = -1;       ///< from this frame on the light is three times as bright
     bool hasNans = false;  ///< and infinities, in radiance and albedo
+    int mixesFrom = 0;     ///< until this frame filtered light is shown as it is
 };
 
 SvgfSettings preset(const char* name) {
@@ -123,7 +125,7 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is);
     void compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
                        const Stored& is, std::vector<std::vector<dvec4>>& colors);
-    bool steadies() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
 
     SvgfSettings settings_;
     DoubleSvgfParams params_;
@@ -178,7 +180,7 @@ Stored SvgfPassTest::stored(const Signal& signal) {
     const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
     if (images.size() != 1) throw Error("the variance of young pixels is not one image");
     result.color = download(images[0]);
-    if (steadies()) result.shownPast = download("svgf/reproject " + signal.name, "shown past");
+    if (mixesShown()) result.shownPast = download("svgf/reproject " + signal.name, "shown past");
     return result;
 }
 
@@ -201,8 +203,8 @@ void SvgfPassTest::compareAccumulated(const HostFrame& frame, const Signal& sign
         const bool agrees =
             isNear(is.color[p], expected.color[p], pixel.colorSlope, pixel.colorOperands, halfRounding, 3) &&
             isNear(m, expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding, 4) &&
-            (!steadies() || isNear(is.shownPast[p], expected.shown[p], pixel.shownSlope, expected.shown[p],
-                                   halfRounding, 4));
+            (!mixesShown() || isNear(is.shownPast[p], expected.shownPast[p], pixel.shownPastSlope,
+                                     expected.shownPast[p], halfRounding, 4));
         wrong += !agrees;
         EXPECT_TRUE(agrees || !pixel.rejected) << "too few to be let off, pixel " << p;
     }
@@ -239,9 +241,9 @@ void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& sur
         ASSERT_EQ(images.size(), 1u) << pass;
         std::vector<dvec4> expected =
             svgfLevel(frame, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
-        if (steadies() && i + 1 == settings_.levels) {
+        if (mixesShown() && i + 1 == settings_.levels) {
             for (size_t p = 0; p < frame.pixelCount(); ++p)
-                expected[p] = dvec4(svgfSteadied(expected[p], is.shownPast[p], params_), expected[p].w);
+                expected[p] = dvec4(svgfShown(expected[p], is.shownPast[p], params_), expected[p].w);
         }
         colors.push_back(download(images[0]));
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
@@ -265,8 +267,13 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         if (!HasFatalFailure()) compareLevels(frame, seen, signal, is, colors);
         if (HasFatalFailure()) return;
         const auto fedBack = static_cast<size_t>(std::min(settings_.historyLevel, settings_.levels));
-        before_[signal.name] = {frame.width, frame.height, seen,         colors[fedBack],
-                                is.moments,  is.tiles,     colors.back()};
+        before_[signal.name] = {frame.width,
+                                frame.height,
+                                seen,
+                                colors[fedBack],
+                                is.moments,
+                                is.tiles,
+                                mixesShown() ? colors.back() : std::vector<dvec4>()};
         filtered.push_back({signal.signal, colors.back()});
     }
     const std::vector<dvec4> beauty = download(output_.beauty);
@@ -281,9 +288,12 @@ TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
     const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
     ASSERT_NE(method, nullptr);
     const Case& c = std::get<0>(GetParam());
-    DenoiserSettings settings;
-    settings.svgf = settings_;
+    const float alphaShown = settings_.alphaShown;
     for (int number = 0; number < c.frames; ++number) {
+        settings_.alphaShown = number < c.mixesFrom ? 1.0f : alphaShown;
+        params_ = inDouble(settings_);
+        DenoiserSettings settings;
+        settings.svgf = settings_;
         SCOPED_TRACE("frame " + std::to_string(number));
         const HostFrame frame = frameOf(number);
         denoise(*method, frame, settings);
@@ -321,8 +331,12 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"Fast", moving, {.alpha = 0.6f, .alphaMoments = 0.5f, .alphaFast = 0.9f, .levels = 1}},
             Case{"Noiseless", {.cameraMoves = true, .noise = false}, {}},
             Case{"NoReflections", moving, {.reflections = false, .levels = 1}},
-            Case{"NotSteadied", moving, {.alphaShown = 1.0f, .levels = 2}},
-            Case{"SteadiedAndFedBack", moving, {.shownNoise = 2.0f, .levels = 2, .historyLevel = 2}},
+            Case{"ShownAsFiltered", moving, {.alphaShown = 1.0f, .levels = 2}},
+            Case{"ShownAndFedBack", moving, {.shownNoise = 2.0f, .levels = 2, .historyLevel = 2}},
+            Case{.name = "MixedLater",
+                 .options = moving,
+                 .settings = {.shownNoise = 9.0f, .levels = 1},
+                 .mixesFrom = 3},
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
             Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
@@ -423,6 +437,11 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         const double bytes =
             static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
         EXPECT_EQ(bytes, separate ? 232.25 : 136.125);
+        // Of one signal the same image is read as both.
+        const auto modulate =
+            std::ranges::find(graph_.passes(), std::string("svgf/modulate"), &gpu::RecordedPass::name);
+        ASSERT_NE(modulate, graph_.passes().end());
+        EXPECT_EQ(modulate->imageBytes, uint64_t{columns} * rows * (separate ? 2 * 8 + 4 * 16 : 8 + 4 * 16));
     }
 }
 

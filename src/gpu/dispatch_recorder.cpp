@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/error.h"
 
@@ -55,10 +56,8 @@ void DispatchRecorder::record() {
                             .name = bound.name,
                             .reads = bound.variable->readable,
                             .writes = bound.variable->writable});
-        if (bound.resource.buffer) continue;
-        const uint64_t bytes = graph_.frame.images[bound.resource.image].bytes();
-        pass_.imageBytes += bytes * (bound.variable->readable + bound.variable->writable);
     }
+    countImageBytes();
     graph_.noteAccesses(pass_, accesses);
 
     result_.shader = shader_;
@@ -70,6 +69,17 @@ void DispatchRecorder::record() {
     }
     graph_.frame.passes.push_back(std::move(pass_));
     graph_.frame.dispatches.push_back(std::move(result_));
+}
+
+/// What two variables read is one image's.
+void DispatchRecorder::countImageBytes() {
+    std::set<uint32_t> read;
+    for (const Bound& bound : bound_) {
+        if (bound.resource.buffer) continue;
+        const uint32_t image = bound.resource.image;
+        const bool reads = bound.variable->readable && read.insert(image).second;
+        pass_.imageBytes += graph_.frame.images[image].bytes() * (reads + bound.variable->writable);
+    }
 }
 
 DispatchRecorder::Bound DispatchRecorder::bind(const Binding& binding) const {

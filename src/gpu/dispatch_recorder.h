@@ -27,6 +27,7 @@ class DispatchRecorder {
     void bindStructures(Bound& bound, const AccelerationStructures* structures) const;
     void checkComplete() const;
     void checkAliases() const;
+    void countImageBytes();
     void checkParams();
     void readConstants();
     void computeGroups();

@@ -119,7 +119,8 @@ struct RecordedPass {
     std::vector<std::string> reads, writes;  ///< resource names
     std::vector<Hazard> hazards;             ///< empty: runs without a barrier
     std::array<uint32_t, 3> groups{};
-    uint64_t imageBytes = 0;  ///< of the images it reads plus those it writes: the least that it can move
+    /// Of the images it reads plus those it writes, each once: the least that it can move.
+    uint64_t imageBytes = 0;
 };
 
 struct PassTime {

@@ -118,7 +118,7 @@ class Svgf {
         return (shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow));
     }
 
-    SvgfReprojectParams reprojectParams() const {
+    SvgfReprojectParams reprojectParams(bool wasShown) const {
         SvgfReprojectParams params{};
         params.camera = input_.camera;
         params.width = extent_.width;
@@ -134,17 +134,17 @@ class Svgf {
         params.steadyShare = steadyShare();
         params.antilag = settings_.antilag;
         params.antilagNoise = settings_.antilagNoise;
-        params.alphaShown = settings_.alphaShown;
+        params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
 
     /// The last of the filter's levels does.
-    bool steadies() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
 
     /// What was shown lives on as what is fed back, or by itself.
     History shownOf(const std::string& name, const History& feedback) {
-        if (!steadies() || fedBack() == settings_.levels) return feedback;
+        if (!mixesShown() || fedBack() == settings_.levels) return feedback;
         return graph_.history(name + " shown", Format::RGBA16Float, extent_, input_.filters);
     }
 
@@ -158,12 +158,12 @@ class Svgf {
         const History tiles = graph_.history(name + " tiles", Format::R32Float, tileExtent);
         const History shown = shownOf(name, feedback);
         const ImageHandle shownPast = graph_.transient(name + " shown past", Format::RGBA16Float,
-                                                       steadies() ? extent_ : Extent{1, 1}, input_.filters);
+                                                       mixesShown() ? extent_ : Extent{1, 1}, input_.filters);
         const ImageHandle color =
             fedBack() == 0
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
-        const SvgfReprojectParams params = reprojectParams();
+        const SvgfReprojectParams params = reprojectParams(shown.valid);
         std::vector<gpu::Binding> bindings{{"lightA", signal.light},
                                            {"lightB", signal.otherLight},
                                            {"albedoA", signal.albedo},
@@ -190,7 +190,7 @@ class Svgf {
                          .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
                                        {"REFLECTIONS", signal.reflects ? 1u : 0u},
                                        {"BOOST", settings_.boost ? 1u : 0u},
-                                       {"STEADY", steadies() ? 1u : 0u}},
+                                       {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
                          .extent = extent_});
         if (!buffers_) recordTiles(signal, moments.current, tiles.current);
         return {color, moments.current, feedback, shown.current, shownPast};
@@ -247,9 +247,9 @@ class Svgf {
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
-        const bool steadied = steadies() && number == settings_.levels;
+        const bool mixed = mixesShown() && number == settings_.levels;
         const ImageHandle filtered =
-            steadied              ? accumulated.shown
+            mixed                 ? accumulated.shown
             : number == fedBack() ? accumulated.feedback.current
                                   : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
         const int step = 1 << (number - 1);
@@ -257,13 +257,13 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = filterConstants();
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
-        constants.push_back({"STEADY", steadied ? 1u : 0u});
+        constants.push_back({"MIX_SHOWN", mixed ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
                                       {"signal", before},
                                       {"filtered", filtered},
-                                      {"shownPast", steadied ? accumulated.shownPast : before}},
+                                      {"shownPast", mixed ? accumulated.shownPast : before}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = {invocations(extent_.width, step), invocations(extent_.height, step)}});
@@ -328,12 +328,13 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
               "noise for one");
-        t.add("alpha_shown", &S::alphaShown, 1e-4, 1.0, "",
+        t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
               "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
               "changes later; 1 (and no levels) is off");
-        t.add("shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
-              "from the filtered light at most is what was shown before, for this; higher flickers less "
-              "and follows changes later");
+        t.add(
+            "shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
+            "of the filtered light that what was shown before may differ by and still count in full; higher "
+            "flickers less and follows changes later");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",

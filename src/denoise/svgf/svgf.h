@@ -42,7 +42,8 @@ const ParamTable<SvgfSettings>& svgfParams();
 /// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
 /// (with filters in images; otherwise "svgf/reproject" does its work), "svgf/variance SIGNAL", "svgf/level 1
 /// SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal
-/// "svgf/SIGNAL color", "svgf/SIGNAL moments", "svgf/SIGNAL tiles" and "svgf/SIGNAL shown".
+/// "svgf/SIGNAL color", "svgf/SIGNAL moments", "svgf/SIGNAL tiles" and, unless it is fed back, "svgf/SIGNAL
+/// shown".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 }  // namespace limpid::denoise

@@ -6,7 +6,7 @@
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
-layout(constant_id = 5) const bool STEADY = false;  // beside what was shown before
+layout(constant_id = 5) const bool MIX_SHOWN = false;  // with what was shown before
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -97,7 +97,7 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
 }
 
 /// What is shown of filtered light: what was is trusted as far as the filter's own noise reaches.
-vec3 steadied(vec4 now, vec4 past) {
+vec3 mixedWithPast(vec4 now, vec4 past) {
     const float l = luminance(now.rgb), change = abs(luminance(past.rgb) - l);
     const float noise = params.shownNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
     return mix(now.rgb, past.rgb, (1.0 - past.a) * min(noise / max(change, 1e-30), 1.0));
@@ -106,7 +106,7 @@ vec3 steadied(vec4 now, vec4 past) {
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
     vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
-    if (STEADY) result.rgb = steadied(result, LOAD_HALF4(shownPast, at));
+    if (MIX_SHOWN) result.rgb = mixedWithPast(result, LOAD_HALF4(shownPast, at));
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 

@@ -42,7 +42,7 @@ struct SvgfReprojectParams {
     float steadyShare;  // as SvgfTilesParams
     float antilag;
     float antilagNoise;
-    float alphaShown;
+    float alphaShown;  // 1 if nothing was shown
 };
 
 struct SvgfTilesParams {
@@ -61,7 +61,7 @@ struct SvgfFilterParams {
     float phiColor;
     float normalScale;  // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;   // log2(e) / phi_depth
-    float shownNoise;   // deviations
+    float shownNoise;   // deviations that what was shown may differ by
 };
 
 struct SvgfModulateParams {

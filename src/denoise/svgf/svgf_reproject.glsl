@@ -10,7 +10,7 @@ layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as
 
 layout(constant_id = 2) const bool BOOST = true;
 
-layout(constant_id = 3) const bool STEADY = false;  // what was shown is followed, too
+layout(constant_id = 3) const bool MIX_SHOWN = false;  // what was shown is followed, too
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
@@ -64,7 +64,7 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
                         imageLoad(instancesBefore, inside).x == expected.instance;
     if (!counts || weight <= 0.0) return;
     taps.sum.color += weight * LOAD_HALF4(colorBefore, inside).rgb;
-    if (STEADY) taps.sum.shown += weight * LOAD_HALF4(shownBefore, inside).rgb;
+    if (MIX_SHOWN) taps.sum.shown += weight * LOAD_HALF4(shownBefore, inside).rgb;
     taps.sum.moments += weight * momentsThere;
     taps.weight += weight;
 }
@@ -174,7 +174,7 @@ vec4 accumulate(ivec2 at) {
     const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
     const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(BOOST, now.moments.w) * deviation, MAX_HALF);
     STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
-    if (STEADY) STORE_HALF4(shownPast, at, vec4(now.shown, max(params.alphaShown, 1.0 / max(now.moments.w, 1.0))));
+    if (MIX_SHOWN) STORE_HALF4(shownPast, at, vec4(now.shown, max(params.alphaShown, 1.0 / max(now.moments.w, 1.0))));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);
     return stored;
