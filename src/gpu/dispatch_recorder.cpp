@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "base/error.h"
 
@@ -73,12 +72,14 @@ void DispatchRecorder::record() {
 
 /// What two variables read is one image's.
 void DispatchRecorder::countImageBytes() {
-    std::set<uint32_t> read;
-    for (const Bound& bound : bound_) {
-        if (bound.resource.buffer) continue;
-        const uint32_t image = bound.resource.image;
-        const bool reads = bound.variable->readable && read.insert(image).second;
-        pass_.imageBytes += graph_.frame.images[image].bytes() * (reads + bound.variable->writable);
+    for (auto bound = bound_.begin(); bound != bound_.end(); ++bound) {
+        if (bound->resource.buffer) continue;
+        const auto readsIt = [&](const Bound& b) {
+            return !b.resource.buffer && b.resource.image == bound->resource.image && b.variable->readable;
+        };
+        const bool reads = readsIt(*bound) && std::none_of(bound_.begin(), bound, readsIt);
+        pass_.imageBytes +=
+            graph_.frame.images[bound->resource.image].bytes() * (reads + bound->variable->writable);
     }
 }
 
