@@ -35,6 +35,7 @@ struct Centre {
     vec4 sum;  // of weighted light; of weights
     float squares;
     bool seen;
+    vec4 shownPast;
 };
 
 /// Of differences of luminance, for an exponent of 2.
@@ -84,6 +85,8 @@ Centre begin(ivec2 at) {
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
+    // Loaded before the taps: they take as long as it is under way.
+    centre.shownPast = MIX_SHOWN ? LOAD_HALF4(shownPast, clamp(at, ivec2(0), ivec2(params.width, params.height) - 1)) : vec4(0.0);
     return centre;
 }
 
@@ -106,7 +109,7 @@ vec3 mixedWithPast(vec4 now, vec4 past) {
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
     vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
-    if (MIX_SHOWN) result.rgb = mixedWithPast(result, LOAD_HALF4(shownPast, at));
+    if (MIX_SHOWN) result.rgb = mixedWithPast(result, centre.shownPast);
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 
