@@ -257,20 +257,45 @@ class DoubleLevel {
     double phiColor_;
 };
 
+/// `frame` beside itself and below itself.
+HostFrame repeated(const HostFrame& frame, uint32_t across, uint32_t down) {
+    HostFrame result = frame;
+    result.width *= across;
+    result.height *= down;
+    const auto repeat = [&](std::vector<float> HostFrame::*layer) {
+        std::vector<float>& pixels = result.*layer;
+        pixels.clear();
+        for (uint32_t y = 0; y < result.height; ++y) {
+            const auto row = (frame.*layer).begin() + std::ptrdiff_t{4} * (y % frame.height) * frame.width;
+            for (uint32_t i = 0; i < across; ++i)
+                pixels.insert(pixels.end(), row, row + std::ptrdiff_t{4} * frame.width);
+        }
+    };
+    for (const auto layer :
+         {&HostFrame::diffuse, &HostFrame::specular, &HostFrame::albedo, &HostFrame::normal,
+          &HostFrame::depth, &HostFrame::emission, &HostFrame::motion, &HostFrame::previousNormal})
+        repeat(layer);
+    result.ids.assign(2 * result.pixelCount(), 0);
+    return result;
+}
+
 TEST_F(KpcnTest, LevelsAgreeWithDoublePrecision) {
-    const HostFrame frame = frameOf(neural::readTensorFile(dataFolder + "kpcn_cases.safetensors"), "small");
+    // 90x111 pixels: the fourth level's taps would be further apart than a tenth of an edge.
+    const HostFrame frame =
+        repeated(frameOf(neural::readTensorFile(dataFolder + "kpcn_cases.safetensors"), "small"), 2, 3);
+    const std::vector<int> steps{8, 2, 1};
     for (const KpcnPrecision precision : precisions()) {
         DenoiserSettings settings = settingsWith(weightsOf("small"), precision);
-        settings.kpcn.levels = 2;
+        settings.kpcn.levels = 4;
         settings.kpcn.phiColor = 1.5f;
         denoise(method(), frame, settings);
         for (const std::string side : {"diffuse", "specular"}) {
             std::vector<dvec4> before = download(sideOf(side, precision));
-            for (int number = 1; number <= 2; ++number) {
-                const std::string pass = "kpcn/" + side + " level " + std::to_string(number);
+            for (size_t i = 0; i < steps.size(); ++i) {
+                const std::string pass = "kpcn/" + side + " level " + std::to_string(i + 1);
                 const std::vector<dvec4> after = download(pass, pass);
                 const std::vector<dvec4> truth =
-                    DoubleLevel(frame, side == "specular", 1 << number, 1.5)(before);
+                    DoubleLevel(frame, side == "specular", steps[i], 1.5)(before);
                 double moved = 0.0;
                 for (size_t p = 0; p < truth.size(); ++p) {
                     moved += glm::length(truth[p] - before[p]) / static_cast<double>(truth.size());
@@ -428,10 +453,10 @@ TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
     const size_t first = graph.passes().size();
     method().record(graph, input, settings);
     // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
-    // bytes, twice, and light of 16. Of the picture: distances, two sides, two levels of each,
-    // beauty; and the largest of 38x25, 5x4 and 1.
-    const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16);
-    const uint64_t images = uint64_t{300} * 200 * (4 + 7 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
+    // bytes, twice, light of 16 and faces of 4. Of the picture: distances, two sides, three levels of each
+    // (the fourth would be too wide), beauty; and the largest of 38x25, 5x4 and 1.
+    const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16 + 4);
+    const uint64_t images = uint64_t{300} * 200 * (4 + 9 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
     EXPECT_EQ(graph.bytesOfImagesWrittenFrom(first), buffers + images);
 }
 

@@ -184,13 +184,13 @@ void ConvolutionChain::begin(std::span<const float> input, uint32_t columns, uin
     impl_->last = source;
 }
 
-std::span<const float> ConvolutionChain::rows(uint32_t first, uint32_t count) {
+std::span<float> ConvolutionChain::rows(uint32_t first, uint32_t count) {
     impl_->resizeBand(count);
     impl_->fillBand(first, count);
     impl_->run(*impl_->output, impl_->band, impl_->blocked);
     dnnl::reorder(impl_->blocked, impl_->planar).execute(impl_->stream, impl_->blocked, impl_->planar);
     impl_->stream.wait();
-    return {static_cast<const float*>(impl_->planar.get_data_handle()),
+    return {static_cast<float*>(impl_->planar.get_data_handle()),
             size_t{impl_->layers.back().outputs} * count * impl_->columns};
 }
 

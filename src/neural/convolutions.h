@@ -30,8 +30,8 @@ class ConvolutionChain {
     /// not looked at. Zeros lie around it. Then the last layer is computed for the rows from `first` to
     /// before `first` + `count`.
     void begin(std::span<const float> input, uint32_t columns, uint32_t rows);
-    /// (channels, count, columns), valid until the next call.
-    std::span<const float> rows(uint32_t first, uint32_t count);
+    /// (channels, count, columns), valid until the next call; the caller may overwrite them.
+    std::span<float> rows(uint32_t first, uint32_t count);
 
   private:
     struct Impl;

@@ -55,6 +55,14 @@ def seen(side, frame):
     return torch.log1p(light), variance / (1.0 + luminance(light)) ** 2
 
 
+def faces(normal):
+    """Normals of length 1, and 1 where there is none: 4 channels. The dot product of two is the cosine between the normals, 1 if
+    neither has one, and 0 if one of them has."""
+    length = normal.square().sum(dim=1, keepdim=True).sqrt()
+    unit = torch.where(length > 0, normal / length.clamp(min=1e-30), torch.zeros_like(normal))
+    return torch.cat([unit, (length == 0).to(normal.dtype)], dim=1)
+
+
 def depth_scale(frame):
     """One over the frame's largest distance; 1 if nothing is seen."""
     largest = frame["depth"].amax(dim=(1, 2, 3), keepdim=True)
@@ -76,10 +84,10 @@ def inputs(side, frame):
 
 
 def prepare(frame):
-    """What the network takes: of each side "SIDE.input" and "SIDE.light"; "albedo". Where the frame has "reference.SIDE",
+    """What the network takes: of each side "SIDE.input" and "SIDE.light"; "albedo"; "faces". Where the frame has "reference.SIDE",
     also "SIDE.target", the same transform of it, and "target", the picture without emission. Of a whole frame: patches are
     cut afterwards, or their gradients would end at their edges."""
-    prepared = {"albedo": frame["albedo"]}
+    prepared = {"albedo": frame["albedo"], "faces": faces(frame["normal"])}
     for side in SIDES:
         prepared[side + ".input"] = inputs(side, frame)
         prepared[side + ".light"] = to_network(side, frame[side], frame["albedo"])

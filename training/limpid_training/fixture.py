@@ -8,13 +8,14 @@ and its standard error "CASE/SIDE.deviation"."""
 
 import argparse
 import json
+import math
 import os
 
 import torch
 from torch.nn import functional
 
 from . import features, tensor_file
-from .network import Kpcn
+from .network import FACING, Kpcn
 
 #: name: rows, columns
 CASES = {"small": (37, 45), "shipped": (23, 30)}
@@ -31,7 +32,12 @@ def frame(rows, columns, generator):
     near = ((x - columns / 2) ** 2 + (y - rows / 2) ** 2 < (rows / 4) ** 2)[None, None]
     nothing = (x + y < rows / 3)[None, None]
     albedo = torch.where(near, 0.1 + 0.8 * (x % 7) / 7, 0.5 - 0.4 * (y % 5) / 5).expand(1, 3, -1, -1).clone()
-    normal = torch.where(near, torch.tensor([0.0, 0.6, 0.8])[:, None, None], torch.tensor([1.0, 0.0, 0.0])[:, None, None])
+    # In bands beside each other: 56 and 64 degrees from the first one's normal, on both sides of what kernels take in; its opposite;
+    # and lengths that are not 1.
+    normal = torch.tensor([1.0, 0.0, 0.0])[:, None, None]
+    for band, (degrees, length) in enumerate([(53, 0.4), (109, 1.0), (117, 2.0), (233, 1.0)]):
+        turned = torch.tensor([0.0, math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])[:, None, None]
+        normal = torch.where(near & (x // 3 % 4 == band)[None, None], length * turned, normal)
     layers = {"diffuse": albedo * (0.2 + random(3) ** 4), "specular": 3 * random(3) ** 8, "albedo": albedo, "normal": normal}
     layers["depth"] = torch.where(near, 2.0 + 0.01 * x, 5.0 + 0.1 * y)
     for name in list(layers):
@@ -60,7 +66,7 @@ def load(path):
     return net
 
 
-def deviation(logits, variance):
+def deviation(logits, variance, normal):
     """Of the mean that apply_kernel() makes of light with this `variance`, whose pixels' noise is independent: all at once."""
     width = round(logits.shape[1] ** 0.5)
     rows, columns = variance.shape[2:]
@@ -68,7 +74,12 @@ def deviation(logits, variance):
     def taps(image):
         return functional.unfold(image, width, padding=width // 2).view(1, width * width, rows, columns)
 
-    weights = torch.softmax(logits.masked_fill(taps(torch.ones_like(variance)) == 0, -torch.inf), dim=1)
+    length = normal.norm(dim=1, keepdim=True)
+    unit = normal / torch.where(length > 0, length, torch.ones_like(length))
+    cosine = sum(taps(unit[:, c : c + 1]) * unit[:, c : c + 1] for c in range(3))
+    nothing = (length == 0).to(normal.dtype)
+    alike = (cosine >= FACING) | (taps(nothing) * nothing > 0)
+    weights = torch.softmax(logits.masked_fill(~alike | (taps(torch.ones_like(variance)) == 0), -torch.inf), dim=1)
     return (weights**2 * taps(variance)).sum(dim=1, keepdim=True).sqrt()
 
 
@@ -91,7 +102,7 @@ def cases(networks):
         clean = {}
         for side in features.SIDES:
             clean[side + ".clean"], logits = net.side_and_logits(side, prepared)
-            clean[side + ".deviation"] = deviation(logits.double(), variance[side])
+            clean[side + ".deviation"] = deviation(logits.double(), variance[side], exact["normal"])
         clean["clean"] = net(prepared)
         for layer, image in {**layers, **clean}.items():
             result[f"{name}/{layer}"] = image[0].float()

@@ -44,14 +44,19 @@ class KernelPredictor(nn.Module):
         return convolve(self.output, x)[:, : self.width**2]
 
 
-def apply_kernel(logits, light):
+#: Least cosine between a pixel's normal and those of what its kernel takes in (KPCN_KERNEL_FACING in kpcn_params.h).
+FACING = 0.5
+
+
+def apply_kernel(logits, light, faces):
     """The mean of the pixels around each, by the softmax of `logits` (batch, width^2, rows, columns; rows of the kernel from
-    the top) over those that lie in the picture. `light`: (batch, channels, rows, columns)."""
+    the top) over those that lie in the picture and face the same way. `light`: (batch, channels, rows, columns), `faces`: likewise,
+    from features.faces()."""
     width = round(logits.shape[1] ** 0.5)
     radius = width // 2
     rows, columns = light.shape[2:]
     padded = functional.pad(light, [radius] * 4)
-    outside = functional.pad(torch.zeros_like(light[:1, :1]), [radius] * 4, value=-torch.inf)
+    around = functional.pad(faces, [radius] * 4)  # with zeros, which face nowhere: nothing outside counts
 
     def row_of_taps(image, top):
         """(batch, channels, rows, taps, columns), without a copy."""
@@ -59,7 +64,8 @@ def apply_kernel(logits, light):
 
     def exponents(top):
         taps = logits[:, top * width : (top + 1) * width].permute(0, 2, 1, 3).unsqueeze(1)
-        return taps + row_of_taps(outside, top)
+        cosine = (row_of_taps(around, top) * faces.unsqueeze(3)).sum(dim=1, keepdim=True)
+        return taps.masked_fill(cosine < FACING, -torch.inf)
 
     # Row by row of the kernel: all of it at once would take width^2 pictures of memory.
     with torch.no_grad():
@@ -88,7 +94,7 @@ class Kpcn(nn.Module):
     def side_and_logits(self, side, prepared):
         """And the kernels' weights before their softmax."""
         logits = getattr(self, side)(prepared[side + ".input"]).float()
-        return apply_kernel(logits, prepared[side + ".light"]), logits
+        return apply_kernel(logits, prepared[side + ".light"], prepared["faces"]), logits
 
     def forward(self, prepared):
         return features.recombined({side: self.side(side, prepared) for side in features.SIDES}, prepared["albedo"])

@@ -75,6 +75,17 @@ class FeaturesTest(unittest.TestCase):
             self.assertTrue(torch.isfinite(features.inputs(side, frame)).all())
 
 
+def alike_normals(a, b):
+    """As docs/kpcn.md has it."""
+    lengths = math.hypot(*a) * math.hypot(*b)
+    return sum(p * q for p, q in zip(a, b)) >= 0.5 * lengths if lengths > 0 else math.hypot(*a) == math.hypot(*b)
+
+
+def one_wall(light):
+    """Everything faces the same way."""
+    return features.faces(torch.ones_like(light[:, :1]).expand(-1, 3, -1, -1))
+
+
 class KernelTest(unittest.TestCase):
     def setUp(self):
         torch.manual_seed(2)
@@ -83,33 +94,45 @@ class KernelTest(unittest.TestCase):
         width, rows, columns = 5, 6, 4
         logits = 3 * torch.randn(1, width * width, rows, columns, dtype=torch.float64)
         light = torch.rand(1, 3, rows, columns, dtype=torch.float64)
-        result = apply_kernel(logits, light)
+        normal = torch.randn(1, 3, rows, columns, dtype=torch.float64)
+        normal[:, :, 1:3, 2:] = 0.0
+        result = apply_kernel(logits, light, features.faces(normal))
+        at = [[normal[0, :, y, x].tolist() for x in range(columns)] for y in range(rows)]
+        alike = [[[[alike_normals(a, b) for b in line] for line in at] for a in own] for own in at]
+        taken = refused = 0
         for row in range(rows):
             for column in range(columns):
                 total, weights = torch.zeros(3, dtype=torch.float64), 0.0
                 for tap in range(width * width):
                     y, x = row + tap // width - 2, column + tap % width - 2
-                    if 0 <= y < rows and 0 <= x < columns:
+                    inside = 0 <= y < rows and 0 <= x < columns
+                    if inside and not alike[row][column][y][x]:
+                        refused += 1
+                    elif inside:
+                        taken += 1
                         weight = math.exp(logits[0, tap, row, column])
                         total += weight * light[0, :, y, x]
                         weights += weight
                 self.assertTrue(torch.allclose(result[0, :, row, column], total / weights, atol=1e-12))
+        self.assertGreater(taken, 2 * rows * columns)
+        self.assertGreater(refused, 2 * rows * columns)
 
     def test_weights_beyond_any_exponent(self):
         logits = torch.full((1, 9, 3, 3), -1000.0)
         logits[:, 0] = 1000.0  # up and to the left: outside of the first row and column
         light = torch.arange(9.0).reshape(1, 1, 3, 3)
-        result = apply_kernel(logits, light)[0, 0]
+        result = apply_kernel(logits, light, one_wall(light))[0, 0]
         self.assertTrue(torch.equal(result[1:, 1:], light[0, 0, :2, :2]))
         self.assertTrue(torch.isfinite(result).all())
 
     def test_a_constant_picture_stays(self):
         light = torch.full((1, 3, 9, 7), 0.25)
-        self.assertTrue(torch.allclose(apply_kernel(5 * torch.randn(1, 49, 9, 7), light), light))
+        self.assertTrue(torch.allclose(apply_kernel(5 * torch.randn(1, 49, 9, 7), light, one_wall(light)), light))
 
     def test_gradient_reaches_every_weight(self):
         logits = torch.randn(1, 9, 4, 4, requires_grad=True)
-        apply_kernel(logits, torch.rand(1, 3, 4, 4)).sum().backward()
+        light = torch.rand(1, 3, 4, 4)
+        apply_kernel(logits, light, one_wall(light)).sum().backward()
         self.assertTrue((logits.grad[:, :, 1:3, 1:3] != 0).all())
 
 

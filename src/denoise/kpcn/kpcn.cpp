@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <iterator>
 #include <string>
 
 #include "base/error.h"
@@ -38,6 +38,14 @@ constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convo
 constexpr uint32_t workgroup = 16;    // pixels along the edge of a workgroup of kpcn_matrix.glsl
 constexpr uint32_t alignment = 16;    // of tiles
 constexpr uint32_t texelsOfSlab = 4;  // of a pixel
+
+/// Pixels between the taps of a level after the kernels, from the last on. That one takes in direct
+/// neighbours: odd and even pixels would be filtered apart.
+constexpr uint32_t levelSteps[] = {1, 2, 8, 32, 128, 512};
+
+uint32_t levelStep(int left) {
+    return levelSteps[left - 1];
+}
 
 uint32_t divideUp(uint32_t a, uint32_t b) {
     return (a + b - 1) / b;
@@ -88,8 +96,9 @@ uint32_t divisor(uint32_t count, uint32_t most) {
     return 1;
 }
 
-std::span<float> asFloats(std::span<std::byte> bytes) {
-    return {reinterpret_cast<float*>(bytes.data()), bytes.size() / sizeof(float)};
+template <typename T>
+std::span<T> elementsOf(std::span<std::byte> bytes) {
+    return {reinterpret_cast<T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
 struct Tile {
@@ -119,6 +128,7 @@ class Recorder {
             channels_[i] = graph_.transient("kpcn/channels " + std::to_string(i + 1), shaders_.format,
                                             channels, Backing::Buffer);
         light_ = graph_.transient("kpcn/light", Format::RGBA32Float, {pitch_, rows_}, Backing::Buffer);
+        faces_ = graph_.transient("kpcn/faces", Format::R32Uint, {pitch_, rows_}, Backing::Buffer);
         std::array<ImageHandle, 2> clean;
         for (size_t side = 0; side < 2; ++side) {
             clean[side] = graph_.transient(std::string("kpcn/") + sideNames[side], Format::RGBA32Float,
@@ -221,20 +231,32 @@ class Recorder {
                           {{"inputs", channels_[i % 2]}, {"outputs", channels_[(i + 1) % 2]}});
         }
         dispatchLayer(prefix + "kernel", shaders_.kernel, layers.back(), region(tile, 0), 4,
-                      {{"inputs", channels_[(layers.size() - 1) % 2]}, {"light", light_}, {"clean", clean}});
+                      {{"inputs", channels_[(layers.size() - 1) % 2]},
+                       {"light", light_},
+                       {"faces", faces_},
+                       {"clean", clean}});
     }
 
-    /// Smooths on where kernels end: the first step is the power of 2 below their reach.
+    /// In small pictures what is flat is small, too: of taps further apart than a tenth of the shorter edge
+    /// there are none.
+    int levelCount() const {
+        const uint32_t widest = std::max(1u, std::min(picture_.width, picture_.height) / 10);
+        int count = settings_.levels;
+        while (count > 0 && levelStep(count) > widest) --count;
+        return count;
+    }
+
+    /// The widest first: the more noise is left, the more difference is forgiven as noise.
     ImageHandle levels(size_t side, ImageHandle clean) {
-        for (int i = 0; i < settings_.levels; ++i) {
+        const int count = levelCount();
+        for (int i = 0; i < count; ++i) {
             const std::string name =
                 std::string("kpcn/") + sideNames[side] + " level " + std::to_string(i + 1);
             const ImageHandle next = graph_.transient(name, Format::RGBA32Float, picture_,
                                                       onHost() ? Backing::Buffer : Backing::Image);
-            const KpcnLevelParams params{
-                static_cast<int>(picture_.width), static_cast<int>(picture_.height),
-                static_cast<int>(std::bit_floor(std::max(network_.kernelWidth() / 2, 1u)) << i),
-                settings_.phiColor, static_cast<uint32_t>(side)};
+            const KpcnLevelParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
+                                         static_cast<int>(levelStep(count - i)), settings_.phiColor,
+                                         static_cast<uint32_t>(side)};
             graph_.dispatch({.pass = name,
                              .shader = onHost() ? shaders::kpcn_level_buffers_comp : shaders::kpcn_level_comp,
                              .bindings = {{"clean", clean},
@@ -262,12 +284,13 @@ class Recorder {
                                 tile.height};
         const size_t first = 4 * (size_t{tile.top} * picture_.width + tile.left);
         graph_.host({.pass = prefix + "layers",
-                     .reads = {channels_[0], light_},
+                     .reads = {channels_[0], light_, faces_},
                      .writes = {clean},
                      .run = [&host = network_.host(), side, part, first,
                              pitch = picture_.width](std::span<const std::span<std::byte>> pixels) {
-                         host.run(side, part, asFloats(pixels[0]), asFloats(pixels[1]),
-                                  asFloats(pixels[2]).subspan(first), pitch);
+                         host.run(side, part, elementsOf<float>(pixels[0]), elementsOf<float>(pixels[1]),
+                                  elementsOf<uint32_t>(pixels[2]),
+                                  elementsOf<float>(pixels[3]).subspan(first), pitch);
                      }});
     }
 
@@ -283,7 +306,8 @@ class Recorder {
                                       {"depth", input_.depth},
                                       {"largest", largest},
                                       {"features", channels_[0]},
-                                      {"light", light_}},
+                                      {"light", light_},
+                                      {"faces", faces_}},
                          .params = gpu::paramsOf(params),
                          .constants = {},
                          .extent = invocations(params.region, 1)});
@@ -337,7 +361,7 @@ class Recorder {
     Extent tile_;
     uint32_t pitch_ = 0, rows_ = 0;  ///< of the buffers, in pixels
     std::array<ImageHandle, 2> channels_;
-    ImageHandle light_;
+    ImageHandle light_, faces_;
 };
 
 }  // namespace
@@ -354,9 +378,11 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "less keeps sharp "
               "reflections and small lights, more removes fireflies; 0: as far as the network likes. A pixel "
               "whose neighbours agree with the network stays as the network has it");
-        t.add("levels", &S::levels, 0, 6, "levels",
-              "of a filter that goes on where the network's kernels end, for flat things; with kernels of "
-              "21x21 the last of n reaches 2^(n+4) - 16 pixels further");
+        t.add(
+            "levels", &S::levels, 0, static_cast<int>(std::size(levelSteps)), "levels",
+            "of a filter after the network's kernels, for what is flat; the last takes in direct neighbours, "
+            "the one before it pixels 2 apart, each one before that four times as far; those that are wider "
+            "than a tenth of the picture's shorter edge are left out");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "standard errors",
               "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
               "smoother and blurs soft shadows");

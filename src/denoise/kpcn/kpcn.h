@@ -15,8 +15,8 @@ namespace limpid::denoise {
 struct KpcnSettings {
     int tile = 512;
     float standardErrors = 6.0f;
-    int levels = 2;
-    float phiColor = 3.0f;
+    int levels = 4;
+    float phiColor = 3.5f;
     bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
     std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
     bool operator==(const KpcnSettings&) const = default;

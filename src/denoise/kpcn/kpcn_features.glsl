@@ -1,5 +1,5 @@
-// What one side's network sees of each pixel, and the light that its kernels average: docs/kpcn.md, "What a network sees"
-// (training/limpid_training/features.py does the same).
+// What one side's network sees of each pixel, the light that its kernels average, and where surfaces face, by which they choose:
+// docs/kpcn.md, "What a network sees" (training/limpid_training/features.py does the same).
 #include "denoise/guides.glsl"
 #include "denoise/kpcn/kpcn_storage.glsl"
 
@@ -15,6 +15,7 @@ layout(set = 0, binding = 4, rgba32f) uniform readonly image2D depth;
 layout(set = 0, binding = 5, r32f) uniform readonly image2D largest;
 layout(set = 0, binding = 6, scalar) writeonly buffer featureTexels { KPCN_TEXEL texels[]; } features;
 layout(set = 0, binding = 7, scalar) writeonly buffer lightTexels { vec4 texels[]; } light;
+layout(set = 0, binding = 8, scalar) writeonly buffer faceTexels { uint texels[]; } faces;
 
 struct Seen {
     vec4 light, albedo, normal;  // alpha: variance
@@ -45,12 +46,19 @@ Seen seenAt(ivec2 pixel) {
     seen.light = vec4(log(1.0 + linear), variance / (slope * slope));
     seen.averaged = params.specular == 0u ? vec4(linear, variance) : seen.light;
     const vec4 n = imageLoad(normal, pixel);
-    seen.normal = vec4(finiteOr(n.xyz, vec3(0.0)), varianceOf(n.a));
+    seen.normal = vec4(clamp(finiteOr(n.xyz, vec3(0.0)), -MAX_HALF, MAX_HALF), varianceOf(n.a));
     const float farthest = imageLoad(largest, ivec2(0)).x;
     const float scale = farthest > 0.0 ? 1.0 / farthest : 1.0;
     const vec4 d = imageLoad(depth, pixel);
     seen.depth = vec2(hitDistance(d) * scale, isFinite(vec3(d.a)) ? max(d.a, 0.0) * params.ofMean * scale * scale : 0.0);
     return seen;
+}
+
+/// The normal of length 1, and 1 where there is none. The dot product of two is the cosine between the normals, 1 if neither has
+/// one, and 0 if one of them has.
+vec4 faceOf(vec4 seenNormal) {
+    const vec3 n = unitNormal(seenNormal);
+    return dot(n, n) > 0.9 ? vec4(n, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);  // squares of very short ones are 0, or inexact
 }
 
 void main() {
@@ -76,4 +84,5 @@ void main() {
     features.texels[third] = toTexel(vec4(here.depth.x - above.depth.x, here.depth.y, 1.0, 0.0));
     for (uint i = 1u; i < 4u; ++i) features.texels[third + i] = toTexel(vec4(0.0));
     light.texels[pixelTexel(params.region, pixel)] = here.averaged;
+    faces.texels[pixelTexel(params.region, pixel)] = packSnorm4x8(faceOf(here.normal));
 }

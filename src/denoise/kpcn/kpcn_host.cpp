@@ -1,11 +1,13 @@
 #include "denoise/kpcn/kpcn_host.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>
 
 #include "base/error.h"
+#include "denoise/kpcn/kpcn_params.h"
 #ifdef LIMPID_HAVE_ONEDNN
 #include <tbb/parallel_for.h>
 
@@ -26,7 +28,7 @@ KpcnHost::KpcnHost(const KpcnWeights&) {
 }
 KpcnHost::~KpcnHost() = default;
 void KpcnHost::run(size_t, const KpcnHostTile&, std::span<const float>, std::span<const float>,
-                   std::span<float>, size_t) {}
+                   std::span<const uint32_t>, std::span<float>, size_t) {}
 
 #else
 
@@ -34,6 +36,8 @@ namespace {
 
 /// Rows of the output layer that are computed at a time: of 441 channels, 2 MB for each 64 pixels of width.
 constexpr uint32_t bandRows = 16;
+/// Of taps that do not count.
+constexpr float noLogit = -1e30f;
 
 /// Within 3e-7 of e^x, relatively, for x from -87 to 0; 0 below. Written so that compilers make vector code
 /// of it: Taylor's polynomial of what is left below half a power of 2, and the power into the exponent.
@@ -52,33 +56,65 @@ inline float exponential(float x) {
     return x < -87.0f ? 0.0f : p * scale;
 }
 
+/// Where a part's surfaces face.
+class Faces {
+  public:
+    explicit Faces(std::span<const uint32_t> packed) {
+        for (size_t c = 0; c < components_.size(); ++c) {
+            components_[c].resize(packed.size());
+            for (size_t i = 0; i < packed.size(); ++i)
+                components_[c][i] =
+                    static_cast<float>(static_cast<int8_t>(packed[i] >> (8 * c) & 255u)) / 127.0f;
+        }
+    }
+    /// Makes logits[x] no logit for those x from `begin` to before `end` whose pixels `a` + x and `b` + x do
+    /// not face the same way.
+    void mask(size_t a, size_t b, size_t begin, size_t end, float* logits) const {
+        const float *p = components_[0].data(), *q = components_[1].data(), *r = components_[2].data(),
+                    *s = components_[3].data();
+        for (size_t x = begin; x < end; ++x) {
+            const float cosine =
+                p[a + x] * p[b + x] + q[a + x] * q[b + x] + r[a + x] * r[b + x] + s[a + x] * s[b + x];
+            logits[x] = cosine >= KPCN_KERNEL_FACING ? logits[x] : noLogit;
+        }
+    }
+
+  private:
+    std::array<std::vector<float>, 4> components_;
+};
+
 /// The means of one row of pixels; as if one after the other, all pixels of the row are under way at once.
 class RowOfMeans {
   public:
-    RowOfMeans(const KpcnHostTile& tile, uint32_t kernelWidth, std::span<const float> light)
-        : tile_(tile), kernelWidth_(kernelWidth), light_(light), sums_(6 * size_t{tile.columns}) {}
+    RowOfMeans(const KpcnHostTile& tile, uint32_t kernelWidth, std::span<const float> light,
+               const Faces& faces)
+        : tile_(tile),
+          kernelWidth_(kernelWidth),
+          light_(light),
+          faces_(faces),
+          sums_(6 * size_t{tile.columns}) {}
 
-    /// `logits`: (channels, count, columns) of which `row`, in the part the row `y`.
-    void compute(std::span<const float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
+    /// `logits`: (channels, count, columns) of which `row`, in the part the row `y`; those of taps that face
+    /// elsewhere are overwritten.
+    void compute(std::span<float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
         const size_t n = tile_.columns;
         std::fill(sums_.begin(), sums_.end(), 0.0f);
         float *largest = &sums_[0], *weights = &sums_[n], *red = &sums_[2 * n], *green = &sums_[3 * n],
               *blue = &sums_[4 * n], *squares = &sums_[5 * n];
-        std::fill_n(largest, n, -1e30f);
-        eachTap(logits, count, row, y, [&](const float* logit, int, int, size_t begin, size_t end) {
+        std::fill_n(largest, n, noLogit);
+        eachTap(logits, count, row, y, [&](float* logit, size_t from, size_t begin, size_t end) {
+            faces_.mask(y * n, from, begin, end, logit);
             for (size_t x = begin; x < end; ++x) largest[x] = std::max(largest[x], logit[x]);
         });
-        eachTap(logits, count, row, y, [&](const float* logit, int dx, int dy, size_t begin, size_t end) {
-            const float* light =
-                &light_[4 * static_cast<size_t>((static_cast<int64_t>(y) + dy) * static_cast<int64_t>(n))];
-            for (size_t x = begin; x < end; ++x) {
+        eachTap(logits, count, row, y, [&](const float* logit, size_t from, size_t begin, size_t end) {
+            const float* light = &light_[4 * (from + begin)];
+            for (size_t x = begin; x < end; ++x, light += 4) {
                 const float weight = exponential(logit[x] - largest[x]);
-                const float* at = light + 4 * (static_cast<int64_t>(x) + dx);
                 weights[x] += weight;
-                red[x] += weight * at[0];
-                green[x] += weight * at[1];
-                blue[x] += weight * at[2];
-                squares[x] += weight * weight * at[3];
+                red[x] += weight * light[0];
+                green[x] += weight * light[1];
+                blue[x] += weight * light[2];
+                squares[x] += weight * weight * light[3];
             }
         });
         for (size_t x = tile_.left; x < tile_.left + tile_.width; ++x, clean += 4) {
@@ -91,9 +127,9 @@ class RowOfMeans {
 
   private:
     /// Taps that lie in the picture: what lies outside the part but in the picture is never asked for by
-    /// wanted pixels.
+    /// wanted pixels. The tap of the row's pixel x is pixel `from` + x of the part.
     template <typename Visit>
-    void eachTap(std::span<const float> logits, uint32_t count, uint32_t row, uint32_t y, Visit visit) const {
+    void eachTap(std::span<float> logits, uint32_t count, uint32_t row, uint32_t y, Visit visit) const {
         const int n = static_cast<int>(tile_.columns), reach = static_cast<int>(kernelWidth_ / 2);
         for (uint32_t k = 0; k < kernelWidth_ * kernelWidth_; ++k) {
             const int dx = static_cast<int>(k % kernelWidth_) - reach,
@@ -102,14 +138,16 @@ class RowOfMeans {
             if (tapRow < 0 || tapRow >= static_cast<int>(tile_.rows)) continue;
             const int begin = std::max(0, -dx), end = std::min(n, n - dx);
             if (begin < end)
-                visit(&logits[(size_t{k} * count + row) * tile_.columns], dx, dy, static_cast<size_t>(begin),
-                      static_cast<size_t>(end));
+                visit(&logits[(size_t{k} * count + row) * tile_.columns],
+                      static_cast<size_t>(tapRow) * tile_.columns + static_cast<size_t>(dx),
+                      static_cast<size_t>(begin), static_cast<size_t>(end));
         }
     }
 
     const KpcnHostTile& tile_;
     uint32_t kernelWidth_;
     std::span<const float> light_;
+    const Faces& faces_;
     std::vector<float> sums_;  ///< largest logit, weights, red, green, blue, weighted variances: a row each
 };
 
@@ -139,14 +177,16 @@ KpcnHost::KpcnHost(const KpcnWeights& weights) : impl_(std::make_unique<Impl>())
 KpcnHost::~KpcnHost() = default;
 
 void KpcnHost::run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,
-                   std::span<const float> light, std::span<float> clean, size_t pitch) {
+                   std::span<const float> light, std::span<const uint32_t> packedFaces,
+                   std::span<float> clean, size_t pitch) {
+    const Faces faces(packedFaces.first(size_t{tile.columns} * tile.rows));
     neural::ConvolutionChain& chain = *impl_->sides[side];
     chain.begin(channels, tile.columns, tile.rows);
     for (uint32_t first = tile.top; first < tile.top + tile.height; first += bandRows) {
         const uint32_t count = std::min(bandRows, tile.top + tile.height - first);
-        const std::span<const float> logits = chain.rows(first, count);
+        const std::span<float> logits = chain.rows(first, count);
         tbb::parallel_for(0u, count, [&](uint32_t row) {
-            RowOfMeans(tile, impl_->kernelWidth, light)
+            RowOfMeans(tile, impl_->kernelWidth, light, faces)
                 .compute(logits, count, row, first + row, &clean[4 * pitch * (first + row - tile.top)]);
         });
     }

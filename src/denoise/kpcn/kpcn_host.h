@@ -27,10 +27,11 @@ class KpcnHost {
     ~KpcnHost();
 
     /// `channels`: what the network sees, in slabs of 16; `light`: what is averaged, four floats a pixel;
-    /// both of the whole part. `clean`: four floats a pixel, of the wanted ones; its rows begin every `pitch`
-    /// pixels.
+    /// `faces`: the normal and whether there is none, four signed bytes a pixel (kpcn_features.glsl); all of
+    /// the whole part. `clean`: four floats a pixel, of the wanted ones; its rows begin every `pitch` pixels.
     void run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,
-             std::span<const float> light, std::span<float> clean, size_t pitch);
+             std::span<const float> light, std::span<const uint32_t> faces, std::span<float> clean,
+             size_t pitch);
 
   private:
     struct Impl;

@@ -4,6 +4,12 @@
 
 layout(set = 0, binding = 3, scalar) readonly buffer lightTexels { vec4 texels[]; } light;
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D clean;
+layout(set = 0, binding = 5, scalar) readonly buffer faceTexels { uint texels[]; } faces;
+
+void addTap(inout WeightedMean mean, float logit, uint face, ivec2 tap) {
+    const uint at = pixelTexel(params.region, tap);
+    if (alike(face, faces.texels[at])) add(mean, logit, light.texels[at]);
+}
 
 void main() {
     const ivec2 first = firstPixel();
@@ -14,11 +20,12 @@ void main() {
         vec4 sums[BLOCK][4];
         convolve(first, tile, sums);
         for (int p = 0; p < BLOCK; ++p) {
-            if (!inRegion(first + ivec2(p, 0))) break;
+            const ivec2 pixel = first + ivec2(p, 0);
+            if (!inRegion(pixel)) break;
+            const uint face = faces.texels[pixelTexel(params.region, pixel)];
             for (uint k = 0u; k < KPCN_SLAB; ++k) {
                 ivec2 tap;
-                if (kernelTap(params, first + ivec2(p, 0), tile * KPCN_SLAB + k, tap))
-                    add(means[p], sums[p][k / 4u][k % 4u], light.texels[pixelTexel(params.region, tap)]);
+                if (kernelTap(params, pixel, tile * KPCN_SLAB + k, tap)) addTap(means[p], sums[p][k / 4u][k % 4u], face, tap);
             }
         }
     }

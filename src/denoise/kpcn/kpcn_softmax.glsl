@@ -35,3 +35,8 @@ bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap)
     tap = pixel + ivec2(channel % width, channel / width) - int(width / 2u);
     return channel < width * width && inPicture(params.region, tap);
 }
+
+/// Whether they face the same way, or both nowhere: kpcn_features.glsl packed them.
+bool alike(uint face, uint other) {
+    return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= KPCN_KERNEL_FACING;
+}

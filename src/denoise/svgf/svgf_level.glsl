@@ -48,14 +48,18 @@ float kernel(ivec2 from) {
     return WIDE ? B3[abs(from.x)] * B3[abs(from.y)] : TENT[abs(from.x)] * TENT[abs(from.y)];
 }
 
+ivec2 nearestInside(ivec2 at) {
+    return clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+}
+
 Tap loadTap(ivec2 at) {
-    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const ivec2 inside = nearestInside(at);
     const vec4 light = LOAD_HALF4(signal, inside);
     return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
 }
 
 void addVariance(inout vec2 sum, ivec2 at, float weight) {
-    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const ivec2 inside = nearestInside(at);
     const float deviation = LOAD_HALF4_ALPHA(signal, inside);
     if (at == inside && deviation >= 0.0) sum += weight * vec2(deviation * deviation, 1.0);
 }
@@ -85,8 +89,8 @@ Centre begin(ivec2 at) {
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
-    // Loaded before the taps: they take as long as it is under way.
-    centre.shownPast = MIX_SHOWN ? LOAD_HALF4(shownPast, clamp(at, ivec2(0), ivec2(params.width, params.height) - 1)) : vec4(0.0);
+    // Loaded before the taps, so that its latency is hidden behind theirs.
+    centre.shownPast = MIX_SHOWN ? LOAD_HALF4(shownPast, nearestInside(at)) : vec4(0.0);
     return centre;
 }
 
