@@ -16,7 +16,7 @@ struct DoubleSvgfParams {
     double normalTest = 0.95, depthTest = 0.02;
     bool relative = true, search = true;
     bool reflections = true;
-    double antilag = 2.0, antilagNoise = 3.0;
+    double antilag = 2.0, antilagNoise = 3.0, antilagPixel = 1e9;
     double alphaShown = 0.5, shownNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     int blurLevels = 1;
@@ -43,7 +43,6 @@ struct SvgfHistory {
     SvgfSurfaces surfaces;
     std::vector<dvec4> color;    ///< c; the fourth is not read
     std::vector<dvec4> moments;  ///< m1, m2, f, N
-    std::vector<double> tiles;   ///< lag
     std::vector<dvec4> shown;  ///< of step 7; the fourth is not read. None at all if nothing was shown so far
 };
 
@@ -86,15 +85,21 @@ double svgfBoost(double frames, bool boost);
 SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,
                                const SvgfHistory& previous, const DoubleSvgfParams& params);
 
-/// k of step 4: the variance of f - m1 under steady light, as a share of E[m2 - m1^2].
-double svgfSteadyShare(const DoubleSvgfParams& params);
-
-/// Step 4. Tiles are 8x8 pixels, row 0 first; `error` bounds what float32 does to each one's lag.
+/// Step 4's tiles. They are 8x8 pixels, row 0 first; `error` bounds what float32 does to each one's lag, and
+/// what comes of errors of the moments (one for each component, or none at all). It is infinite where one of
+/// them decides whether a pixel counts.
 struct SvgfTiles {
     std::vector<double> tiles, error;
 };
 SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
-                    const DoubleSvgfParams& params);
+                    const DoubleSvgfParams& params, const std::vector<dvec4>& errors = {});
+
+/// Step 4's anti-lag: shortens the histories of what step 3 made. The slopes hold for the result.
+void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::vector<double>& tiles,
+                 const DoubleSvgfParams& params, SvgfAccumulated& accumulated);
+
+/// k of step 4: the variance of f - m1 under steady light, as a share of E[m2 - m1^2].
+double svgfSteadyShare(const DoubleSvgfParams& params);
 
 /// zx and zy of step 6.
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance);

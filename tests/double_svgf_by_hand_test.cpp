@@ -25,13 +25,17 @@ class SvgfByHand : public testing::Test {
         before.surfaces = svgfSurfaces(frame);
         before.color.assign(25, dvec4(1, 2, 3, nan));
         before.moments.assign(25, dvec4(1, 3, 2, 2));
-        before.tiles.assign(1, 0.0);
     }
 
     static void set(std::vector<float>& layer, size_t at, const vec3& value) {
         for (int i = 0; i < 3; ++i) layer[at + static_cast<size_t>(i)] = value[i];
     }
-    SvgfAccumulated accumulate() const { return svgfAccumulate(frame, SvgfSignal::Diffuse, before, params); }
+    /// With anti-lag.
+    SvgfAccumulated accumulate() const {
+        SvgfAccumulated result = svgfAccumulate(frame, SvgfSignal::Diffuse, before, params);
+        svgfShorten(frame, SvgfSignal::Diffuse, tiles, params, result);
+        return result;
+    }
     void expect(const dvec3& color, const dvec4& moments) const {
         const SvgfAccumulated result = accumulate();
         const double ofOne = std::sqrt(std::max(moments.y - moments.x * moments.x, 0.0));
@@ -43,7 +47,8 @@ class SvgfByHand : public testing::Test {
 
     static constexpr size_t middle = 12;
     HostFrame frame = frontalPlane(5, 5);
-    SvgfHistory before{5, 5, {}, {}, {}, {}, {}};
+    SvgfHistory before{5, 5, {}, {}, {}, {}};
+    std::vector<double> tiles{0.0};
     DoubleSvgfParams params;
 };
 
@@ -83,14 +88,32 @@ TEST_F(SvgfByHand, ATapNeedsALength) {
 }
 
 TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
-    before.tiles[0] = 0.75;  // half a frame is left, and then one and a half
+    tiles[0] = 0.75;  // of the two frames before this one a half is left
     const double a = 1 / 1.5;
     expect(dvec3(1 + 3 * a, 2 + 2 * a, 3 + a), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
+    params.alpha = 0.8;  // more than a
+    expect(dvec3(1 + 3 * 0.8, 2 + 2 * 0.8, 3 + 0.8), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
+    params.alpha = 1.0;
+    expect(dvec3(4), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
+    params.alpha = 0.2;
     frame.diffuse[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
-    expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 0.5));
+    expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 2));
     frame.diffuse[4 * middle + 1] = 2.0f;
-    before.tiles[0] = 1.0;
+    tiles[0] = 1.0;
     expect(dvec3(4), dvec4(4, 16, 4, 1));
+    before.moments.assign(25, dvec4(1, 3, 2, 9));  // five frames are the longest: a share of 0.2 becomes 0.5
+    tiles[0] = 0.75;
+    expect(dvec3(2.5, 3, 3.5), dvec4(2.5, 9.5, 3, 2));
+}
+
+TEST_F(SvgfByHand, AntiLagLeavesWhatHasNoHistory) {
+    tiles[0] = 0.75;
+    for (double& id : before.surfaces.id) id = 7.0;
+    params.search = false;
+    expect(dvec3(4), dvec4(4, 16, 4, 1));
+    frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
+    EXPECT_EQ(accumulate().color[middle], dvec4(4, 4, 4, -1));
+    EXPECT_EQ(accumulate().moments[middle], dvec4(0));
 }
 
 TEST_F(SvgfByHand, WhatWasShownIsFollowed) {
@@ -100,12 +123,12 @@ TEST_F(SvgfByHand, WhatWasShownIsFollowed) {
     EXPECT_LT(glm::distance(accumulate().shownPast[middle], dvec4(7, 5, 6, 0.5)), 1e-6);
     params.alphaShown = 0.1;  // of the third frame
     EXPECT_NEAR(accumulate().shownPast[middle].w, 1.0 / 3, 1e-6);
-    before.tiles[0] = 0.75;
+    tiles[0] = 0.75;
     EXPECT_NEAR(accumulate().shownPast[middle].w, 1 / 1.5, 1e-6);
-    before.tiles[0] = 1.0;
+    tiles[0] = 1.0;
     EXPECT_EQ(accumulate().shownPast[middle].w, 1.0);
     frame.diffuse[4 * middle] = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(accumulate().shownPast[middle].w, 1.0);
+    EXPECT_EQ(accumulate().shownPast[middle].w, 0.5) << "of two frames, which anti-lag leaves alone";
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
     EXPECT_EQ(accumulate().shownPast[middle], dvec4(0, 0, 0, 1));
 }
@@ -251,40 +274,65 @@ TEST(SvgfTilesByHand, ChangeBeyondNoise) {
     // With fewer pixels the same deviation may be noise.
     const double thinLag = 2.0 * (8 * 0.6 - 3.0 * std::sqrt(8 * 0.125 * 0.64)) / (8 * 2.0);
     EXPECT_NEAR(tiles.tiles[1], thinLag, 1e-12);
-    for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 9, 1.9) : dvec4(1, 2, 1.1, 2);
+    for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 9, 1.4) : dvec4(1, 2, 1.1, 2);
     tiles = svgfTiles(frame, moments, params);
     EXPECT_EQ(tiles.tiles[1], 0.0) << "too young";
     EXPECT_EQ(tiles.tiles[0], 0.0) << "3 sqrt(64 / 8) exceeds 6.4";
-    moments.assign(72, dvec4(1, 1, 9, 5));
+    moments.assign(72, dvec4(1, 60, 9, 5));
     EXPECT_EQ(svgfTiles(frame, moments, {.antilag = 10.0}).tiles[0], 1.0);
     moments.assign(72, dvec4(0, 0, 0, 5));
     EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
 }
 
-/// A row of sixteen pixels and two tiles, whose middles are at 4 and 12.
-TEST(SvgfTilesByHand, TheNextFrameReadsThemBilinearly) {
-    HostFrame frame = frontalPlane(16, 1);
-    SvgfHistory before{16, 1, svgfSurfaces(frame), {}, {}, {}, {}};
-    before.color.assign(16, dvec4(0));
-    before.moments.assign(16, dvec4(0, 0, 0, 3));
-    before.tiles = {0.0, 0.8};
-    const SvgfAccumulated result = svgfAccumulate(frame, SvgfSignal::Joint, before, {});
-    for (size_t p = 0; p < 16; ++p) {
-        const double lag = 0.8 * glm::clamp((static_cast<double>(p) + 0.5 - 4.0) / 8.0, 0.0, 1.0);
-        EXPECT_NEAR(result.moments[p].w, 3.0 * (1.0 - lag) + 1.0, 1e-12) << p;
-    }
+TEST(SvgfTilesByHand, APixelIsTakenAtItsWordAsFarAsItsNoiseReaches) {
+    const HostFrame frame = frontalPlane(8, 8);
+    // 0.6, of which 0.5 sqrt(0.125 0.64) counts.
+    std::vector<dvec4> moments(64, dvec4(1.4, 2.6, 2.0, 5));
+    DoubleSvgfParams params{.antilagPixel = 0.5};
+    const double deviation = std::sqrt(0.125 * 0.64), lag = 2.0 * (32 - 3.0 * 8) * deviation / (64 * 2.0);
+    EXPECT_NEAR(svgfTiles(frame, moments, params).tiles[0], lag, 1e-12);
+    moments.assign(64, dvec4(2.6, 7.4, 2.0, 5));  // darker: the same deviation
+    EXPECT_NEAR(svgfTiles(frame, moments, params).tiles[0], lag * 2.0 / 2.6, 1e-12);
+    // A firefly of 100 among steady light, in its first frame: bound to less than a tile's noise.
+    moments.assign(64, dvec4(1, 1, 1, 5));
+    moments[9] = dvec4(20.8, 2000.8, 50.5, 5);
+    params.antilagNoise = 1.5;
+    EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
+    params.antilagPixel = 1e9;
+    EXPECT_GT(svgfTiles(frame, moments, params).tiles[0], 0.1);
 }
 
-TEST(SvgfTilesByHand, ReflectionsReadThemWhereTheyWere) {
-    HostFrame frame = frontalPlane(16, 1);
-    SvgfHistory before{16, 1, svgfSurfaces(frame), {}, {}, {}, {}};
-    before.color.assign(16, dvec4(0));
-    before.moments.assign(16, dvec4(0, 0, 0, 3));
-    before.tiles = {0.0, 0.8};
-    frame.reflectionMotion.assign(64, 0.0f);
-    frame.reflectionMotion[0] = 8.0f;
-    frame.reflectionMotion[3] = 1.0f;
-    EXPECT_NEAR(svgfAccumulate(frame, SvgfSignal::Specular, before, {}).moments[0].w, 3.0 * 0.55 + 1.0, 1e-6);
+TEST(SvgfTilesByHand, ErrorsOfMomentsAreCarriedThrough) {
+    const HostFrame frame = frontalPlane(8, 8);
+    const DoubleSvgfParams params{.antilagPixel = 2.0};
+    const std::vector<dvec4> moments(64, dvec4(1.4, 2.6, 2.0, 5));
+    const double lag = svgfTiles(frame, moments, params).tiles[0];
+    for (const double sign : {1.0, -1.0}) {
+        for (int component = 0; component < 3; ++component) {
+            std::vector<dvec4> errors(64, dvec4(0)), off = moments;
+            for (dvec4& e : errors) e[component] = 1e-3;
+            for (dvec4& m : off) m[component] += sign * 1e-3;
+            const double bound = svgfTiles(frame, moments, params, errors).error[0];
+            EXPECT_LE(std::abs(svgfTiles(frame, off, params).tiles[0] - lag), bound) << component;
+            EXPECT_LT(bound, 0.02) << component;
+        }
+    }
+    std::vector<dvec4> errors(64, dvec4(0));
+    errors[63].w = 3.6;
+    EXPECT_TRUE(std::isinf(svgfTiles(frame, moments, params, errors).error[0])) << "may be too young";
+}
+
+/// A row of sixteen pixels and two tiles, whose middles are at 4 and 12.
+TEST(SvgfTilesByHand, AreReadBilinearly) {
+    const HostFrame frame = frontalPlane(16, 1);
+    const std::vector<dvec4> zeros(16, dvec4(0));
+    SvgfAccumulated result{zeros, std::vector<dvec4>(16, dvec4(0, 0, 0, 3)), zeros,
+                           std::vector<SvgfPixel>(16)};
+    svgfShorten(frame, SvgfSignal::Joint, {0.0, 0.8}, {}, result);
+    for (size_t p = 0; p < 16; ++p) {
+        const double lag = 0.8 * glm::clamp((static_cast<double>(p) + 0.5 - 4.0) / 8.0, 0.0, 1.0);
+        EXPECT_NEAR(result.moments[p].w, 1.0 + 2.0 * (lag < 0.1 ? 1.0 : 1.0 - lag), 1e-12) << p;
+    }
 }
 
 /// Three pixels in a row; the rays through them are (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).

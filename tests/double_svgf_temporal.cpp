@@ -1,4 +1,4 @@
-// Steps 1 to 4, 7 and 8: what is done pixel by pixel and over time.
+// Steps 1 to 3, 7 and 8: what is done pixel by pixel and over time.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +13,6 @@ namespace limpid::test {
 namespace {
 
 constexpr double largestHalf = 65504.0;
-constexpr size_t tileEdge = 8;
 /// Frames that are averaged with equal weights at least.
 constexpr double shortestHistory = 4.0;
 
@@ -41,10 +40,6 @@ std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t
     return result;
 }
 
-size_t tilesAlong(uint32_t pixels) {
-    return (pixels + tileEdge - 1) / tileEdge;
-}
-
 /// A value, and by how much it changes at most where s is off by one pixel.
 struct Sloped {
     double value, slope;
@@ -69,13 +64,10 @@ class Accumulator {
   private:
     struct Old {
         Resampled color, moments, shown;
-        Sloped lag{0.0, 0.0};
     };
     std::optional<dvec3> reflectionMotion(size_t p) const;
     Reprojection reproject(size_t p, SvgfPixel& pixel) const;
     Old find(size_t p, SvgfPixel& pixel) const;
-    Sloped lagAt(const dvec2& s) const;
-    Sloped shortened(const Old& old) const;
     dvec4 shownPast(const Old& old, double frames) const;
     void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
@@ -87,25 +79,6 @@ class Accumulator {
     ReprojectionParams reprojection_;
     Reprojector reprojector_;
 };
-
-/// Bilinear at s / 8 - 0.5 with coordinates clamped.
-Sloped Accumulator::lagAt(const dvec2& s) const {
-    const dvec2 last(static_cast<double>(tilesAlong(frame_.width)) - 1.0,
-                     static_cast<double>(tilesAlong(frame_.height)) - 1.0);
-    const dvec2 f = s / double{tileEdge} - 0.5, first = glm::floor(f), fraction = f - first;
-    Reprojection taps;
-    for (int j = 0; j < 2; ++j) {
-        for (int i = 0; i < 2; ++i) {
-            const dvec2 at = glm::clamp(first + dvec2(i, j), dvec2(0.0), last);
-            const double weight =
-                (i == 0 ? 1.0 - fraction.x : fraction.x) * (j == 0 ? 1.0 - fraction.y : fraction.y);
-            taps.taps.push_back(
-                {static_cast<size_t>(at.y) * tilesAlong(frame_.width) + static_cast<size_t>(at.x), weight});
-        }
-    }
-    const Resampled lag = resample(taps, [&](size_t q) { return dvec4(previous_.tiles[q]); });
-    return {lag.mean.x, lag.slope.x / double{tileEdge}};
-}
 
 /// The mean of r around p; nothing where no pixel has one.
 std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
@@ -143,27 +116,19 @@ Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
 Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     const Reprojection found = reproject(p, pixel);
     if (found.failure != 0) return {};
-    return {
-        resample(found, [&](size_t q) { return previous_.color[q]; }),
-        resample(found, [&](size_t q) { return previous_.moments[q]; }),
-        resample(found, [&](size_t q) { return previous_.shown.empty() ? dvec4(0.0) : previous_.shown[q]; }),
-        lagAt(found.position)};
-}
-
-/// N after anti-lag.
-Sloped Accumulator::shortened(const Old& old) const {
-    const double n = old.moments.mean.w, kept = 1.0 - old.lag.value;
-    return {n * kept, old.moments.slope.w * kept + n * old.lag.slope};
+    return {resample(found, [&](size_t q) { return previous_.color[q]; }),
+            resample(found, [&](size_t q) { return previous_.moments[q]; }), resample(found, [&](size_t q) {
+                return previous_.shown.empty() ? dvec4(0.0) : previous_.shown[q];
+            })};
 }
 
 void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments,
                          SvgfPixel& pixel) const {
-    const Sloped kept = shortened(old);
     const double longest = std::max(shortestHistory, 1.0 / std::min(params_.alpha, params_.alphaMoments));
-    const double n = std::min(kept.value + 1.0, longest);
+    const double n = std::min(old.moments.mean.w + 1.0, longest);
     const auto blend = [&](const Sloped& was, double is, double alpha) {
         const double share = std::max(alpha, 1.0 / n);
-        const double shareSlope = kept.slope / (n * n);
+        const double shareSlope = old.moments.slope.w / (n * n);
         return Sloped{was.value + (is - was.value) * share,
                       was.slope * (1.0 - share) + std::abs(is - was.value) * shareSlope};
     };
@@ -184,7 +149,7 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
         pixel.momentsOperands[i] = std::max(std::abs(old.moments.mean[i]), std::abs(values[at]));
     }
     moments.w = n;
-    pixel.momentsSlope.w = kept.slope;
+    pixel.momentsSlope.w = old.moments.slope.w;
     pixel.momentsOperands.w = old.moments.mean.w;
 }
 
@@ -206,11 +171,10 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
         return;
     }
     if (sample.rejected) {
-        const Sloped kept = shortened(old);
         color = old.color.mean;
-        moments = dvec4(dvec3(old.moments.mean), kept.value);
+        moments = old.moments.mean;
         pixel.colorSlope = old.color.slope;
-        pixel.momentsSlope = dvec4(dvec3(old.moments.slope), kept.slope);
+        pixel.momentsSlope = old.moments.slope;
     } else {
         update(sample.x, old, color, moments, pixel);
     }
@@ -222,25 +186,6 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     color.w =
         std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
     pixel.colorSlope.w = 0.0;
-}
-
-/// Sums over one tile.
-struct TileSums {
-    double lag = 0.0, variance = 0.0, size = 0.0;
-    double lagMagnitude = 0.0, m2 = 0.0;  ///< of what `lag` and `variance` are the sums of
-
-    void add(const dvec4& moments) {
-        lag += moments.z - moments.x;
-        variance += std::max(moments.y - moments.x * moments.x, 0.0);
-        size += std::max(moments.z, moments.x);
-        lagMagnitude += std::abs(moments.z) + std::abs(moments.x);
-        m2 += moments.y;
-    }
-};
-
-/// By how much sqrt(value) changes at most if the value changes by `error`.
-double rootError(double value, double error) {
-    return std::sqrt(value + error) - std::sqrt(std::max(value - error, 0.0));
 }
 
 }  // namespace
@@ -285,41 +230,6 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
     const std::vector<dvec4> zeros(frame.pixelCount(), dvec4(0.0));
     SvgfAccumulated result{zeros, zeros, zeros, std::vector<SvgfPixel>(frame.pixelCount())};
     for (size_t p = 0; p < frame.pixelCount(); ++p) accumulator.accumulate(p, result);
-    return result;
-}
-
-double svgfSteadyShare(const DoubleSvgfParams& params) {
-    const auto b = [](double a) { return a / (2.0 - a); };
-    const double fast = params.alphaFast, slow = params.alphaMoments;
-    const double r = fast * slow / (fast + slow - fast * slow);
-    return (b(fast) + b(slow) - 2.0 * r) / (1.0 - b(slow));
-}
-
-SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
-                    const DoubleSvgfParams& params) {
-    const size_t columns = tilesAlong(frame.width), count = columns * tilesAlong(frame.height);
-    std::vector<TileSums> sums(count);
-    for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const size_t x = p % frame.width / tileEdge, y = p / frame.width / tileEdge;
-        if (moments[p].w >= 2.0) sums[y * columns + x].add(moments[p]);
-    }
-    const double k = svgfSteadyShare(params);
-    const double rounding = 64 * 0x1p-24;  // of a sum of 64 numbers
-    SvgfTiles result;
-    for (const TileSums& s : sums) {
-        if (s.size == 0.0) {
-            result.tiles.push_back(0.0);
-            result.error.push_back(0.0);
-            continue;
-        }
-        const double noise = std::sqrt(k * s.variance),
-                     excess = std::abs(s.lag) - params.antilagNoise * noise;
-        const double lag = std::min(1.0, params.antilag * std::max(excess, 0.0) / s.size);
-        const double excessError =
-            rounding * s.lagMagnitude + params.antilagNoise * rootError(k * s.variance, k * rounding * s.m2);
-        result.tiles.push_back(lag);
-        result.error.push_back(params.antilag * excessError / s.size + 1e-5 * lag);
-    }
     return result;
 }
 

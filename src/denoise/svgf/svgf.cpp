@@ -4,6 +4,8 @@
 #include <string>
 
 #include "denoise/svgf/svgf_params.h"
+#include "svgf_antilag.comp.h"
+#include "svgf_antilag_buffers.comp.h"
 #include "svgf_level.comp.h"
 #include "svgf_level_buffers.comp.h"
 #include "svgf_modulate.comp.h"
@@ -44,9 +46,11 @@ struct Surfaces {
 struct Accumulated {
     ImageHandle color;      ///< half4: light, deviation of its luminance in one frame
     ImageHandle moments;    ///< rgba32f: first, second, fast first, frames
+    ImageHandle tiles;      ///< r32f: lag
     History feedback;       ///< of colors; `current` is what the next frame reads
     ImageHandle shown;      ///< half4: the last level's result
     ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
+    float alphaShown;       ///< 1 if nothing was shown
 };
 
 class Svgf {
@@ -66,6 +70,9 @@ class Svgf {
         std::vector<Accumulated> accumulated;
         std::vector<ImageHandle> filtered;
         for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
+        if (settings_.antilag > 0.0f) {
+            for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
+        }
         for (size_t i = 0; i < all.size(); ++i) {
             estimateVariance(all[i], surfaces, accumulated[i]);
             filtered.push_back(accumulated[i].color);
@@ -134,6 +141,7 @@ class Svgf {
         params.steadyShare = steadyShare();
         params.antilag = settings_.antilag;
         params.antilagNoise = settings_.antilagNoise;
+        params.antilagPixel = settings_.antilagPixel;
         params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
@@ -155,7 +163,7 @@ class Svgf {
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
-        const History tiles = graph_.history(name + " tiles", Format::R32Float, tileExtent);
+        const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
         const History shown = shownOf(name, feedback);
         const ImageHandle shownPast = graph_.transient(name + " shown past", Format::RGBA16Float,
                                                        mixesShown() ? extent_ : Extent{1, 1}, input_.filters);
@@ -177,12 +185,11 @@ class Svgf {
                                            {"instancesBefore", surfaces.instances.previous},
                                            {"colorBefore", feedback.previous},
                                            {"momentsBefore", moments.previous},
-                                           {"tilesBefore", tiles.previous},
                                            {"color", color},
                                            {"moments", moments.current},
                                            {"shownBefore", shown.previous},
                                            {"shownPast", shownPast}};
-        if (buffers_) bindings.push_back({"tiles", tiles.current});
+        if (buffers_) bindings.push_back({"tiles", tiles});
         graph_.dispatch({.pass = "svgf/reproject " + signal.name,
                          .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
                          .bindings = bindings,
@@ -192,19 +199,47 @@ class Svgf {
                                        {"BOOST", settings_.boost ? 1u : 0u},
                                        {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
                          .extent = extent_});
-        if (!buffers_) recordTiles(signal, moments.current, tiles.current);
-        return {color, moments.current, feedback, shown.current, shownPast};
+        return {color, moments.current, tiles, feedback, shown.current, shownPast, params.alphaShown};
     }
 
-    void recordTiles(const Signal& signal, ImageHandle moments, ImageHandle tiles) {
-        const SvgfTilesParams params{extent_.width, extent_.height, steadyShare(), settings_.antilag,
-                                     settings_.antilagNoise};
+    /// With filters in buffers an invocation shortens 2x2 pixels' histories.
+    static uint32_t half(uint32_t pixels) { return (pixels + 1) / 2; }
+
+    void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
+        if (!buffers_) recordTiles(signal, accumulated);
+        const SvgfAntilagParams params{.width = extent_.width,
+                                       .height = extent_.height,
+                                       .demodulate = settings_.demodulate,
+                                       .alpha = settings_.alpha,
+                                       .alphaMoments = settings_.alphaMoments,
+                                       .alphaFast = settings_.alphaFast,
+                                       .alphaShown = accumulated.alphaShown};
+        graph_.dispatch({.pass = "svgf/antilag " + signal.name,
+                         .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
+                         .bindings = {{"lightA", signal.light},
+                                      {"lightB", signal.otherLight},
+                                      {"albedoA", signal.albedo},
+                                      {"albedoB", signal.otherAlbedo},
+                                      {"tiles", accumulated.tiles},
+                                      {"moments", accumulated.moments},
+                                      {"color", accumulated.color},
+                                      {"shownPast", accumulated.shownPast}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
+                                       {"BOOST", settings_.boost ? 1u : 0u},
+                                       {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
+                         .extent = buffers_ ? Extent{half(extent_.width), half(extent_.height)} : extent_});
+    }
+
+    void recordTiles(const Signal& signal, const Accumulated& accumulated) {
+        const SvgfTilesParams params{extent_.width,     extent_.height,         steadyShare(),
+                                     settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
         graph_.dispatch({.pass = "svgf/tiles " + signal.name,
                          .shader = shaders::svgf_tiles_comp,
-                         .bindings = {{"moments", moments}, {"tiles", tiles}},
+                         .bindings = {{"moments", accumulated.moments}, {"tiles", accumulated.tiles}},
                          .params = gpu::paramsOf(params),
                          .constants = {},
-                         .extent = graph_.extent(tiles)});
+                         .extent = graph_.extent(accumulated.tiles)});
     }
 
     SvgfFilterParams filterParams(int step) const {
@@ -328,6 +363,9 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
               "noise for one");
+        t.add("antilag_pixel", &S::antilagPixel, 0.0, 1e6, "deviations",
+              "the most that one pixel's difference counts for in that mean, in its own deviations; higher "
+              "sees greater changes as greater and takes some fireflies for one");
         t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
               "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
               "changes later; 1 (and no levels) is off");

@@ -23,6 +23,7 @@ struct SvgfSettings {
     bool reflections = true;
     float antilag = 16.0f;
     float antilagNoise = 1.5f;
+    float antilagPixel = 1.5f;
     float alphaShown = 0.5f;
     float shownNoise = 0.5f;
     int levels = 4;
@@ -40,10 +41,10 @@ const ParamTable<SvgfSettings>& svgfParams();
 
 /// One frame: the clean beauty, rgba32f, alpha 1. Passes, each once for every signal ("joint", or "diffuse"
 /// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
-/// (with filters in images; otherwise "svgf/reproject" does its work), "svgf/variance SIGNAL", "svgf/level 1
-/// SIGNAL" and so on, "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal
-/// "svgf/SIGNAL color", "svgf/SIGNAL moments", "svgf/SIGNAL tiles" and, unless it is fed back, "svgf/SIGNAL
-/// shown".
+/// (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag SIGNAL" (neither
+/// without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories:
+/// "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it
+/// is fed back, "svgf/SIGNAL shown".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 }  // namespace limpid::denoise

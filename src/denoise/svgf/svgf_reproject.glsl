@@ -2,23 +2,15 @@
 // steps 2 and 3.
 #include "denoise/reprojection.glsl"
 #include "denoise/svgf/svgf_params.h"
-#include "shaders/filter_image.glsl"
-
-layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, albedo likewise; else the first
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
-
-layout(constant_id = 2) const bool BOOST = true;
-
-layout(constant_id = 3) const bool MIX_SHOWN = false;  // what was shown is followed, too
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedoA;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D albedoB;
+
+#include "denoise/svgf/svgf_signal.glsl"
+
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D motion;
 layout(set = 0, binding = 6, rgba32f) uniform readonly image2D previousNormal;
 layout(set = 0, binding = 16, rgba32f) uniform readonly image2D reflectionMotion;
@@ -28,11 +20,10 @@ READ_UINT2(9, surfacesBefore);
 layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
 READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
-layout(set = 0, binding = 13, r32f) uniform readonly image2D tilesBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
 READ_HALF4(18, shownBefore);
-WRITE_HALF4(19, shownPast);  // light | weight of this frame's beside it
+WRITE_HALF4(13, shownPast);  // light | weight of this frame's beside it
 
 /// How a surface point must have looked in the previous frame.
 struct Expected {
@@ -96,29 +87,8 @@ Past pastAt(vec2 position, Expected expected) {
     return Past(taps.sum.color / taps.weight, taps.sum.shown / taps.weight, taps.sum.moments / taps.weight);
 }
 
-float tileTap(ivec2 at) {
-    return imageLoad(tilesBefore, clamp(at, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE)).x;
-}
-
-/// Around `position` (as above).
-float lagAt(vec2 position) {
-    const vec2 tile = (position + 0.5) / float(SVGF_TILE) - 0.5;
-    const vec2 corner = floor(tile), share = tile - corner;
-    const ivec2 first = ivec2(corner);
-    return mix(mix(tileTap(first), tileTap(first + ivec2(1, 0)), share.x),
-               mix(tileTap(first + ivec2(0, 1)), tileTap(first + 1), share.x), share.y);
-}
-
-vec3 demodulated(vec3 light, ivec2 at) {
-    vec4 albedo = imageLoad(albedoA, at);
-    if (SUM_OF_TWO) albedo += imageLoad(albedoB, at);
-    const vec3 x = finiteOr(light, vec3(0.0)) / (params.demodulate != 0u ? modulation(albedo) : vec3(1.0));
-    return clamp(x, -MAX_HALF, MAX_HALF);
-}
-
-/// `moved` as in the `motion` image. `kept`: the share of its length that anti-lag leaves.
-Past pastOf(ivec2 at, uvec2 surface, vec4 moved, out float kept) {
-    kept = 1.0;
+/// `moved` as in the `motion` image.
+Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(moved, vec2(at), size);
     const float z = uintBitsToFloat(surface.y);
@@ -127,7 +97,6 @@ Past pastOf(ivec2 at, uvec2 surface, vec4 moved, out float kept) {
     const float tolerance = params.relative == 0u ? params.depthTest
                                                   : depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x),
                                                                    vec2(at), size, params.depthTest);
-    kept = 1.0 - lagAt(was.position);
     return pastAt(was.position,
                   Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
 }
@@ -160,21 +129,16 @@ Past accumulated(Past past, vec3 x) {
 
 /// Returns the moments.
 vec4 accumulate(ivec2 at) {
-    vec3 light = imageLoad(lightA, at).rgb;
-    if (SUM_OF_TWO) light += imageLoad(lightB, at).rgb;
+    const vec3 light = lightAt(at);
     const vec3 x = demodulated(light, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     Past now = NO_TAPS.sum;
-    float kept;
-    if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at), kept);
-    if (now.moments.w <= 0.0) now = pastOf(at, surface, imageLoad(motion, at), kept);
-    now.moments.w *= kept;
+    if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
+    if (now.moments.w <= 0.0) now = pastOf(at, surface, imageLoad(motion, at));
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
-    const float deviation = sqrt(max(now.moments.y - now.moments.x * now.moments.x, 0.0));
-    const float noise = now.moments.w < SVGF_YOUNG ? SVGF_STILL_YOUNG : min(svgfBoost(BOOST, now.moments.w) * deviation, MAX_HALF);
-    STORE_HALF4(color, at, seen ? vec4(now.color, noise) : vec4(x, SVGF_NOTHING_SEEN));
-    if (MIX_SHOWN) STORE_HALF4(shownPast, at, vec4(now.shown, max(params.alphaShown, 1.0 / max(now.moments.w, 1.0))));
+    STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(now.moments)) : vec4(x, SVGF_NOTHING_SEEN));
+    if (MIX_SHOWN) STORE_HALF4(shownPast, at, vec4(now.shown, shownWeight(now.moments.w)));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);
     return stored;

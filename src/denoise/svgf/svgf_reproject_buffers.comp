@@ -31,6 +31,7 @@ void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     vec4 moments = vec4(0.0);
     if (at.x < int(params.width) && at.y < int(params.height)) moments = accumulate(at);
-    const float lag = lagOf(sumOverTile(tileSumsOf(moments)), params.steadyShare, params.antilag, params.antilagNoise);
+    const TileSums sums = sumOverTile(tileSumsOf(moments, params.steadyShare, params.antilagPixel));
+    const float lag = lagOf(sums, params.antilag, params.antilagNoise);
     if (gl_LocalInvocationIndex == 0u) imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lag));
 }

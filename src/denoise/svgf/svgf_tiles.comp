@@ -20,8 +20,9 @@ void main() {
         for (int i = 0; i < SVGF_TILE; ++i) {
             const ivec2 at = first + ivec2(i, j);
             const vec4 m = imageLoad(moments, min(at, size - 1));
-            add(sums, tileSumsOf(all(lessThan(at, size)) ? m : vec4(0.0)));
+            const vec4 inside = all(lessThan(at, size)) ? m : vec4(0.0);
+            add(sums, tileSumsOf(inside, params.steadyShare, params.antilagPixel));
         }
     }
-    imageStore(tiles, tile, vec4(lagOf(sums, params.steadyShare, params.antilag, params.antilagNoise)));
+    imageStore(tiles, tile, vec4(lagOf(sums, params.antilag, params.antilagNoise)));
 }

@@ -6,17 +6,19 @@ struct TileSums {
     float lag, noise, light;
 };
 
-/// Of a pixel of the image of moments.
-TileSums tileSumsOf(vec4 m) {
-    const float counts = m.w >= 2.0 ? 1.0 : 0.0;
-    return TileSums(counts * (m.z - m.x), counts * max(m.y - m.x * m.x, 0.0), counts * max(m.z, m.x));
+/// Of a pixel of the image of moments. It is taken at its word only as far as its own noise reaches: a bright sample makes
+/// no change of light.
+TileSums tileSumsOf(vec4 m, float steadyShare, float antilagPixel) {
+    const float counts = m.w >= 1.5 ? 1.0 : 0.0;
+    const float noise = steadyShare * max(m.y - m.x * m.x, 0.0), most = antilagPixel * sqrt(noise);
+    return TileSums(counts * clamp(m.z - m.x, -most, most), counts * noise, counts * max(m.z, m.x));
 }
 
 void add(inout TileSums sums, TileSums other) {
     sums = TileSums(sums.lag + other.lag, sums.noise + other.noise, sums.light + other.light);
 }
 
-float lagOf(TileSums sums, float steadyShare, float antilag, float antilagNoise) {
-    const float excess = max(abs(sums.lag) - antilagNoise * sqrt(steadyShare * sums.noise), 0.0);
+float lagOf(TileSums sums, float antilag, float antilagNoise) {
+    const float excess = max(abs(sums.lag) - antilagNoise * sqrt(sums.noise), 0.0);
     return sums.light > 0.0 ? min(antilag * excess / sums.light, 1.0) : 0.0;
 }

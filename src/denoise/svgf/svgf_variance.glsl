@@ -29,12 +29,16 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-void estimate(ivec2 at) {
+/// Weighted moments and weights of the taps in one row.
+vec3 rowSum(ivec2 at, int row) {
     const SurfaceCentre centre = centreOf(surfaceAt(at), at);
     vec3 sum = vec3(0.0);
-    for (int j = -RADIUS; j <= RADIUS; ++j) {
-        for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
-    }
+    for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, row));
+    return sum;
+}
+
+/// `sum`: over the rows.
+void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
     const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);
     const vec3 light = LOAD_HALF4(color, at).rgb;
