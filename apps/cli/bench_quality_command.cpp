@@ -44,17 +44,12 @@ struct QualityOptions {
 };
 
 /// SVGF as others have it, without each thing that Limpid adds to the paper, and with former defaults.
-constexpr std::array svgfSteps{"preset=paper",
-                               "preset=cis565",
-                               "svgf.antilag=0",
-                               "svgf.alpha=0.15,svgf.alpha_moments=0.2",
-                               "svgf.antilag_noise=3",
-                               "svgf.boost=off",
-                               "svgf.blur_levels=10",
-                               "svgf.wide=on",
-                               "svgf.separate=off",
-                               "svgf.reflections=off",
-                               "pathtrace.through_mirrors=off",
+constexpr std::array svgfSteps{"preset=paper",         "preset=cis565",
+                               "svgf.antilag=0",       "svgf.alpha=0.15,svgf.alpha_moments=0.2",
+                               "svgf.antilag_noise=3", "svgf.antilag_pixel=1000",
+                               "svgf.boost=off",       "svgf.blur_levels=10",
+                               "svgf.wide=on",         "svgf.separate=off",
+                               "svgf.reflections=off", "pathtrace.through_mirrors=off",
                                "svgf.alpha_shown=1"};
 
 /// `texts` by commas: group.name=value, or preset=name.

@@ -45,10 +45,11 @@ struct Stages {
 
 /// A pass belongs to the stage that its name begins with. Without a pass ("tiles" on GPUs) a stage takes no
 /// time.
-constexpr std::array<std::pair<const char*, const char*>, 7> stageNames{{{"path tracing", "pathtrace"},
+constexpr std::array<std::pair<const char*, const char*>, 8> stageNames{{{"path tracing", "pathtrace"},
                                                                          {"surfaces", "svgf/surfaces"},
                                                                          {"reprojection", "svgf/reproject"},
                                                                          {"tiles", "svgf/tiles"},
+                                                                         {"anti-lag", "svgf/antilag"},
                                                                          {"variance", "svgf/variance"},
                                                                          {"a-trous levels", "svgf/level"},
                                                                          {"modulation", "svgf/modulate"}}};

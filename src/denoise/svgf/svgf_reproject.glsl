@@ -44,19 +44,32 @@ struct Taps {
 
 const Taps NO_TAPS = Taps(Past(vec3(0.0), vec3(0.0), vec4(0.0)), 0.0);
 
+// GPUs wait for all of a tap once, not first for what decides whether it counts; CPUs load as little as they can. (The order
+// matters to lavapipe: with the moments loaded after the colors Mesa 22.3 found wrong means, as svgf_test showed.)
+#ifdef LIMPID_FILTER_BUFFERS
+const bool WAIT_ONCE = true;
+#else
+const bool WAIT_ONCE = false;
+#endif
+
 void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const uvec2 surface = LOAD_UINT2(surfacesBefore, inside);
     const float depth = uintBitsToFloat(surface.y);
-    const vec4 momentsThere = imageLoad(momentsBefore, inside);
-    const bool counts = at == inside && depth > 0.0 && momentsThere.w > 0.0 &&
+    const uint instance = imageLoad(instancesBefore, inside).x;
+    Past there = NO_TAPS.sum;
+    there.moments = imageLoad(momentsBefore, inside);
+    if (WAIT_ONCE) there.color = LOAD_HALF4(colorBefore, inside).rgb;
+    if (WAIT_ONCE && MIX_SHOWN) there.shown = LOAD_HALF4(shownBefore, inside).rgb;
+    const bool counts = at == inside && depth > 0.0 && there.moments.w > 0.0 &&
                         dot(expected.normal, decodeOctahedral(surface.x)) > params.normalTest &&
-                        abs(expected.depth - depth) < expected.tolerance &&
-                        imageLoad(instancesBefore, inside).x == expected.instance;
+                        abs(expected.depth - depth) < expected.tolerance && instance == expected.instance;
     if (!counts || weight <= 0.0) return;
-    taps.sum.color += weight * LOAD_HALF4(colorBefore, inside).rgb;
-    if (MIX_SHOWN) taps.sum.shown += weight * LOAD_HALF4(shownBefore, inside).rgb;
-    taps.sum.moments += weight * momentsThere;
+    if (!WAIT_ONCE) there.color = LOAD_HALF4(colorBefore, inside).rgb;
+    if (!WAIT_ONCE && MIX_SHOWN) there.shown = LOAD_HALF4(shownBefore, inside).rgb;
+    taps.sum.color += weight * there.color;
+    taps.sum.shown += weight * there.shown;
+    taps.sum.moments += weight * there.moments;
     taps.weight += weight;
 }
 
@@ -68,6 +81,14 @@ Past pastAt(vec2 position, Expected expected) {
     addTap(taps, first, (1.0 - share.x) * (1.0 - share.y), expected);
     addTap(taps, first + ivec2(1, 0), share.x * (1.0 - share.y), expected);
     addTap(taps, first + ivec2(0, 1), (1.0 - share.x) * share.y, expected);
+#ifdef LIMPID_FILTER_BUFFERS
+    addTap(taps, first + 1, share.x * share.y, expected);
+    if (taps.weight <= MIN_SHARE) {
+        taps = NO_TAPS;
+        for (int i = 0; params.search != 0u && i < 9; ++i)
+            addTap(taps, nearest + ivec2(i % 3, i / 3) - 1, 1.0, expected);
+    }
+#else
     // The fourth tap and the search in one loop: CPUs run the body of any loop once, but only where a pixel searches
     // more often.
     ivec2 at = first + 1;
@@ -83,6 +104,7 @@ Past pastAt(vec2 position, Expected expected) {
         weight = 1.0;
         ++searched;
     } while (more);
+#endif
     if (taps.weight <= 0.0) return NO_TAPS.sum;
     return Past(taps.sum.color / taps.weight, taps.sum.shown / taps.weight, taps.sum.moments / taps.weight);
 }
