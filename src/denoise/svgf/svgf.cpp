@@ -203,8 +203,6 @@ class Svgf {
     }
 
     /// With filters in buffers an invocation shortens 2x2 pixels' histories.
-    static uint32_t half(uint32_t pixels) { return (pixels + 1) / 2; }
-
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
         if (!buffers_) recordTiles(signal, accumulated);
         const SvgfAntilagParams params{.width = extent_.width,
@@ -214,21 +212,22 @@ class Svgf {
                                        .alphaMoments = settings_.alphaMoments,
                                        .alphaFast = settings_.alphaFast,
                                        .alphaShown = accumulated.alphaShown};
-        graph_.dispatch({.pass = "svgf/antilag " + signal.name,
-                         .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
-                         .bindings = {{"lightA", signal.light},
-                                      {"lightB", signal.otherLight},
-                                      {"albedoA", signal.albedo},
-                                      {"albedoB", signal.otherAlbedo},
-                                      {"tiles", accumulated.tiles},
-                                      {"moments", accumulated.moments},
-                                      {"color", accumulated.color},
-                                      {"shownPast", accumulated.shownPast}},
-                         .params = gpu::paramsOf(params),
-                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
-                                       {"BOOST", settings_.boost ? 1u : 0u},
-                                       {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
-                         .extent = buffers_ ? Extent{half(extent_.width), half(extent_.height)} : extent_});
+        graph_.dispatch(
+            {.pass = "svgf/antilag " + signal.name,
+             .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
+             .bindings = {{"lightA", signal.light},
+                          {"lightB", signal.otherLight},
+                          {"albedoA", signal.albedo},
+                          {"albedoB", signal.otherAlbedo},
+                          {"tiles", accumulated.tiles},
+                          {"moments", accumulated.moments},
+                          {"color", accumulated.color},
+                          {"shownPast", accumulated.shownPast}},
+             .params = gpu::paramsOf(params),
+             .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
+                           {"BOOST", settings_.boost ? 1u : 0u},
+                           {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
+             .extent = buffers_ ? Extent{(extent_.width + 1) / 2, (extent_.height + 1) / 2} : extent_});
     }
 
     void recordTiles(const Signal& signal, const Accumulated& accumulated) {

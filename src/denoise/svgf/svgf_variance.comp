@@ -7,8 +7,5 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (!isYoung(at)) return;
-    vec3 sum = vec3(0.0);
-    for (int row = -RADIUS; row <= RADIUS; ++row) sum += rowSum(at, row);
-    storeDeviation(at, sum);
+    if (isYoung(at)) storeDeviation(at, rowsSum(at, 0, 1));
 }

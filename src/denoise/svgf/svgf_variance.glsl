@@ -29,15 +29,17 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-/// Weighted moments and weights of the taps in one row.
-vec3 rowSum(ivec2 at, int row) {
+/// Weighted moments and weights of the taps in every `step`-th of the 7 rows from `first` on.
+vec3 rowsSum(ivec2 at, int first, int step) {
     const SurfaceCentre centre = centreOf(surfaceAt(at), at);
     vec3 sum = vec3(0.0);
-    for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, row));
+    for (int j = first - RADIUS; j <= RADIUS; j += step) {
+        for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
+    }
     return sum;
 }
 
-/// `sum`: over the rows.
+/// `sum`: over all rows.
 void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
     const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);

@@ -1,22 +1,25 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are few and scattered: a group collects its own, and
-// shares out their rows, so that few of its subgroups have work, and those are full and soon done.
+// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are few and scattered, or many in one place: a group
+// collects its own, and shares out their rows among all of its invocations.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/svgf/svgf_variance.glsl"
 
 const uint GROUP = 16;
 layout(local_size_x = 16, local_size_y = 16) in;
 
-const uint SHARE = 8;  // invocations for a pixel, the last of which has no row
-const uint AT_ONCE = GROUP * GROUP / SHARE;
-
 shared uint count;
 shared uint young[GROUP * GROUP];
-shared vec3 rows[GROUP * GROUP];
+shared vec3 sums[GROUP * GROUP];
 
 ivec2 youngAt(uint number) {
     return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
+}
+
+/// As many invocations for a pixel as there are for each.
+uint sharers() {
+    const uint most = GROUP * GROUP / max(count, 1u);
+    return most >= 8u ? 8u : most >= 4u ? 4u : most >= 2u ? 2u : 1u;
 }
 
 void main() {
@@ -25,17 +28,12 @@ void main() {
     barrier();
     if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
     barrier();
-    const int row = int(own % SHARE);
-    for (uint first = 0u; first < count; first += AT_ONCE) {
-        const uint number = first + own / SHARE;
-        const bool has = number < count && row <= 2 * RADIUS;
-        rows[own] = has ? rowSum(youngAt(number), row - RADIUS) : vec3(0.0);
-        barrier();
-        if (has && row == 0) {
-            vec3 sum = vec3(0.0);
-            for (uint i = 0u; i <= 2u * RADIUS; ++i) sum += rows[own + i];
-            storeDeviation(youngAt(number), sum);
-        }
-        barrier();
-    }
+    const uint share = sharers(), number = own / share, part = own % share;
+    const bool has = number < count;
+    if (has) sums[own] = rowsSum(youngAt(number), int(part), int(share));
+    barrier();
+    if (!has || part != 0u) return;
+    vec3 sum = sums[own];
+    for (uint i = 1u; i < share; ++i) sum += sums[own + i];
+    storeDeviation(youngAt(number), sum);
 }
