@@ -10,7 +10,7 @@ namespace {
 
 constexpr double largestHalf = 65504.0;
 constexpr size_t tileEdge = 8;
-/// Frames in a history from which on it counts.
+/// Frames in a history from which on it counts: two, but for rounding.
 constexpr double leastLength = 1.5;
 /// Of which a pixel takes notice.
 constexpr double leastLag = 0.1;
@@ -47,10 +47,10 @@ struct TileSums {
             k * (errors.y + 2.0 * std::abs(m.x) * errors.x + errors.x * errors.x + 4.0 * rounding * m.y);
         const double most = params.antilagPixel * std::sqrt(v);
         const double differenceError = errors.z + errors.x + rounding * (std::abs(m.z) + std::abs(m.x));
-        // Neither the difference nor its bound decides alone: the result moves no further than both.
+        // It is the median of the difference and both bounds, and moves no further than any of them.
+        const double mostError = params.antilagPixel * rootError(v, vError);
         lag.add(glm::clamp(m.z - m.x, -most, most),
-                std::min(differenceError + params.antilagPixel * rootError(v, vError),
-                         std::max(2.0 * params.antilagPixel * std::sqrt(v + vError), differenceError)));
+                std::min(std::max(differenceError, mostError), 2.0 * (most + mostError)));
         variance.add(v, vError);
         size.add(std::max(m.z, m.x), std::max(errors.z, errors.x));
     }
@@ -112,7 +112,7 @@ void shorten(size_t p, double lag, const dvec3& x, const DoubleSvgfParams& param
     moments.w = shorter;
     pixel.momentsSlope.w *= kept;
     color.w = std::min(svgfBoost(shorter, params.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
-    if (result.shownPast[p].w >= 1.0) return;  // nothing was shown so far
+    if (result.shownPast[p].w >= 1.0) return;  // nothing was shown so far, or it is not to count
     result.shownPast[p].w = std::max(params.alphaShown, 1.0 / shorter);
     pixel.shownPastSlope.w = pixel.momentsSlope.w / (shorter * shorter);
 }
@@ -123,7 +123,8 @@ double svgfSteadyShare(const DoubleSvgfParams& params) {
     const auto b = [](double a) { return a / (2.0 - a); };
     const double fast = params.alphaFast, slow = params.alphaMoments;
     const double r = fast * slow / (fast + slow - fast * slow);
-    return (b(fast) + b(slow) - 2.0 * r) / (1.0 - b(slow));
+    if (slow == 1.0) return 0.0;
+    return std::max((b(fast) + b(slow) - 2.0 * r) / (1.0 - b(slow)), 0.0);
 }
 
 SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,

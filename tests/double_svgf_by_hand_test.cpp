@@ -298,6 +298,8 @@ TEST(SvgfTilesByHand, APixelIsTakenAtItsWordAsFarAsItsNoiseReaches) {
     moments[9] = dvec4(20.8, 2000.8, 50.5, 5);
     params.antilagNoise = 1.5;
     EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
+    params.antilagPixel = 1.499;  // less than 1.5: one pixel is never enough
+    EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
     params.antilagPixel = 1e9;
     EXPECT_GT(svgfTiles(frame, moments, params).tiles[0], 0.1);
 }

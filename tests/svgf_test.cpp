@@ -238,14 +238,17 @@ void SvgfPassTest::compareTiles(const HostFrame& frame, const SvgfAccumulated& e
             toleranceOf(expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding));
         if (leftOut[p]) skipped[p / frame.width / edge * columns + p % frame.width / edge] = true;
     }
-    const SvgfTiles tiles = svgfTiles(frame, expected.moments, params_, errors);
+    // Where no lag is large enough to be noticed, the device has still got what the tiles saw.
+    const bool noneShortened = *std::ranges::max_element(is.tiles) < 0.1;
+    const SvgfTiles tiles = noneShortened ? svgfTiles(frame, is.moments, params_)
+                                          : svgfTiles(frame, expected.moments, params_, errors);
     ASSERT_EQ(is.tiles.size(), tiles.tiles.size());
     largestLag_ = 0.0;
     for (size_t t = 0; t < is.tiles.size(); ++t) {
         largestLag_ = std::max(largestLag_, is.tiles[t]);
+        if (skipped[t]) continue;
         sharp_ += tiles.error[t] < 0.1;
         ++tiles_;
-        if (skipped[t]) continue;
         const double lag = tiles.tiles[t];
         ASSERT_NEAR(is.tiles[t], lag, floatRounding * lag + tiles.error[t] + 1e-30) << "tile " << t;
     }
@@ -326,7 +329,7 @@ TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
         compare(frame);
         if (HasFatalFailure()) return;
         if (number == c.jumpAt && settings_.antilag > 0.0f) {
-            EXPECT_GT(largestLag_, 0.2);
+            EXPECT_GT(largestLag_, settings_.antilag < 1.0f ? 0.001 : 0.2);
         }
     }
     EXPECT_GE(sharp_, tiles_ * 4 / 5);
@@ -367,6 +370,16 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
             Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
+            Case{.name = "LittleLag",
+                 .options = moving,
+                 .settings = {.antilag = 0.09f, .levels = 1},
+                 .frames = 10,
+                 .jumpAt = 6},
+            Case{.name = "EqualMeans",
+                 .options = moving,
+                 .settings = {.alphaMoments = 0.3f, .alphaFast = 0.3f, .levels = 1},
+                 .frames = 6},
+            Case{.name = "NoSlowMean", .options = moving, .settings = {.alphaMoments = 1.0f, .levels = 1}},
             Case{.name = "Nans",
                  .options = moving,
                  .settings = {.levels = 3},

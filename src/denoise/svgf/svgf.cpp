@@ -71,6 +71,7 @@ class Svgf {
         std::vector<ImageHandle> filtered;
         for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
         if (settings_.antilag > 0.0f) {
+            for (size_t i = 0; i < all.size() && !buffers_; ++i) recordTiles(all[i], accumulated[i]);
             for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
         }
         for (size_t i = 0; i < all.size(); ++i) {
@@ -117,12 +118,18 @@ class Svgf {
     /// Of the filter's levels; 0: none.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
 
-    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady.
+    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady. 0 where
+    /// the slow mean is no mean at all, and the samples' variance not known.
     float steadyShare() const {
         const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
         const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
         const float common = fast * slow / (fast + slow - fast * slow);
-        return (shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow));
+        if (slow >= 1.0f) return 0.0f;
+        return std::max((shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow)), 0.0f);
+    }
+
+    SvgfLagParams lagParams() const {
+        return {steadyShare(), settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
     }
 
     SvgfReprojectParams reprojectParams(bool wasShown) const {
@@ -138,10 +145,7 @@ class Svgf {
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
-        params.steadyShare = steadyShare();
-        params.antilag = settings_.antilag;
-        params.antilagNoise = settings_.antilagNoise;
-        params.antilagPixel = settings_.antilagPixel;
+        params.lag = lagParams();
         params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
@@ -154,6 +158,20 @@ class Svgf {
     History shownOf(const std::string& name, const History& feedback) {
         if (!mixesShown() || fedBack() == settings_.levels) return feedback;
         return graph_.history(name + " shown", Format::RGBA16Float, extent_, input_.filters);
+    }
+
+    /// What svgf_signal.glsl has.
+    static std::vector<gpu::Binding> withLight(const Signal& signal, std::vector<gpu::Binding> others) {
+        others.insert(others.end(), {{"lightA", signal.light},
+                                     {"lightB", signal.otherLight},
+                                     {"albedoA", signal.albedo},
+                                     {"albedoB", signal.otherAlbedo}});
+        return others;
+    }
+    std::vector<gpu::ConstantValue> constantsOf(const Signal& signal) const {
+        return {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
+                {"BOOST", settings_.boost ? 1u : 0u},
+                {"MIX_SHOWN", mixesShown() ? 1u : 0u}};
     }
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
@@ -172,11 +190,7 @@ class Svgf {
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
         const SvgfReprojectParams params = reprojectParams(shown.valid);
-        std::vector<gpu::Binding> bindings{{"lightA", signal.light},
-                                           {"lightB", signal.otherLight},
-                                           {"albedoA", signal.albedo},
-                                           {"albedoB", signal.otherAlbedo},
-                                           {"motion", input_.motion},
+        std::vector<gpu::Binding> bindings{{"motion", input_.motion},
                                            {"reflectionMotion", input_.reflectionMotion},
                                            {"previousNormal", input_.previousNormal},
                                            {"surfaces", surfaces.surfaces.current},
@@ -189,22 +203,23 @@ class Svgf {
                                            {"moments", moments.current},
                                            {"shownBefore", shown.previous},
                                            {"shownPast", shownPast}};
-        if (buffers_) bindings.push_back({"tiles", tiles});
+        std::vector<gpu::ConstantValue> constants = constantsOf(signal);
+        constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
+        if (buffers_) {
+            bindings.push_back({"tiles", tiles});
+            constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});
+        }
         graph_.dispatch({.pass = "svgf/reproject " + signal.name,
                          .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
-                         .bindings = bindings,
+                         .bindings = withLight(signal, bindings),
                          .params = gpu::paramsOf(params),
-                         .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
-                                       {"REFLECTIONS", signal.reflects ? 1u : 0u},
-                                       {"BOOST", settings_.boost ? 1u : 0u},
-                                       {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
+                         .constants = constants,
                          .extent = extent_});
         return {color, moments.current, tiles, feedback, shown.current, shownPast, params.alphaShown};
     }
 
     /// With filters in buffers an invocation shortens 2x2 pixels' histories.
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
-        if (!buffers_) recordTiles(signal, accumulated);
         const SvgfAntilagParams params{.width = extent_.width,
                                        .height = extent_.height,
                                        .demodulate = settings_.demodulate,
@@ -215,24 +230,17 @@ class Svgf {
         graph_.dispatch(
             {.pass = "svgf/antilag " + signal.name,
              .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
-             .bindings = {{"lightA", signal.light},
-                          {"lightB", signal.otherLight},
-                          {"albedoA", signal.albedo},
-                          {"albedoB", signal.otherAlbedo},
-                          {"tiles", accumulated.tiles},
-                          {"moments", accumulated.moments},
-                          {"color", accumulated.color},
-                          {"shownPast", accumulated.shownPast}},
+             .bindings = withLight(signal, {{"tiles", accumulated.tiles},
+                                            {"moments", accumulated.moments},
+                                            {"color", accumulated.color},
+                                            {"shownPast", accumulated.shownPast}}),
              .params = gpu::paramsOf(params),
-             .constants = {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
-                           {"BOOST", settings_.boost ? 1u : 0u},
-                           {"MIX_SHOWN", mixesShown() ? 1u : 0u}},
+             .constants = constantsOf(signal),
              .extent = buffers_ ? Extent{(extent_.width + 1) / 2, (extent_.height + 1) / 2} : extent_});
     }
 
     void recordTiles(const Signal& signal, const Accumulated& accumulated) {
-        const SvgfTilesParams params{extent_.width,     extent_.height,         steadyShare(),
-                                     settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
+        const SvgfTilesParams params{extent_.width, extent_.height, lagParams()};
         graph_.dispatch({.pass = "svgf/tiles " + signal.name,
                          .shader = shaders::svgf_tiles_comp,
                          .bindings = {{"moments", accumulated.moments}, {"tiles", accumulated.tiles}},
@@ -358,13 +366,14 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "the surface");
         t.add("antilag", &S::antilag, 0.0, 1e6, "",
               "history that is forgotten per relative change of light beyond noise; higher follows changes "
-              "sooner and is noisier; 0 is off");
+              "sooner and is noisier; below 0.1 is off");
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
               "noise for one");
         t.add("antilag_pixel", &S::antilagPixel, 0.0, 1e6, "deviations",
               "the most that one pixel's difference counts for in that mean, in its own deviations; higher "
-              "sees greater changes as greater and takes some fireflies for one");
+              "sees greater changes as greater; above `antilag_noise` a single firefly may pass for one, "
+              "below an eighth of it nothing does");
         t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
               "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
               "changes later; 1 (and no levels) is off");

@@ -1,5 +1,5 @@
 // Anti-lag: where light has changed, most of the history is taken out of what this frame accumulated. docs/denoising.md,
-// SVGF, step 5.
+// SVGF, step 4.
 #include "denoise/svgf/svgf_params.h"
 
 layout(set = 0, binding = 0, scalar) uniform Params {
@@ -34,7 +34,7 @@ float lagBetween(vec4 corners, vec2 share) {
 }
 
 void shorten(ivec2 at, float lag) {
-    if (lag < SVGF_LEAST_LAG) return;
+    if (!(lag >= SVGF_LEAST_LAG)) return;
     const vec4 before = imageLoad(moments, at);
     const vec3 light = lightAt(at);
     if (before.w <= 1.0 || !isFinite(light)) return;

@@ -20,7 +20,7 @@ void main() {
     barrier();
     if (number < EDGE * EDGE) {
         lags[number] = tileAt(firstTile + ivec2(number % EDGE, number / EDGE));
-        if (lags[number] >= SVGF_LEAST_LAG) anyLags = 1u;
+        if (lags[number] >= SVGF_LEAST_LAG) atomicOr(anyLags, 1u);
     }
     barrier();
     if (anyLags == 0u) return;

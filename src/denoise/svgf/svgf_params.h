@@ -15,8 +15,9 @@ LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
 // In place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
-LIMPID_CONST float SVGF_YOUNG = 4.0;      // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_LEAST_LAG = 0.1;  // less would change little, and cost as much memory traffic
+LIMPID_CONST float SVGF_YOUNG = 4.0;  // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_LEAST_FRAMES = 1.5;  // of history: 2 is the first, but for rounding
+LIMPID_CONST float SVGF_LEAST_LAG = 0.1;     // less would change little, and cost as much memory traffic
 LIMPID_CONST float SVGF_LEAST_SLOPE =
     0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
@@ -25,6 +26,14 @@ LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // of the luminance: tolerated 
 struct SvgfSizeParams {
     uint width;
     uint height;
+};
+
+/// What tiles make of moments.
+struct SvgfLagParams {
+    float steadyShare;  // of the samples' variance that fast minus slow mean has
+    float antilag;
+    float antilagNoise;  // deviations of a tile that are no lag
+    float antilagPixel;  // deviations that one pixel may say
 };
 
 struct SvgfReprojectParams {
@@ -39,21 +48,15 @@ struct SvgfReprojectParams {
     float alpha;
     float alphaMoments;
     float alphaFast;
-    float longest;      // frames
-    float steadyShare;  // as SvgfTilesParams
-    float antilag;
-    float antilagNoise;
-    float antilagPixel;
+    float longest;     // frames
     float alphaShown;  // 1 if nothing was shown
+    SvgfLagParams lag;
 };
 
 struct SvgfTilesParams {
     uint width;
     uint height;
-    float steadyShare;  // of the samples' variance that fast minus slow mean has
-    float antilag;
-    float antilagNoise;  // deviations of a tile that are no lag
-    float antilagPixel;  // deviations that one pixel may say
+    SvgfLagParams lag;
 };
 
 struct SvgfAntilagParams {

@@ -7,6 +7,8 @@
 
 layout(local_size_x = SVGF_TILE, local_size_y = SVGF_TILE) in;
 
+layout(constant_id = 4) const bool TILES = true;
+
 layout(set = 0, binding = 17, r32f) uniform writeonly image2D tiles;
 
 shared TileSums pixelSums[SVGF_TILE * SVGF_TILE];
@@ -31,7 +33,7 @@ void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     vec4 moments = vec4(0.0);
     if (at.x < int(params.width) && at.y < int(params.height)) moments = accumulate(at);
-    const TileSums sums = sumOverTile(tileSumsOf(moments, params.steadyShare, params.antilagPixel));
-    const float lag = lagOf(sums, params.antilag, params.antilagNoise);
+    if (!TILES) return;
+    const float lag = lagOf(sumOverTile(tileSumsOf(moments, params.lag)), params.lag);
     if (gl_LocalInvocationIndex == 0u) imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lag));
 }

@@ -21,8 +21,8 @@ void main() {
             const ivec2 at = first + ivec2(i, j);
             const vec4 m = imageLoad(moments, min(at, size - 1));
             const vec4 inside = all(lessThan(at, size)) ? m : vec4(0.0);
-            add(sums, tileSumsOf(inside, params.steadyShare, params.antilagPixel));
+            add(sums, tileSumsOf(inside, params.lag));
         }
     }
-    imageStore(tiles, tile, vec4(lagOf(sums, params.antilag, params.antilagNoise)));
+    imageStore(tiles, tile, vec4(lagOf(sums, params.lag)));
 }

@@ -16,10 +16,9 @@ ivec2 youngAt(uint number) {
     return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
 }
 
-/// As many invocations for a pixel as there are for each.
+/// So many invocations work on each young pixel; more than it has rows would idle.
 uint sharers() {
-    const uint most = GROUP * GROUP / max(count, 1u);
-    return most >= 8u ? 8u : most >= 4u ? 4u : most >= 2u ? 2u : 1u;
+    return min(GROUP * GROUP / max(count, 1u), 2u * uint(RADIUS) + 1u);
 }
 
 void main() {
