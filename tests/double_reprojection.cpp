@@ -112,18 +112,18 @@ std::vector<Tap> Reprojector::searchedTaps(const Expected& expected, const dvec2
 }
 
 Reprojection Reprojector::find(size_t p, const std::optional<dvec3>& motion, Decision& decision) const {
-    if (!frame_.hit(p)) return {1, {}, {}};
-    if (!motion) return {2, {}, {}};
+    if (!frame_.hit(p)) return {1, {}};
+    if (!motion) return {2, {}};
     const auto columns = static_cast<size_t>(size_.x);
     const dvec2 pixel(static_cast<double>(p % columns), static_cast<double>(p / columns));
     const dvec2 s = pixel + 0.5 + dvec2(*motion);
-    if (!inPicture(s, decision)) return {2, {}, {}};
+    if (!inPicture(s, decision)) return {2, {}};
     const Expected expected = expect(p, *motion);
     const std::vector<Tap> taps = bilinearTaps(expected, s, decision);
-    if (decision.above(weightOf(taps), 0.01, positionMargin)) return {0, s, taps};
-    if (!params_.search) return {3, s, {}};
+    if (decision.above(weightOf(taps), 0.01, positionMargin)) return {0, taps};
+    if (!params_.search) return {3, {}};
     const std::vector<Tap> searched = searchedTaps(expected, s, decision);
-    return {searched.empty() ? 3 : 0, s, searched, true};
+    return {searched.empty() ? 3 : 0, searched, true};
 }
 
 }  // namespace limpid::test

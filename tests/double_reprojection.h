@@ -43,7 +43,6 @@ struct Tap {
 
 struct Reprojection {
     int failure = 0;        ///< 0: there are taps; else the failure case of the specification
-    dvec2 position{0.0};    ///< s, unless the failure is 1 or 2
     std::vector<Tap> taps;  ///< those that count
     bool searched = false;
 };

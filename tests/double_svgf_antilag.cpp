@@ -47,7 +47,8 @@ struct TileSums {
             k * (errors.y + 2.0 * std::abs(m.x) * errors.x + errors.x * errors.x + 4.0 * rounding * m.y);
         const double most = params.antilagPixel * std::sqrt(v);
         const double differenceError = errors.z + errors.x + rounding * (std::abs(m.z) + std::abs(m.x));
-        // It is the median of the difference and both bounds, and moves no further than any of them.
+        // It is the median of the difference and both bounds: it moves no further than the one that moves
+        // most.
         const double mostError = params.antilagPixel * rootError(v, vError);
         lag.add(glm::clamp(m.z - m.x, -most, most),
                 std::min(std::max(differenceError, mostError), 2.0 * (most + mostError)));
@@ -75,7 +76,7 @@ double lagAt(const denoise::HostFrame& frame, const std::vector<double>& tiles, 
     return lag;
 }
 
-/// How much further than `had` a mean moves towards the sample, and how that depends on N' (as of step 3).
+/// How much further than in step 3 a mean moves towards the sample, and how that depends on step 3's N'.
 struct Step {
     double share = 0.0, slope = 0.0;
 };

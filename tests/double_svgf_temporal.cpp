@@ -103,7 +103,7 @@ std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
 /// r itself is rounded by, so the margins for s hold for both.
 Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
     Decision decision;
-    Reprojection found{2, {}, {}};
+    Reprojection found{2, {}};
     if (params_.reflections && signal_ == SvgfSignal::Specular)
         found = reprojector_.find(p, reflectionMotion(p), decision);
     pixel.reflected = found.failure == 0;
