@@ -218,7 +218,6 @@ class Svgf {
         return {color, moments.current, tiles, feedback, shown.current, shownPast, params.alphaShown};
     }
 
-    /// With filters in buffers an invocation shortens 2x2 pixels' histories.
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
         const SvgfAntilagParams params{.width = extent_.width,
                                        .height = extent_.height,
@@ -227,16 +226,15 @@ class Svgf {
                                        .alphaMoments = settings_.alphaMoments,
                                        .alphaFast = settings_.alphaFast,
                                        .alphaShown = accumulated.alphaShown};
-        graph_.dispatch(
-            {.pass = "svgf/antilag " + signal.name,
-             .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
-             .bindings = withLight(signal, {{"tiles", accumulated.tiles},
-                                            {"moments", accumulated.moments},
-                                            {"color", accumulated.color},
-                                            {"shownPast", accumulated.shownPast}}),
-             .params = gpu::paramsOf(params),
-             .constants = constantsOf(signal),
-             .extent = buffers_ ? Extent{(extent_.width + 1) / 2, (extent_.height + 1) / 2} : extent_});
+        graph_.dispatch({.pass = "svgf/antilag " + signal.name,
+                         .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
+                         .bindings = withLight(signal, {{"tiles", accumulated.tiles},
+                                                        {"moments", accumulated.moments},
+                                                        {"color", accumulated.color},
+                                                        {"shownPast", accumulated.shownPast}}),
+                         .params = gpu::paramsOf(params),
+                         .constants = constantsOf(signal),
+                         .extent = extent_});
     }
 
     void recordTiles(const Signal& signal, const Accumulated& accumulated) {
@@ -280,10 +278,10 @@ class Svgf {
                          .extent = extent_});
     }
 
-    /// Along one axis. An invocation filters 2x2 pixels that lie a step apart.
-    static uint32_t invocations(uint32_t pixels, int step) {
-        const uint32_t span = 2 * static_cast<uint32_t>(step);
-        return (pixels + span - 1) / span * static_cast<uint32_t>(step);
+    /// Of a level.
+    Extent invocations(int step) const {
+        const auto span = static_cast<uint32_t>(SVGF_COLUMN * step);
+        return {extent_.width, (extent_.height + span - 1) / span * static_cast<uint32_t>(step)};
     }
 
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
@@ -300,6 +298,7 @@ class Svgf {
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
         constants.push_back({"MIX_SHOWN", mixed ? 1u : 0u});
+        constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -308,7 +307,7 @@ class Svgf {
                                       {"shownPast", mixed ? accumulated.shownPast : before}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
-                         .extent = {invocations(extent_.width, step), invocations(extent_.height, step)}});
+                         .extent = invocations(step)});
         return filtered;
     }
 

@@ -1,13 +1,12 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_control_flow_attributes : require
 // svgf_antilag.glsl with gpu::Backing::Buffer, for GPUs. Light has changed in few places: a group looks at its tiles and
 // those around first, and is mostly done.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/svgf/svgf_antilag.glsl"
 
-const int GROUP = 16, BLOCK = 2;  // pixels along an edge of what an invocation shortens; as in svgf.cpp
-const int EDGE = GROUP * BLOCK / SVGF_TILE + 2;  // tiles
+const int GROUP = 16;                    // pixels along an edge
+const int EDGE = GROUP / SVGF_TILE + 2;  // tiles
 layout(local_size_x = 16, local_size_y = 16) in;
 
 shared float lags[EDGE * EDGE];
@@ -15,7 +14,7 @@ shared uint anyLags;
 
 void main() {
     const int number = int(gl_LocalInvocationIndex);
-    const ivec2 first = ivec2(gl_WorkGroupID.xy) * GROUP * BLOCK, firstTile = first / SVGF_TILE - 1;
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy), firstTile = ivec2(gl_WorkGroupID.xy) * GROUP / SVGF_TILE - 1;
     if (number == 0) anyLags = 0u;
     barrier();
     if (number < EDGE * EDGE) {
@@ -23,14 +22,9 @@ void main() {
         if (lags[number] >= SVGF_LEAST_LAG) atomicOr(anyLags, 1u);
     }
     barrier();
-    if (anyLags == 0u) return;
-    [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-        const ivec2 at = first + ivec2(gl_LocalInvocationID.xy) + GROUP * ivec2(i % BLOCK, i / BLOCK);
-        if (at.x >= int(params.width) || at.y >= int(params.height)) continue;
-        const Between b = tilesAround(at);
-        const ivec2 tile = b.first - firstTile;
-        const int corner = tile.y * EDGE + tile.x;
-        const vec4 corners = vec4(lags[corner], lags[corner + 1], lags[corner + EDGE], lags[corner + EDGE + 1]);
-        shorten(at, lagBetween(corners, b.share));
-    }
+    if (anyLags == 0u || at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const Between b = tilesAround(at);
+    const ivec2 tile = b.first - firstTile;
+    const int corner = tile.y * EDGE + tile.x;
+    shorten(at, lagBetween(vec4(lags[corner], lags[corner + 1], lags[corner + EDGE], lags[corner + EDGE + 1]), b.share));
 }

@@ -7,6 +7,7 @@
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
 layout(constant_id = 5) const bool MIX_SHOWN = false;  // with what was shown before
+layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -22,6 +23,9 @@ const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
 const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
 const float LOG2_E = 1.44269504;
 
+// An invocation filters SVGF_COLUMN pixels, which share taps: of the 3 x 9 of three pixels 15 are different.
+float deviationsAround[3 * (SVGF_COLUMN + 2)];  // of these pixels and those next to them, if SIDE_BY_SIDE
+
 struct Tap {
     vec4 light;  // and deviation; negative: nothing is seen
     float luminance;
@@ -29,8 +33,24 @@ struct Tap {
     bool counts;
 };
 
+// Opposite taps of the 5x5 have the same number, from 1 on: PAIRS of them.
+const int PAIRS = 12;
+
+int pairOf(ivec2 from) {
+    return abs(5 * from.y + from.x);
+}
+
+ivec2 tapOf(int pair) {
+    return ivec2((pair + 2) % 5 - 2, (pair + 2) / 5);
+}
+
+bool reaches(ivec2 from) {
+    return max(abs(from.x), abs(from.y)) <= (WIDE ? 2 : 1);
+}
+
 struct Centre {
     SurfaceCentre surface;
+    float perDepth[PAIRS + 1];  // of pairs
     float luminance, luminanceScale;
     vec4 sum;  // of weighted light; of weights
     float squares;
@@ -58,34 +78,48 @@ Tap loadTap(ivec2 at) {
     return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
 }
 
-void addVariance(inout vec2 sum, ivec2 at, float weight) {
+/// Negative where nothing is seen, and outside.
+float deviationAt(ivec2 at) {
     const ivec2 inside = nearestInside(at);
     const float deviation = LOAD_HALF4_ALPHA(signal, inside);
-    if (at == inside && deviation >= 0.0) sum += weight * vec2(deviation * deviation, 1.0);
+    return at == inside ? deviation : SVGF_NOTHING_SEEN;
+}
+
+void loadDeviationsAround(ivec2 first) {
+    [[unroll]] for (int i = 0; i < deviationsAround.length(); ++i)
+        deviationsAround[i] = deviationAt(first - 1 + ivec2(i % 3, i / 3));
+}
+
+/// `number`: in the column.
+float deviationNextTo(ivec2 at, int number, ivec2 from) {
+    return SIDE_BY_SIDE ? deviationsAround[(number + 1 + from.y) * 3 + 1 + from.x] : deviationAt(at + from);
 }
 
 /// A pixel's own variance is as noisy as its light: that of the 3x3 around it.
-float blurredDeviation(ivec2 at, float own) {
+float blurredDeviation(ivec2 at, int number, float own) {
     if (!BLUR_VARIANCE) return own;
     vec2 sum = 4.0 * vec2(own * own, 1.0);
-    addVariance(sum, at + ivec2(-1, -1), 1.0);
-    addVariance(sum, at + ivec2(0, -1), 2.0);
-    addVariance(sum, at + ivec2(1, -1), 1.0);
-    addVariance(sum, at + ivec2(-1, 0), 2.0);
-    addVariance(sum, at + ivec2(1, 0), 2.0);
-    addVariance(sum, at + ivec2(-1, 1), 1.0);
-    addVariance(sum, at + ivec2(0, 1), 2.0);
-    addVariance(sum, at + ivec2(1, 1), 1.0);
+    [[unroll]] for (int j = -1; j <= 1; ++j) {
+        [[unroll]] for (int i = -1; i <= 1; ++i) {
+            if (i == 0 && j == 0) continue;
+            const float deviation = deviationNextTo(at, number, ivec2(i, j));
+            const float weight = float((2 - abs(i)) * (2 - abs(j)));
+            if (deviation >= 0.0) sum += weight * vec2(deviation * deviation, 1.0);
+        }
+    }
     return sqrt(sum.x / sum.y);
 }
 
-Centre begin(ivec2 at) {
+Centre begin(ivec2 at, int number) {
     const Tap tap = loadTap(at);
     Centre centre;
     centre.surface = centreOf(tap.surface, at);
+    [[unroll]] for (int pair = 1; pair <= PAIRS; ++pair) {
+        if (reaches(tapOf(pair))) centre.perDepth[pair] = perDepthOf(centre.surface, tapOf(pair));
+    }
     centre.seen = tap.counts;
     centre.luminance = tap.luminance;
-    centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, tap.light.a));
+    centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, number, tap.light.a));
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
@@ -95,7 +129,7 @@ Centre begin(ivec2 at) {
 }
 
 void addTo(inout Centre centre, Tap tap, ivec2 from) {
-    const float exponent = surfaceExponent(centre.surface, tap.surface, from) -
+    const float exponent = surfaceExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]) -
                            abs(centre.luminance - tap.luminance) * centre.luminanceScale;
     const float weight = tap.counts ? kernel(from) * exp2(exponent) : 0.0;
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
@@ -117,39 +151,30 @@ void store(ivec2 at, Centre centre) {
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 
-// An invocation filters 2x2 pixels that lie a step apart, of whose 4 x 25 (4 x 9) taps 36 (16) are different.
-const ivec2 BLOCK = ivec2(2, 2);  // as in svgf.cpp
-const int COUNT = BLOCK.x * BLOCK.y;
-
-ivec2 inBlock(int number) {
-    return ivec2(number % BLOCK.x, number / BLOCK.x);
-}
-
 void main() {
     const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy);
-    const ivec2 size = ivec2(params.width, params.height);
     const int power = findMSB(params.step);  // steps are powers of 2, and shifts cheaper than divisions
-    const ivec2 first = (invocation >> power) * (BLOCK << power) + (invocation & (params.step - 1));
-    if (first.x >= size.x || first.y >= size.y) return;
-    Centre centres[COUNT];
+    const ivec2 first = ivec2(invocation.x, (invocation.y >> power) * (SVGF_COLUMN << power) + (invocation.y & (params.step - 1)));
+    if (first.x >= int(params.width) || first.y >= int(params.height)) return;
+    if (BLUR_VARIANCE && SIDE_BY_SIDE) loadDeviationsAround(first);
+    Centre centres[SVGF_COLUMN];
     bool anySeen = false;
-    [[unroll]] for (int number = 0; number < COUNT; ++number) {
-        centres[number] = begin(first + params.step * inBlock(number));
+    [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number) {
+        centres[number] = begin(first + ivec2(0, params.step * number), number);
         anySeen = anySeen || centres[number].seen;
     }
     if (anySeen) {
-        [[unroll]] for (int j = -2; j < BLOCK.y + 2; ++j) {
-            [[unroll]] for (int i = -2; i < BLOCK.x + 2; ++i) {
-                if (!WIDE && (i < -1 || i > BLOCK.x || j < -1 || j > BLOCK.y)) continue;
+        [[unroll]] for (int j = -2; j < SVGF_COLUMN + 2; ++j) {
+            [[unroll]] for (int i = -2; i <= 2; ++i) {
+                if (!WIDE && (abs(i) > 1 || j < -1 || j > SVGF_COLUMN)) continue;
                 const Tap tap = loadTap(first + params.step * ivec2(i, j));
-                [[unroll]] for (int number = 0; number < COUNT; ++number) {
-                    const ivec2 from = ivec2(i, j) - inBlock(number);
-                    const int reach = max(abs(from.x), abs(from.y));
-                    if (reach <= (WIDE ? 2 : 1) && from != ivec2(0)) addTo(centres[number], tap, from);
+                [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number) {
+                    const ivec2 from = ivec2(i, j - number);
+                    if (reaches(from) && from != ivec2(0)) addTo(centres[number], tap, from);
                 }
             }
         }
     }
-    [[unroll]] for (int number = 0; number < COUNT; ++number)
-        store(first + params.step * inBlock(number), centres[number]);
+    [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number)
+        store(first + ivec2(0, params.step * number), centres[number]);
 }

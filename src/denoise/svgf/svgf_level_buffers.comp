@@ -4,4 +4,4 @@
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/svgf/svgf_level.glsl"
 
-layout(local_size_x = 32, local_size_y = 4) in;
+layout(local_size_x = 64, local_size_y = 2) in;

@@ -12,6 +12,9 @@ namespace limpid::denoise {
 #endif
 
 LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
+// Pixels one below the other, a step apart, that an invocation of a level filters. Rows of invocations are
+// rows of pixels, whole cache lines at any step; with more pixels there is room for too few invocations.
+LIMPID_CONST int SVGF_COLUMN = 3;
 // In place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space

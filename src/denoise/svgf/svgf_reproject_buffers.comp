@@ -14,26 +14,26 @@ layout(set = 0, binding = 17, r32f) uniform writeonly image2D tiles;
 shared TileSums pixelSums[SVGF_TILE * SVGF_TILE];
 shared TileSums rowSums[SVGF_TILE];
 
-/// Of all of the group. Every invocation calls this.
-TileSums sumOverTile(TileSums own) {
+/// `own`: of the invocation's pixel. Every invocation calls this.
+void storeTile(TileSums own) {
     const uint number = gl_LocalInvocationIndex;
     pixelSums[number] = own;
     barrier();
     if (number < SVGF_TILE) {
-        rowSums[number] = pixelSums[number * SVGF_TILE];
-        for (int i = 1; i < SVGF_TILE; ++i) add(rowSums[number], pixelSums[number * SVGF_TILE + i]);
+        TileSums row = pixelSums[number * SVGF_TILE];
+        for (int i = 1; i < SVGF_TILE; ++i) add(row, pixelSums[number * SVGF_TILE + i]);
+        rowSums[number] = row;
     }
     barrier();
+    if (number > 0u) return;
     TileSums all = rowSums[0];
     for (int i = 1; i < SVGF_TILE; ++i) add(all, rowSums[i]);
-    return all;
+    imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lagOf(all, params.lag)));
 }
 
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     vec4 moments = vec4(0.0);
     if (at.x < int(params.width) && at.y < int(params.height)) moments = accumulate(at);
-    if (!TILES) return;
-    const float lag = lagOf(sumOverTile(tileSumsOf(moments, params.lag)), params.lag);
-    if (gl_LocalInvocationIndex == 0u) imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lag));
+    if (TILES) storeTile(tileSumsOf(moments, params.lag));
 }

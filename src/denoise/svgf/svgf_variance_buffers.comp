@@ -16,9 +16,9 @@ ivec2 youngAt(uint number) {
     return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
 }
 
-/// So many invocations work on each young pixel; more than it has rows would idle.
+/// So many invocations work on each young pixel, if there are any; more than it has rows would idle.
 uint sharers() {
-    return min(GROUP * GROUP / max(count, 1u), 2u * uint(RADIUS) + 1u);
+    return min(GROUP * GROUP / count, 2u * uint(RADIUS) + 1u);
 }
 
 void main() {
@@ -27,6 +27,7 @@ void main() {
     barrier();
     if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
     barrier();
+    if (count == 0u) return;
     const uint share = sharers(), number = own / share, part = own % share;
     const bool has = number < count;
     if (has) sums[own] = rowsSum(youngAt(number), int(part), int(share));

@@ -61,14 +61,18 @@ SurfaceCentre centreOf(Surface surface, ivec2 at) {
     return centre;
 }
 
-/// The exponent of 2; `from` is where the other one is, in taps.
-float surfaceExponent(SurfaceCentre centre, Surface other, ivec2 from) {
+/// Per distance; the same for opposite taps. `from` is where the other one is, in taps.
+float perDepthOf(SurfaceCentre centre, ivec2 from) {
+    return POSITION ? 0.0 : 1.0 / (abs(dot(vec2(from), centre.slope)) + centre.floor);
+}
+
+/// The exponent of 2.
+float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
     if (POSITION)
         return -distance(centre.surface.normal, other.normal) * params.normalScale -
                distance(centre.surface.point, other.point) * params.depthScale;
-    const float tolerance = abs(dot(vec2(from), centre.slope)) + centre.floor;
     return dot(centre.scaledNormal, other.normal) - params.normalScale -
-           abs(centre.surface.depth - other.depth) / tolerance;
+           abs(centre.surface.depth - other.depth) * perDepth;
 }
 
 #endif
