@@ -113,9 +113,6 @@ void shorten(size_t p, double lag, const dvec3& x, const DoubleSvgfParams& param
     moments.w = shorter;
     pixel.momentsSlope.w *= kept;
     color.w = std::min(svgfBoost(shorter, params.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
-    if (result.shownPast[p].w >= 1.0) return;  // nothing was shown so far, or it is not to count
-    result.shownPast[p].w = std::max(params.alphaShown, 1.0 / shorter);
-    pixel.shownPastSlope.w = pixel.momentsSlope.w / (shorter * shorter);
 }
 
 }  // namespace

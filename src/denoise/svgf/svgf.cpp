@@ -50,7 +50,6 @@ struct Accumulated {
     History feedback;       ///< of colors; `current` is what the next frame reads
     ImageHandle shown;      ///< half4: the last level's result
     ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
-    float alphaShown;       ///< 1 if nothing was shown
 };
 
 class Svgf {
@@ -168,10 +167,9 @@ class Svgf {
                                      {"albedoB", signal.otherAlbedo}});
         return others;
     }
+
     std::vector<gpu::ConstantValue> constantsOf(const Signal& signal) const {
-        return {{"SUM_OF_TWO", signal.isSum ? 1u : 0u},
-                {"BOOST", settings_.boost ? 1u : 0u},
-                {"MIX_SHOWN", mixesShown() ? 1u : 0u}};
+        return {{"SUM_OF_TWO", signal.isSum ? 1u : 0u}, {"BOOST", settings_.boost ? 1u : 0u}};
     }
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
@@ -205,6 +203,7 @@ class Svgf {
                                            {"shownPast", shownPast}};
         std::vector<gpu::ConstantValue> constants = constantsOf(signal);
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
+        constants.push_back({"MIX_SHOWN", mixesShown() ? 1u : 0u});
         if (buffers_) {
             bindings.push_back({"tiles", tiles});
             constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});
@@ -215,7 +214,7 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        return {color, moments.current, tiles, feedback, shown.current, shownPast, params.alphaShown};
+        return {color, moments.current, tiles, feedback, shown.current, shownPast};
     }
 
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
@@ -224,14 +223,12 @@ class Svgf {
                                        .demodulate = settings_.demodulate,
                                        .alpha = settings_.alpha,
                                        .alphaMoments = settings_.alphaMoments,
-                                       .alphaFast = settings_.alphaFast,
-                                       .alphaShown = accumulated.alphaShown};
+                                       .alphaFast = settings_.alphaFast};
         graph_.dispatch({.pass = "svgf/antilag " + signal.name,
                          .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
                          .bindings = withLight(signal, {{"tiles", accumulated.tiles},
                                                         {"moments", accumulated.moments},
-                                                        {"color", accumulated.color},
-                                                        {"shownPast", accumulated.shownPast}}),
+                                                        {"color", accumulated.color}}),
                          .params = gpu::paramsOf(params),
                          .constants = constantsOf(signal),
                          .extent = extent_});

@@ -11,7 +11,6 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 layout(set = 0, binding = 5, r32f) uniform readonly image2D tiles;
 layout(set = 0, binding = 6, rgba32f) uniform image2D moments;
 UPDATE_HALF4(7, color);
-UPDATE_HALF4(8, shownPast);
 
 /// Where a pixel's centre lies between the middles of tiles.
 struct Between {
@@ -46,5 +45,4 @@ void shorten(ivec2 at, float lag) {
     const vec4 now = vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), frames);
     imageStore(moments, at, now);
     STORE_HALF4(color, at, vec4(mix(LOAD_HALF4(color, at).rgb, x, more.w), deviationOf(now)));
-    if (MIX_SHOWN) STORE_HALF4(shownPast, at, vec4(LOAD_HALF4(shownPast, at).rgb, shownWeight(frames)));
 }

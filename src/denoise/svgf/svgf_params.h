@@ -69,7 +69,6 @@ struct SvgfAntilagParams {
     float alpha;
     float alphaMoments;
     float alphaFast;
-    float alphaShown;  // 1 if nothing was shown
 };
 
 struct SvgfFilterParams {

@@ -4,6 +4,7 @@
 #include "denoise/svgf/svgf_params.h"
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
+layout(constant_id = 3) const bool MIX_SHOWN = false;    // what was shown is followed, too
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
@@ -150,6 +151,11 @@ Past accumulated(Past past, vec3 x) {
     const vec3 alphas = max(vec3(params.alphaMoments, params.alphaMoments, params.alphaFast), 1.0 / frames);
     return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)), past.shown,
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
+}
+
+/// Of this frame's filtered light, beside what was shown.
+float shownWeight(float frames) {
+    return max(params.alphaShown, 1.0 / max(frames, 1.0));
 }
 
 /// Returns the moments.

@@ -1,5 +1,5 @@
 // What reprojection and anti-lag both need of one signal: this frame's light, and what follows from the moments. Declare
-// `params` before, with width, height, demodulate and alphaShown; bindings 1 to 4 and constants 0, 2 and 3 are taken.
+// `params` before, with width, height and demodulate; bindings 1 to 4 and constants 0 and 2 are taken.
 // docs/denoising.md, SVGF, steps 3 and 4.
 #include "denoise/guides.glsl"
 #include "denoise/svgf/svgf_params.h"
@@ -8,8 +8,6 @@
 layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, albedo likewise; else the first
 
 layout(constant_id = 2) const bool BOOST = true;
-
-layout(constant_id = 3) const bool MIX_SHOWN = false;  // what was shown is followed, too
 
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
@@ -33,9 +31,4 @@ vec3 demodulated(vec3 light, ivec2 at) {
 float deviationOf(vec4 moments) {
     if (moments.w < SVGF_YOUNG) return SVGF_STILL_YOUNG;
     return min(svgfBoost(BOOST, moments.w) * sqrt(max(moments.y - moments.x * moments.x, 0.0)), MAX_HALF);
-}
-
-/// Of this frame's filtered light, beside what was shown.
-float shownWeight(float frames) {
-    return max(params.alphaShown, 1.0 / max(frames, 1.0));
 }
