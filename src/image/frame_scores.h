@@ -26,10 +26,13 @@ struct FrameScores {
     uint64_t invalidPixels = 0;
 };
 
+/// Which value of a metric is best.
+enum class Best { Highest, Lowest, NearestToZero };
+
 /// One of the numbers above by name.
 struct Metric {
     std::string_view name;  ///< as in JSON
-    bool higherIsBetter;
+    Best best;
     std::optional<double> (*of)(const FrameScores& scores);
 };
 
@@ -37,12 +40,13 @@ struct Metric {
 const std::array<Metric, 7>& sequenceMetrics();
 
 /// Arithmetic mean over the frames that have the metric; none if no frame has it. One frame equal to its
-/// reference (PSNR infinite) makes the mean PSNR infinite.
+/// reference (PSNR infinite) makes the mean PSNR infinite. Where zero is best the mean is of magnitudes:
+/// frames that change too little do not make up for others that change too much.
 std::optional<double> meanOf(const Metric& metric, std::span<const FrameScores> frames);
 
 struct Worst {
-    double value = 0.0;
-    int frame = 0;  ///< the first that has the value
+    double value = 0.0;  ///< the farthest from the best, with its sign
+    int frame = 0;       ///< the first that has the value
 };
 std::optional<Worst> worstOf(const Metric& metric, std::span<const FrameScores> frames);
 

@@ -275,7 +275,7 @@ class Svgf {
                          .extent = extent_});
     }
 
-    /// Of a level.
+    /// Of a level: one for SVGF_COLUMN pixels of a column.
     Extent invocations(int step) const {
         const auto span = static_cast<uint32_t>(SVGF_COLUMN * step);
         return {extent_.width, (extent_.height + span - 1) / span * static_cast<uint32_t>(step)};

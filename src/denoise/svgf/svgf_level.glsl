@@ -23,8 +23,8 @@ const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
 const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
 const float LOG2_E = 1.44269504;
 
-// An invocation filters SVGF_COLUMN pixels, which share taps: of the 3 x 9 of three pixels 15 are different.
-float deviationsAround[3 * (SVGF_COLUMN + 2)];  // of these pixels and those next to them, if SIDE_BY_SIDE
+// Of the pixels that an invocation filters and those next to them; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
+float deviationsAround[3 * (SVGF_COLUMN + 2)];
 
 struct Tap {
     vec4 light;  // and deviation; negative: nothing is seen
@@ -151,10 +151,13 @@ void store(ivec2 at, Centre centre) {
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 
+// An invocation filters SVGF_COLUMN pixels that lie a step apart and share taps: of the 3 x 9 of three pixels 15 are different
+// (WIDE: of 75, 35).
 void main() {
     const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy);
     const int power = findMSB(params.step);  // steps are powers of 2, and shifts cheaper than divisions
-    const ivec2 first = ivec2(invocation.x, (invocation.y >> power) * (SVGF_COLUMN << power) + (invocation.y & (params.step - 1)));
+    const int row = (invocation.y >> power) * (SVGF_COLUMN << power) + (invocation.y & (params.step - 1));
+    const ivec2 first = ivec2(invocation.x, row);
     if (first.x >= int(params.width) || first.y >= int(params.height)) return;
     if (BLUR_VARIANCE && SIDE_BY_SIDE) loadDeviationsAround(first);
     Centre centres[SVGF_COLUMN];
