@@ -182,7 +182,8 @@ void addCompareCommand(CLI::App& app) {
         "exposures "
         "that the reference calls for. relmse: mean of (x-r)^2/(r^2+0.01). flicker: how much more the "
         "sequence "
-        "changes from frame to frame, along the motion layer, than its reference does. temporal_error: how "
+        "changes from frame to frame, along the motion layer, than its reference does; its mean is of "
+        "magnitudes. temporal_error: how "
         "much the error changes likewise. "
         "A NaN or infinite pixel in TEST counts as the worst error; in REFERENCE it is refused. "
         "A percent sign in a file's name is written %%.");
