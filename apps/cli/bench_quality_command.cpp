@@ -37,7 +37,7 @@ struct QualityOptions {
     std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder,
                              weights;
     uint32_t width = 640, height = 360, samples = 1;
-    uint64_t referenceSamples = 4096;
+    std::optional<uint64_t> referenceSamples;  ///< of every sequence, in place of its own
     QualityFrames frames;
     bool framesGiven = false;  ///< on the command line: then of every sequence
     bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
@@ -101,6 +101,7 @@ std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
     }
     for (QualitySequence& sequence : sequences) {
         if (o.quick || o.framesGiven) sequence.frames = o.frames;
+        sequence.referenceSamples = o.referenceSamples.value_or(sequence.referenceSamples);
     }
     return sequences;
 }
@@ -154,8 +155,9 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o, const Qua
     const Sequence frames = loaded.frames();
     ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
     if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
-    const std::vector<Reference> references = makeReferences(
-        device, *loaded.gpu, frames, methods.front().settings, sequence.frames, o.referenceSamples, files);
+    const std::vector<Reference> references =
+        makeReferences(device, *loaded.gpu, frames, methods.front().settings, sequence.frames,
+                       sequence.referenceSamples, files);
     return {sequence, loaded.scene.triangleCount(),
             measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
 }
@@ -167,7 +169,8 @@ std::string cell(std::optional<double> value, int width, int digits) {
 
 void printSequence(const MeasuredSequence& measured) {
     const SequenceQuality& quality = measured.quality;
-    fmt::print("{} (reference: {:.1f} dB by itself)\n", measured.sequence.name, quality.referencePsnr);
+    fmt::print("{} (reference: {} samples, {:.1f} dB by itself)\n", measured.sequence.name,
+               measured.sequence.referenceSamples, quality.referencePsnr);
     const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
     for (const MethodQuality& method : quality.methods) {
         const double psnr = meanOf(method, "psnr").value_or(0.0);
@@ -195,10 +198,10 @@ void printRanking(const QualityRun& run) {
 
 void printHead(const QualityRun& run) {
     fmt::print(
-        "{}, {}x{}, {} samples a frame, references of {}\n  {:<28}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
+        "{}, {}x{}, {} samples a frame\n  {:<28}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
         "{:>10}{:>10}{:>9}\n",
-        run.device, run.extent.width, run.extent.height, run.samples, run.referenceSamples, "method",
-        "PSNR dB", "gain", "worst", "SSIM", "relMSE", "FLIP", "flicker", "temporal", "filter ms", "B/pixel");
+        run.device, run.extent.width, run.extent.height, run.samples, "method", "PSNR dB", "gain", "worst",
+        "SSIM", "relMSE", "FLIP", "flicker", "temporal", "filter ms", "B/pixel");
 }
 
 /// Noisy, every method, reference, side by side.
@@ -262,8 +265,7 @@ void run(const QualityOptions& o, const std::string& command) {
                    .driver = device->info().driver,
                    .tracer = std::string(scene::toString(chosenTracer(o.device, *device))),
                    .extent = {o.width, o.height},
-                   .samples = o.samples,
-                   .referenceSamples = o.referenceSamples};
+                   .samples = o.samples};
     if (!o.json) printHead(all);
     for (const QualitySequence& sequence : sequences) addSequence(*device, o, sequence, all);
     if (all.sequences.empty()) throw Error("no sequence could be measured");
@@ -282,7 +284,7 @@ void complete(QualityOptions& o, const CLI::App& command) {
         if (!given("--height")) o.height = quick::height;
         if (!given("--first")) o.frames.first = quick::frames.first;
         if (!given("--frames")) o.frames.count = quick::frames.count;
-        if (!given("--reference-spp")) o.referenceSamples = quick::referenceSamples;
+        if (!o.referenceSamples) o.referenceSamples = quick::referenceSamples;
         if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
     }
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
@@ -310,7 +312,9 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
     command.add_option("--first", o->frames.first, "First frame that is compared (16)")
         ->check(CLI::Range(0, 100000));
     command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
-    command.add_option("--reference-spp", o->referenceSamples, "Samples of the references (4096)")
+    command
+        .add_option("--reference-spp", o->referenceSamples,
+                    "Samples of the references (4096; --lab has its own)")
         ->check(CLI::Range(2, 1 << 24));
     command.add_flag(
         "--smooth-edges", o->smoothEdges,

@@ -58,6 +58,7 @@ Json sequenceJson(const MeasuredSequence& measuredSequence) {
                 {"first_frame", sequence.frames.first},
                 {"frames", sequence.frames.count},
                 {"exposure", quality.exposure},
+                {"reference_samples", sequence.referenceSamples},
                 {"reference_psnr", number(quality.referencePsnr)},
                 {"methods", Json::array()}};
     for (const MethodQuality& method : quality.methods) object["methods"].push_back(methodJson(method));
@@ -78,18 +79,10 @@ Json rankJson(const MethodRank& rank) {
 }  // namespace
 
 Json qualityJson(const QualityRun& run) {
-    Json object{{"version", run.version},
-                {"command", run.command},
-                {"device", run.device},
-                {"driver", run.driver},
-                {"tracer", run.tracer},
-                {"width", run.extent.width},
-                {"height", run.extent.height},
-                {"samples", run.samples},
-                {"reference_samples", run.referenceSamples},
-                {"scenes", Json::array()},
-                {"ranking", Json::array()},
-                {"skipped", Json::array()}};
+    Json object{{"version", run.version},      {"command", run.command},  {"device", run.device},
+                {"driver", run.driver},        {"tracer", run.tracer},    {"width", run.extent.width},
+                {"height", run.extent.height}, {"samples", run.samples},  {"scenes", Json::array()},
+                {"ranking", Json::array()},    {"skipped", Json::array()}};
     for (const MeasuredSequence& sequence : run.sequences) object["scenes"].push_back(sequenceJson(sequence));
     for (const MethodRank& rank : rankMethods(run)) object["ranking"].push_back(rankJson(rank));
     for (const SkippedSequence& skipped : run.skipped)

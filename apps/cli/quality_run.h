@@ -24,8 +24,7 @@ struct QualityRun {
     std::string version, command;  ///< of Limpid; the command line that it was run with
     std::string device, driver, tracer;
     gpu::Extent extent;
-    uint32_t samples = 1;           ///< per pixel and frame
-    uint64_t referenceSamples = 0;  ///< per pixel
+    uint32_t samples = 1;  ///< per pixel and frame
     std::vector<MeasuredSequence> sequences;
     std::vector<SkippedSequence> skipped;
 };

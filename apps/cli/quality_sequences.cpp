@@ -31,7 +31,7 @@ std::vector<fs::path> sortedEntries(const fs::path& folder) {
 }  // namespace
 
 const std::vector<QualitySequence>& labSequences() {
-    //   name, scene, camera path, {first frame compared, frames}
+    //   name, scene, camera path, {first frame compared, frames}, samples of a reference
     static const std::vector<QualitySequence> sequences{
         {"cornell", "builtin:cornell", "orbit", {20, 36}},
         {"cornell-spheres", "builtin:cornell-spheres", "orbit", {20, 36}},
@@ -42,7 +42,7 @@ const std::vector<QualitySequence>& labSequences() {
         {"disocclusion", "builtin:lab-disocclusion", "shake", {20, 36}},
         {"mirror", "builtin:lab-mirror", "orbit", {20, 36}},
         {"textures", "builtin:lab-textures", "dolly", {20, 36}},
-        {"many-lights", "builtin:lab-lights", "dolly", {20, 36}},
+        {"many-lights", "builtin:lab-lights", "dolly", {20, 36}, 16384},
     };
     return sequences;
 }

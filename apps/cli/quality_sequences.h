@@ -16,11 +16,13 @@ struct QualitySequence {
     std::string scene;                 ///< as on the command line: builtin:..., or a file
     std::string cameraPath = "orbit";  ///< built in, a file, or "none"
     QualityFrames frames;
-    std::string environment;  ///< a file, or empty
-    bool optional = false;    ///< a scene that cannot be loaded is skipped with a warning
+    uint64_t referenceSamples = 4096;  ///< per pixel
+    std::string environment;           ///< a file, or empty
+    bool optional = false;             ///< a scene that cannot be loaded is skipped with a warning
 };
 
-/// The fixed set of --lab. A new sequence is a line of this table.
+/// The fixed set of --lab. A new sequence is a line of this table. A reference's noise should stay well below
+/// the changes that are measured with it: where 4,096 samples do not do, a sequence has more.
 const std::vector<QualitySequence>& labSequences();
 
 /// One for each .gltf and .glb file in the folders in `folder`, by name; like `common` but for name and
