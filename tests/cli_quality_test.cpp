@@ -80,11 +80,28 @@ TEST_F(CliQualityTest, AFoldersScenesAreMeasuredAndBadOnesSkippedLoudly) {
         EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
+TEST_F(CliQualityTest, ScenesOfOneNameAreToldApart) {
+    run(options("--pipeline history --scene builtin:cornell --scene builtin:cornell --out " +
+                path("pictures")));
+    EXPECT_EQ(filesIn("pictures").size(), 2u);
+}
+
 TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {
-    expect(options("--first 4"), 2, "--first");
     expect(options("--pipeline nothing"), 2, "nothing");
     expect(options("--report " + path("none/page.html")), 1, "does not exist");
     expect(options("--scenes-folder " + path("none")), 3, "cannot be read");
+    fs::create_directories(folder_ / "empty");
+    expect(options("--scenes-folder " + path("empty")), 3, "has no glTF files");
+    expect(options("--scene builtin:cornell --scene none.glb"), 3, "none.glb: does not exist");
+    expect(options("--scene builtin:cornell --env none.hdr"), 3, "none.hdr: does not exist");
+    expect(options("--camera-path none.json"), 3, "none.json");
+    expect(options("--paths-folder " + path("none")), 3, "is no folder");
+    put("file", "");
+    for (const char* option : {"--out ", "--reference-folder "})
+        expect(options(option + path("file")), 1, "cannot be made");
+    expect(options("--pipeline ao"), 2, "--pipeline ao does not denoise");
+    for (const char* frames : {"--first 61", "--frames 16", "--lab --first 36", "--quick --frames 6"})
+        expect(std::string("bench quality --device cpu ") + frames, 2, "cornell: of ");
 }
 
 TEST_F(CliQualityTest, TheSlidersDividerMovesInABrowser) {

@@ -1,7 +1,9 @@
 // What must hold of every denoiser, whatever it does: design, section 11.4. A new one is in it by being in
 // denoise::denoisers(). Networks are in kpcn_test.cpp.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +48,10 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
 };
 
 const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
+
+bool isFinite(const std::vector<float>& picture) {
+    return std::ranges::all_of(picture, [](float value) { return std::isfinite(value); });
+}
 
 void expectFinite(const std::vector<float>& picture) {
     for (size_t i = 0; i < picture.size(); ++i) ASSERT_TRUE(std::isfinite(picture[i])) << i;
@@ -127,8 +133,11 @@ TEST_P(DenoiserSuite, ResizeAndResetStartAnew) {
 
 /// Both ends of the range, and one that is neither.
 std::vector<std::string> numbersOf(const ParamInfo& info) {
-    const int least = static_cast<int>(std::ceil(info.minimum));
-    const int most = static_cast<int>(std::min(info.maximum, 1e6));
+    if (!std::holds_alternative<int>(info.defaultValue)) {
+        const double between = std::min(std::ceil(info.minimum) + 1.0, 0.5 * (info.minimum + info.maximum));
+        return {fmt::format("{}", info.minimum), fmt::format("{}", between), fmt::format("{}", info.maximum)};
+    }
+    const int least = static_cast<int>(info.minimum), most = static_cast<int>(info.maximum);
     return {std::to_string(least), std::to_string(std::min(least + 1, most)), std::to_string(most)};
 }
 
@@ -146,7 +155,9 @@ TEST_P(DenoiserSuite, EveryParameterMatters) {
             for (const std::string& value : values) {
                 RenderSettings settings;
                 assign(settings, group.name + "." + info.name + "=" + value);
-                matters = matters || denoiseSequence(scene, settings.denoisers) != plain;
+                const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);
+                EXPECT_TRUE(isFinite(picture)) << group.name << '.' << info.name << '=' << value;
+                matters = matters || picture != plain;
             }
             EXPECT_TRUE(matters) << group.name << '.' << info.name;
         }

@@ -8,6 +8,7 @@
 #include "image/png.h"
 #include "image/temp_folder.h"
 #include "quality_json.h"
+#include "quality_methods.h"
 #include "quality_page.h"
 #include "quality_ranking.h"
 #include "quality_sequences.h"
@@ -203,6 +204,40 @@ TEST(QualityReport, MethodsAreRankedByMeanFlip) {
 
 TEST(QualityReport, APageIntoNoFolderIsAnError) {
     EXPECT_THROW(writeQualityPage("/no such folder/page.html", runOf()), OutputError);
+}
+
+std::vector<std::string> pipelinesOf(const MethodChoice& choice) {
+    std::vector<std::string> names;
+    for (const QualityMethod& method : methodsOf(choice, {}))
+        names.emplace_back(method.settings.pipeline.denoiser->name);
+    return names;
+}
+
+TEST(QualityMethods, AVariantIsOfThePipelineWhoseParametersItNames) {
+    EXPECT_THAT(pipelinesOf({{"history", "svgf", "kpcn"},
+                             {"svgf.levels=1", "history.normal=0.5", "pathtrace.max_depth=2", "preset=paper",
+                              "pathtrace.max_depth=2,svgf.levels=2"}}),
+                ElementsAre("history", "svgf", "kpcn", "svgf", "history", "kpcn", "svgf", "svgf"));
+    EXPECT_THAT(pipelinesOf({{"atrous"}, {"history.normal=0.5"}}), ElementsAre("atrous", "atrous"))
+        << "which has no parameters of a pipeline of that name, but those of history tracking";
+    const auto methods = methodsOf({{"svgf"}, {"svgf.levels=1,svgf.wide=on"}}, {});
+    EXPECT_EQ(methods[1].name, "svgf.levels=1,svgf.wide=on");
+    EXPECT_EQ(methods[1].settings.denoisers.svgf.levels, 1);
+    EXPECT_TRUE(methods[1].settings.denoisers.svgf.wide);
+    EXPECT_NE(methods[0].settings.denoisers.svgf.levels, 1);
+}
+
+TEST(QualityMethods, StepsAreOfSvgfWhateverElseIsCompared) {
+    const auto names = pipelinesOf({.pipelines = {"history"}, .variants = {}, .steps = true});
+    EXPECT_GT(names.size(), 10u);
+    EXPECT_EQ(std::ranges::count(names, "svgf"), static_cast<long>(names.size()) - 1);
+}
+
+TEST(QualityMethods, WhatIsNoMethodIsRefused) {
+    EXPECT_THROW(methodsOf({{"gbuffer"}, {}}, {}), UsageError);
+    EXPECT_THROW(methodsOf({{"nothing"}, {}}, {}), UsageError);
+    for (const char* variant : {"", "svgf.nothing=1", "svgf.levels", "preset=nothing"})
+        EXPECT_THROW(methodsOf({{"svgf"}, {variant}}, {}), UsageError) << variant;
 }
 
 TEST(QualitySequences, TheLaboratorysScenesExistUnderNamesOfTheirOwn) {

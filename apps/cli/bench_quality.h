@@ -9,6 +9,7 @@
 
 #include "gpu/device.h"
 #include "image/frame_scores.h"
+#include "quality_methods.h"
 #include "quality_reference.h"
 #include "renderer/sequence.h"
 #include "renderer/settings.h"
@@ -33,12 +34,6 @@ struct SequenceQuality {
     double referencePsnr = 0.0;
     float exposure = 0.0f;   ///< stops, from the references
     image::Image reference;  ///< of the last frame
-};
-
-/// A pipeline with its parameters.
-struct QualityMethod {
-    std::string name;
-    RenderSettings settings;
 };
 
 /// Judges every method, at `samples` per frame, by the references of `frames` (makeReferences). Rays go

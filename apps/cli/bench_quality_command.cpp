@@ -2,13 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <optional>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -33,39 +34,16 @@ namespace {
 
 struct QualityOptions {
     DeviceChoice device;
-    std::vector<std::string> scenes, pipelines, presets, assignments, variants;
+    MethodChoice methods;
+    std::vector<std::string> scenes, presets, assignments;
     std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder,
                              weights;
     uint32_t width = 640, height = 360, samples = 1;
     std::optional<uint64_t> referenceSamples;  ///< of every sequence, in place of its own
-    QualityFrames frames;
-    bool framesGiven = false;  ///< on the command line: then of every sequence
-    bool lab = false, quick = false, json = false, steps = false, smoothEdges = false;
+    std::optional<uint64_t> first, frames;     ///< likewise
+    bool lab = false, quick = false, json = false, smoothEdges = false;
 };
 
-/// SVGF as others have it, without each thing that Limpid adds to the paper, and with former defaults.
-constexpr std::array svgfSteps{"preset=paper",         "preset=cis565",
-                               "svgf.antilag=0",       "svgf.alpha=0.15,svgf.alpha_moments=0.2",
-                               "svgf.antilag_noise=3", "svgf.antilag_pixel=1000",
-                               "svgf.boost=off",       "svgf.blur_levels=10",
-                               "svgf.wide=on",         "svgf.separate=off",
-                               "svgf.reflections=off", "pathtrace.through_mirrors=off",
-                               "svgf.alpha_shown=1"};
-
-/// `texts` by commas: group.name=value, or preset=name.
-QualityMethod variantOf(RenderSettings settings, const std::string& texts) {
-    constexpr std::string_view preset = "preset=";
-    std::istringstream words(texts);
-    for (std::string text; std::getline(words, text, ',');) {
-        if (text.starts_with(preset))
-            applyPreset(settings, text.substr(preset.size()));
-        else
-            assign(settings, text);
-    }
-    return {texts, settings};
-}
-
-/// Every pipeline as it is, the last in every variant, and SVGF's steps.
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
@@ -73,37 +51,66 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     common.layers = true;  // the noisy frames are judged too
     for (const std::string& preset : o.presets) applyPreset(common, preset);
     for (const std::string& text : o.assignments) assign(common, text);
-    std::vector<QualityMethod> methods;
-    for (const std::string& pipeline : o.pipelines) {
-        common.pipeline = parsePipeline(pipeline);
-        methods.push_back({pipeline, common});
-    }
-    for (const std::string& variant : o.variants) methods.push_back(variantOf(common, variant));
-    if (!o.steps) return methods;
-    common.pipeline = parsePipeline("svgf");
-    for (const char* step : svgfSteps) methods.push_back(variantOf(common, step));
-    return methods;
+    return methodsOf(o.methods, common);
 }
 
-std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
-    const QualitySequence common{
-        .cameraPath = o.cameraPath, .frames = o.frames, .environment = o.environment};
+/// Those of --scene and --scenes-folder, then the laboratory's.
+std::vector<QualitySequence> chosenSequences(const QualityOptions& o) {
+    const QualitySequence common{.cameraPath = o.cameraPath, .environment = o.environment};
     std::vector<QualitySequence> sequences;
     for (const std::string& scene : o.scenes) {
         sequences.push_back(common);
         sequences.back().name = sceneStem(scene);
         sequences.back().scene = scene;
     }
-    if (o.lab) sequences.insert(sequences.end(), labSequences().begin(), labSequences().end());
     if (!o.scenesFolder.empty()) {
-        for (QualitySequence& sequence : sequencesInFolder(o.scenesFolder, o.pathsFolder, common))
-            sequences.push_back(std::move(sequence));
+        const std::vector<QualitySequence> found = sequencesInFolder(o.scenesFolder, o.pathsFolder, common);
+        if (found.empty()) throw InputError(o.scenesFolder, "has no glTF files in its folders");
+        sequences.insert(sequences.end(), found.begin(), found.end());
     }
+    if (o.lab) sequences.insert(sequences.end(), labSequences().begin(), labSequences().end());
+    return sequences;
+}
+
+std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
+    std::vector<QualitySequence> sequences = chosenSequences(o);
+    std::map<std::string, int> names;
     for (QualitySequence& sequence : sequences) {
-        if (o.quick || o.framesGiven) sequence.frames = o.frames;
+        // Pictures and references are named after sequences.
+        if (const int number = ++names[sequence.name]; number > 1)
+            sequence.name += fmt::format("-{}", number);
         sequence.referenceSamples = o.referenceSamples.value_or(sequence.referenceSamples);
+        QualityFrames& frames = sequence.frames;
+        frames = {o.first.value_or(frames.first), o.frames.value_or(frames.count)};
+        if (frames.first >= frames.count) {
+            throw UsageError(
+                fmt::format("{}: of {} frames none is compared, the first would be {}: see "
+                            "--first and --frames",
+                            sequence.name, frames.count, frames.first));
+        }
     }
     return sequences;
+}
+
+/// What several sequences share, or what cannot be skipped, should not fail after the first of them.
+void checkInputs(const QualityOptions& o) {
+    std::vector<std::string> files{o.environment};
+    std::ranges::copy_if(o.scenes, std::back_inserter(files),
+                         [](const std::string& scene) { return !scene.starts_with("builtin:"); });
+    for (const std::string& file : files) {
+        if (!file.empty() && !std::filesystem::exists(file)) throw InputError(file, "does not exist");
+    }
+    if (!o.pathsFolder.empty() && !std::filesystem::is_directory(o.pathsFolder))
+        throw InputError(o.pathsFolder, "is no folder");
+    if (o.cameraPath != "none" && !scene::isBuiltinCameraPath(o.cameraPath))
+        scene::loadCameraPath(o.cameraPath);
+}
+
+void makeFolder(const std::string& folder) {
+    std::error_code fault;
+    std::filesystem::create_directories(folder, fault);
+    if (fault) throw OutputError(folder, "cannot be made: " + fault.message());
+    checkWritable(std::filesystem::path(folder) / "file");
 }
 
 /// A sequence on the device.
@@ -167,6 +174,11 @@ std::string cell(std::optional<double> value, int width, int digits) {
     return value ? fmt::format("{:>{}.{}f}", *value, width, digits) : fmt::format("{:>{}}", "-", width);
 }
 
+/// Equal pictures have an infinite PSNR, and of two there is no gain.
+std::string gainText(double gain) {
+    return std::isnan(gain) ? "-" : fmt::format("{:+.2f}", gain);
+}
+
 void printSequence(const MeasuredSequence& measured) {
     const SequenceQuality& quality = measured.quality;
     fmt::print("{} (reference: {} samples, {:.1f} dB by itself)\n", measured.sequence.name,
@@ -174,7 +186,8 @@ void printSequence(const MeasuredSequence& measured) {
     const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
     for (const MethodQuality& method : quality.methods) {
         const double psnr = meanOf(method, "psnr").value_or(0.0);
-        fmt::print("  {:<28}{:>9.2f}{:>+8.2f}{:>9.2f}{}{}{}{}{}{}{}\n", method.name, psnr, psnr - noisyPsnr,
+        fmt::print("  {:<28}{:>9.2f}{:>8}{:>9.2f}{}{}{}{}{}{}{}\n", method.name, psnr,
+                   gainText(psnr - noisyPsnr),
                    image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
                    cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
                    cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
@@ -250,13 +263,10 @@ void addSequence(gpu::Device& device, const QualityOptions& o, const QualitySequ
 void run(const QualityOptions& o, const std::string& command) {
     methodsOf(o);
     const std::vector<QualitySequence> sequences = sequencesOf(o);
-    for (const QualitySequence& sequence : sequences) {
-        if (sequence.frames.first >= sequence.frames.count)
-            throw UsageError("--first: there are fewer frames");
-    }
+    checkInputs(o);
     if (!o.report.empty()) checkWritable(o.report);
     for (const std::string& folder : {o.folder, o.referenceFolder}) {
-        if (!folder.empty()) std::filesystem::create_directories(folder);
+        if (!folder.empty()) makeFolder(folder);
     }
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     QualityRun all{.version = LIMPID_VERSION,
@@ -278,19 +288,19 @@ void run(const QualityOptions& o, const std::string& command) {
 /// What the user left open.
 void complete(QualityOptions& o, const CLI::App& command) {
     const auto given = [&](const char* option) { return command.count(option) > 0; };
-    o.framesGiven = given("--frames") || given("--first");
     if (o.quick) {
         if (!given("--width")) o.width = quick::width;
         if (!given("--height")) o.height = quick::height;
-        if (!given("--first")) o.frames.first = quick::frames.first;
-        if (!given("--frames")) o.frames.count = quick::frames.count;
-        if (!o.referenceSamples) o.referenceSamples = quick::referenceSamples;
+        o.first = o.first.value_or(quick::frames.first);
+        o.frames = o.frames.value_or(quick::frames.count);
+        o.referenceSamples = o.referenceSamples.value_or(quick::referenceSamples);
         if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
     }
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
-    if (!o.pipelines.empty()) return;
+    if (!o.methods.pipelines.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        if (!denoiser.network || o.samples >= leastNetworkSamples) o.pipelines.emplace_back(denoiser.name);
+        if (!denoiser.network || o.samples >= leastNetworkSamples)
+            o.methods.pipelines.emplace_back(denoiser.name);
     }
 }
 
@@ -307,9 +317,8 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
     command.add_option("--env", o->environment, "Environment map of --scene and --scenes-folder");
     command.add_option("--camera-path", o->cameraPath,
                        "Of --scene and --scenes-folder: orbit (default), dolly, shake, a file, or none");
-    command.add_option("--frames", o->frames.count, "Frames (61; --lab has its own)")
-        ->check(CLI::Range(1, 100000));
-    command.add_option("--first", o->frames.first, "First frame that is compared (16)")
+    command.add_option("--frames", o->frames, "Frames (61; --lab has its own)")->check(CLI::Range(1, 100000));
+    command.add_option("--first", o->first, "First frame that is compared (16; --lab has its own)")
         ->check(CLI::Range(0, 100000));
     command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
     command
@@ -333,15 +342,16 @@ void addQualityBench(CLI::App& bench) {
         "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
     addSequenceOptions(*command, o);
-    command->add_option("--pipeline", o->pipelines,
+    command->add_option("--pipeline", o->methods.pipelines,
                         "Pipelines that denoise (repeatable; all of them, kpcn from --spp 8 on)");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option("--variant", o->variants,
-                        "The last pipeline once more with these parameters, or preset=NAME, by commas "
-                        "(repeatable)");
-    command->add_flag("--steps", o->steps,
+    command->add_option(
+        "--variant", o->methods.variants,
+        "A pipeline once more with these of its parameters, or preset=NAME, by commas; the last "
+        "one if they are of none (repeatable)");
+    command->add_flag("--steps", o->methods.steps,
                       "SVGF's presets, and SVGF without each step beyond its paper and with former defaults");
     command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
     command->add_option("--report", o->report, "An HTML page with everything, pictures included");

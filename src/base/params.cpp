@@ -44,8 +44,13 @@ std::string toString(const ParamValue& value) {
 }
 
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value) {
+    // A float next to the end of a range is that end: 1e-4 as a float is below 1e-4.
+    const bool isFloat = std::holds_alternative<float>(value);
+    const auto end = [&](double bound) {
+        return isFloat ? static_cast<double>(static_cast<float>(bound)) : bound;
+    };
     const double number = asDouble(value);
-    if (!(number >= info.minimum && number <= info.maximum)) {
+    if (!(number >= end(info.minimum) && number <= end(info.maximum))) {
         throw UsageError(fmt::format("{}.{}: {} is outside its range {} to {}", group, info.name,
                                      toString(value), info.minimum, info.maximum));
     }

@@ -1,5 +1,6 @@
 #include "base/params.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -39,6 +40,18 @@ TEST(Params, RefusesBadTextAndValuesOutOfRange) {
         EXPECT_THROW(table().set(s, "sigma", text), UsageError);
     EXPECT_THROW(table().set(s, "clamp", "maybe"), UsageError);
     EXPECT_EQ(s.levels, 5);
+}
+
+TEST(Params, BothEndsOfARangeBelongToIt) {
+    // As floats some of these lie beside what they stand for.
+    for (const double end : {1e-4, 1e-9, 0.01, 1e-6}) {
+        ParamTable<Settings> t("demo");
+        t.add("sigma", &Settings::sigma, end, 2.0 * end, "", "width");
+        Settings s;
+        for (const double value : {end, 2.0 * end}) EXPECT_TRUE(t.set(s, "sigma", fmt::format("{}", value)));
+        for (const double value : {0.999 * end, 2.001 * end})
+            EXPECT_THROW(t.set(s, "sigma", fmt::format("{}", value)), UsageError) << value;
+    }
 }
 
 TEST(Params, ParsesAssignments) {

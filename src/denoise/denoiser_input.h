@@ -9,7 +9,8 @@ namespace limpid::denoise {
 
 /// One frame: images of one size, rgba32f unless said otherwise. What their components hold is in
 /// docs/denoising.md, "What a frame gives"; rays go through the pixels' centres. NaN and infinity are
-/// allowed: such radiance is rejected, such a normal, distance or motion counts as missing.
+/// allowed: such radiance is rejected, such a distance or motion counts as missing, and so does such a normal
+/// (SVGF takes it as +Z).
 struct DenoiserInput {
     gpu::ImageHandle diffuse, specular;  ///< scattered light, cd/m^2, albedo multiplied in
     gpu::ImageHandle emission;           ///< what the camera sees directly

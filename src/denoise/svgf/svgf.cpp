@@ -31,7 +31,7 @@ using gpu::ImageHandle;
 /// The shaders take powers of 2.
 constexpr float log2e = 1.44269504f;
 
-/// Light that is filtered by itself: `first`, or the sum of two images.
+/// Light that is filtered by itself: `light`, or its sum with `otherLight`.
 struct Signal {
     std::string name;
     ImageHandle light, otherLight, albedo, otherAlbedo;
@@ -44,11 +44,11 @@ struct Surfaces {
 };
 
 struct Accumulated {
-    ImageHandle color;      ///< half4: light, deviation of its luminance in one frame
+    ImageHandle color;      ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
     ImageHandle moments;    ///< rgba32f: first, second, fast first, frames
     ImageHandle tiles;      ///< r32f: lag
     History feedback;       ///< of colors; `current` is what the next frame reads
-    ImageHandle shown;      ///< half4: the last level's result
+    ImageHandle shown;      ///< half4: the last level's result, or as `feedback` where that is not kept
     ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
 };
 
@@ -117,8 +117,8 @@ class Svgf {
     /// Of the filter's levels; 0: none.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
 
-    /// Of the variance of one frame's samples: what fast minus slow mean has while light is steady. 0 where
-    /// the slow mean is no mean at all, and the samples' variance not known.
+    /// Of the variance of one frame's samples: what fast minus slow mean has after a long history of steady
+    /// light. 0 where the slow mean is no mean at all, and the samples' variance not known.
     float steadyShare() const {
         const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
         const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
@@ -146,6 +146,7 @@ class Svgf {
         params.alphaFast = settings_.alphaFast;
         params.lag = lagParams();
         params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
+        // Shorter ones would stay young for ever.
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
@@ -378,13 +379,13 @@ const ParamTable<SvgfSettings>& svgfParams() {
             "of the filtered light that what was shown before may differ by and still count in full; higher "
             "flickers less and follows changes later");
         t.add("levels", &S::levels, 0, 10, "levels",
-              "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels");
+              "each doubles the filter's reach: n of them reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
               "whose result is the next frame's history; higher is smoother and blurs over time");
         t.add("wide", &S::wide, "5x5 taps a level; off: 3x3, half the reach in half the time");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations",
               "tolerated difference of luminance; higher smooths over shadows");
-        t.add("phi_normal", &S::phiNormal, 1e-6, 1e9, "",
+        t.add("phi_normal", &S::phiNormal, 1e-6, 1e5, "",
               "sharpness of the tolerance of normals; lower smooths over edges (with `position`: tolerated "
               "distance of normals; higher does)");
         t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
