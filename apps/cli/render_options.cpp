@@ -45,7 +45,8 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
     command
-        .add_option("--spp", o.samples, "Samples per pixel (64); with a denoiser, per pixel and frame (1)")
+        .add_option("--spp", o.samples,
+                    "Samples per pixel (64); with a denoiser, per pixel and frame (1; kpcn 32)")
         ->check(CLI::Range(1, 1 << 24));
     command
         .add_option("--samples-per-launch", o.samplesPerLaunch,
