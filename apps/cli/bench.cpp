@@ -195,7 +195,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
 }
 
 void runConvergence(const BenchOptions& o) {
-    std::filesystem::create_directories(o.folder);
+    makeFolder(o.folder);
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     json all = json::array();
     if (!o.json) {

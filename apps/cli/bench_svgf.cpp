@@ -113,7 +113,6 @@ struct Measured {
 
 void writePlots(const SvgfBench& o, const Measured& m) {
     const std::filesystem::path folder(o.folder);
-    std::filesystem::create_directories(folder);
     writeTextAtomically(folder / "svgf.stages.svg",
                         barPlot("Time per stage, " + o.scene, "ms", m.stages.bars));
     PlotLine tracing{"path tracing", {}}, filtering{"SVGF", {}}, levels{"SVGF", {}};
@@ -164,6 +163,7 @@ void printJson(const SvgfBench& o, const std::string& device, const Measured& m)
 
 void run(const SvgfBench& o) {
     settingsOf(o);
+    if (!o.folder.empty()) makeFolder(o.folder);
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     Measured measured;
     {

@@ -148,9 +148,7 @@ void run(const DatasetOptions& o) {
         throw UsageError("--samples are above 0 and ascend");
     const Dataset dataset(o);
     if (dataset.examples() == 0) throw UsageError("a dataset of no rooms, no still lifes and no scenes");
-    std::error_code fault;
-    fs::create_directories(o.folder, fault);
-    if (fault) throw OutputError(o.folder, "cannot be made: " + fault.message());
+    makeFolder(o.folder);
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);
     Progress progress("files", dataset.files());

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "renderer/parameters.h"
@@ -46,10 +45,7 @@ void restoreSettings(const fs::path& file, ViewSettings& settings) {
 
 void keepSettings(const fs::path& file, const ViewSettings& settings) {
     if (file.empty()) return;
-    std::error_code fault;
-    const fs::path folder = fs::absolute(file).parent_path();
-    fs::create_directories(folder, fault);
-    if (fault) throw OutputError(folder, "cannot be made: " + fault.message());
+    makeFolder(fs::absolute(file).parent_path());
     const json kept{{"pipeline", settings.render.pipeline.name()},
                     {"samples", settings.samples},
                     {"max_samples", settings.maxSamples},

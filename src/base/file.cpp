@@ -82,6 +82,13 @@ void checkWritable(const fs::path& path) {
     }
 }
 
+void makeFolder(const fs::path& folder) {
+    std::error_code fault;
+    fs::create_directories(folder, fault);
+    if (fault) throw OutputError(folder, "cannot be made: " + fault.message());
+    checkWritable(folder / "file");
+}
+
 void removeStaleTemporaries(const fs::path& path) {
     const std::string start = "." + path.stem().string() + ".", end = path.extension().string();
     constexpr size_t unique = 6;  // characters, as in createTemporary()

@@ -27,6 +27,10 @@ void writeTextAtomically(const std::filesystem::path& path, std::string_view tex
 /// may be writing `path`. What cannot be removed stays.
 void removeStaleTemporaries(const std::filesystem::path& path);
 
+/// Makes the folder, and those it is in, unless it is there. Throws OutputError if it cannot be made, or no
+/// file be written in it.
+void makeFolder(const std::filesystem::path& folder);
+
 /// Throws what writeAtomically(path) would throw before any work is done: call it before a long render.
 void checkWritable(const std::filesystem::path& path);
 

@@ -54,6 +54,17 @@ TEST_F(FileTest, RefusesADirectoryAndAMissingFolderBeforeTheWriterRuns) {
     EXPECT_THROW(writeAtomically(folder / "none" / "a.png", never), OutputError);
 }
 
+TEST_F(FileTest, MakesAFolderAndThoseItIsIn) {
+    const fs::path made = folder / "a" / "b";
+    makeFolder(made);
+    EXPECT_TRUE(fs::is_directory(made));
+    EXPECT_NO_THROW(makeFolder(made)) << "it is there already";
+    EXPECT_NO_THROW(makeFolder(made.string() + "/"));
+    put(folder / "file", "");
+    EXPECT_THROW(makeFolder(folder / "file"), OutputError);
+    EXPECT_THROW(makeFolder(folder / "file" / "a"), OutputError);
+}
+
 TEST_F(FileTest, FullDiskIsAnErrorAndNotATruncatedFile) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
     // /dev/full cannot be renamed onto, so test the writer's side: a stream that meets a full disk must
