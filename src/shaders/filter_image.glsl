@@ -6,8 +6,8 @@
 
 const float MAX_HALF = 65504.0;
 
-/// To the nearest half, ties to even, of magnitudes from 2^-14 (smaller ones keep too many bits) to MAX_HALF. Drivers round towards zero, in packHalf2x16 or when
-/// they store: from level to level of a filter the picture would darken.
+/// To the nearest half, ties to even, of magnitudes from 2^-14 (smaller ones keep too many bits) to MAX_HALF. Drivers
+/// round towards zero, in packHalf2x16 or when they store: from level to level of a filter the picture would darken.
 vec4 nearestHalf(vec4 value) {
     const uvec4 bits = floatBitsToUint(value);
     return uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);
