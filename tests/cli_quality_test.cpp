@@ -81,9 +81,12 @@ TEST_F(CliQualityTest, AFoldersScenesAreMeasuredAndBadOnesSkippedLoudly) {
 }
 
 TEST_F(CliQualityTest, ScenesOfOneNameAreToldApart) {
-    run(options("--pipeline history --scene builtin:cornell --scene builtin:cornell --out " +
-                path("pictures")));
-    EXPECT_EQ(filesIn("pictures").size(), 2u);
+    put("cornell-2.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Result result =
+        run(options("--pipeline history --scene builtin:cornell --scene builtin:cornell --scene " +
+                    path("cornell-2.obj") + " --out " + path("pictures")));
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(filesIn("pictures").size(), 3u);
 }
 
 TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {

@@ -2,14 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <iterator>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -21,8 +18,8 @@
 #include "image/tonemap.h"
 #include "quality_json.h"
 #include "quality_page.h"
-#include "quality_ranking.h"
 #include "quality_sequences.h"
+#include "quality_table.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
 #include "renderer/render_identity.h"
@@ -74,11 +71,11 @@ std::vector<QualitySequence> chosenSequences(const QualityOptions& o) {
 
 std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
     std::vector<QualitySequence> sequences = chosenSequences(o);
-    std::map<std::string, int> names;
+    std::set<std::string> taken;  // pictures and references are named after sequences
     for (QualitySequence& sequence : sequences) {
-        // Pictures and references are named after sequences.
-        if (const int number = ++names[sequence.name]; number > 1)
-            sequence.name += fmt::format("-{}", number);
+        const std::string name = sequence.name;
+        for (int number = 2; !taken.insert(sequence.name).second; ++number)
+            sequence.name = fmt::format("{}-{}", name, number);
         sequence.referenceSamples = o.referenceSamples.value_or(sequence.referenceSamples);
         QualityFrames& frames = sequence.frames;
         frames = {o.first.value_or(frames.first), o.frames.value_or(frames.count)};
@@ -94,23 +91,17 @@ std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
 
 /// What several sequences share, or what cannot be skipped, should not fail after the first of them.
 void checkInputs(const QualityOptions& o) {
-    std::vector<std::string> files{o.environment};
-    std::ranges::copy_if(o.scenes, std::back_inserter(files),
-                         [](const std::string& scene) { return !scene.starts_with("builtin:"); });
-    for (const std::string& file : files) {
-        if (!file.empty() && !std::filesystem::exists(file)) throw InputError(file, "does not exist");
+    const auto mustExist = [](const std::string& file) {
+        if (!std::filesystem::exists(file)) throw InputError(file, "does not exist");
+    };
+    if (!o.environment.empty()) mustExist(o.environment);
+    for (const std::string& scene : o.scenes) {
+        if (!scene.starts_with("builtin:")) mustExist(scene);
     }
     if (!o.pathsFolder.empty() && !std::filesystem::is_directory(o.pathsFolder))
         throw InputError(o.pathsFolder, "is no folder");
     if (o.cameraPath != "none" && !scene::isBuiltinCameraPath(o.cameraPath))
         scene::loadCameraPath(o.cameraPath);
-}
-
-void makeFolder(const std::string& folder) {
-    std::error_code fault;
-    std::filesystem::create_directories(folder, fault);
-    if (fault) throw OutputError(folder, "cannot be made: " + fault.message());
-    checkWritable(std::filesystem::path(folder) / "file");
 }
 
 /// A sequence on the device.
@@ -151,14 +142,19 @@ LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualityS
     return loaded;
 }
 
-MeasuredSequence measure(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence,
-                         LoadedSequence& loaded) {
+/// With their networks on the device.
+std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions& o) {
     std::vector<QualityMethod> methods = methodsOf(o);
     for (QualityMethod& method : methods) {
         const denoise::Denoiser* const denoiser = method.settings.pipeline.denoiser;
-        if (denoiser && denoiser->network)
-            loadNetwork(device, denoiser, o.weights, method.settings.denoisers);
+        if (denoiser->network) loadNetwork(device, denoiser, o.weights, method.settings.denoisers);
     }
+    return methods;
+}
+
+MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
+                         const std::vector<QualityMethod>& methods, const QualitySequence& sequence,
+                         LoadedSequence& loaded) {
     const Sequence frames = loaded.frames();
     ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
     if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
@@ -167,54 +163,6 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o, const Qua
                        sequence.referenceSamples, files);
     return {sequence, loaded.scene.triangleCount(),
             measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
-}
-
-/// The numbers of one line: they may be absent, or infinite.
-std::string cell(std::optional<double> value, int width, int digits) {
-    return value ? fmt::format("{:>{}.{}f}", *value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
-/// Equal pictures have an infinite PSNR, and of two there is no gain.
-std::string gainText(double gain) {
-    return std::isnan(gain) ? "-" : fmt::format("{:+.2f}", gain);
-}
-
-void printSequence(const MeasuredSequence& measured) {
-    const SequenceQuality& quality = measured.quality;
-    fmt::print("{} (reference: {} samples, {:.1f} dB by itself)\n", measured.sequence.name,
-               measured.sequence.referenceSamples, quality.referencePsnr);
-    const double noisyPsnr = meanOf(quality.methods.front(), "psnr").value_or(0.0);
-    for (const MethodQuality& method : quality.methods) {
-        const double psnr = meanOf(method, "psnr").value_or(0.0);
-        fmt::print("  {:<28}{:>9.2f}{:>8}{:>9.2f}{}{}{}{}{}{}{}\n", method.name, psnr,
-                   gainText(psnr - noisyPsnr),
-                   image::worstOf(image::sequenceMetrics()[0], method.scores)->value,
-                   cell(meanOf(method, "ssim"), 9, 4), cell(meanOf(method, "relmse"), 10, 5),
-                   cell(meanOf(method, "flip"), 9, 4), cell(meanOf(method, "flicker"), 10, 5),
-                   cell(meanOf(method, "temporal_error"), 10, 5), cell(denoisingMs(method), 10, 3),
-                   cell(bytesPerPixel(method), 9, 0));
-    }
-    std::fflush(stdout);  // a run may take long, and may be stopped
-}
-
-void printRanking(const QualityRun& run) {
-    fmt::print("all {} sequences\n  {:<28}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}  best in\n", run.sequences.size(),
-               "method", "FLIP", "rank", "gain dB", "flicker", "filter ms", "B/pixel");
-    for (const MethodRank& rank : rankMethods(run)) {
-        std::string best;
-        for (const std::string& name : rank.best) best += (best.empty() ? "" : ", ") + name;
-        fmt::print("  {:<28}{:>9.4f}{:>8.2f}{}{}{}{}  {}\n", rank.name, rank.flip, rank.rank,
-                   cell(rank.gain, 9, 2), cell(rank.flicker, 10, 5), cell(rank.denoisingMs, 10, 3),
-                   cell(rank.bytesPerPixel, 9, 0), best);
-    }
-}
-
-void printHead(const QualityRun& run) {
-    fmt::print(
-        "{}, {}x{}, {} samples a frame\n  {:<28}{:>9}{:>8}{:>9}{:>9}{:>10}{:>9}{:>10}"
-        "{:>10}{:>10}{:>9}\n",
-        run.device, run.extent.width, run.extent.height, run.samples, "method", "PSNR dB", "gain", "worst",
-        "SSIM", "relMSE", "FLIP", "flicker", "temporal", "filter ms", "B/pixel");
 }
 
 /// Noisy, every method, reference, side by side.
@@ -239,8 +187,8 @@ void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
 }
 
 /// What has been measured goes into the page after each sequence: a run that ends early leaves the rest.
-void addSequence(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence,
-                 QualityRun& run) {
+void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector<QualityMethod>& methods,
+                 const QualitySequence& sequence, QualityRun& run) {
     std::optional<LoadedSequence> loaded;
     try {
         loaded = load(device, o, sequence);
@@ -250,7 +198,7 @@ void addSequence(gpu::Device& device, const QualityOptions& o, const QualitySequ
         if (!sequence.optional) throw;
         return skip(sequence, error, run);
     }
-    run.sequences.push_back(measure(device, o, sequence, *loaded));
+    run.sequences.push_back(measure(device, o, methods, sequence, *loaded));
     const MeasuredSequence& measured = run.sequences.back();
     if (!o.json) printSequence(measured);
     if (!o.folder.empty()) {
@@ -261,7 +209,7 @@ void addSequence(gpu::Device& device, const QualityOptions& o, const QualitySequ
 }
 
 void run(const QualityOptions& o, const std::string& command) {
-    methodsOf(o);
+    methodsOf(o);  // what is wrong with them shows before the device is opened
     const std::vector<QualitySequence> sequences = sequencesOf(o);
     checkInputs(o);
     if (!o.report.empty()) checkWritable(o.report);
@@ -269,6 +217,7 @@ void run(const QualityOptions& o, const std::string& command) {
         if (!folder.empty()) makeFolder(folder);
     }
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const std::vector<QualityMethod> methods = loadMethods(*device, o);
     QualityRun all{.version = LIMPID_VERSION,
                    .command = command,
                    .device = device->info().name,
@@ -277,7 +226,7 @@ void run(const QualityOptions& o, const std::string& command) {
                    .extent = {o.width, o.height},
                    .samples = o.samples};
     if (!o.json) printHead(all);
-    for (const QualitySequence& sequence : sequences) addSequence(*device, o, sequence, all);
+    for (const QualitySequence& sequence : sequences) addSequence(*device, o, methods, sequence, all);
     if (all.sequences.empty()) throw Error("no sequence could be measured");
     if (!o.report.empty()) writeQualityPage(o.report, all);  // with what was skipped last
     if (!o.json && all.sequences.size() > 1) printRanking(all);
