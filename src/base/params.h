@@ -7,11 +7,13 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "base/error.h"
+#include "base/slider_span.h"
 
 namespace limpid {
 
@@ -23,8 +25,9 @@ struct ParamInfo {
     ParamValue defaultValue;
     double minimum = 0.0;
     double maximum = 1.0;
-    std::string unit;  ///< "" if it has none
-    std::string help;  ///< one line: what it is, and what more of it does
+    std::string unit;   ///< "" if it has none
+    std::string help;   ///< one line: what it is, and what more of it does
+    SliderSpan slider;  ///< of the window
 };
 
 /// A named set of values. Parameters that it does not name keep theirs.
@@ -49,13 +52,23 @@ class ParamTable {
     ParamTable& add(std::string name, T Settings::*member, double minimum, double maximum, std::string unit,
                     std::string help) {
         const T initial = Settings{}.*member;
-        infos_.push_back({std::move(name), initial, minimum, maximum, std::move(unit), std::move(help)});
+        infos_.push_back(
+            {std::move(name), initial, minimum, maximum, std::move(unit), std::move(help),
+             usefulSpan(minimum, maximum, static_cast<double>(initial), std::is_same_v<T, int>)});
         setters_.push_back([member](Settings& s, const ParamValue& v) { s.*member = std::get<T>(v); });
         getters_.push_back([member](const Settings& s) -> ParamValue { return s.*member; });
         return *this;
     }
     ParamTable& add(std::string name, bool Settings::*member, std::string help) {
         return add(std::move(name), member, 0.0, 1.0, "", std::move(help));
+    }
+
+    /// What the window's slider of the parameter added last runs over, where usefulSpan() does not suit it.
+    /// `smallest`: of a logarithmic one from 0 on.
+    ParamTable& slider(double least, double most, SliderScale scale = SliderScale::Linear,
+                       double smallest = 0.0) {
+        infos_.back().slider = {least, most, scale, smallest};
+        return *this;
     }
 
     /// To be called after the parameters are added. Throws Error if the table has no such parameter,

@@ -31,11 +31,13 @@ const ParamTable<HistorySettings>& historyParams() {
         t.add("normal", &S::normal, -1.0, 1.0, "cosine",
               "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
               "expected one "
-              "is above this; higher keeps edges, lower keeps more history on curved surfaces");
-        t.add(
-            "depth", &S::depth, 0.0, 1e6, "of the distance",
-            "... and if its distance is off by less than this share of the expected one (without `relative`: "
-            "world units); lower ghosts less, higher forgets less");
+              "is above this; higher keeps edges, lower keeps more history on curved surfaces")
+            .slider(0.5, 1);
+        t.add("depth", &S::depth, 0.0, 1e6, "of the distance",
+              "... and if its distance is off by less than this share of the expected one (without "
+              "`relative`: "
+              "world units); lower ghosts less, higher forgets less")
+            .slider(0, 1, SliderScale::Logarithmic, 0.001);
         t.add("relative", &S::relative,
               "`depth` is relative to the distance, and makes room for tilted planes");
         t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
@@ -43,7 +45,8 @@ const ParamTable<HistorySettings>& historyParams() {
               "divide by the albedo before resampling, multiply after it: textures stay sharp");
         t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
               "weight of the past at most; lower follows changing light sooner, higher is smoother; 0 is no "
-              "limit");
+              "limit")
+            .slider(0, 1000, SliderScale::Logarithmic, 1);
         t.add("grey_restart", &S::greyRestart,
               "restart from grey 0.5 of weight 1 (seed document) instead of from the frame's own sample");
         t.add("show_cases", &S::showCases,

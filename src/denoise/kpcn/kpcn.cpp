@@ -372,12 +372,14 @@ const ParamTable<KpcnSettings>& kpcnParams() {
         ParamTable<S> t("kpcn");
         t.add("tile", &S::tile, 16, 16384, "pixels",
               "edge of the parts in which a picture is denoised; larger takes more memory and is a little "
-              "faster");
+              "faster")
+            .slider(64, 4096, SliderScale::Logarithmic);
         t.add("errors", &S::standardErrors, 0.0, 100.0, "standard errors",
               "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
               "less keeps sharp "
               "reflections and small lights, more removes fireflies; 0: as far as the network likes. A pixel "
-              "whose neighbours agree with the network stays as the network has it");
+              "whose neighbours agree with the network stays as the network has it")
+            .slider(0, 20);
         t.add(
             "levels", &S::levels, 0, static_cast<int>(std::size(levelSteps)), "levels",
             "of a filter after the network's kernels, for what is flat; the last takes in direct neighbours, "

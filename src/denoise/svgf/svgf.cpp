@@ -350,11 +350,13 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "", "... in the fast mean that anti-lag compares with");
         t.add("normal_test", &S::normalTest, -1.0, 1.0, "cosine",
               "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
-              "expected one is above this");
-        t.add(
-            "depth_test", &S::depthTest, 0.0, 1e6, "of the distance",
-            "... and if its distance is off by less than this share of the expected one (without `relative`: "
-            "world units)");
+              "expected one is above this")
+            .slider(0.5, 1);
+        t.add("depth_test", &S::depthTest, 0.0, 1e6, "of the distance",
+              "... and if its distance is off by less than this share of the expected one (without "
+              "`relative`: "
+              "world units)")
+            .slider(0, 1, SliderScale::Logarithmic, 0.001);
         t.add("relative", &S::relative,
               "`depth_test` is relative to the distance, and makes room for tilted planes");
         t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
@@ -366,18 +368,21 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "sooner and is noisier; below 0.1 is off");
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
               "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
-              "noise for one");
+              "noise for one")
+            .slider(0, 10);
         t.add("antilag_pixel", &S::antilagPixel, 0.0, 1e6, "deviations",
               "the most that one pixel's difference counts for in that mean, in its own deviations; higher "
               "sees greater changes as greater; above `antilag_noise` a single firefly may pass for one, "
-              "below an eighth of it nothing does");
+              "below an eighth of it nothing does")
+            .slider(0, 10);
         t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
               "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
               "changes later; 1 (and no levels) is off");
         t.add(
-            "shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
-            "of the filtered light that what was shown before may differ by and still count in full; higher "
-            "flickers less and follows changes later");
+             "shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
+             "of the filtered light that what was shown before may differ by and still count in full; higher "
+             "flickers less and follows changes later")
+            .slider(0, 5);
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach: n of them reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",

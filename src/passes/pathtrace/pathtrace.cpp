@@ -43,12 +43,14 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         using S = PathtraceSettings;
         ParamTable<S> t("pathtrace");
         t.add("max_depth", &S::maxDepth, 0, 1024, "bounces",
-              "scattering events of a path; 0 shows emitters only, more adds indirect light and time");
-        t.add(
-            "roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
-            "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier");
+              "scattering events of a path; 0 shows emitters only, more adds indirect light and time")
+            .slider(0, 32);
+        t.add("roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
+              "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier")
+            .slider(0, 32);
         t.add("firefly_clamp", &S::fireflyClamp, 0, 1e9, "cd/m^2",
-              "biased: indirect samples brighter than this are dimmed to it; 0 is off");
+              "biased: indirect samples brighter than this are dimmed to it; 0 is off")
+            .slider(0, 1000, SliderScale::Logarithmic, 0.01);
         t.add("sampler_tea", &S::samplerTea,
               "the seed document's generator (24 low bits of an LCG) instead of PCG");
         t.add("through_mirrors", &S::throughMirrors,

@@ -1,0 +1,65 @@
+#include "base/slider_span.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid {
+namespace {
+
+constexpr double decades = 100.0;   ///< up and down from the default
+constexpr double zeroShare = 0.03;  ///< of a logarithmic slider's length: 0
+constexpr double nearTheEnd = 0.02;
+
+double roundedToDigits(double value) {
+    if (value == 0.0) return 0.0;
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+    return std::round(value / unit) * unit;
+}
+
+/// Of the logarithmic part.
+double firstOf(const SliderSpan& span) {
+    return span.least > 0.0 ? span.least : span.smallest;
+}
+
+}  // namespace
+
+SliderSpan usefulSpan(double minimum, double maximum, double initial, bool whole) {
+    const double width = maximum - minimum;
+    if (whole) {
+        constexpr double handy = 128.0;
+        return {minimum, width <= handy ? maximum : std::min(maximum, std::max(8.0, 8.0 * initial))};
+    }
+    const bool manyDecades = minimum > 0.0 && maximum > decades * minimum;
+    const bool defaultAtTheEnd =
+        width > decades || (initial - minimum < nearTheEnd * width && initial > minimum);
+    if (minimum < 0.0 || !(manyDecades || defaultAtTheEnd)) return {minimum, maximum};
+    const double middle = initial > 0.0 ? initial : 1.0;
+    SliderSpan span{minimum, std::min(maximum, decades * middle), SliderScale::Logarithmic};
+    if (minimum > 0.0)
+        span.least = std::max(minimum, middle / decades);
+    else
+        span.smallest = middle / decades;
+    return span;
+}
+
+double sliderPosition(const SliderSpan& span, double value) {
+    const double inside = std::clamp(value, span.least, span.most);
+    if (span.scale == SliderScale::Linear) return (inside - span.least) / (span.most - span.least);
+    const double start = span.least > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
+    if (inside < first) return 0.0;
+    return start + (1.0 - start) * std::log(inside / first) / std::log(span.most / first);
+}
+
+double sliderValue(const SliderSpan& span, double position) {
+    if (position <= 0.0) return span.least;
+    if (position >= 1.0) return span.most;
+    double value = span.least + position * (span.most - span.least);
+    if (span.scale == SliderScale::Logarithmic) {
+        const double start = span.least > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
+        if (position < start) return span.least;
+        value = first * std::pow(span.most / first, (position - start) / (1.0 - start));
+    }
+    return std::clamp(roundedToDigits(value), span.least, span.most);
+}
+
+}  // namespace limpid
