@@ -5,6 +5,7 @@
 
 #include "passes/accumulate/accumulate.h"
 #include "passes/deform/deform.h"
+#include "passes/preview/preview.h"
 
 namespace limpid {
 namespace {
@@ -126,6 +127,15 @@ FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& sce
     return out;
 }
 
+FrameImages recordPreview(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                          const FrameInput& input) {
+    FrameImages out;
+    const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
+    out.beauty = accumulate(graph, "preview", preview(graph, seen, input.camera), input.samplesBefore,
+                            input.samples, VarianceOf::Nothing);
+    return out;
+}
+
 /// A frame's samples in as many launches as the device needs, averaged.
 PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                              const FrameInput& input) {
@@ -208,6 +218,8 @@ FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderS
             return recordLit(graph, scene, settings, input);
         case Pipeline::Kind::AmbientOcclusion:
             return recordAmbientOcclusion(graph, scene, settings, input);
+        case Pipeline::Kind::Preview:
+            return recordPreview(graph, scene, settings, input);
         case Pipeline::Kind::Denoised:
             break;
     }

@@ -13,6 +13,8 @@ std::string_view Pipeline::name() const {
             return "gbuffer";
         case Kind::AmbientOcclusion:
             return "ao";
+        case Kind::Preview:
+            return "preview";
         case Kind::Denoised:
             break;
     }
@@ -27,6 +29,8 @@ std::string_view Pipeline::help() const {
             return "what the camera sees, lit by the lights directly, without a bounce";
         case Kind::AmbientOcclusion:
             return "ambient occlusion: how open each visible point is";
+        case Kind::Preview:
+            return "what the camera sees, shaded by a light at the camera: fast, for finding one's way";
         case Kind::Denoised:
             break;
     }
@@ -37,15 +41,17 @@ std::vector<std::string> Pipeline::layers() const {
     std::vector<std::string> names = layerNames();
     if (takesOneSampleALaunch()) std::erase(names, "specular");
     if (takesOneSampleALaunch()) std::erase(names, "variance");
-    if (kind == Kind::AmbientOcclusion) std::erase(names, "diffuse");
-    if (kind == Kind::AmbientOcclusion) std::erase(names, "emission");
+    if (!needsExposure()) std::erase(names, "diffuse");
+    if (!needsExposure()) std::erase(names, "emission");
     return names;
 }
 
 const std::vector<Pipeline>& pipelines() {
     static const std::vector<Pipeline> all = [] {
-        std::vector<Pipeline> list{
-            {Pipeline::Kind::Path}, {Pipeline::Kind::GBuffer}, {Pipeline::Kind::AmbientOcclusion}};
+        std::vector<Pipeline> list{{Pipeline::Kind::Path},
+                                   {Pipeline::Kind::GBuffer},
+                                   {Pipeline::Kind::AmbientOcclusion},
+                                   {Pipeline::Kind::Preview}};
         for (const denoise::Denoiser& denoiser : denoise::denoisers())
             list.push_back({Pipeline::Kind::Denoised, &denoiser});
         return list;

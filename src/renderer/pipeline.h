@@ -15,6 +15,7 @@ struct Pipeline {
         Path,              ///< the path tracer alone, accumulated
         GBuffer,           ///< what the camera sees, lit directly, accumulated
         AmbientOcclusion,  ///< how open each visible point is, accumulated
+        Preview,           ///< what the camera sees, shaded without the scene's light, accumulated
         Denoised,          ///< the path tracer and a denoiser
     };
     Kind kind = Kind::Path;
@@ -25,7 +26,9 @@ struct Pipeline {
     /// Each frame is a mean of its own, or of all frames since the camera stood still.
     bool accumulates() const { return kind != Kind::Denoised; }
     /// Its passes trace one primary ray per pixel and launch.
-    bool takesOneSampleALaunch() const { return kind == Kind::GBuffer || kind == Kind::AmbientOcclusion; }
+    bool takesOneSampleALaunch() const { return kind != Kind::Path && kind != Kind::Denoised; }
+    /// Its picture is radiance; otherwise values from 0 to 1, which are shown without exposure.
+    bool needsExposure() const { return kind != Kind::AmbientOcclusion && kind != Kind::Preview; }
     /// Of layerNames(), in that order: those that an EXR file can have.
     std::vector<std::string> layers() const;
     bool operator==(const Pipeline&) const = default;
