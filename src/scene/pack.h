@@ -21,6 +21,10 @@ void findRefitLevels(SceneData& data);
 void packMaterials(const Scene& scene, SceneData& data);
 /// Light list, its alias table, and the environment; needs the geometry's instances.
 void packLights(const Scene& scene, SceneData& data);
+/// The first two of these; needs the geometry's instances and sphere alone.
+void packLamps(const Scene& scene, SceneData& data);
+/// How shaders multiply and turn the environment, and how often they ask it; after packLamps().
+void setEnvironmentParams(const Environment& env, layout::SceneParams& params);
 /// Directional albedo of GGX reflection (see shaders/bsdf.glsl).
 void fillGgxTable(std::vector<vec4>& table);
 /// Energy that single scattering keeps at a rough dielectric boundary.

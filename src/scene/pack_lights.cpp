@@ -90,7 +90,7 @@ class LightPacker {
             const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
             const auto material = static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
             uint32_t light = layout::NONE;
-            if (scene_.materials[material].emission != vec3(0.0f)) {
+            if (isEmitter(scene_.materials[material])) {
                 light = packTriangle(index, instance, mesh, t, material);
                 moving.triangles.push_back(static_cast<uint32_t>(t));
             }
@@ -201,15 +201,27 @@ void packEnvironment(const Environment& env, SceneData& data) {
     for (size_t i = 0; i < env.radiance.size(); ++i) {
         data.environment.emplace_back(env.radiance[i], table.probabilities[i]);
     }
+    setEnvironmentParams(env, data.params);
     data.params.environmentWidth = env.width;
     data.params.environmentHeight = env.height;
-    data.params.environmentProbability = data.params.lightCount > 0 ? environmentShare : 1.0f;
 }
 
 }  // namespace
 
-void packLights(const Scene& scene, SceneData& data) {
+void packLamps(const Scene& scene, SceneData& data) {
     LightPacker(scene, data).pack();
+}
+
+void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
+    params.environmentScale = env.scale;
+    params.environmentTurn = env.turn;
+    // Nobody asks what sends nothing, if there is something else to ask.
+    const float share = env.scale == vec3(0.0f) ? 0.0f : environmentShare;
+    params.environmentProbability = params.lightCount > 0 ? share : 1.0f;
+}
+
+void packLights(const Scene& scene, SceneData& data) {
+    packLamps(scene, data);
     if (!scene.environment.empty()) packEnvironment(scene.environment, data);
 }
 

@@ -74,7 +74,7 @@ class MaterialPacker {
         if (m.doubleSided) flags |= layout::MATERIAL_DOUBLE_SIDED;
         if (m.unlit) flags |= layout::MATERIAL_UNLIT;
         if (m.thin) flags |= layout::MATERIAL_THIN;
-        if (m.emission != vec3(0.0f)) flags |= layout::MATERIAL_EMISSIVE;
+        if (isEmitter(m)) flags |= layout::MATERIAL_EMISSIVE;
         return flags;
     }
 

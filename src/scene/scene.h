@@ -82,7 +82,8 @@ struct Material {
     float clearcoat = 0.0f;  ///< weight of a dielectric of index 1.5 over everything else, emission too
     float clearcoatRoughness = 0.0f;  ///< perceptual
     float clearcoatNormalScale = 1.0f;
-    vec3 emission{0.0f};  ///< radiance, strength included
+    vec3 emission{0.0f};        ///< radiance, strength included
+    bool staysEmitter = false;  ///< its triangles are among the lights even while it emits nothing
     float normalScale = 1.0f;
     float occlusionStrength =
         1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
@@ -96,6 +97,11 @@ struct Material {
     TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
+
+/// Its triangles are lights.
+inline bool isEmitter(const Material& material) {
+    return material.staysEmitter || material.emission != vec3(0.0f);
+}
 
 /// How an instance may differ from frame to frame. Follows from the chosen clip (scene/movement.h).
 enum class Movement : uint8_t { Still, Rigid, Deforming };
@@ -130,6 +136,8 @@ struct Environment {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<vec3> radiance;
+    vec3 scale{1.0f};   ///< multiplies the radiance
+    float turn = 0.0f;  ///< about +Y, of a full circle: what stood in the direction u stands in u + turn
     bool empty() const { return radiance.empty(); }
 };
 

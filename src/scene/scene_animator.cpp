@@ -71,11 +71,16 @@ SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
     for (const MovingLeaf& leaf : motion_.leaves)
         records_.push_back(data.instances[size_t{leaf.instance} * layout::INSTANCE_TEXELS + 3]);
     for (const gpu::TriangleTree& tree : data.trees) firstTriangles_.push_back(tree.first);
-    firstPunctual_ = data.lights.size() - scene.lights.size() * layout::LIGHT_TEXELS;
-    punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
+    setLights(data);
     // On the device already, and the largest part.
     motion_.restVertices.clear();
     motion_.morphDeltas.clear();
+}
+
+void SceneAnimator::setLights(const SceneData& data) {
+    firstPunctual_ = data.lights.size() - scene_.lights.size() * layout::LIGHT_TEXELS;
+    punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
+    motion_.lights = data.motion.lights;
 }
 
 SceneAnimator::Moment SceneAnimator::momentAt(double time) const {

@@ -37,6 +37,9 @@ class SceneAnimator {
     /// has. Throws Error if a vertex would leave the range of numbers.
     SceneFrame frame(double time, double previousTime) const;
 
+    /// The lights were packed again (scene/live_lights.h), as many and in the same order.
+    void setLights(const SceneData& data);
+
   private:
     struct Moment;
     Moment momentAt(double time) const;

@@ -123,6 +123,8 @@ struct SceneParams {
     float environmentProbability;  // of choosing the environment in next-event estimation
     uint environmentWidth;
     uint environmentHeight;
+    vec3 environmentScale;    // multiplies its radiance
+    float environmentTurn;    // about +Y, of a full circle: added to the direction's u
     uint rootNode;            // of the tree that rays enter
     uint previousVertexBase;  // texel of previousGeometry where vertices begin
 };

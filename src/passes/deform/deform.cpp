@@ -68,7 +68,8 @@ void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFr
     pose(graph, scene, frame);
     if (!frame.poses.empty()) refit(graph, scene, frame);
     if (scene.expandsNodes()) expand(graph, scene, frame);
-    if (scene.structures()) graph.rebuild("deform/structures", *scene.structures());
+    const bool moved = !frame.placements.empty() || !frame.poses.empty();
+    if (scene.structures() && moved) graph.rebuild("deform/structures", *scene.structures());
 }
 
 }  // namespace limpid
