@@ -6,6 +6,7 @@
 #include "scene/builtin.h"
 #include "scene/camera.h"
 #include "scene/environment.h"
+#include "scene/light_file.h"
 #include "scene/load.h"
 #include "scene/own_light.h"
 #include "scene/prepare.h"
@@ -36,9 +37,13 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
             "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
         ->required();
     command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
-    command.add_option("--light", choice.light,
-                       "A white light besides the scene's: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY in "
-                       "that direction");
+    command
+        .add_option("--light", choice.lights,
+                    "A white light besides the scene's: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY in "
+                    "that direction; once for each")
+        ->allow_extra_args(false);
+    command.add_option("--lights", choice.lightFile,
+                       "Changes to the scene's lights, as the window saves them (JSON)");
     command.add_option("--background", choice.background,
                        "The same radiance from everywhere instead of any environment: R,G,B");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
@@ -46,6 +51,9 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
         ->delimiter(',')
         ->expected(3);
     command.add_option("--target", choice.target, "What it looks at: X,Y,Z")->delimiter(',')->expected(3);
+    command.add_option("--up", choice.up, "What is up in its picture: X,Y,Z (0,1,0)")
+        ->delimiter(',')
+        ->expected(3);
     command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
         ->check(CLI::Range(0.01, 179.0));
 }
@@ -56,21 +64,32 @@ scene::Scene loadChosenScene(const SceneChoice& choice) {
                              ? scene::builtinScene(choice.scene.substr(prefix.size()))
                              : scene::loadScene(choice.scene);
     if (!choice.environment.empty()) scene.environment = scene::loadEnvironment(choice.environment);
-    scene::addOwnLight(scene, {scene::parseLamp(choice.light), scene::parseBackground(choice.background)});
+    scene::OwnLight own{{}, scene::parseBackground(choice.background)};
+    for (const std::string& text : choice.lights) {
+        if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);
+    }
+    scene::addOwnLight(scene, own);
     scene::prepare(scene);
+    if (!choice.lightFile.empty()) {
+        const std::vector<scene::LightControl> before = scene::lightControlsOf(scene);
+        scene::applyLightControls(scene, scene::readLightFile(choice.lightFile, before), before);
+    }
     return scene;
 }
 
 scene::Camera chosenCamera(const scene::Scene& scene, const SceneChoice& choice) {
     scene::Camera camera = namedCamera(scene, choice.camera);
-    if (choice.eye.empty() && choice.target.empty() && choice.fov == 0.0f) return camera;
+    if (choice.eye.empty() && choice.target.empty() && choice.up.empty() && choice.fov == 0.0f) return camera;
     if (choice.eye.size() != 3 || choice.target.size() != 3)
-        throw UsageError("--eye and --target go together, three numbers each; --fov goes with them");
+        throw UsageError("--eye and --target go together, three numbers each; --fov and --up go with them");
     const vec3 eye(choice.eye[0], choice.eye[1], choice.eye[2]),
         target(choice.target[0], choice.target[1], choice.target[2]);
     if (eye == target) throw UsageError("--eye and --target are the same point");
-    return scene::lookAt(eye, target, vec3(0.0f, 1.0f, 0.0f),
-                         choice.fov > 0.0f ? glm::radians(choice.fov) : camera.verticalFov);
+    const vec3 up =
+        choice.up.empty() ? vec3(0.0f, 1.0f, 0.0f) : vec3(choice.up[0], choice.up[1], choice.up[2]);
+    const bool isFlat = glm::length(up) > 0.0f && glm::length(glm::cross(target - eye, up)) > 0.0f;
+    if (!choice.up.empty() && !isFlat) throw UsageError("--up is zero or along the view");
+    return scene::lookAt(eye, target, up, choice.fov > 0.0f ? glm::radians(choice.fov) : camera.verticalFov);
 }
 
 }  // namespace limpid::cli

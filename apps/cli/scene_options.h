@@ -12,9 +12,12 @@ namespace limpid::cli {
 struct SceneChoice {
     std::string scene;
     std::string environment;
-    std::string light, background;  ///< as scene/own_light.h reads them
+    std::vector<std::string> lights;  ///< as scene/own_light.h reads each
+    std::string background;           ///< ... and this
+    std::string lightFile;            ///< changes to all of them (scene/light_file.h); empty: none
     std::string camera;
     std::vector<float> eye, target;  ///< three numbers each, or none: instead of the scene's cameras
+    std::vector<float> up;           ///< three numbers, with these; none: +Y
     float fov = 0.0f;                ///< degrees, with these; 0: that of the camera
 };
 

@@ -23,6 +23,7 @@ struct ViewOptions {
     SceneChoice scene;
     DeviceChoice device;
     std::optional<std::string> pipeline;
+    bool preview = false;
     std::optional<uint32_t> samples;
     std::optional<uint64_t> maxSamples;
     std::optional<int> shrink;
@@ -35,15 +36,17 @@ struct ViewOptions {
 #ifdef LIMPID_HAVE_VIEWER
 std::string eyeOptions(const SceneChoice& choice) {
     return fmt::format(" --eye {} --target {}{}", fmt::join(choice.eye, ","), fmt::join(choice.target, ","),
-                       choice.fov > 0.0f ? fmt::format(" --fov {}", choice.fov) : "");
+                       choice.fov > 0.0f ? fmt::format(" --fov {}", choice.fov) : "") +
+           (choice.up.empty() ? std::string() : fmt::format(" --up {}", fmt::join(choice.up, ",")));
 }
 
 /// What was kept, and over it what this command line says.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
     viewer::ViewSettings settings{
-        .source = {o.scene.scene, o.scene.environment, o.scene.light, o.scene.background},
+        .source = {o.scene.scene, o.scene.environment, o.scene.lights, o.scene.background, o.scene.lightFile},
         .animation = o.animation,
         .render = {},
+        .preview = o.preview,
         .controls = o.controls,
         .weights = o.weights,
         .shaders = o.shaders,
@@ -74,7 +77,8 @@ void run([[maybe_unused]] const ViewOptions& o) {
         SceneChoice choice = o.scene;
         choice.scene = source.scene;
         choice.environment = source.environment;
-        choice.light = source.light;
+        choice.lights = source.lights;
+        choice.lightFile.clear();  // the window keeps these changes apart
         choice.background = source.background;
         return loadChosenScene(choice);
     };
@@ -96,6 +100,8 @@ void addViewCommand(CLI::App& app) {
     auto o = std::make_shared<ViewOptions>();
     addSceneOptions(*command, o->scene);
     command->add_option("--pipeline", o->pipeline, "What makes the picture (the last one; at first path)");
+    command->add_flag("--preview", o->preview,
+                      "Start with the fast preview: first hits, shaded by a light at the camera");
     command->add_option("--preset", o->presets, "A named set of parameters");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");

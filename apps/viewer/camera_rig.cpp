@@ -22,6 +22,19 @@ FlyCamera handAt(const Stage& stage, const scene::Camera& start) {
 
 }  // namespace
 
+std::vector<std::string> cameraNames(const std::vector<scene::Camera>& cameras) {
+    std::vector<std::string> names;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+        const std::string& own = cameras[i].name;
+        const auto same = std::ranges::count(cameras, own, &scene::Camera::name);
+        if (own.empty())
+            names.push_back(fmt::format("camera {}", i));
+        else
+            names.push_back(same > 1 ? fmt::format("{} ({})", own, i) : own);
+    }
+    return names;
+}
+
 void CameraRig::show(const Stage& stage, const scene::Camera& home) {
     home_ = home;
     nameAll(stage);
@@ -29,8 +42,8 @@ void CameraRig::show(const Stage& stage, const scene::Camera& home) {
 }
 
 void CameraRig::nameAll(const Stage& stage) {
-    names_ = {"free"};
-    for (const scene::Camera& camera : stage.scene().cameras) names_.push_back(camera.name);
+    names_ = cameraNames(stage.scene().cameras);
+    names_.insert(names_.begin(), "free");
     names_.insert(names_.end(), pathNames.begin(), pathNames.end());
 }
 
@@ -55,6 +68,11 @@ void CameraRig::stand(const Stage& stage, const scene::Camera& camera) {
     fly_ = handAt(stage, camera);
 }
 
+bool CameraRig::place(const Stage& stage, double time, const vec3& eye, const vec3& target, const vec3& up) {
+    setFree(stage, time);
+    return fly_.place(eye, target, up);
+}
+
 void CameraRig::setFree(const Stage& stage, double time) {
     if (isFree()) return;
     fly_ = FlyCamera(at(stage, time), fly_.distance());
@@ -72,6 +90,7 @@ scene::CameraKey CameraRig::key() const {
     scene::CameraKey key;
     key.eye = fly_.eye();
     key.target = fly_.eye() + fly_.forward();  // as FlyCamera::camera() has it
+    key.up = fly_.up();
     key.verticalFov = fly_.camera().verticalFov;
     return key;
 }

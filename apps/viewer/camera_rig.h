@@ -11,6 +11,9 @@
 
 namespace limpid::viewer {
 
+/// As the panel lists them: their own names, with their numbers where two are the same, or numbers alone.
+std::vector<std::string> cameraNames(const std::vector<scene::Camera>& cameras);
+
 class CameraRig {
   public:
     /// Another scene; `home` is where a free camera starts.
@@ -27,6 +30,8 @@ class CameraRig {
     void setFree(const Stage& stage, double time);
     /// Free, from there.
     void stand(const Stage& stage, const scene::Camera& camera);
+    /// Free, and where FlyCamera::place() puts it.
+    bool place(const Stage& stage, double time, const vec3& eye, const vec3& target, const vec3& up);
     /// Back to where it started.
     void goHome(const Stage& stage) { choose(stage, 0); }
 

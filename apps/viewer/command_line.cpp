@@ -28,7 +28,8 @@ const char* nameOf(Jitter jitter) {
 std::string sourceOptions(const SceneSource& source) {
     std::string text;
     if (!source.environment.empty()) text += " --env " + quoted(source.environment);
-    if (!source.light.empty()) text += " --light " + quoted(source.light);
+    for (const std::string& light : source.lights) text += " --light " + quoted(light);
+    if (!source.lightFile.empty()) text += " --lights " + quoted(source.lightFile);
     if (!source.background.empty()) text += " --background " + quoted(source.background);
     return text;
 }
@@ -78,6 +79,7 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
         const scene::CameraKey& key = playback.lastCamera();
         result.text += fmt::format(" --eye {} --target {} --fov {}", triple(key.eye), triple(key.target),
                                    frame.fovDegrees);
+        if (key.up != vec3(0.0f, 1.0f, 0.0f)) result.text += " --up " + triple(key.up);
     } else if (playback.cameras().empty()) {
         result.problem = "there are too many frames since the last reset; reset first";
     } else {
@@ -97,6 +99,7 @@ std::string pathText(const Playback& playback, float fovDegrees) {
         keys.push_back({{"time", key.time},
                         {"eye", {key.eye.x, key.eye.y, key.eye.z}},
                         {"target", {key.target.x, key.target.y, key.target.z}},
+                        {"up", {key.up.x, key.up.y, key.up.z}},
                         {"fov", fovDegrees}});
     return nlohmann::json{{"keys", keys}}.dump(1) + "\n";
 }

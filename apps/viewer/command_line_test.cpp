@@ -21,7 +21,11 @@ class CommandLineTest : public testing::Test {
     }
     std::string text() const { return commandLineOf(frame_, playback_, "flown.json").text; }
 
-    ShownFrame frame_{.source = {.scene = "my scene.glb", .environment = {}, .light = {}, .background = {}},
+    ShownFrame frame_{.source = {.scene = "my scene.glb",
+                                 .environment = {},
+                                 .lights = {},
+                                 .background = {},
+                                 .lightFile = {}},
                       .clip = {},
                       .weights = {},
                       .settings = {},
@@ -42,11 +46,11 @@ TEST_F(CommandLineTest, AStillHasItsCameraAndSamples) {
 }
 
 TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
-    frame_.source.light = "sun,0,1,0,2";
+    frame_.source.lights = {"sun,0,1,0,2", "point,1,2,3,4"};
     frame_.source.background = "1,1,1";
     frame_.settings.layers = true;
     frames(1, false);
-    EXPECT_THAT(text(), HasSubstr("--light sun,0,1,0,2 --background 1,1,1"));
+    EXPECT_THAT(text(), HasSubstr("--light sun,0,1,0,2 --light point,1,2,3,4 --background 1,1,1"));
     EXPECT_THAT(text(), HasSubstr("--aov all"));
 }
 

@@ -2,13 +2,30 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>  // whether a slider is being typed into
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "image/color.h"
 
 namespace limpid::viewer {
 namespace {
 
-ImGuiSliderFlags scaleOf(double least, double most) {
-    return (most - least > 1000.0 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
-           ImGuiSliderFlags_AlwaysClamp;
+constexpr float mostOfAVector = 1e9f;
+
+/// ImGui's slider over positions from 0 to 1 that shows the value as its text: the scale is ours, and a
+/// number that is typed (Ctrl and a click) is the value itself, which may lie outside the slider's span.
+std::optional<double> slide(const char* name, const std::string& shown, const SliderSpan& span,
+                            double value) {
+    constexpr double first = 0.0, last = 1.0;
+    const bool typing = ImGui::TempInputIsActive(ImGui::GetID(name));
+    double number = typing ? value : sliderPosition(span, value);
+    if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &first, &last, shown.c_str()))
+        return std::nullopt;
+    if (typing) return std::isnan(number) ? value : number;
+    return sliderValue(span, number);
 }
 
 }  // namespace
@@ -35,16 +52,45 @@ bool Controls::checkbox(const char* name, bool& value) {
     return changed;
 }
 
-bool Controls::slider(const char* name, int& value, int least, int most) {
-    const bool changed = ImGui::SliderInt(name, &value, least, most, "%d", scaleOf(least, most));
+bool Controls::slider(const char* name, int& value, const Range& range) {
+    const int before = value;
+    if (const auto moved = slide(name, fmt::format("{}", value), range.slider, value))
+        value = static_cast<int>(std::llround(std::clamp(*moved, range.minimum, range.maximum)));
     note(name, fmt::format("{}", value));
-    return changed;
+    return value != before;
 }
 
-bool Controls::slider(const char* name, float& value, float least, float most, const char* format) {
-    const bool changed = ImGui::SliderFloat(name, &value, least, most, format,
-                                            scaleOf(static_cast<double>(least), static_cast<double>(most)));
+bool Controls::slider(const char* name, float& value, const Range& range, const char* format) {
+    const float before = value;
+    const std::string shown = fmt::format(fmt::runtime(format), value);
+    if (const auto moved = slide(name, shown, range.slider, static_cast<double>(value)))
+        value = static_cast<float>(std::clamp(*moved, range.minimum, range.maximum));
     note(name, fmt::format("{}", value));
+    return value != before;
+}
+
+bool Controls::vector(const char* name, vec3& value, float speed) {
+    bool changed = false;
+    ImGui::PushID(name);
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = (ImGui::CalcItemWidth() - 2.0f * gap) / 3.0f;
+    const char* const axes[] = {"x", "y", "z"};
+    for (int i = 0; i < 3; ++i) {
+        float number = value[i];
+        ImGui::SetNextItemWidth(width);
+        ImGui::PushID(i);
+        if (ImGui::DragFloat("##", &number, speed, -mostOfAVector, mostOfAVector, "%.5g",
+                             ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_AlwaysClamp) &&
+            std::isfinite(number)) {
+            value[i] = number;
+            changed = true;
+        }
+        ImGui::PopID();
+        note(std::string(name) + " " + axes[i], fmt::format("{}", value[i]));
+        ImGui::SameLine(0.0f, gap);
+    }
+    ImGui::TextUnformatted(name);
+    ImGui::PopID();
     return changed;
 }
 
@@ -52,6 +98,27 @@ bool Controls::header(const char* name) {
     const bool open = ImGui::CollapsingHeader(name);
     note(name, open ? "open" : "closed");
     return open;
+}
+
+bool Controls::tree(const char* name) {
+    const bool open = ImGui::TreeNodeEx("##tree", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", name);
+    note("tree", open ? "open" : "closed");
+    return open;
+}
+
+bool Controls::color(const char* name, vec3& value) {
+    const float most = std::max({value.r, value.g, value.b, 1e-20f});
+    vec3 shown;
+    for (int i = 0; i < 3; ++i) shown[i] = image::srgbEncode(value[i] / most);
+    const bool changed = ImGui::ColorEdit3(name, &shown.x, ImGuiColorEditFlags_None);
+    note(name, fmt::format("{} {} {}", value.r, value.g, value.b));
+    if (!changed) return false;
+    vec3 picked;
+    for (int i = 0; i < 3; ++i) picked[i] = image::srgbDecode(std::clamp(shown[i], 0.0f, 1.0f));
+    const float largest = std::max({picked.r, picked.g, picked.b});
+    if (largest <= 0.0f) return false;
+    value = most / largest * picked;
+    return true;
 }
 
 bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen) {
@@ -64,10 +131,12 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
     bool changed = false;
     for (size_t i = 0; i < choices.size(); ++i) {
         const auto number = static_cast<int>(i);
+        ImGui::PushID(number);  // two may have the same name
         if (ImGui::Selectable(choices[i].c_str(), number == chosen)) {
             changed = number != chosen;
             chosen = number;
         }
+        ImGui::PopID();
         if (!appears) note(std::string(name) + "=" + choices[i]);
     }
     ImGui::EndCombo();

@@ -4,7 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "base/math.h"
+#include "base/slider_span.h"
+
 namespace limpid::viewer {
+
+/// What a number may be, and the part of it that its slider runs over.
+struct Range {
+    double minimum, maximum;
+    SliderSpan slider;
+    Range(double least, double most)
+        : minimum(least), maximum(most), slider{least, most, SliderScale::Linear, 0.0} {}
+    Range(double least, double most, const SliderSpan& span) : minimum(least), maximum(most), slider(span) {}
+};
 
 struct DrawnControl {
     std::string name, value;
@@ -22,10 +34,16 @@ class Controls {
 
     bool button(const char* name);
     bool checkbox(const char* name, bool& value);
-    /// Ranges of more than a thousand to one are logarithmic.
-    bool slider(const char* name, int& value, int least, int most);
-    bool slider(const char* name, float& value, float least, float most, const char* format = "%.4g");
+    /// Moves over range.slider; a number that is typed (Ctrl and a click) may be anything of the range.
+    bool slider(const char* name, int& value, const Range& range);
+    bool slider(const char* name, float& value, const Range& range, const char* format = "{:.4g}");
+    /// Three numbers side by side, to drag (`speed` per pixel) or to type; noted as "NAME x" and so on.
+    bool vector(const char* name, vec3& value, float speed);
     bool header(const char* name);
+    /// One line that opens; if it is open, ImGui::TreePop() ends what is in it.
+    bool tree(const char* name);
+    /// Hue and saturation of linear Rec. 709; the largest component stays as it is.
+    bool color(const char* name, vec3& value);
     /// `choices` are shown in a list that opens; `chosen` is one's number.
     bool choice(const char* name, const std::vector<std::string>& choices, int& chosen);
     /// Of whatever was drawn last.

@@ -26,6 +26,30 @@ TEST(FlyCamera, StandsWhereItStarted) {
     EXPECT_EQ(camera.verticalFov, 0.6f);
 }
 
+TEST(FlyCamera, KeepsTheRollThatItStartedWith) {
+    const scene::Camera start = scene::lookAt({4, -1, 2}, {0, 3, 5}, {1, 1, 0}, 0.6f);
+    FlyCamera camera(start, 3.0f);
+    for (int column = 0; column < 4; ++column)
+        expectNear(vec3(camera.camera().toWorld[column]), vec3(start.toWorld[column]));
+    const vec3 up = camera.up();
+    camera.orbit(0.3f, 0.1f);
+    expectNear(camera.up(), up);
+}
+
+TEST(FlyCamera, IsPlacedByNumbers) {
+    FlyCamera camera = facingMinusZ();
+    ASSERT_TRUE(camera.place({1, 2, 3}, {4, 5, -6}, {0, 0, 2}));
+    expectNear(camera.eye(), {1, 2, 3});
+    expectNear(camera.target(), {4, 5, -6});
+    expectNear(camera.up(), {0, 0, 1});
+    const scene::Camera expected = scene::lookAt({1, 2, 3}, {4, 5, -6}, {0, 0, 1}, 0.8f);
+    for (int column = 0; column < 4; ++column)
+        expectNear(vec3(camera.camera().toWorld[column]), vec3(expected.toWorld[column]));
+    EXPECT_FALSE(camera.place({1, 2, 3}, {1, 2, 3}, {0, 1, 0}));
+    EXPECT_FALSE(camera.place({1, 2, 3}, {1, 9, 3}, {0, 1, 0}));
+    expectNear(camera.target(), {4, 5, -6});
+}
+
 TEST(FlyCamera, OrbitsAroundItsTarget) {
     FlyCamera camera = facingMinusZ();
     camera.orbit(1.57079633f, 0.0f);  // the hand pulls to the right: the eye goes to the left

@@ -38,7 +38,7 @@ void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment
     const std::string pipeline = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
     if (std::exchange(pipeline_, pipeline) != pipeline) scores_.clear();
     if (alone) moment.number = numbersAlone + other_.framesOfSame();
-    other_.prepare(stage, now, panel.samples, panel.exposure);
+    other_.prepare(stage, now, panel.samples, now.pipeline.needsExposure() ? panel.exposure : 0.0f);
     other_.render(std::move(moment));
     ++frames_;
     name_ = pipeline;
@@ -47,7 +47,7 @@ void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment
 
 void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {
     if (!main || !other_) return;
-    other_.expose(exposure);
+    other_.expose(other_.settings().pipeline.needsExposure() ? exposure : 0.0f);
     const std::tuple now(main.frames(), frames_, exposure);
     const auto time = std::chrono::steady_clock::now();
     if (scores_.busy() || scored_ == now || (rendering && time - lastScores_ < betweenScores)) return;

@@ -8,19 +8,21 @@
 #include <string>
 
 #include "base/bytes_text.h"
+#include "light_panel.h"
 #include "renderer/parameters.h"
 
 namespace limpid::viewer {
 namespace {
 
+const Range stopsRange(-32.0, 32.0, {-16.0, 16.0});
+
 /// Whether the user changed it.
 bool editValue(Controls& controls, const ParamInfo& info, ParamValue& value) {
     const char* const name = info.name.c_str();
     if (bool* const on = std::get_if<bool>(&value)) return controls.checkbox(name, *on);
-    if (int* const number = std::get_if<int>(&value))
-        return controls.slider(name, *number, static_cast<int>(info.minimum), static_cast<int>(info.maximum));
-    return controls.slider(name, std::get<float>(value), static_cast<float>(info.minimum),
-                           static_cast<float>(info.maximum));
+    const Range range(info.minimum, info.maximum, info.slider);
+    if (int* const number = std::get_if<int>(&value)) return controls.slider(name, *number, range);
+    return controls.slider(name, std::get<float>(value), range);
 }
 
 void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& controls) {
@@ -47,16 +49,23 @@ void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& cont
     controls.setGroup("");
 }
 
-void drawPipelines(RenderSettings& settings, Controls& controls) {
+void drawPipelines(PanelState& state, Controls& controls) {
+    RenderSettings& settings = state.render;
     std::vector<std::string> names;
     int chosen = 0;
     for (const Pipeline& pipeline : pipelines()) {
         if (pipeline == settings.pipeline) chosen = static_cast<int>(names.size());
         names.emplace_back(pipeline.name());
     }
-    if (controls.choice("pipeline", names, chosen))
+    if (controls.choice("pipeline", names, chosen)) {
+        if (!state.isPreview()) state.pipelineBefore = settings.pipeline;
         settings.pipeline = pipelines()[static_cast<size_t>(chosen)];
+    }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(settings.pipeline.help()).c_str());
+    bool preview = state.isPreview();
+    if (controls.checkbox("preview", preview)) state.setPreview(preview);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("first hits, shaded by a light at the camera: fast, for finding one's way (V)");
 }
 
 /// Of the pass that is chosen in the list.
@@ -65,7 +74,7 @@ void drawInspector(PanelState& state, const PanelFacts& facts, Controls& control
     state.image = std::min(state.image, static_cast<int>(facts.images.size()) - 1);
     controls.choice("image", facts.images, state.image);
     controls.choice("channels", {"color", "red", "green", "blue", "alpha"}, state.view.channels);
-    controls.slider("brightness, stops", state.view.stops, -16.0f, 16.0f, "%.2f");
+    controls.slider("brightness, stops", state.view.stops, stopsRange, "{:.2f}");
     controls.checkbox("false color", state.view.falseColor);
     ImGui::TextUnformatted(facts.probe.c_str());
 }
@@ -112,7 +121,8 @@ void drawComparison(PanelState& state, const PanelFacts& facts, Controls& contro
     controls.choice("compare with", comparisonNames(), state.comparison.with);
     if (!state.comparison.isOn()) return;
     if (state.comparison.isReference())
-        controls.slider("reference samples", state.comparison.referenceSamples, 1, 1 << 16);
+        controls.slider("reference samples", state.comparison.referenceSamples,
+                        {1, 1 << 16, {1, 1 << 16, SliderScale::Logarithmic}});
     ImGui::TextUnformatted(facts.scores.empty() ? "..." : facts.scores.c_str());
     controls.note("scores", facts.scores);
 }
@@ -124,46 +134,21 @@ void drawLooking(PanelState& state, Controls& controls) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, of pipelines that denoise");
 }
 
-/// Takes effect when the hand lets go: the scene is loaded again.
-void drawLight(PanelState& state, const PanelFacts& facts, Controls& controls) {
-    if (!controls.header("light")) return;
-    controls.setGroup("light");
-    LightChoice& light = state.light;
-    bool& changed = state.asked.relight;
-    const auto slide = [&](const char* name, float& value, float least, float most) {
-        controls.slider(name, value, least, most);
-        changed |= ImGui::IsItemDeactivatedAfterEdit();
-    };
-    changed |= controls.choice("kind", {"the scene's alone", "a point more", "a sun more"}, light.kind);
-    if (light.kind != 0) {
-        const float reach = light.kind == 1 ? facts.lightReach : 1.0f;
-        slide("x", light.at.x, -reach, reach);
-        slide("y", light.at.y, -reach, reach);
-        slide("z", light.at.z, -reach, reach);
-        slide("intensity", light.intensity, 0.0f, 1e4f);
-    }
-    changed |= controls.checkbox("background of its own", light.hasBackground);
-    if (light.hasBackground) {
-        slide("red", light.background.r, 0.0f, 10.0f);
-        slide("green", light.background.g, 0.0f, 10.0f);
-        slide("blue", light.background.b, 0.0f, 10.0f);
-    }
-    controls.setGroup("");
-}
-
 void drawSampling(PanelState& state, Controls& controls) {
-    drawPipelines(state.render, controls);
+    drawPipelines(state, controls);
     int samples = static_cast<int>(state.samples), seed = static_cast<int>(state.render.seed);
-    if (controls.slider("samples a frame", samples, 1, 64)) state.samples = static_cast<uint32_t>(samples);
-    controls.slider("most samples", state.maxSamples, 1, 1 << 20);
-    if (controls.slider("seed", seed, 0, 1000)) state.render.seed = static_cast<uint32_t>(seed);
+    if (controls.slider("samples a frame", samples, {1, 64, {1, 64, SliderScale::Logarithmic}}))
+        state.samples = static_cast<uint32_t>(samples);
+    controls.slider("most samples", state.maxSamples, {1, 1 << 20, {1, 1 << 20, SliderScale::Logarithmic}});
+    if (controls.slider("seed", seed, {0, 0x7fffffff, {0, 1000}}))
+        state.render.seed = static_cast<uint32_t>(seed);
     controls.choice("jitter", {"as the pipeline needs it", "pixel", "frame", "off"}, state.jitter);
     controls.choice("resolution", {"full", "1/2", "1/4", "1/8"}, state.shrink);
 }
 
 void drawDisplay(PanelState& state, Controls& controls) {
     PanelRequests& asked = state.asked;
-    controls.slider("exposure, stops", state.exposure, -16.0f, 16.0f, "%.2f");
+    controls.slider("exposure, stops", state.exposure, stopsRange, "{:.2f}");
     asked.measureExposure |= controls.button("measure exposure");
     ImGui::SameLine();
     asked.screenshot |= controls.button("screenshot");
@@ -186,13 +171,18 @@ void drawTime(PanelState& state, const PanelFacts& facts, Controls& controls) {
     if (facts.duration <= 0.0) return;
     ImGui::SameLine();
     controls.checkbox("playing", state.playing);
-    asked.seek |= controls.slider("time, s", state.time, 0.0f, static_cast<float>(facts.duration), "%.3f");
+    asked.seek |= controls.slider("time, s", state.time, {0.0, facts.duration}, "{:.3f}");
 }
 
 void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) {
     PanelRequests& asked = state.asked;
     asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
-    controls.slider("field of view", state.fovDegrees, 5.0f, 150.0f, "%.1f");
+    controls.slider("field of view", state.fovDegrees, {0.01, 179.0, {5.0, 150.0}}, "{:.1f}");
+    // From one side of the scene to the other in about a thousand pixels.
+    const float speed = 0.002f * facts.sceneRadius;
+    asked.place |= controls.vector("eye", state.pose.eye, speed);
+    asked.place |= controls.vector("target", state.pose.target, speed);
+    asked.place |= controls.vector("up", state.pose.up, 0.01f);
     asked.resetCamera |= controls.button("reset camera");
     ImGui::SameLine();
     asked.seeAll |= controls.button("see everything");
@@ -262,14 +252,15 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     drawOpen(state, controls);
     drawLooking(state, controls);
     drawComparison(state, facts, controls);
-    drawLight(state, facts, controls);
+    drawLights(state, facts, controls);
     drawPasses(state, facts, controls);
     for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
     ImGui::PopItemWidth();
     ImGui::Separator();
     ImGui::TextWrapped(
         "left button: orbit; double click: look at this; right: look, with WASDQE to fly; middle: pan; "
-        "wheel: zoom; P: all values under the mouse; Tab: this panel; Space: run or stop; Escape: leave");
+        "wheel: zoom; V: preview; P: all values under the mouse; Tab: this panel; Space: run or stop; "
+        "Escape: leave");
     ImGui::End();
 }
 

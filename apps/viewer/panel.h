@@ -8,7 +8,7 @@
 #include "controls.h"
 #include "gpu/frame_graph.h"
 #include "inspector.h"
-#include "light_choice.h"
+#include "light_desk.h"
 #include "renderer/settings.h"
 #include "timings.h"
 
@@ -22,10 +22,18 @@ struct PanelRequests {
     bool step = false;        ///< one frame, though rendering stands still
     bool seek = false;        ///< to PanelState::time
     bool choosePose = false;  ///< PanelState::camera is another one
+    bool place = false;       ///< PanelState::pose is another one
     bool open = false;        ///< PanelState::file
-    bool relight = false;     ///< PanelState::light is another one
-    bool probe = false;       ///< all values under the mouse
-    bool seeAll = false;      ///< a camera from where everything is seen
+    bool relight = false;     ///< the background of PanelState::lights is another one
+    bool addPoint = false, addSun = false, saveLights = false;
+    int removeLamp = -1;  ///< this added light
+    bool probe = false;   ///< all values under the mouse
+    bool seeAll = false;  ///< a camera from where everything is seen
+};
+
+/// Of the camera, whichever it is.
+struct CameraPose {
+    vec3 eye{0.0f}, target{0.0f}, up{0.0f, 1.0f, 0.0f};
 };
 
 /// What the panel shows and changes.
@@ -37,6 +45,7 @@ struct PanelState {
     int shrink = 0;         ///< 2^shrink pixels of the window for one of the picture's, along each axis
     float exposure = 0.0f;  ///< stops
     float fovDegrees = 45.0f;
+    CameraPose pose;
     bool running = true;   ///< frames are rendered as long as there is something to gain
     bool playing = false;  ///< the clip, or the camera's path
     float time = 0.0f;     ///< seconds
@@ -49,9 +58,18 @@ struct PanelState {
     float divider = 0.65f;   ///< of the window's width: what it is compared with lies right of it
     bool magnifier = false;  ///< beside the mouse
     bool arrows = false;     ///< of motion
-    LightChoice light;
+    LightDesk lights;
     bool shown = true;
     PanelRequests asked;
+
+    bool isPreview() const { return render.pipeline.kind == Pipeline::Kind::Preview; }
+    /// The pipeline `preview`, or the one of before.
+    void setPreview(bool on) {
+        if (on == isPreview()) return;
+        if (on) pipelineBefore = render.pipeline;
+        render.pipeline = on ? Pipeline{Pipeline::Kind::Preview} : pipelineBefore;
+    }
+    Pipeline pipelineBefore;  ///< `preview`
 };
 
 /// What it only shows.
@@ -63,7 +81,7 @@ struct PanelFacts {
     std::vector<std::string> cameras;
     Timings timings;
     uint64_t memoryBytes = 0, sceneBytes = 0;  ///< of the device
-    float lightReach = 1.0f;                   ///< how far from 0 along each axis a light may stand
+    float sceneRadius = 1.0f;                  ///< world units
     std::string comparedWith, scores;
     std::string allValues;            ///< of the last probe
     std::vector<std::string> images;  ///< of PanelState::pass

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace limpid::viewer {
 
 /// All but the scene may be empty.
 struct SceneSource {
-    std::string scene, environment, light, background;
+    std::string scene, environment;
+    std::vector<std::string> lights;  ///< each a --light
+    std::string background;
+    std::string lightFile;  ///< --lights of the first scene
 };
 
 }  // namespace limpid::viewer

@@ -5,6 +5,8 @@
 
 #include "scene/framing.h"
 #include "scene/gpu_scene.h"
+#include "scene/light_control.h"
+#include "scene/live_lights.h"
 #include "scene/scene_animator.h"
 
 namespace limpid::viewer {
@@ -17,19 +19,32 @@ class Stage {
     Stage(const Stage&) = delete;  // the animator refers to the scene
     Stage& operator=(const Stage&) = delete;
 
+    /// The lights as they were loaded.
+    const std::vector<scene::LightControl>& originalLights() const { return originalLights_; }
+    /// Changes them, for the next frame; as many, in that order.
+    void setLights(const std::vector<scene::LightControl>& lights);
+    /// setLights() was called since the last frame.
+    bool lightsChanged() const { return lightsChanged_; }
+
     const scene::Scene& scene() const { return scene_; }
     scene::GpuScene& onDevice() { return *onDevice_; }
     const scene::BoundingSphere& sphere() const { return sphere_; }
     /// Seconds of the clip; 0 if none plays.
     double duration() const;
     bool moves() const { return animator_.has_value(); }
-    /// What moved, for the next frame. Only if it moves.
-    scene::SceneFrame frame(double time, double previousTime) const {
-        return animator_->frame(time, previousTime);
-    }
+    /// From one moment to another.
+    struct Step {
+        double from, to;
+    };
+    /// What is to be changed on the device before the next frame. `step`: what the clip does; none: it rests
+    /// at `time`.
+    std::optional<scene::SceneFrame> nextFrame(const std::optional<Step>& step, double time);
 
   private:
     scene::Scene scene_;
+    std::vector<scene::LightControl> originalLights_, lights_;
+    std::optional<scene::LiveLights> live_;
+    bool lightsChanged_ = false;
     scene::BoundingSphere sphere_;
     std::optional<scene::GpuScene> onDevice_;
     std::optional<scene::SceneAnimator> animator_;

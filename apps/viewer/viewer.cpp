@@ -18,7 +18,7 @@
 #include "display.h"
 #include "image/tonemap.h"
 #include "kept_settings.h"
-#include "light_choice.h"
+#include "light_desk.h"
 #include "live_comparison.h"
 #include "live_render.h"
 #include "networks.h"
@@ -29,6 +29,7 @@
 #include "renderer/reset_rule.h"
 #include "scene/camera.h"
 #include "scene/framing.h"
+#include "scene/light_file.h"
 #include "scene/movement.h"
 #include "shader_reload.h"
 #include "stage.h"
@@ -45,10 +46,10 @@ constexpr double longestStep = 0.1;      ///< seconds that a key moves the camer
 constexpr int restlessPictures = 4;      ///< drawn after the last event: until the panel has settled
 constexpr double betweenTimes = 0.25;    ///< seconds; reading the passes' times waits for the device
 constexpr double betweenSources = 0.5;   ///< seconds between looks at the shaders' files
-constexpr float lightReach = 3.0f;       ///< of the scene's radius
 constexpr double messageSeconds = 20.0;
 constexpr uint64_t leastFramesOfADevice = 30;  ///< lost sooner, it would be lost again
 constexpr const char* pathFile = "flown.json";
+constexpr const char* lightFile = "lights.json";
 
 gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     options.surfaceExtensions = Window::surfaceExtensions();
@@ -88,11 +89,14 @@ class Viewer {
     void show(scene::Scene scene);
     void goTo(const scene::Camera& home);
     void open(const std::string& file);
-    void relight();
+    void applyLightRequests();
+    void relight(const SceneSource& source);
     void startAnew();
     void handleInput(double seconds);
     void fly(float seconds);
     void focus();
+    void showPose();
+    void placeCamera();
     void applyRequests();
     void applySettings();
     void loadNetworks();
@@ -104,9 +108,11 @@ class Viewer {
     void render(const CameraParams& camera);
     void noteTimes(bool rendered);
     void measureExposure();
+    float stopsOf(const Pipeline& pipeline) const;
     void save(const fs::path& file);
     void copyCommand();
     void savePath();
+    void saveLights();
     void writeControls();
     /// Runs what may fail for reasons of the user's; says so in the window. Whether it did not.
     template <typename Function>
@@ -152,13 +158,16 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()) {
     panel_.render = settings.render;
+    if (settings.preview) panel_.setPreview(true);
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     ownShrink_ = shrinkFor(device_, window_.pixels());
     panel_.shrink = settings.shrink >= 0 ? settings.shrink : ownShrink_;
-    panel_.light = lightChoiceOf(settings.source.light, settings.source.background);
     facts_.device = device_.info().name;
     show(std::move(first));
+    panel_.lights.show(stage_->originalLights(), settings_.source);
+    if (!settings_.source.lightFile.empty())
+        panel_.lights.lights = scene::readLightFile(settings_.source.lightFile, panel_.lights.original);
     goTo(home);
 }
 
@@ -171,7 +180,9 @@ void Viewer::load(const SceneSource& source) {
     show(std::move(scene));
     goTo(home);
     settings_.source = source;
+    settings_.source.lightFile.clear();
     settings_.startCamera.clear();
+    panel_.lights.show(stage_->originalLights(), settings_.source);
 }
 
 void Viewer::show(scene::Scene scene) {
@@ -181,7 +192,7 @@ void Viewer::show(scene::Scene scene) {
     comparison_.drop();
     stage_ = std::move(stage);
     window_.setTitle("Limpid: " + stage_->scene().name);
-    facts_.lightReach = lightReach * std::max(stage_->sphere().radius, 1e-3f);
+    facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
 }
 
@@ -205,15 +216,25 @@ void Viewer::open(const std::string& file) {
         source.scene = file;
     }
     load(source);
-    panel_.light = lightChoiceOf(source.light, source.background);
     say("opened " + file);
 }
 
-/// The scene again, with another light; all else stays.
-void Viewer::relight() {
+/// Lamps and backgrounds that come or go.
+void Viewer::applyLightRequests() {
+    PanelRequests& asked = panel_.asked;
+    if (!asked.relight && !asked.addPoint && !asked.addSun && asked.removeLamp < 0) return;
     SceneSource source = settings_.source;
-    source.light = panel_.light.lamp();
-    source.background = panel_.light.backgroundText();
+    if (asked.addPoint || asked.addSun)
+        source.lights.push_back(newLamp(asked.addSun, panel_.pose.eye, panel_.pose.target, panel_.exposure));
+    if (asked.removeLamp >= 0) removeLamp(asked.removeLamp, source, panel_.lights);
+    source.background = panel_.lights.backgroundText();
+    asked.addPoint = asked.addSun = asked.relight = false;
+    asked.removeLamp = -1;
+    attempt([&] { relight(source); });
+}
+
+/// The scene again, with other lights; all else stays.
+void Viewer::relight(const SceneSource& source) {
     scene::Scene scene = load_(source);
     const double time = playback_.time();
     if (stage_->moves()) scene::chooseClip(scene, std::to_string(stage_->scene().clip));
@@ -224,6 +245,9 @@ void Viewer::relight() {
     panel_.camera = rig_.chosen();
     facts_.cameras = rig_.names();
     settings_.source = source;
+    const LightDesk before = panel_.lights;
+    panel_.lights.show(stage_->originalLights(), source);
+    panel_.lights.carry(before);
 }
 
 /// The next frame is the first one.
@@ -258,6 +282,7 @@ void Viewer::handleInput(double seconds) {
     if (pressed(GLFW_KEY_TAB)) panel_.shown = !panel_.shown;
     if (pressed(GLFW_KEY_SPACE)) panel_.running = !panel_.running;
     if (pressed(GLFW_KEY_P)) panel_.asked.probe = true;
+    if (pressed(GLFW_KEY_V)) panel_.setPreview(!panel_.isPreview());
     const bool divides = display_.dragsDivider(panel_, controls_);
     if (!io.WantCaptureMouse && !divides) fly(static_cast<float>(seconds));
 }
@@ -283,12 +308,33 @@ void Viewer::focus() {
         rig_.hand().focus(*point);
 }
 
+/// In the panel, as it is now.
+void Viewer::showPose() {
+    if (rig_.isFree()) {
+        panel_.pose = {rig_.hand().eye(), rig_.hand().target(), rig_.hand().up()};
+        return;
+    }
+    const scene::Camera camera = rig_.at(*stage_, playback_.time());
+    const vec3 eye(camera.toWorld[3]);
+    panel_.pose = {eye, eye - rig_.hand().distance() * vec3(camera.toWorld[2]), vec3(camera.toWorld[1])};
+}
+
+/// Where the panel's numbers say. What is no camera changes nothing.
+void Viewer::placeCamera() {
+    const bool wasFree = rig_.isFree();
+    rig_.place(*stage_, playback_.time(), panel_.pose.eye, panel_.pose.target, panel_.pose.up);
+    panel_.camera = rig_.chosen();
+    if (wasFree) return;
+    panel_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+    startAnew();
+}
+
 /// What the panel asked for.
 void Viewer::applyRequests() {
     PanelRequests& asked = panel_.asked;
     if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file); });
     for (const std::string& file : window_.takeDropped()) attempt([&] { open(file); });
-    if (std::exchange(asked.relight, false)) attempt([&] { relight(); });
+    applyLightRequests();
     if (std::exchange(asked.resetCamera, false)) {
         panel_.camera = 0;
         panel_.fovDegrees = glm::degrees(rig_.home().verticalFov);
@@ -299,6 +345,7 @@ void Viewer::applyRequests() {
         panel_.playing |= rig_.movesOnPath();
         asked.reset = true;
     }
+    if (std::exchange(asked.place, false)) placeCamera();
     if (std::exchange(asked.seeAll, false)) {
         rig_.stand(*stage_, scene::frameScene(stage_->scene()));
         panel_.camera = 0;
@@ -307,13 +354,11 @@ void Viewer::applyRequests() {
     }
     if (std::exchange(asked.seek, false)) playback_.seek(double{panel_.time});
     if (std::exchange(asked.reset, false)) startAnew();
-    if (asked.measureExposure && main_) {
-        asked.measureExposure = false;
-        measureExposure();
-    }
+    measureExposure();
     if (std::exchange(asked.probe, false) && main_)
         facts_.allValues = facts_.allValues.empty() ? display_.probeAll(main_) : std::string();
     if (std::exchange(asked.command, false)) attempt([&] { copyCommand(); });
+    if (std::exchange(asked.saveLights, false)) attempt([&] { saveLights(); });
     if (std::exchange(asked.savePath, false)) attempt([&] { savePath(); });
     if (std::exchange(asked.screenshot, false) && main_) attempt([&] { save(unusedFile("limpid", ".png")); });
     if (std::exchange(asked.exr, false) && main_) attempt([&] { save(unusedFile("limpid", ".exr")); });
@@ -332,6 +377,7 @@ void Viewer::applySettings() {
     else
         render.jitter = render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
     rig_.hand().setVerticalFov(glm::radians(panel_.fovDegrees));
+    stage_->setLights(panel_.lights.lights);
     playback_.playing = panel_.playing && (stage_->moves() || rig_.movesOnPath());
     facts_.duration = rig_.movesOnPath() || stage_->moves() ? rig_.duration(*stage_) : 0.0;
     if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
@@ -389,7 +435,7 @@ bool Viewer::mustRender(const CameraParams& camera) {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return false;
     if (std::exchange(panel_.asked.step, false)) return true;
-    bool changed = main_.differs(panel_.render, panel_.samples);
+    bool changed = main_.differs(panel_.render, panel_.samples) || stage_->lightsChanged();
     if (!changed && !panel_.running) return false;
     changed = changed || !sameCamera(camera, main_.camera()) || (stage_->moves() && playback_.change()) ||
               playback_.playing;
@@ -404,20 +450,22 @@ void Viewer::render(const CameraParams& camera) {
     if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
         throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (panel_.render != main_.settings() || panel_.fovDegrees != fovOfLast_);
-    if (main_.prepare(*stage_, panel_.render, panel_.samples, panel_.exposure))
+    if (main_.prepare(*stage_, panel_.render, panel_.samples, stopsOf(panel_.render.pipeline)))
         playback_.reset(playback_.time());
     else if (changed)
         playback_.noteOtherSettings();
     Moment moment = playback_.moment(camera);
-    if (stage_->moves()) {
-        if (const auto change = playback_.change()) moment.scene = stage_->frame(change->to, change->from);
-    }
+    if (stage_->lightsChanged()) playback_.noteOtherSettings();
+    std::optional<Stage::Step> step;
+    if (const auto change = playback_.change(); change && stage_->moves())
+        step = Stage::Step{change->from, change->to};
+    moment.scene = stage_->nextFrame(step, playback_.shownTime());
     if (comparison_.mustRender(panel_, camera, moment.scene.has_value()))
         comparison_.render(*stage_, panel_, moment, false);
     main_.render(std::move(moment));
     fovOfLast_ = panel_.fovDegrees;
     playback_.advance(camera, rig_.key());
-    if (std::exchange(panel_.asked.measureExposure, false)) measureExposure();
+    measureExposure();
     facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
     facts_.frames = playback_.frames();
 }
@@ -434,12 +482,20 @@ void Viewer::noteTimes(bool rendered) {
     facts_.sceneBytes = stage_->onDevice().byteCount();
 }
 
+/// Once there is a picture that has an exposure.
 void Viewer::measureExposure() {
+    if (!panel_.asked.measureExposure || !main_ || !main_.settings().pipeline.needsExposure()) return;
+    panel_.asked.measureExposure = false;
     panel_.exposure = image::autoExposure(beautyOf(main_.renderer().download()));
 }
 
+/// What the exposure comes to with this pipeline.
+float Viewer::stopsOf(const Pipeline& pipeline) const {
+    return pipeline.needsExposure() ? panel_.exposure : 0.0f;
+}
+
 void Viewer::save(const fs::path& file) {
-    savePicture(file, main_, panel_.exposure);
+    savePicture(file, main_, stopsOf(main_.settings().pipeline));
     say("wrote " + file.string());
     log::info("{}", facts_.message);
 }
@@ -449,17 +505,18 @@ void Viewer::copyCommand() {
     if (rig_.isFree() && rig_.hand().camera().orthographic)
         throw Error("the command line has no orthographic camera of one's own");
     const scene::Scene& scene = stage_->scene();
-    const ShownFrame frame{
-        .source = settings_.source,
-        .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
-        .weights = settings_.weights.string(),
-        .settings = main_.settings(),
-        .samples = panel_.samples,
-        .samplesInMean = main_.samples(),
-        .camera = rig_.option(settings_.startCamera),
-        .fovDegrees = fovOfLast_};
+    ShownFrame frame{.source = settings_.source,
+                     .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
+                     .weights = settings_.weights.string(),
+                     .settings = main_.settings(),
+                     .samples = panel_.samples,
+                     .samplesInMean = main_.samples(),
+                     .camera = rig_.option(settings_.startCamera),
+                     .fovDegrees = fovOfLast_};
+    frame.source.lightFile = panel_.lights.isChanged() ? lightFile : "";
     const CommandLine command = commandLineOf(frame, playback_, pathFile);
     if (!command.problem.empty()) throw Error(command.problem);
+    if (panel_.lights.isChanged()) saveLights();
     if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
     window_.setClipboard(command.text);
     say(command.text);
@@ -473,9 +530,18 @@ void Viewer::savePath() {
     say(fmt::format("wrote {}: {} frames, for --camera-path", pathFile, playback_.cameras().size()));
 }
 
+void Viewer::saveLights() {
+    const LightDesk& desk = panel_.lights;
+    if (!desk.isChanged()) throw Error("no light was changed");
+    writeTextAtomically(lightFile, scene::lightFileText(desk.lights, desk.original));
+    say(fmt::format("wrote {}, for --lights", lightFile));
+}
+
 ViewSettings Viewer::settingsNow() const {
     ViewSettings settings = settings_;
     settings.render = panel_.render;
+    settings.preview = panel_.isPreview();
+    if (settings.preview) settings.render.pipeline = panel_.pipelineBefore;
     if (const gpu::Extent size = window_.size(); size.width > 0 && size.height > 0)
         settings.render.extent = size;
     settings.samples = panel_.samples;
@@ -529,6 +595,7 @@ void Viewer::run() {
         controls_.begin();
         handleInput(std::min(std::chrono::duration<double>(now - last).count(), longestStep));
         last = now;
+        showPose();
         drawPanel(panel_, facts_, controls_);
         applyRequests();
         applySettings();
@@ -542,7 +609,7 @@ void Viewer::run() {
             comparison_.render(*stage_, panel_, playback_.moment(camera), true);
             other = true;
         }
-        if (main_) main_.expose(panel_.exposure);
+        if (main_) main_.expose(stopsOf(main_.settings().pipeline));
         if (main || other) restless = restlessPictures;
         noteTimes(main);
         comparison_.update(main_, panel_.exposure, main || other);
@@ -581,6 +648,8 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
     scene::Scene first = load(settings.source);
     if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
     const scene::Camera home = start(first);
+    if (!settings.source.lightFile.empty())
+        scene::readLightFile(settings.source.lightFile, scene::lightControlsOf(first));
     const Desktop desktop;
     auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(first), home, settings);
     for (;;) {

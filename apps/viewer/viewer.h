@@ -19,6 +19,7 @@ struct ViewSettings {
                               ///< empty: its first
     std::string animation;    ///< clip by name or number; empty: the first one
     RenderSettings render;    ///< its extent is the window's
+    bool preview = false;     ///< it starts with the pipeline `preview` instead of the chosen one
     uint32_t samples = 1;     ///< per pixel and frame
     /// Frames in which nothing changes, times samples; then nothing is computed until something does.
     uint64_t maxSamples = 4096;

@@ -57,7 +57,7 @@ std::optional<vec3> parseBackground(const std::string& text) {
 }
 
 void addOwnLight(Scene& scene, const OwnLight& light) {
-    if (light.lamp) scene.lights.push_back(*light.lamp);
+    scene.lights.insert(scene.lights.end(), light.lamps.begin(), light.lamps.end());
     if (!light.background) return;
     scene.environment = {};
     if (*light.background == vec3(0.0f)) return;

@@ -3,13 +3,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 
 namespace limpid::scene {
 
 struct OwnLight {
-    std::optional<PunctualLight> lamp;  ///< besides the scene's own
+    std::vector<PunctualLight> lamps;  ///< besides the scene's own
     /// Radiance from everywhere around, instead of the scene's environment; black: none.
     std::optional<vec3> background;
 };
