@@ -39,6 +39,23 @@ class ViewToolsTest : public ViewTest {
         for (double& p : position) numbers >> p;
         return position;
     }
+    /// A quadrangle, and cameras of which one has no name.
+    static constexpr const char* camerasFile = R"({"asset": {"version": "2.0"}, "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2, 3]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4], "name": "front"},
+                  {"camera": 0, "translation": [-1, 0, 4], "name": "left"},
+                  {"camera": 0, "translation": [0, 1, 6]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [-1, -1, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36,
+                     "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+    static void openTree(const DrivenViewer& viewer, const std::string& light) {
+        viewer.press(light + ".tree", 0.1);
+        viewer.waitFor(light + " to open", [&] { return viewer.value(light + ".tree") == "open"; });
+    }
     static void save(const fs::path& file, const std::string& text) {
         std::ofstream(file) << text;
         fs::last_write_time(file, fs::file_time_type::clock::now());
@@ -172,10 +189,9 @@ TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
     for (const char* name : {"most samples", "seed", "exposure, stops", "time, s", "field of view"})
         change(viewer, name);
     open(viewer, "light");
-    viewer.choose("light.kind", "a sun more");
     viewer.click("light.background of its own");
     viewer.waitFor("a background", [&] { return viewer.controls().contains("light.red"); });
-    for (const char* name : {"x", "y", "z", "intensity", "red", "green", "blue"}) {
+    for (const char* name : {"red", "green", "blue"}) {
         change(viewer, std::string("light.") + name);
         EXPECT_EQ(viewer.fact("fault"), "") << name;
     }
@@ -185,19 +201,75 @@ TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
+/// Of the scene's own: nothing is loaded for it, and what was there comes back to the bit.
+TEST_F(ViewToolsTest, LightsChangeWithoutLoadingTheScene) {
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 4");
+    const std::string start = viewer.settledPicture();
+    open(viewer, "light");
+    viewer.click("light.light.##on");
+    viewer.waitFor("the switch", [&] { return viewer.value("light.light.##on") == "off"; });
+    EXPECT_NE(viewer.settledPicture(), start);
+    viewer.click("light.light.##on");
+    EXPECT_EQ(viewer.settledPicture(), start);
+
+    openTree(viewer, "light.light");
+    change(viewer, "light.light.brightness");
+    EXPECT_NE(viewer.settledPicture(), start);
+    viewer.type("light.light.brightness", "200000");  // beyond the slider
+    viewer.waitFor("the number", [&] { return viewer.value("light.light.brightness") == "200000"; });
+    const std::string colour = viewer.value("light.light.color");
+    viewer.type("light.light.color", "60", 0.03);  // the red component
+    viewer.waitFor("a colour", [&] { return viewer.value("light.light.color") != colour; });
+    viewer.click("light.as loaded");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.fact("scenes"), "1");
+
+    // While the clip plays, with histories that go on.
+    viewer.choose("pipeline", "svgf");
+    viewer.click("playing");
+    viewer.waitFor("frames", [&] { return viewer.number("frames") > 10; });
+    for (const char* state : {"off", "on"}) {
+        const double frames = viewer.number("frames");
+        viewer.click("light.light.##on");
+        viewer.waitFor("the switch", [&] { return viewer.value("light.light.##on") == state; });
+        EXPECT_GE(viewer.number("frames"), frames);
+    }
+    EXPECT_EQ(viewer.fact("fault"), "");
+    EXPECT_EQ(viewer.fact("scenes"), "1");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
 TEST_F(ViewToolsTest, LightsComeAndGo) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 4");
     const std::string start = viewer.settledPicture();
     open(viewer, "light");
-    viewer.choose("light.kind", "a point more");
+    viewer.click("light.add a point");
+    const std::string lamp = "light.own light";
+    viewer.waitFor("the lamp", [&] { return viewer.controls().contains(lamp + ".tree"); });
     const std::string lit = viewer.settledPicture();
     EXPECT_NE(lit, start);
-    change(viewer, "light.intensity");
-    EXPECT_NE(viewer.settledPicture(), lit);
+    openTree(viewer, lamp);
+    viewer.type(lamp + ".position x", "0.25");
+    const std::string moved = viewer.settledPicture();
+    EXPECT_NE(moved, lit);
+    viewer.type(lamp + ".brightness", "0.125");
+    EXPECT_NE(viewer.settledPicture(), moved);
+    EXPECT_EQ(viewer.fact("scenes"), "2") << "for the lamp that came, and no more";
+
+    viewer.click("EXR");
+    viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
     viewer.click("copy command line");
     viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
-    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --light point,0,1,0,"));
-    viewer.choose("light.kind", "the scene's alone");
+    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --light point,"));
+    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --lights lights.json"));
+    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                     viewer.fact("message").substr(7) + " --device cpu --float");
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
+              image::readPicture(path("limpid.exr")).linear.pixels);
+
+    viewer.click(lamp + ".remove");
+    viewer.waitFor("the lamp to go", [&] { return !viewer.controls().contains(lamp + ".tree"); });
     EXPECT_EQ(viewer.settledPicture(), start);
     viewer.click("light.background of its own");
     viewer.waitFor("a background", [&] { return viewer.controls().contains("light.red"); });
@@ -205,6 +277,51 @@ TEST_F(ViewToolsTest, LightsComeAndGo) {
     viewer.click("light.background of its own");
     viewer.waitFor("no background", [&] { return !viewer.controls().contains("light.red"); });
     EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+/// The camera as numbers and by name; the preview; numbers that are typed into sliders.
+TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
+    put("cameras.gltf", camerasFile);
+    DrivenViewer viewer(folder_, "cameras.gltf --max-spp 3 --background 1,1,1");
+    const std::string start = viewer.settledPicture();
+    viewer.choose("camera", "left");
+    const std::string left = viewer.settledPicture();
+    EXPECT_NE(left, start);
+    viewer.choose("camera", "camera 2");
+    EXPECT_NE(viewer.settledPicture(), left);
+    viewer.choose("camera", "left");
+    EXPECT_EQ(viewer.settledPicture(), left);
+
+    viewer.type("eye x", "1.5");
+    viewer.waitFor("the camera to be free", [&] { return viewer.value("camera") == "free"; });
+    viewer.type("up x", "1");
+    const std::string rolled = viewer.settledPicture();
+    EXPECT_NE(rolled, left);
+    viewer.click("EXR");
+    viewer.waitFor("a file", [&] { return viewer.fact("message") == "wrote limpid.exr"; });
+    viewer.click("copy command line");
+    viewer.waitFor("the command", [&] { return viewer.fact("message").starts_with("limpid render"); });
+    EXPECT_THAT(viewer.fact("message"), HasSubstr("--eye 1.5,"));
+    EXPECT_THAT(viewer.fact("message"), HasSubstr(" --up 0.7"));
+    const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                     viewer.fact("message").substr(7) + " --device cpu --float");
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_EQ(image::readPicture(path("frame.exr")).linear.pixels,
+              image::readPicture(path("limpid.exr")).linear.pixels);
+
+    viewer.click("preview");
+    viewer.waitFor("the preview", [&] { return viewer.value("pipeline") == "preview"; });
+    EXPECT_NE(viewer.settledPicture(), rolled);
+    viewer.xdotool("mousemove 440 1690 key v");
+    viewer.waitFor("the picture", [&] { return viewer.value("pipeline") == "path"; });
+    EXPECT_EQ(viewer.settledPicture(), rolled);
+
+    open(viewer, "ao");
+    viewer.type("ao.radius", "500");  // the slider ends at 10, the range at 1000
+    viewer.waitFor("the number", [&] { return viewer.value("ao.radius") == "500"; });
+    viewer.type("ao.radius", "5000");
+    viewer.waitFor("the end of the range", [&] { return viewer.value("ao.radius") == "1000"; });
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 

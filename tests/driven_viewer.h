@@ -117,6 +117,17 @@ class DrivenViewer {
                 " " + std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
                 " sleep 0.15 mousedown 1 sleep 0.15 mouseup 1 sleep 0.05");
     }
+    /// A number into a slider, or into what is dragged. At a share of its width.
+    void type(const std::string& name, const std::string& text, double share = 0.03) const {
+        const Control c = at(name);
+        xdotool(
+            "mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) + " " +
+            std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
+            " sleep 0.15 keydown ctrl sleep 0.1 mousedown 1 sleep 0.15 mouseup 1 sleep 0.1 keyup ctrl sleep "
+            "0.15 key ctrl+a sleep 0.1 type --delay 30 -- " +
+            text);
+        xdotool("sleep 0.2 key Return sleep 0.1");
+    }
     void choose(const std::string& name, const std::string& choice) const {
         click(name);
         waitFor("the list of " + name, [&] { return controls().contains(name + "=" + choice); });

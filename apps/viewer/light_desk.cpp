@@ -28,9 +28,10 @@ void LightDesk::show(const std::vector<LightControl>& loaded, const SceneSource&
     if (radiance) background = *radiance;
 }
 
-void LightDesk::carry(const LightDesk& before) {
+void LightDesk::carry(const LightDesk& before, bool sameSky) {
     for (size_t i = 0; i < before.lights.size(); ++i) {
         if (before.lights[i] == before.original[i]) continue;
+        if (!sameSky && before.lights[i].kind == LightControl::Kind::Environment) continue;
         for (size_t k = 0; k < original.size(); ++k) {
             if (sameLight(original[k], before.original[i])) lights[k] = before.lights[i];
         }

@@ -18,8 +18,8 @@ struct LightDesk {
 
     /// Of a scene just loaded from `source`.
     void show(const std::vector<scene::LightControl>& loaded, const SceneSource& source);
-    /// Takes over what a hand did to lights that are still there.
-    void carry(const LightDesk& before);
+    /// Takes over what a hand did to lights that are still there. `sameSky`: the environment is one of them.
+    void carry(const LightDesk& before, bool sameSky = true);
     bool isChanged() const { return lights != original; }
     void reset() { lights = original; }
     bool isAdded(const scene::LightControl& light) const;

@@ -136,6 +136,7 @@ class Viewer {
     Networks networks_;
     LiveComparison comparison_;
     Picker picker_;
+    int scenesShown_ = 0;     ///< that were loaded
     float fovOfLast_ = 0.0f;  ///< degrees
     float speed_ = 1.0f;      ///< world units a second
     int ownShrink_ = 0;       ///< where none is chosen
@@ -179,10 +180,14 @@ void Viewer::load(const SceneSource& source) {
     const scene::Camera home = scene.cameras.front();
     show(std::move(scene));
     goTo(home);
+    const LightDesk before = panel_.lights;
+    const bool same = source.scene == settings_.source.scene,
+               sameSky = source.environment == settings_.source.environment;
     settings_.source = source;
     settings_.source.lightFile.clear();
     settings_.startCamera.clear();
     panel_.lights.show(stage_->originalLights(), settings_.source);
+    if (same) panel_.lights.carry(before, sameSky);
 }
 
 void Viewer::show(scene::Scene scene) {
@@ -191,6 +196,7 @@ void Viewer::show(scene::Scene scene) {
     main_.drop();
     comparison_.drop();
     stage_ = std::move(stage);
+    ++scenesShown_;
     window_.setTitle("Limpid: " + stage_->scene().name);
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);
     playback_.reset(0.0);
@@ -244,10 +250,11 @@ void Viewer::relight(const SceneSource& source) {
     rig_.keep(*stage_);
     panel_.camera = rig_.chosen();
     facts_.cameras = rig_.names();
+    const std::string backgroundBefore = settings_.source.background;
     settings_.source = source;
     const LightDesk before = panel_.lights;
     panel_.lights.show(stage_->originalLights(), source);
-    panel_.lights.carry(before);
+    panel_.lights.carry(before, source.background == backgroundBefore);
 }
 
 /// The next frame is the first one.
@@ -572,9 +579,11 @@ void Viewer::writeControls() {
     std::string values = facts_.allValues;
     std::ranges::replace(values, '\n', ';');
     const std::string text =
-        fmt::format("frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n",
-                    facts_.frames, facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe, values,
-                    facts_.comparedWith) +
+        fmt::format(
+            "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n"
+            "scenes\t{}\n",
+            facts_.frames, facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe, values,
+            facts_.comparedWith, scenesShown_) +
         controls_.text();
     if (text == controlsText_) return;
     controlsText_ = text;

@@ -148,6 +148,7 @@ TEST_F(LightFileTest, SaysWhatIsWrong) {
     const std::vector<LightControl> before = lightControlsOf(litScene());
     for (const char* text :
          {"{\"lights\": [{\"kind\": \"lamp\", \"index\": 7}]}", "{\"lights\": [{\"kind\": \"torch\"}]}",
+          "{\"lights\": [{\"kind\": \"lamp\", \"colour\": [1, 1, 1]}]}",
           "{\"lights\": [{\"kind\": \"lamp\", \"brightness\": -1}]}",
           "{\"lights\": [{\"kind\": \"lamp\", \"color\": [1, -1, 1]}]}",
           "{\"lights\": [{\"kind\": \"lamp\", \"direction\": [0, 0, 0]}]}", "lights"}) {

@@ -1,6 +1,8 @@
 #include "scene/light_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf_json.h"
@@ -31,7 +33,16 @@ nlohmann::json entryOf(const LightControl& control) {
     return entry;
 }
 
+void requireKnownKeys(const gltf::Object& entry) {
+    constexpr std::array known{"kind",       "index",    "name",      "on",  "color",
+                               "brightness", "position", "direction", "turn"};
+    for (const std::string& key : entry.keys()) {
+        if (std::ranges::find(known, key) == known.end()) entry.fail(key.c_str(), "is not known");
+    }
+}
+
 void read(const gltf::Object& entry, LightControl& control) {
+    requireKnownKeys(entry);
     control.on = entry.boolean("on", control.on);
     control.color = entry.vector("color", control.color);
     control.brightness = entry.number("brightness", control.brightness);
