@@ -148,8 +148,8 @@ TEST_P(AmbientOcclusionTest, CountsTheRaysThatBruteForceFindsOpen) {
     Stage stage(device(), scene, GetParam());
     const BruteForce brute(scene);
     CameraLaunch launch = centredLaunch(scene, {40, 24});
-    launch.jitterPerPixel = true;
-    launch.frame = launch.stream = 6;
+    launch.jitter = Jitter::Pixel;
+    launch.firstSample = launch.stream = 6;
     launch.seed = 3;
     constexpr uint32_t rays = 40, perDispatch = 32;
     const AmbientOcclusionSettings settings{.radius = 0.6f, .rays = rays};

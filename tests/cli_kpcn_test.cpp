@@ -33,6 +33,24 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
               0.15 * image::relMse(pictureOf("noisy.exr"), truth));
 }
 
+/// Against a mean over the pixels, on a scene with many edges. Samples that all went through the pixels'
+/// centres had stair-stepped edges whatever --jitter said.
+TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
+    const std::string scene = "render builtin:cornell-spheres" + std::string(larger) + "-o ";
+    mustRun(scene + path("truth.exr") + " --spp 512 --samples-per-launch 4 --seed 3");
+    const auto psnrOf = [&](const std::string& more) {
+        mustRun(scene + path("own.exr") + " --pipeline kpcn" + more);
+        return image::psnr(image::displayEncode(pictureOf("own.exr"), 0.0f),
+                           image::displayEncode(pictureOf("truth.exr"), 0.0f));
+    };
+    const double smooth = psnrOf(""), stepped = psnrOf(" --jitter off");
+    RecordProperty("smooth_dB", std::to_string(smooth));
+    RecordProperty("stepped_dB", std::to_string(stepped));
+    EXPECT_GT(smooth, stepped + 3.0);
+    EXPECT_EQ(psnrOf(" --jitter pixel"), smooth) << "the default";
+    EXPECT_NE(psnrOf(" --jitter frame"), stepped);
+}
+
 /// With few samples and with enough of them for kpcn.errors.
 TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
     for (const std::string samples : {"--spp 4 ", "--spp 8 "}) {
@@ -41,8 +59,8 @@ TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
                 "--jitter off --aov all");
         mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn " +
                 errors + smallWeights);
-        mustRun("render builtin:cornell -o " + path("own.exr") + small + samples + "--pipeline kpcn " +
-                errors + smallWeights);
+        mustRun("render builtin:cornell -o " + path("own.exr") + small + samples +
+                "--jitter off --pipeline kpcn " + errors + smallWeights);
         mustRun("denoise " + path("noisy.exr") + " -o " + path("free.exr") +
                 " --device cpu --method kpcn --set kpcn.errors=0" + smallWeights);
         const image::Image clean = pictureOf("clean.exr"), own = pictureOf("own.exr");

@@ -124,8 +124,8 @@ class GBufferTest : public PassTest {
         Stage stage(device(), scene, GetParam());
         CameraLaunch launch = centredLaunch(scene, extent);
         expectSameLayers(stage, lookBothWays(stage, launch), scene.name + ", centred");
-        launch.jitterPerPixel = true;
-        launch.frame = launch.stream = 3;
+        launch.jitter = Jitter::Pixel;
+        launch.firstSample = launch.stream = 3;
         launch.seed = 5;
         expectSameLayers(stage, lookBothWays(stage, launch), scene.name + ", jittered");
     }
@@ -328,8 +328,8 @@ TEST_P(GBufferTest, PositionsAreWhereTheRaysMeetTheFloor) {
     const scene::Scene scene = viewedFloor();
     Stage stage(device(), scene, GetParam());
     CameraLaunch launch = centredLaunch(scene, extent);
-    launch.jitterPerPixel = true;
-    launch.frame = launch.stream = 2;
+    launch.jitter = Jitter::Pixel;
+    launch.firstSample = launch.stream = 2;
     launch.seed = 9;
     const GBufferImages images = look(stage, launch);
     const std::vector<vec4> position = pixels(stage, images.position), depth = pixels(stage, images.depth),

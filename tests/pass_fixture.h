@@ -26,7 +26,7 @@ inline CameraLaunch centredLaunch(const scene::Scene& scene, gpu::Extent extent)
     launch.extent = extent;
     launch.camera = launch.previousCamera =
         scene::cameraParams(scene.cameras.at(0), extent.width, extent.height);
-    launch.jitterPerPixel = false;
+    launch.jitter = Jitter::Off;
     return launch;
 }
 

@@ -109,6 +109,32 @@ TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
         expectEqual(layers.*layer, expected.*layer, 1e-6f);
 }
 
+/// Of each pipeline, each in a frame of several samples: only the very first goes through the centre.
+TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
+    const Scene scene = prepared(scene::cornellSpheresScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const Pipeline& pipeline : pipelines()) {
+        if (pipeline.denoiser && pipeline.denoiser->network) continue;  // cli_kpcn_test.cpp
+        RenderSettings settings = settingsFor("path", 24, 16);
+        settings.pipeline = pipeline;
+        settings.layers = true;
+        const auto depths = [&](Jitter jitter, uint32_t samples, uint32_t perLaunch) {
+            settings.jitter = jitter;
+            settings.samplesPerLaunch = perLaunch;
+            FrameRenderer renderer(device(), gpuScene, settings, samples);
+            renderer.render(still(scene, settings, 0));
+            return renderer.download().depth;
+        };
+        const std::vector<float> centres = depths(Jitter::Off, 4, 1);
+        EXPECT_NE(depths(Jitter::Pixel, 4, 1), centres) << pipeline.name();
+        EXPECT_NE(depths(Jitter::Pixel, 4, 2), centres) << pipeline.name();
+        const std::vector<float> halton = depths(Jitter::Frame, 4, 1);
+        EXPECT_NE(halton, centres) << pipeline.name();
+        expectEqual(depths(Jitter::Frame, 4, 3), halton, 1e-5f);  // whatever the launches
+        EXPECT_EQ(depths(Jitter::Pixel, 1, 1), depths(Jitter::Off, 1, 1)) << pipeline.name();
+    }
+}
+
 TEST_F(PipelinesTest, AccumulationGoesOnUntilAnythingChanges) {
     const Scene scene = prepared(scene::cornellScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));

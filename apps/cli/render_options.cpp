@@ -14,9 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Jitter per pixel flips the first hit at silhouettes, which breaks histories.
 Jitter jitterOf(const RenderOptions& o, const Pipeline& pipeline) {
-    if (o.jitter == "auto") return pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+    if (o.jitter == "auto") return defaultJitter(pipeline);
     return o.jitter == "pixel" ? Jitter::Pixel : o.jitter == "frame" ? Jitter::Frame : Jitter::Off;
 }
 
@@ -58,8 +57,10 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--sampler", o.sampler, "Random numbers: pcg (default) or tea")
         ->check(CLI::IsMember({"pcg", "tea"}));
     command
-        .add_option("--jitter", o.jitter,
-                    "Where in its pixel a ray goes: pixel, frame or off; default: pixel, with a denoiser off")
+        .add_option(
+            "--jitter", o.jitter,
+            "Where in its pixel a ray goes: pixel, frame or off (the centre); default: pixel, but off with "
+            "denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
     std::string names;
     for (const Pipeline& pipeline : pipelines()) names += " " + std::string(pipeline.name());

@@ -13,7 +13,7 @@ constexpr std::chrono::seconds betweenScores(1);
 RenderSettings settingsOfComparison(const PanelState& panel, const Networks& networks) {
     RenderSettings settings = comparisonSettings(panel.comparison, panel.render);
     if (panel.jitter == 0 && !panel.comparison.isReference())
-        settings.jitter = settings.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+        settings.jitter = defaultJitter(settings.pipeline);
     networks.set(settings);
     return settings;
 }

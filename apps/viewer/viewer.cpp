@@ -382,7 +382,7 @@ void Viewer::applySettings() {
     if (panel_.jitter > 0)
         render.jitter = static_cast<Jitter>(panel_.jitter - 1);
     else
-        render.jitter = render.pipeline.accumulates() ? Jitter::Pixel : Jitter::Off;
+        render.jitter = defaultJitter(render.pipeline);
     rig_.hand().setVerticalFov(glm::radians(panel_.fovDegrees));
     stage_->setLights(panel_.lights.lights);
     playback_.playing = panel_.playing && (stage_->moves() || rig_.movesOnPath());

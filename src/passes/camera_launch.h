@@ -7,17 +7,23 @@
 
 namespace limpid {
 
+/// Where in its pixel a primary ray goes. The first sample since the last reset goes through the centre.
+enum class Jitter : uint32_t {
+    Pixel = JITTER_PIXEL,  ///< anywhere, each pixel by its own random numbers
+    Frame = JITTER_FRAME,  ///< one point for all pixels, another for each sample: Halton in bases 2 and 3
+    Off = JITTER_OFF,      ///< the centre
+};
+
 /// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;
     CameraParams camera;
     CameraParams previousCamera;  ///< of the previous frame of a sequence, for motion
     bool hasPrevious = false;     ///< false: no previous frame, all motion is invalid
-    uint32_t frame = 0;           ///< launches since the last reset
-    uint32_t stream = 0;          ///< of random numbers; in a still the same as `frame`
+    uint32_t firstSample = 0;     ///< samples per pixel since the last reset, before this launch
+    uint32_t stream = 0;          ///< of random numbers; in a still the number of the launch
     uint32_t seed = 0;
-    bool jitterPerPixel = true;
-    vec2 jitter{0.5f};  ///< the point inside every pixel, otherwise
+    Jitter jitter = Jitter::Pixel;
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {
@@ -27,11 +33,10 @@ inline ViewParams viewParams(const CameraLaunch& launch) {
     view.hasPrevious = launch.hasPrevious ? 1u : 0u;
     view.width = launch.extent.width;
     view.height = launch.extent.height;
-    view.frame = launch.frame;
+    view.firstSample = launch.firstSample;
     view.stream = launch.stream;
     view.seed = launch.seed;
-    view.jitterPerPixel = launch.jitterPerPixel ? 1u : 0u;
-    view.jitter = launch.jitter;
+    view.jitter = static_cast<uint32_t>(launch.jitter);
     return view;
 }
 

@@ -40,15 +40,16 @@ void BlockRenderer::launch(uint32_t samples) {
     input.hasPrevious = moment_.previousCamera.has_value();
     input.moved = moment_.scene ? &*moment_.scene : nullptr;
     // Random numbers go on over the blocks; the means start anew in each.
-    input.frame = plan_.firstLaunch(block_) + launchesDone_;
-    input.stream = moment_.number * plan_.launches() + input.frame;
+    const uint32_t launchOfFrame = plan_.firstLaunch(block_) + launchesDone_;
+    input.firstSample = block_ * plan_.blockSamples + samplesDone_;  // at most maxSamplesPerPixel
+    input.stream = moment_.number * plan_.launches() + launchOfFrame;
     input.samplesBefore = samplesDone_;
     input.samples = samples;
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
     graph_.execute(device_);
     moment_.scene.reset();  // the device has it until the next frame
-    if (input.frame == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
+    if (launchOfFrame == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
     samplesDone_ += samples;
     ++launchesDone_;
     launched_ = true;

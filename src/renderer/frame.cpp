@@ -13,31 +13,15 @@ namespace {
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
-float radicalInverse(uint32_t index, uint32_t base) {
-    float result = 0.0f, digit = 1.0f;
-    for (uint32_t i = index; i > 0; i /= base) {
-        digit /= static_cast<float>(base);
-        result += digit * static_cast<float>(i % base);
-    }
-    return result;
-}
-
-/// The point inside every pixel, for jitter per frame. Frame 0 goes through the centre.
-vec2 frameJitter(Jitter jitter, uint32_t frame) {
-    if (jitter != Jitter::Frame || frame == 0) return vec2(0.5f);
-    return {radicalInverse(frame, 2), radicalInverse(frame, 3)};
-}
-
 CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& input) {
     return {.extent = settings.extent,
             .camera = input.camera,
             .previousCamera = input.previousCamera,
             .hasPrevious = input.hasPrevious,
-            .frame = input.frame,
+            .firstSample = input.firstSample,
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
-            .jitterPerPixel = settings.jitter == Jitter::Pixel,
-            .jitter = frameJitter(settings.jitter, input.frame)};
+            .jitter = settings.jitter};
 }
 
 /// The layers that are means over samples, and what their variances are of.
@@ -155,6 +139,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     for (uint32_t done = 0, number = 0; done < input.samples; ++number) {
         launch.samples = std::min(input.launchSamples, input.samples - done);
         launch.stream = static_cast<uint32_t>(input.stream + number);
+        launch.firstSample = input.firstSample + done;
         PathtraceLayers& mean = means[number % 2];
         PathtraceLayers& into = number == 0 ? mean : traced;
         into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;

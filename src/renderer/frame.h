@@ -19,8 +19,8 @@ struct FrameInput {
     CameraParams previousCamera;
     bool hasPrevious = false;                  ///< there is a previous frame, from which motion is told
     const scene::SceneFrame* moved = nullptr;  ///< what moved since the scene was last traced
-    uint32_t frame = 0;                        ///< launches since the last reset
-    uint64_t stream = 0;                       ///< of random numbers: `frame`, or beyond in a sequence
+    uint32_t firstSample = 0;                  ///< per pixel since the last reset, before this frame
+    uint64_t stream = 0;                       ///< of random numbers; no two launches have the same
     uint64_t samplesBefore = 0;                ///< per pixel, in the running means
     uint32_t samples = 1;                      ///< per pixel, in this frame
     uint32_t launchSamples = UINT32_MAX;  ///< ... of these in one launch at most, of pipelines that denoise

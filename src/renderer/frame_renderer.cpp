@@ -44,7 +44,7 @@ void FrameRenderer::render(Moment moment) {
     const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
     input.stream = moment.number * launches;
     if (settings_.pipeline.accumulates()) return launchAccumulated(input);
-    input.frame = static_cast<uint32_t>(moment.number);
+    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(moment.number * samples_, UINT32_MAX));
     input.samples = samples_;
     launch(input);
 }
@@ -60,7 +60,7 @@ void FrameRenderer::launchAccumulated(const FrameInput& first) {
     for (uint32_t done = 0; done < samples_; done += input.samples) {
         input.samples = std::min(first.launchSamples, samples_ - done);
         input.samplesBefore = samplesInMean_;
-        input.frame = static_cast<uint32_t>(std::min<uint64_t>(samplesInMean_, UINT32_MAX));
+        input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(samplesInMean_, UINT32_MAX));
         launch(input);
         if (samplesInMean_ == 0)
             ids_ = images_.ids ? graph_.downloadUint(device_, images_.ids) : std::vector<uint32_t>();

@@ -12,13 +12,12 @@
 
 namespace limpid {
 
-/// Where in its pixel a primary ray goes.
-enum class Jitter {
-    Pixel,  ///< anywhere, each pixel by its own random numbers; the first sample of frame 0 through the
-            ///< centre
-    Frame,  ///< one point for all pixels of a frame: Halton sequence in bases 2 and 3
-    Off,    ///< the centre
-};
+/// Means of many samples cover the pixel. Histories follow one point of it: jitter per pixel would flip what
+/// a silhouette's pixels see from frame to frame. A network keeps no history, and its guides are means.
+inline Jitter defaultJitter(const Pipeline& pipeline) {
+    const bool means = pipeline.accumulates() || pipeline.denoiser->network;
+    return means ? Jitter::Pixel : Jitter::Off;
+}
 
 struct RenderSettings {
     gpu::Extent extent{1280, 720};

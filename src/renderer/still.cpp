@@ -111,7 +111,7 @@ bool ProgressiveStill::launch() {
     FrameInput input{.camera = state_.camera, .previousCamera = previousCamera_.value_or(state_.camera)};
     input.hasPrevious = previousCamera_.has_value();
     input.moved = moved_ ? &*moved_ : nullptr;
-    input.frame = frame_;
+    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(samples_, UINT32_MAX));
     input.stream = number_ * launchesOfAFrame() + frame_;
     input.samplesBefore = samples_;
     input.samples = static_cast<uint32_t>(

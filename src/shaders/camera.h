@@ -5,6 +5,9 @@
 #ifdef __cplusplus
 #include "base/math.h"
 namespace limpid {
+#define LIMPID_CONST inline constexpr
+#else
+#define LIMPID_CONST const
 #endif
 
 /// A pixel at (x, y) in [-1, 1]^2 (y up) sees along forward + x right + y up (perspective; right and up are
@@ -19,6 +22,11 @@ struct CameraParams {
     vec3 up;
 };
 
+// Where in its pixel a primary ray goes. The first sample since the last reset always goes through the centre.
+LIMPID_CONST uint JITTER_PIXEL = 0u;  // anywhere, each pixel by its own random numbers
+LIMPID_CONST uint JITTER_FRAME = 1u;  // one point for all pixels, another one for each sample: Halton, bases 2 and 3
+LIMPID_CONST uint JITTER_OFF = 2u;    // the centre
+
 /// A launch of primary rays: from where, through which points of the pixels, by which random numbers.
 struct ViewParams {
     CameraParams camera;
@@ -26,13 +34,13 @@ struct ViewParams {
     uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
     uint width;
     uint height;
-    uint frame;   // since the last reset
-    uint stream;  // of random numbers
+    uint firstSample;  // samples per pixel since the last reset, before this launch
+    uint stream;       // of random numbers
     uint seed;
-    uint jitterPerPixel;
-    vec2 jitter;  // otherwise: the point in every pixel
+    uint jitter;  // JITTER_*
 };
 
+#undef LIMPID_CONST
 #ifdef __cplusplus
 }  // namespace limpid
 #endif

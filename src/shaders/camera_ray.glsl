@@ -6,11 +6,22 @@
 #include "shaders/rng.glsl"
 #include "shaders/trace.glsl"
 
+/// Point `index` of the Halton sequence in the bases 2 and 3, in [0, 1)^2.
+vec2 halton(uint index) {
+    vec2 point = vec2(float(bitfieldReverse(index) >> 8) / float(0x01000000), 0.0);
+    for (float digit = 1.0 / 3.0; index > 0u; index /= 3u) {
+        point.y += digit * float(index % 3u);
+        digit /= 3.0;
+    }
+    return point;
+}
+
 /// The point in the pixel; draws two numbers in every mode, so that all that follow are the same.
-vec2 subpixel(ViewParams view, uint sampleIndex, inout uint rng) {
+vec2 subpixel(ViewParams view, uint sampleOfLaunch, inout uint rng) {
     const vec2 u = random2(rng);
-    if (view.jitterPerPixel == 0u) return view.jitter;
-    return view.frame == 0u && sampleIndex == 0u ? vec2(0.5) : u;
+    const uint index = view.firstSample + sampleOfLaunch;
+    if (view.jitter == JITTER_OFF || index == 0u) return vec2(0.5);
+    return view.jitter == JITTER_PIXEL ? u : halton(index);
 }
 
 Ray cameraRay(CameraParams camera, vec2 size, vec2 pixel) {
