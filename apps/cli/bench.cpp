@@ -15,6 +15,7 @@
 #include "image/metrics.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "json_text.h"
 #include "progress.h"
 #include "renderer/still.h"
 #include "scene/camera.h"
@@ -124,7 +125,7 @@ void runTrace(const BenchOptions& o) {
                       {"max_depth", o.maxDepth},
                       {"frames", o.frames},
                       {"results", results}};
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", jsonText(object));
 }
 
 struct Picture {
@@ -212,7 +213,7 @@ void runConvergence(const BenchOptions& o) {
                        row["seconds"].get<double>(), row["million_rays_per_second"].get<double>(), psnr);
         }
     }
-    if (o.json) fmt::print("{}\n", json{{"device", device->info().name}, {"results", all}}.dump(2));
+    if (o.json) fmt::print("{}\n", jsonText({{"device", device->info().name}, {"results", all}}));
 }
 
 void addCommon(CLI::App& command, const std::shared_ptr<BenchOptions>& o) {

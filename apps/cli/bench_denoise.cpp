@@ -12,6 +12,7 @@
 #include "bench.h"
 #include "bench_copy.comp.h"
 #include "bench_scene.h"
+#include "json_text.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
 
@@ -101,7 +102,7 @@ void run(const DenoiseBench& o) {
                       {"frames", o.frames},
                       {"copy_bytes_per_second", limit},
                       {"passes", passes}};
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", jsonText(object));
 }
 
 }  // namespace

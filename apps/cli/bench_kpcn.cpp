@@ -14,6 +14,7 @@
 #include "bench_product.comp.h"
 #include "bench_scene.h"
 #include "denoise/kpcn/kpcn_params.h"
+#include "json_text.h"
 #include "neural/convolutions.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
@@ -179,7 +180,7 @@ void run(const KpcnBench& o) {
                 {"passes", passes}};
     if (yardsticks.product) object["product_flop_per_second"] = *yardsticks.product;
     if (yardsticks.convolution) object["convolution_flop_per_second"] = *yardsticks.convolution;
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", jsonText(object));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "command_text.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "json_text.h"
 #include "quality_json.h"
 #include "quality_page.h"
 #include "quality_sequences.h"
@@ -230,8 +231,7 @@ void run(const QualityOptions& o, const std::string& command) {
     if (all.sequences.empty()) throw Error("no sequence could be measured");
     if (!o.report.empty()) writeQualityPage(o.report, all);  // with what was skipped last
     if (!o.json && all.sequences.size() > 1) printRanking(all);
-    if (o.json)
-        fmt::print("{}\n", qualityJson(all).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    if (o.json) fmt::print("{}\n", jsonText(qualityJson(all)));
 }
 
 /// What the user left open.

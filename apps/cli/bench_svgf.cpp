@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "bench.h"
 #include "bench_scene.h"
+#include "json_text.h"
 #include "renderer/parameters.h"
 #include "scene/builtin.h"
 #include "svg_plot.h"
@@ -158,7 +159,7 @@ void printJson(const SvgfBench& o, const std::string& device, const Measured& m)
     const json object{{"device", device},   {"width", o.width}, {"height", o.height},
                       {"frames", o.frames}, {"scene", o.scene}, {"ms", stagesJson(m.stages)},
                       {"scenes", scenes},   {"levels", levels}};
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", jsonText(object));
 }
 
 void run(const SvgfBench& o) {

@@ -13,6 +13,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "image/tonemap.h"
+#include "json_text.h"
 #include "picture_output.h"
 #include "progress.h"
 #include "render_job.h"
@@ -139,7 +140,7 @@ void denoiseFiles(const DenoiseOptions& o) {
                                     {"device", device->info().name},
                                     {"frames", summary.frames},
                                     {"last_frame_ms", summary.lastFrame}};
-        fmt::print("{}\n", object.dump(2));
+        fmt::print("{}\n", jsonText(object));
     } else {
         log::info("{} frames by {}, on {}", summary.frames, o.method, device->info().name);
     }

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "gpu/device.h"
+#include "json_text.h"
 #include "renderer/layers.h"
 #include "renderer/parameters.h"
 #include "scene/builtin.h"
@@ -139,7 +140,7 @@ void addInfoCommand(CLI::App& app) {
                           {"pipelines", pipelinesJson()},   {"tracers", {"compute", "pipeline"}},
                           {"scenes", scenesJson()},         {"layers", layerNames()},
                           {"parameters", parametersJson()}, {"presets", presets()}};
-        fmt::print("{}\n", object.dump(2));
+        fmt::print("{}\n", jsonText(object));
     });
 }
 

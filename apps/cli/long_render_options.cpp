@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "base/error.h"
@@ -58,7 +59,11 @@ void checkLongRender(const LongRenderChoice& choice) {
         throw UsageError("'" + choice.checkpoint +
                          "' exists: --resume goes on from it; remove it to begin anew");
     }
-    if (!choice.checkpoint.empty()) checkWritable(choice.checkpoint);
+    if (choice.checkpoint.empty()) return;
+    const std::optional<std::string> fault = irregularity(choice.checkpoint);
+    if (fault && std::filesystem::exists(choice.checkpoint, status))
+        throw InputError(choice.checkpoint, *fault);
+    checkWritable(choice.checkpoint);
 }
 
 }  // namespace limpid::cli

@@ -1,9 +1,16 @@
 // limpid: the command line. Exit codes: 0 done, 1 failed while running, 2 wrong usage, 3 an input could not
 // be read.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <new>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/terminal_text.h"
 #include "commands.h"
 
 namespace limpid::cli {
@@ -12,6 +19,29 @@ namespace {
 int fail(ExitCode code, const char* message) {
     log::error("{}", message);
     return static_cast<int>(code);
+}
+
+/// What CLI11 has to say: help on stdout, faults (with what was typed) on stderr.
+int answer(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream out, faults;
+    const int code = app.exit(error, out, faults);
+    fmt::print("{}", out.str());
+    fmt::print(stderr, "{}", terminalText(faults.str(), LineBreaks::Keep));
+    return static_cast<int>(code == 0 ? ExitCode::Done : ExitCode::Usage);
+}
+
+std::string nonFinite(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end == text.c_str() || std::isfinite(value) ? "" : "'" + text + "' is not a finite number";
+}
+
+/// CLI11 reads "nan" and "inf" as numbers, and its ranges let NaN pass.
+void refuseNonFinite(CLI::App& app) {
+    for (CLI::Option* option : app.get_options()) {
+        if (option->get_type_name().starts_with("FLOAT")) option->check(CLI::Validator(nonFinite, ""));
+    }
+    for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuseNonFinite(*command);
 }
 
 int run(int argc, char** argv) {
@@ -26,11 +56,12 @@ int run(int argc, char** argv) {
     addBenchCommand(app);
     addViewCommand(app);
     addInfoCommand(app);
+    refuseNonFinite(app);
     try {
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::Done);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? static_cast<int>(ExitCode::Done) : static_cast<int>(ExitCode::Usage);
+        return answer(app, error);
     } catch (const Error& error) {
         return fail(error.code(), error.what());
     } catch (const std::bad_alloc&) {

@@ -10,6 +10,7 @@
 #include "base/frame_pattern.h"
 #include "base/log.h"
 #include "commands.h"
+#include "json_text.h"
 #include "picture_output.h"
 #include "renderer/merge_frames.h"
 #include "renderer/render_identity.h"
@@ -60,7 +61,7 @@ nlohmann::json mergeSequence(const MergeOptions& o, const FramePattern& output) 
 void merge(const MergeOptions& o) {
     const FramePattern output(o.output);
     const nlohmann::json report = output.numbered() ? mergeSequence(o, output) : mergeStill(o, output);
-    if (o.json) fmt::print("{}\n", report.dump(2));
+    if (o.json) fmt::print("{}\n", jsonText(report));
 }
 
 }  // namespace

@@ -32,6 +32,29 @@ void checkOutput(const RenderOptions& o) {
     checkPictureOutput(path, !o.layers.empty());
 }
 
+/// The frames of the output that may be the file of this name.
+std::vector<int> framesThatMayBe(const FramePattern& output, const fs::path& file) {
+    if (!output.numbered()) return {0};
+    std::vector<int> frames = output.existingFrames();  // one may be a symbolic link
+    for (const fs::path& name : {file, linkTarget(file)}) {
+        if (const std::optional<int> frame = output.frameOf(name.filename().string()))
+            frames.push_back(*frame);
+    }
+    return frames;
+}
+
+/// Otherwise each would be written over the other.
+void checkCheckpointIsNoOutput(const RenderOptions& o) {
+    if (o.longRender.checkpoint.empty()) return;
+    const FramePattern output(o.output);
+    for (const int frame : framesThatMayBe(output, o.longRender.checkpoint)) {
+        const fs::path file = output.format(frame);
+        if (isSameFile(file, o.longRender.checkpoint))
+            throw UsageError("--checkpoint: '" + o.longRender.checkpoint + "' is the output '" +
+                             file.string() + "'; they must be two files");
+    }
+}
+
 }  // namespace
 
 void addRenderOptions(CLI::App& command, RenderOptions& o) {
@@ -137,6 +160,7 @@ void checkRenderOptions(const RenderOptions& o) {
         throw UsageError("--spp: a frame that is denoised takes 65536 samples at most");
     checkLongRender(o.longRender);
     checkOutput(o);
+    checkCheckpointIsNoOutput(o);
     parseExposure(o.exposure);
     chosenLayers(o);
     settingsOf(o);

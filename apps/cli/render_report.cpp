@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "json_text.h"
 
 namespace limpid::cli {
 namespace {
@@ -78,7 +79,7 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
                           {"validation_messages", device.validationMessages()}};
     if (!s.medians.empty()) object["median_ms"] = s.medians;
     if (s.history) object["history"] = historyJson(*s.history);
-    fmt::print("{}\n", object.dump(2));
+    fmt::print("{}\n", jsonText(object));
 }
 
 }  // namespace limpid::cli

@@ -15,6 +15,9 @@ namespace limpid::cli {
 
 namespace {
 
+/// Squares of coordinates must stay within a float.
+constexpr double farthest = 1e18;
+
 const scene::Camera& namedCamera(const scene::Scene& scene, const std::string& choice) {
     if (choice.empty()) return scene.cameras.front();
     std::string known;
@@ -47,13 +50,19 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
     command.add_option("--background", choice.background,
                        "The same radiance from everywhere instead of any environment: R,G,B");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
+    const CLI::Range reachable(-farthest, farthest);
     command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
         ->delimiter(',')
-        ->expected(3);
-    command.add_option("--target", choice.target, "What it looks at: X,Y,Z")->delimiter(',')->expected(3);
+        ->expected(3)
+        ->check(reachable);
+    command.add_option("--target", choice.target, "What it looks at: X,Y,Z")
+        ->delimiter(',')
+        ->expected(3)
+        ->check(reachable);
     command.add_option("--up", choice.up, "What is up in its picture: X,Y,Z (0,1,0)")
         ->delimiter(',')
-        ->expected(3);
+        ->expected(3)
+        ->check(reachable);
     command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
         ->check(CLI::Range(0.01, 179.0));
 }

@@ -1,5 +1,7 @@
 #include "sequence_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,21 @@ namespace limpid::cli {
 namespace {
 
 constexpr double builtinPathSeconds = 10.0;
+/// A built-in path has 60 keys a second.
+constexpr double longestBuiltinPath = 1e5;
+constexpr int mostFrames = 1000000;
+
+/// All frames that there are from the first one's time to `seconds`.
+int framesUntil(double seconds, const SequenceTiming& timing) {
+    const double frames =
+        std::floor(std::max(seconds - timing.start, 0.0) * timing.framesPerSecond + 1e-6) + 1.0;
+    if (frames <= mostFrames) return static_cast<int>(frames);
+    throw UsageError(
+        fmt::format("the animation and the camera path last {:g} s, which is {:g} frames at {:g} a second, "
+                    "more than {}: choose "
+                    "--frames",
+                    seconds, frames, timing.framesPerSecond, mostFrames));
+}
 
 }  // namespace
 
@@ -22,7 +39,7 @@ void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
     command
         .add_option("--frames", choice.frames,
                     "Frames; then OUTPUT holds %04d. Default: all of the animation")
-        ->check(CLI::Range(1, 1000000));
+        ->check(CLI::Range(1, mostFrames));
     command.add_option("--fps", choice.timing.framesPerSecond, "Frames per second (30)")
         ->check(CLI::Range(1e-3, 1e6));
     command.add_option("--time", choice.timing.start, "Seconds: the time of the first frame (0)")
@@ -47,6 +64,9 @@ std::optional<scene::CameraPath> chosenPath(const SequenceChoice& choice, const 
     if (!scene::isBuiltinCameraPath(choice.cameraPath)) return scene::loadCameraPath(choice.cameraPath);
     const double seconds =
         choice.frames > 0 ? choice.timing.timeOf(static_cast<uint64_t>(choice.frames)) : builtinPathSeconds;
+    if (seconds > longestBuiltinPath)
+        throw UsageError(fmt::format("--camera-path {}: the frames last {:g} s; a built-in path at most {:g}",
+                                     choice.cameraPath, seconds, longestBuiltinPath));
     return scene::builtinCameraPath(choice.cameraPath, scene, camera, seconds);
 }
 
@@ -58,8 +78,7 @@ int frameCount(const SequenceChoice& choice, const FramePattern& output, const s
         if (scene.clip != scene::none)
             seconds = double{scene.rig.clips[static_cast<size_t>(scene.clip)].duration()};
         if (path) seconds = std::max(seconds, path->duration());
-        const double rest = std::max(seconds - choice.timing.start, 0.0);
-        frames = output.numbered() ? static_cast<int>(rest * choice.timing.framesPerSecond + 1e-6) + 1 : 1;
+        frames = output.numbered() ? framesUntil(seconds, choice.timing) : 1;
     }
     if (frames > 1 && !output.numbered())
         throw UsageError("'" + output.text() +

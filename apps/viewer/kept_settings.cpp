@@ -35,6 +35,8 @@ fs::path keptSettingsFile() {
 void restoreSettings(const fs::path& file, ViewSettings& settings) {
     std::error_code none;
     if (file.empty() || !fs::exists(file, none)) return;
+    if (const auto fault = irregularity(file))
+        return log::warn("{}: {}; it is left out", file.string(), *fault);
     try {
         std::ifstream stream(file);
         restore(json::parse(stream), settings);

@@ -1,15 +1,17 @@
 #include "base/error.h"
 
+#include "base/terminal_text.h"
+
 namespace limpid {
 
 Error::Error(const std::string& message, ExitCode code) : std::runtime_error(message), code_(code) {}
 
-UsageError::UsageError(const std::string& message) : Error(message, ExitCode::Usage) {}
+UsageError::UsageError(const std::string& message) : Error(terminalText(message), ExitCode::Usage) {}
 
 InputError::InputError(const std::filesystem::path& file, const std::string& fault)
-    : Error(file.string() + ": " + fault, ExitCode::BadInput) {}
+    : Error(terminalText(file.string()) + ": " + fault, ExitCode::BadInput) {}
 
 OutputError::OutputError(const std::filesystem::path& file, const std::string& fault)
-    : Error(file.string() + ": " + fault, ExitCode::Failed) {}
+    : Error(terminalText(file.string()) + ": " + fault, ExitCode::Failed) {}
 
 }  // namespace limpid

@@ -20,13 +20,14 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
-/// The command line, or a parameter, makes no sense. Exit code 2.
+/// The command line, or a parameter, makes no sense. Exit code 2; the message is one line.
 class UsageError : public Error {
   public:
     explicit UsageError(const std::string& message);
 };
 
-/// An input file could not be read. Exit code 3; the message is "file: fault".
+/// An input file could not be read. Exit code 3; the message is "file: fault", the file's name as a terminal
+/// can show it (base/terminal_text.h).
 class InputError : public Error {
   public:
     InputError(const std::filesystem::path& file, const std::string& fault);

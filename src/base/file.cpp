@@ -52,13 +52,22 @@ void flushToDisk(const fs::path& temporary, const fs::path& path) {
 
 }  // namespace
 
+std::optional<std::string> irregularity(const fs::path& path) {
+    std::error_code fault;
+    const fs::file_status status = fs::status(path, fault);
+    if (status.type() == fs::file_type::not_found) return "does not exist";
+    if (status.type() == fs::file_type::none) return "cannot be opened: " + fault.message();
+    if (fs::is_directory(status)) return "is a directory, not a file";
+    if (!fs::is_regular_file(status)) return "is not a regular file";
+    return std::nullopt;
+}
+
 std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
-    std::error_code status;
-    if (fs::is_directory(path, status)) throw InputError(path, "is a directory, not a file");
+    if (const auto fault = irregularity(path)) throw InputError(path, *fault);
     std::ifstream stream(path, std::ios::binary | std::ios::ate);
     if (!stream) throw InputError(path, "cannot be opened: " + systemMessage(errno));
     const std::streamoff size = stream.tellg();
-    if (size < 0) throw InputError(path, "is not a regular file");
+    if (size < 0) throw InputError(path, "cannot be read");
     if (static_cast<uint64_t>(size) > maxBytes) {
         throw InputError(path, fmt::format("is {} bytes long, more than the {} accepted", size, maxBytes));
     }
@@ -69,12 +78,37 @@ std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
     return bytes;
 }
 
-void checkWritable(const fs::path& path) {
-    std::error_code status;
-    if (path.filename().empty() || fs::is_directory(path, status)) {
-        throw OutputError(path, "is a directory, not a file name");
+fs::path linkTarget(const fs::path& path) {
+    constexpr int mostLinks = 40;  // as the kernel's own limit
+    fs::path target = path;
+    std::error_code fault;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(target, fault)); ++links) {
+        if (links == mostLinks) throw OutputError(path, "is a symbolic link in a circle of them");
+        const fs::path next = fs::read_symlink(target, fault);
+        if (fault) throw OutputError(path, "is a symbolic link that cannot be read: " + fault.message());
+        target = next.is_absolute() ? next : folderOf(target) / next;
     }
-    const fs::path folder = folderOf(path);
+    return target;
+}
+
+bool isSameFile(const fs::path& a, const fs::path& b) {
+    std::error_code fault;
+    const fs::path targetA = linkTarget(a), targetB = linkTarget(b);
+    if (fs::equivalent(targetA, targetB, fault)) return true;
+    // Files that are not there yet are the same if their folders and their names are.
+    return targetA.filename() == targetB.filename() &&
+           fs::equivalent(folderOf(targetA), folderOf(targetB), fault);
+}
+
+void checkWritable(const fs::path& path) {
+    if (path.filename().empty()) throw OutputError(path, "is a directory, not a file name");
+    const fs::path target = linkTarget(path);
+    std::error_code status;
+    const fs::file_status there = fs::status(target, status);
+    if (fs::is_directory(there)) throw OutputError(path, "is a directory, not a file name");
+    if (fs::exists(there) && !fs::is_regular_file(there))
+        throw OutputError(path, "is not a regular file, which alone is replaced");
+    const fs::path folder = folderOf(target);
     if (!fs::is_directory(folder, status))
         throw OutputError(path, "the folder " + folder.string() + " does not exist");
     if (::access(folder.c_str(), W_OK) != 0) {
@@ -89,7 +123,8 @@ void makeFolder(const fs::path& folder) {
     checkWritable(folder / "file");
 }
 
-void removeStaleTemporaries(const fs::path& path) {
+void removeStaleTemporaries(const fs::path& output) {
+    const fs::path path = linkTarget(output);
     const std::string start = "." + path.stem().string() + ".", end = path.extension().string();
     constexpr size_t unique = 6;  // characters, as in createTemporary()
     std::error_code status;
@@ -104,11 +139,12 @@ void removeStaleTemporaries(const fs::path& path) {
 
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
     checkWritable(path);
-    const fs::path temporary = createTemporary(path);
+    const fs::path target = linkTarget(path);
+    const fs::path temporary = createTemporary(target);
     try {
         write(temporary);
         flushToDisk(temporary, path);
-        fs::rename(temporary, path);
+        fs::rename(temporary, target);
     } catch (const fs::filesystem_error& error) {
         fs::remove(temporary);
         throw OutputError(path, "cannot be renamed into place: " + error.code().message());

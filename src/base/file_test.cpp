@@ -1,6 +1,7 @@
 #include "base/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -85,6 +86,61 @@ TEST_F(FileTest, ReadsAndRefuses) {
     EXPECT_THROW(readFile(folder / "a", 3), InputError);
     EXPECT_THROW(readFile(folder), InputError);
     EXPECT_THROW(readFile(folder / "none"), InputError);
+}
+
+TEST_F(FileTest, FollowsSymbolicLinksOfOutputs) {
+    fs::create_directories(folder / "real");
+    put(folder / "real" / "a.txt", "old");
+    fs::create_symlink(fs::path("real") / "a.txt", folder / "inner.txt");
+    fs::create_symlink(folder / "inner.txt", folder / "outer.txt");
+    writeTextAtomically(folder / "outer.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(folder / "outer.txt"));
+    EXPECT_TRUE(fs::is_symlink(folder / "inner.txt"));
+    EXPECT_FALSE(fs::is_symlink(folder / "real" / "a.txt"));
+    EXPECT_EQ(get(folder / "real" / "a.txt"), "new");
+    fs::create_symlink(fs::path("real") / "b.txt", folder / "dangling.txt");
+    writeTextAtomically(folder / "dangling.txt", "made");
+    EXPECT_EQ(get(folder / "real" / "b.txt"), "made");
+    EXPECT_THROW(writeAtomically(folder / "outer.txt", [](const fs::path&) { throw Error("stopped"); }),
+                 Error);
+    EXPECT_EQ(get(folder / "real" / "a.txt"), "new");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "real"), fs::directory_iterator()), 2);
+    put(folder / "real" / ".a.Ab12xY.txt", "stale");
+    removeStaleTemporaries(folder / "outer.txt");
+    EXPECT_FALSE(fs::exists(folder / "real" / ".a.Ab12xY.txt"));
+}
+
+TEST_F(FileTest, RefusesLinksThatLeadNowhere) {
+    fs::create_symlink("b", folder / "a");
+    fs::create_symlink("a", folder / "b");
+    EXPECT_THROW(writeTextAtomically(folder / "a", "x"), OutputError);
+    fs::create_symlink(fs::path("none") / "c", folder / "c");
+    EXPECT_THROW(checkWritable(folder / "c"), OutputError);
+    fs::create_symlink(".", folder / "d");
+    EXPECT_THROW(checkWritable(folder / "d"), OutputError);
+}
+
+TEST_F(FileTest, PipesAndDevicesAreNoFiles) {
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(irregularity(folder / "pipe"), "is not a regular file");
+    EXPECT_EQ(irregularity("/dev/zero"), "is not a regular file");
+    EXPECT_THROW(readFile(folder / "pipe"), InputError);
+    EXPECT_THROW(writeTextAtomically(folder / "pipe", "x"), OutputError);
+    EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+    put(folder / "file", "x");
+    EXPECT_EQ(irregularity(folder / "file"), std::nullopt);
+}
+
+TEST_F(FileTest, KnowsWhenTwoNamesAreOneFile) {
+    EXPECT_TRUE(isSameFile(folder / "a", folder / "." / "a")) << "neither is there yet";
+    EXPECT_FALSE(isSameFile(folder / "a", folder / "b"));
+    put(folder / "a", "x");
+    fs::create_symlink("a", folder / "link");
+    fs::create_symlink("b", folder / "dangling");
+    EXPECT_TRUE(isSameFile(folder / "a", folder / "link"));
+    EXPECT_TRUE(isSameFile(folder / "b", folder / "dangling"));
+    EXPECT_FALSE(isSameFile(folder / "a", folder / "b"));
+    EXPECT_FALSE(isSameFile(folder / "none" / "a", folder / "a"));
 }
 
 TEST_F(FileTest, RemovesOnlyItsOwnStaleTemporaries) {

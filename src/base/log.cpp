@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "base/terminal_text.h"
+
 namespace limpid::log {
 namespace {
 
@@ -36,7 +38,7 @@ void setLevel(Level level) {
 }
 
 void write(Level level, const std::string& message) {
-    logger().log(toSpdlog(level), message);
+    logger().log(toSpdlog(level), terminalText(message, LineBreaks::Keep));
 }
 
 }  // namespace limpid::log

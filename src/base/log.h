@@ -13,6 +13,7 @@ enum class Level { Debug, Info, Warning, Error };
 /// Messages below this level are dropped. Default: Info.
 void setLevel(Level level);
 
+/// Control characters of the message are escaped, all but line feeds and tabs.
 void write(Level level, const std::string& message);
 
 template <typename... Args>

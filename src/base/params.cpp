@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -50,7 +51,7 @@ void checkRange(std::string_view group, const ParamInfo& info, const ParamValue&
         return isFloat ? static_cast<double>(static_cast<float>(bound)) : bound;
     };
     const double number = asDouble(value);
-    if (!(number >= end(info.minimum) && number <= end(info.maximum))) {
+    if (!(std::isfinite(number) && number >= end(info.minimum) && number <= end(info.maximum))) {
         throw UsageError(fmt::format("{}.{}: {} is outside its range {} to {}", group, info.name,
                                      toString(value), info.minimum, info.maximum));
     }

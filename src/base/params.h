@@ -39,7 +39,8 @@ struct ParamPreset {
 /// Text to the type of `like`. Throws UsageError naming `name` if the text is no such value.
 ParamValue parseParam(std::string_view name, std::string_view text, const ParamValue& like);
 std::string toString(const ParamValue& value);
-/// Throws UsageError naming the parameter and its range if `value` is outside it (NaN always is).
+/// Throws UsageError naming the parameter and its range if `value` is outside it (NaN and infinity always
+/// are).
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value);
 
 /// The parameters of the technique whose settings are the struct `Settings`. Defaults are the struct's own.

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "image/limits.h"
 
 namespace limpid::image {
@@ -217,7 +218,7 @@ ExrFrame checkExrHeaders(std::span<const std::byte> bytes, const fs::path& name)
     if (bytes.size() < 8) throw InputError(name, "is no EXR file: it is too short");
     Imf::Xdr::read<Imf::StreamIO>(stream, magic);
     Imf::Xdr::read<Imf::StreamIO>(stream, version);
-    if (magic != Imf::MAGIC) throw InputError(name, "is no EXR file");
+    if (magic != Imf::MAGIC) throw InputError(name, "is no EXR file: " + describeBeginning(bytes));
     if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version))) {
         throw InputError(name, "is an EXR file of an unknown version");
     }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "base/log.h"
 #include "image/exr.h"
 #include "image/limits.h"
@@ -86,7 +87,7 @@ void parseResolution(const Reader& reader, std::string_view text, Header& header
 }
 
 Header readHeader(Reader& reader) {
-    if (!reader.line().starts_with("#?")) reader.fail("is no Radiance picture");
+    reader.line();  // "#?RADIANCE", or a program's name
     Header header;
     while (true) {
         const std::string line = reader.line();
@@ -169,6 +170,9 @@ Image environmentFromExr(const fs::path& path) {
 }  // namespace
 
 Image decodeHdr(std::span<const std::byte> bytes, const fs::path& name) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (!text.starts_with("#?"))
+        throw InputError(name, "is no Radiance picture: " + describeBeginning(bytes));
     Reader reader(bytes, name);
     const Header header = readHeader(reader);
     // Old runs have no fixed limit; a row of one colour, which is their best, takes about 12 bytes.

@@ -108,6 +108,17 @@ TEST(Hdr, RefusesWhatItCannotRead) {
     EXPECT_THROW(decode(std::string(100000, 'x')), InputError) << "a line without end";
 }
 
+TEST(Hdr, AWrongMagicNumberIsNamed) {
+    try {
+        decode("\x89PNG\r\n\x1a\n");
+        FAIL() << "was accepted";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("it begins with 89 50 4e 47, as a PNG picture does"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(EnvironmentImage, ReadsEitherFormatAndCleansIt) {
     TempFolder folder;
     test::put(folder / "a.HDR", newRunsText());

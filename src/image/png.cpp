@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "image/jpeg.h"
 #include "image/limits.h"
 #include "image/png_check.h"
@@ -42,15 +43,8 @@ void checkBeforeDecoding(std::span<const std::byte> bytes, const fs::path& name)
     }
     if (looksLikeJpeg(bytes)) return checkJpeg(bytes, name);
     // stb_image would try a dozen formats; its other decoders are not meant for files of unknown origin.
-    if (!looksLikePng(bytes)) throw InputError(name, "is neither PNG nor JPEG");
+    if (!looksLikePng(bytes)) throw InputError(name, "is neither PNG nor JPEG: " + describeBeginning(bytes));
     checkPng(bytes, name);
-    int width = 0, height = 0, components = 0;
-    if (!stbi_info_from_memory(stbBytes(bytes), stbLength(bytes), &width, &height, &components)) {
-        throw InputError(name, fmt::format("cannot be decoded: {}", stbi_failure_reason()));
-    }
-    // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one.
-    checkDimensions(name, static_cast<uint64_t>(width), static_cast<uint64_t>(height), bytes.size(),
-                    8 * 1032);
 }
 
 template <typename T, typename Load>

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "image/limits.h"
 
 namespace limpid::image {
 namespace {
@@ -85,8 +86,13 @@ void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& nam
         if (crc(bytes.subspan(i + 4, length + 4)) != bigEndian32(bytes, i + 8 + length)) {
             throw InputError(name, "is a damaged PNG file: a checksum is wrong");
         }
-        constexpr uint32_t iend = 0x49454E44;
-        if (bigEndian32(bytes, i + 4) == iend) return;
+        constexpr uint32_t ihdr = 0x49484452, iend = 0x49454E44;
+        const uint32_t type = bigEndian32(bytes, i + 4);
+        if (type == iend) return;
+        // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one.
+        if (type == ihdr && length >= 8)
+            checkDimensions(name, bigEndian32(bytes, i + 8), bigEndian32(bytes, i + 12), bytes.size(),
+                            8 * 1032);
         i += length + 12;
     }
     throw InputError(name, "is a PNG file that was cut off");

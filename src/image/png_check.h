@@ -11,7 +11,8 @@ namespace limpid::image {
 bool looksLikePng(std::span<const std::byte> bytes);
 bool looksLikeJpeg(std::span<const std::byte> bytes);
 
-/// Throws InputError unless all chunks up to IEND are there and their checksums are right.
+/// Throws InputError unless all chunks up to IEND are there, their checksums are right, and the size that is
+/// stated is one that image/limits.h accepts.
 void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 /// Throws InputError unless the markers lead from start to end of image.

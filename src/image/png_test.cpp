@@ -179,6 +179,21 @@ TEST(Png, AbsurdSizesAreRefused) {
     }
 }
 
+TEST(Png, MessagesNameTheFault) {
+    const auto faultOf = [](const std::string& text) -> std::string {
+        try {
+            decodeImage(test::toByteVector(text), "a.png");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    const std::string large =
+        signature + ihdr(30000, 30000, 8, 2) + chunk("IDAT", std::string(400000, 'x')) + chunk("IEND", "");
+    EXPECT_NE(faultOf(large).find("30000x30000"), std::string::npos) << faultOf(large);
+    EXPECT_NE(faultOf("GIF89a").find("begins with 47 49 46 38"), std::string::npos) << faultOf("GIF89a");
+}
+
 TEST(Jpeg, DecodesAndRefusesEveryTruncation) {
     const auto whole = test::toByteVector(jpegText());
     const ByteImage image = decodeImage(whole, "a.jpg");

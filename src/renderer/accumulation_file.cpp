@@ -207,9 +207,7 @@ void writeAccumulation(const fs::path& path, const AccumulationHeader& header, c
 }
 
 Accumulation readAccumulation(const fs::path& path) {
-    std::error_code status;
-    if (fs::exists(path, status) && !fs::is_regular_file(path, status))
-        throw InputError(path, "is not a regular file");
+    if (const auto fault = irregularity(path)) throw InputError(path, *fault);
     std::ifstream stream(path, std::ios::binary | std::ios::ate);
     if (!stream) throw InputError(path, "cannot be opened");
     const std::streamoff size = stream.tellg();

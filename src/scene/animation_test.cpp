@@ -236,6 +236,10 @@ TEST_F(CameraPathFile, FollowsItsKeys) {
 TEST_F(CameraPathFile, RefusesWhatIsNoPath) {
     refused("no", "JSON");
     refused("{}", "has no \"keys\"");
+    refused("[]", "is not a camera path: its JSON is array, no object");
+    refused(R"({"keys": [], "fps": 30})", "has the unknown key 'fps'; known are keys");
+    refused(R"({"keys": [{"time": 0, "eye": [0,0,1], "target": [0,0,0], "FOV": 40}]})",
+            "keys[0]: has the unknown key 'FOV'");
     refused(R"({"keys": [{"time": 0, "eye": [0,0,1]}]})", "has no target");
     refused(R"({"keys": [{"eye": [0,0,1], "target": [0,0,0]}]})", "has no time");
     refused(R"({"keys": [{"time": 0, "eye": [0,0,1], "target": [0,0,1]}]})", "eye is on its target");

@@ -116,7 +116,11 @@ TEST_F(BadInput, WhatIsNoSceneFileAtAll) {
     expectRefused(write("scene.gltf", "[]"), "no object");
     expectRefused(write("scene.gltf", "{}"), "asset");
     expectRefused(write("scene.gltf", R"({"asset": {"version": "1.0"}})"), "version");
-    expectRefused(write("scene.gltf", "\xff\xfe"), "not valid JSON");
+    expectRefused(write("scene.gltf", "\xff\xfe"), "begins with ff fe, as UTF-16 text does");
+    expectRefused(write("scene.glb", "GLTF\x02"),
+                  "is neither GLB nor a glTF document: it begins with 47 4c 54 46");
+    expectRefused(write("scene.glb", "PK\x03\x04"), "as a ZIP archive does");
+    expectRefused(write("scene.gltf", "version https://git-lfs.github.com/spec/v1\n"), "a Git LFS pointer");
     expectRefused(write("scene.gltf", R"({"asset": {"version": "2.0"}})"), "no triangles");
     expectRefused(write("scene.gltf", R"({"asset": {"version": 2}})"), "asset.version: is not a text");
 }
@@ -461,6 +465,17 @@ TEST_F(BadInput, Obj) {
     EXPECT_THROW(loadScene(folder / "scene.obj"), InputError);
     put(folder / "scene.mtl", "newmtl m\nmap_Kd none.png\n");
     expectRefused(folder / "scene.obj", "none.png");
+}
+
+TEST_F(BadInput, ObjThatIsNoText) {
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::string wide;
+    for (const char c : text) wide += std::string(1, c) + '\0';
+    expectRefused(write("a.obj", "\xff\xfe" + wide), "is UTF-16 text");
+    expectRefused(write("a.obj", wide), "line 1: holds a NUL character");
+    expectRefused(write("a.obj", text + std::string("# a\0b\n", 6)), "line 5: holds a NUL character");
+    EXPECT_NO_THROW(loadScene(write("a.obj", "\xef\xbb\xbf" + text)))
+        << "a byte order mark of UTF-8 is no fault";
 }
 
 TEST_F(BadInput, ObjAbuse) {

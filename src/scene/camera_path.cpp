@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -92,7 +93,16 @@ void requireUsable(const gltf::Object& source, const CameraKey& key) {
     }
 }
 
+/// A key that is not known is most likely one that is misspelt.
+void requireKnownKeys(const gltf::Object& source, std::initializer_list<std::string_view> known) {
+    for (const std::string& key : source.keys()) {
+        if (std::ranges::find(known, key) == known.end())
+            source.fail(fmt::format("has the unknown key '{}'; known are {}", key, fmt::join(known, ", ")));
+    }
+}
+
 CameraKey readKey(const gltf::Object& source) {
+    requireKnownKeys(source, {"time", "eye", "target", "up", "fov", "cut"});
     CameraKey key;
     for (const char* needed : {"time", "eye", "target"}) {
         if (!source.has(needed)) source.fail(fmt::format("has no {}", needed));
@@ -135,8 +145,9 @@ bool CameraPath::cutBetween(double before, double now) const {
 }
 
 CameraPath loadCameraPath(const std::filesystem::path& file) {
-    const gltf::Json json = gltf::parseJson(file, readSceneFile(file));
+    const gltf::Json json = gltf::parseJson(file, readSceneFile(file), "a camera path");
     const gltf::Object root(file, json, "");
+    requireKnownKeys(root, {"keys"});
     std::vector<CameraKey> keys;
     for (const gltf::Object& source : root.objects("keys")) {
         keys.push_back(readKey(source));

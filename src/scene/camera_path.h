@@ -37,8 +37,9 @@ class CameraPath {
     std::vector<CameraKey> keys_;
 };
 
-/// Reads a path. Throws InputError: not JSON, a key without time, eye or target, times that do not increase,
-/// an eye on its target, an up vector along the view, a field of view not between 0 and 180 degrees.
+/// Reads a path. Throws InputError: not JSON, an unknown name, a key without time, eye or target, times that
+/// do not increase, an eye on its target, an up vector along the view, a field of view not between 0 and 180
+/// degrees.
 CameraPath loadCameraPath(const std::filesystem::path& file);
 
 /// "orbit": once around what the camera looks at in 10 s; "dolly": towards it and back in 4 s; "shake": a

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/log.h"
 #include "scene/gltf_draco.h"
 #include "scene/gltf_draco_primitives.h"
@@ -79,6 +80,16 @@ std::vector<Chunk> readChunks(const std::filesystem::path& file, std::span<const
     return chunks;
 }
 
+/// Throws InputError unless the content can be JSON with an object (or a list, which the parser then
+/// refuses).
+void requireJsonText(const std::filesystem::path& file, std::span<const std::byte> content) {
+    std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    const size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != std::string_view::npos && (text[first] == '{' || text[first] == '[')) return;
+    throw InputError(file, "is neither GLB nor a glTF document: " + describeBeginning(content));
+}
+
 constexpr int base64Value(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -125,7 +136,10 @@ Document::~Document() = default;
 
 std::vector<std::byte> Document::takeJson(std::vector<std::byte> content) {
     const bool binary = content.size() >= 4 && littleEndian(content, 0) == glbMagic;
-    if (!binary) return content;
+    if (!binary) {
+        requireJsonText(file(), content);
+        return content;
+    }
     const std::vector<Chunk> chunks = readChunks(file(), content);
     const auto bin =
         std::find_if(chunks.begin(), chunks.end(), [](const Chunk& c) { return c.type == binChunk; });

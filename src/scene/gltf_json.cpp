@@ -73,14 +73,16 @@ std::optional<float> asFinite(const Json& value) {
 
 }  // namespace
 
-Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text) {
+Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text, std::string_view kind) {
     if (text.size() > maxJsonBytes) throw InputError(file, "its JSON is too large");
     if (nestsTooDeep(text))
         throw InputError(file, fmt::format("its JSON nests more than {} levels deep", maxDepth));
     const auto* begin = reinterpret_cast<const char*>(text.data());
     try {
         Json json = Json::parse(begin, begin + text.size());
-        if (!json.is_object()) throw InputError(file, "is not a glTF document: its JSON is no object");
+        if (!json.is_object())
+            throw InputError(file,
+                             fmt::format("is not {}: its JSON is {}, no object", kind, json.type_name()));
         return json;
     } catch (const Json::exception& error) {
         throw InputError(file, "is not valid JSON: " + shortened(error.what()));

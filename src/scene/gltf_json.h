@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/math.h"
@@ -20,8 +21,10 @@ namespace limpid::scene::gltf {
 
 using Json = nlohmann::json;
 
-/// The document's JSON. Throws InputError if it is no JSON object, or nests deeper than any glTF does.
-Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text);
+/// The document's JSON. Throws InputError if it is no JSON object ("is not a glTF document"), or nests deeper
+/// than any glTF does.
+Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text,
+               std::string_view kind = "a glTF document");
 
 /// An object of the document. A read takes a key and what an absent one means; a value of the wrong type or
 /// range throws InputError with the file and the value's place ("nodes[3].scale"). The JSON must outlive the

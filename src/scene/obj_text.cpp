@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -38,7 +39,16 @@ std::string_view Words::rest() const {
 }
 
 Lines::Lines(std::filesystem::path file, std::span<const std::byte> text)
-    : file_(std::move(file)), rest_(reinterpret_cast<const char*>(text.data()), text.size()) {}
+    : file_(std::move(file)), rest_(reinterpret_cast<const char*>(text.data()), text.size()) {
+    if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
+        throw InputError(file_, "is UTF-16 text, which is not read: save it as UTF-8");
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+    const size_t null = rest_.find('\0');
+    if (null == std::string_view::npos) return;
+    const auto line = std::ranges::count(rest_.substr(0, null), '\n') + 1;
+    throw InputError(file_,
+                     fmt::format("line {}: holds a NUL character: this is no text, or it is UTF-16", line));
+}
 
 std::string_view Lines::takeLine() {
     const size_t end = rest_.find('\n');

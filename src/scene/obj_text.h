@@ -26,6 +26,8 @@ class Words {
 /// Goes through a text line by line: comments are cut off, a backslash at a line's end continues it.
 class Lines {
   public:
+    /// Throws InputError if the text is UTF-16 or holds a NUL character. A byte order mark of UTF-8 is
+    /// skipped.
     Lines(std::filesystem::path file, std::span<const std::byte> text);
 
     /// The next line that is not blank; nothing at the end. Valid until the next call.

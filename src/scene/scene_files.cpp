@@ -47,15 +47,6 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-void requireRegularFile(const fs::path& path, const fs::path& blamed, const std::string& subject) {
-    std::error_code status;
-    const fs::file_status file = fs::status(path, status);
-    if (!fs::exists(file)) throw InputError(blamed, subject + "does not exist");
-    if (fs::is_directory(file)) throw InputError(blamed, subject + "is a directory, not a file");
-    // A pipe or a device would block, or never end.
-    if (!fs::is_regular_file(file)) throw InputError(blamed, subject + "is not a regular file");
-}
-
 }  // namespace
 
 std::string decodePercent(std::string_view uri) {
@@ -101,14 +92,14 @@ fs::path SceneFiles::resolve(std::string_view reference) const {
 
 std::vector<std::byte> SceneFiles::read(std::string_view reference) {
     const fs::path path = resolve(reference);
-    requireRegularFile(path, sceneFile_, "refers to " + shown(reference) + ", which ");
+    if (const auto fault = irregularity(path))
+        throw InputError(sceneFile_, "refers to " + shown(reference) + ", which " + *fault);
     std::vector<std::byte> bytes = readFile(path, bytesLeft_);
     bytesLeft_ -= bytes.size();
     return bytes;
 }
 
 std::vector<std::byte> readSceneFile(const fs::path& path) {
-    requireRegularFile(path, path, "");
     std::vector<std::byte> bytes = readFile(path);
     if (bytes.empty()) throw InputError(path, "is empty");
     return bytes;
