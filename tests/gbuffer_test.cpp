@@ -198,6 +198,7 @@ TEST_P(GBufferTest, LightOfPunctualLampsIsThePathTracers) {
     scene::Scene scene = punctualSpheres();
     PathtraceSettings settings;
     settings.maxDepth = 1;
+    settings.maxTransmissionDepth = 0;
     // From outside, and from within the glass sphere.
     for (const bool within : {false, true}) {
         if (within) scene.cameras = {scene::lookAt({0.13f, 0.1f, 0.1f}, {0, 0.2f, 0}, {0, 1, 0}, 1.2f)};
@@ -260,6 +261,7 @@ TEST_P(GBufferTest, MeanLightIsThePathTracersAtDepthOne) {
         other.seed = 1;
         PathtraceSettings settings;
         settings.maxDepth = 1;
+        settings.maxTransmissionDepth = 0;
         constexpr size_t count = size_t{small.width} * small.height;
         std::vector<double> sum(count), squares(count), pathSum(count), pathSquares(count);
         for (uint32_t frame = 0; frame < frames; ++frame) {

@@ -263,5 +263,30 @@ TEST_F(VolumeTest, LightAndFloorInABody) {
     EXPECT_NEAR(sum / expectedSum, 1.0, 5e-3);
 }
 
+/// Clear glass before a white sky is white up to its rim, with all settings at their defaults: there light is
+/// reflected inside many times before it leaves.
+TEST_F(VolumeTest, TheRimOfGlassIsWhite) {
+    for (const bool thin : {false, true}) {
+        scene::Scene scene;
+        scene::Material glass = bodyMaterial(1.5f, vec3(0.0f));
+        glass.thin = thin;
+        addMesh(scene, scene::MeshBuilder("ball", true).sphere(vec3(0.0f), 1.0f, 512, 256).take(), glass);
+        addWhiteSky(scene);
+        // Columns are distances from the axis, from 0.92 to 1.
+        scene.cameras = {scene::lookAt({0.96f, 0, 5}, {0.96f, 0, 0}, {0, 1, 0}, 0.5f)};
+        scene.cameras[0].orthographic = true;
+        scene.cameras[0].halfHeight = 0.04f;
+        RenderSettings options;
+        options.extent = {16, 16};
+        options.samplesPerLaunch = 64;
+        const Rendered picture = render(scene, options, 1024);
+        for (uint32_t x = 0; x < 16; ++x) {
+            double mean = 0.0;
+            for (uint32_t y = 0; y < 16; ++y) mean += double{picture.beauty(y * 16 + x).g} / 16.0;
+            EXPECT_NEAR(mean, 1.0, 0.015) << (thin ? "thin, " : "solid, ") << 0.92 + 0.08 * (x + 0.5) / 16;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace limpid::test

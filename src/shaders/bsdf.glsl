@@ -111,6 +111,11 @@ bool isPerfectMirror(Bsdf b) {
     return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
 }
 
+/// True if some light goes through the surface.
+bool isTransmitting(Bsdf b) {
+    return b.glassWeight > 0.0 || b.through != vec3(0.0);
+}
+
 /// True if wi leaves on the side of the true surface that it leaves on at the shading normal.
 bool sidesAgree(Bsdf b, vec3 wi) {
     return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;

@@ -22,6 +22,7 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     params.view = viewParams(launch);
     params.samples = launch.samples;
     params.maxDepth = static_cast<uint>(settings.maxDepth);
+    params.maxTransmissionDepth = static_cast<uint>(settings.maxTransmissionDepth);
     params.rouletteDepth = static_cast<uint>(settings.rouletteDepth);
     params.fireflyClamp = settings.fireflyClamp;
     params.throughMirrors = settings.throughMirrors;
@@ -45,6 +46,10 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         t.add("max_depth", &S::maxDepth, 0, 1024, "bounces",
               "scattering events of a path; 0 shows emitters only, more adds indirect light and time")
             .slider(0, 32);
+        t.add("max_transmission_depth", &S::maxTransmissionDepth, 0, 1024, "passages",
+              "of a path into, through and out of glass, reflections inside it too; they do not count as "
+              "bounces of max_depth, those beyond this limit do")
+            .slider(0, 64);
         t.add("roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
               "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier")
             .slider(0, 32);

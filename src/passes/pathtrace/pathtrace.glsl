@@ -1,5 +1,6 @@
 // A unidirectional path tracer: at each vertex one light is sampled and one direction from the material, combined by
 // multiple importance sampling (E. Veach, 1997). Depth D counts scattering events: D = 0 shows emitters only.
+// Passages through glass have a limit of their own; beyond it they count as bounces.
 //
 // The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
 // and a dozen registers are free for traversal.
@@ -34,6 +35,7 @@ struct Path {
     PathRadiance radiance;
     uint rays;
     uint primary;  // the vertex that the layers are of: 0, or 1 behind a mirror
+    uint passages;  // through glass so far, at most params.maxTransmissionDepth
 };
 
 /// Adds what a path finds at vertex `depth`. What is found at the primary vertex is the emission layer.
@@ -85,6 +87,12 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     }
 }
 
+/// Into a transmitting body, out of it, through a pane, or reflected on the inside: what only goes on within glass.
+bool isPassage(Surface surface, Bsdf bsdf, vec3 direction) {
+    if (!HAS_TRANSMISSION || !isTransmitting(bsdf)) return false;
+    return !surface.front || dot(direction, surface.geometricNormal) < 0.0;
+}
+
 /// Follows the material's sample. False ends the path.
 bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const BsdfSample next = sampleBsdf(bsdf, rng);
@@ -99,6 +107,7 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
     }
+    if (isPassage(surface, bsdf, next.direction)) path.passages = min(path.passages + 1u, params.maxTransmissionDepth);
     if (HAS_VOLUME) path.medium = mediumTowards(path.medium, surface, next.direction);
     path.ray = Ray(leavingPoint(surface, next.direction), next.direction, INFINITE_DISTANCE);
     return path.throughput != vec3(0.0);
@@ -150,13 +159,13 @@ void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bs
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view.camera);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u);
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);
     sight.traveled = sight.reflection = 0.0;
     uint culled = 0u;
-    for (uint depth = 0u; depth <= params.maxDepth; ++depth) {
+    for (uint depth = 0u; depth <= params.maxDepth + path.passages; ++depth) {
         ++path.rays;
         const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
         if (!isHit(hit)) {
@@ -181,7 +190,7 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
                 HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;
             addEmission(path, surface.emission, density, depth);
         }
-        if (depth == params.maxDepth || surface.unlit) break;
+        if (depth == params.maxDepth + path.passages || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
         if (SPLIT_LOBES && depth == 0u) scattered(sight, path, surface, bsdf);

@@ -12,6 +12,7 @@ namespace limpid {
 /// What a user may set; the table below is where range and meaning stand.
 struct PathtraceSettings {
     int maxDepth = 8;
+    int maxTransmissionDepth = 32;
     int rouletteDepth = 3;
     float fireflyClamp = 0.0f;
     bool samplerTea = false;

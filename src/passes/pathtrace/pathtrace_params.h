@@ -15,6 +15,7 @@ struct PathtraceParams {
     ViewParams view;
     uint samples;  // per pixel in this launch
     uint maxDepth;
+    uint maxTransmissionDepth;
     uint rouletteDepth;
     float fireflyClamp;  // 0: off
     uint throughMirrors;
