@@ -1,4 +1,5 @@
 // Light sampling against densities that are known, or integrated numerically.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -27,7 +28,7 @@ struct DrawnLight {
 
 struct Params {
     layout::SceneParams scene;
-    vec3 from;
+    vec3 from, normal;
     uint32_t count, seed;
 };
 
@@ -109,10 +110,12 @@ Met meet(const std::vector<Emitter>& emitters, const vec3& from, const vec3& dir
 
 class LightsTest : public GpuTest {
   protected:
-    std::vector<DrawnLight> draw(const scene::Scene& scene, const vec3& from, uint32_t count, uint32_t seed) {
+    /// At a point of a surface with this normal; without one, all directions are alike.
+    std::vector<DrawnLight> draw(const scene::Scene& scene, const vec3& from, uint32_t count, uint32_t seed,
+                                 const vec3& normal = vec3(0.0f)) {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
-        const Params params{data.params, from, count, seed};
+        const Params params{data.params, from, normal, count, seed};
         const Job job{.shader = shaders::lights_sample_comp,
                       .scene = &gpuScene,
                       .params = gpu::paramsOf(params),
@@ -124,7 +127,7 @@ class LightsTest : public GpuTest {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
         const auto count = static_cast<uint32_t>(directions.size());
-        const Params params{data.params, vec3(0.0f), count, 0};
+        const Params params{data.params, vec3(0.0f), vec3(0.0f), count, 0};
         const gpu::Buffer buffer = upload("directions", directions);
         const Job job{.shader = shaders::environment_pdf_comp,
                       .scene = &gpuScene,
@@ -134,18 +137,23 @@ class LightsTest : public GpuTest {
         return run<vec4>(job, count);
     }
 
-    /// Triangles: uniform over each, chosen by power. `share` is the probability that a triangle is asked at
-    /// all. Returns how many samples were of triangles.
+    /// Three quarters by power, one quarter the same for each: every triangle here is a lamp of its own.
+    static double probabilityOf(const std::vector<Emitter>& emitters, const Emitter& chosen) {
+        double power = 0.0;
+        for (const Emitter& e : emitters) power += e.power();
+        return 0.75 * chosen.power() / power + 0.25 / static_cast<double>(emitters.size());
+    }
+
+    /// Triangles: uniform over each. `share` is the probability that a triangle is asked at all.
     void checkTriangles(const std::vector<Emitter>& emitters, const std::vector<DrawnLight>& drawn,
                         const vec3& from, double share) {
         constexpr size_t side = 8;
-        double power = 0.0, visible = 0.0;
-        for (const Emitter& e : emitters) power += e.power();
+        double visible = 0.0;
         std::vector<double> observed(emitters.size() * side * side, 0.0), expected(observed.size(), 0.0);
         for (size_t i = 0; i < emitters.size(); ++i) {
             const bool front = glm::dot(emitters[i].normal(), dvec3(from) - dvec3(emitters[i].v[0])) > 0.0;
             if (!front && !emitters[i].doubleSided) continue;
-            const double probability = share * emitters[i].power() / power;
+            const double probability = share * probabilityOf(emitters, emitters[i]);
             visible += probability;
             for (size_t bin = 0; bin < side * side; ++bin) {
                 expected[i * side * side + bin] =
@@ -165,7 +173,7 @@ class LightsTest : public GpuTest {
             const Emitter& e = emitters[static_cast<size_t>(met.index)];
             ++observed[static_cast<size_t>(met.index) * side * side + binOf(met, side)];
             const double cosine = std::abs(glm::dot(glm::normalize(e.normal()), dvec3(light.direction)));
-            const double pdf = share * e.power() / power * met.t * met.t / (e.area() * cosine);
+            const double pdf = share * probabilityOf(emitters, e) * met.t * met.t / (e.area() * cosine);
             ASSERT_NEAR(double{light.pdf} / pdf, 1.0, 1e-3) << "triangle " << met.index;
             ASSERT_NEAR(double{light.distance} / met.t, 1.0, 1e-3) << "triangle " << met.index;
             ASSERT_FLOAT_EQ(light.radiance.r, e.radiance);
@@ -331,8 +339,8 @@ TEST_F(LightsTest, MixtureOfEverything) {
     checkEnvironmentPdf(drawn);
 }
 
-/// Punctual lights beside triangles: each is chosen by its power, and comes with that probability and its
-/// radiance.
+/// An emitting triangle is asked as often as its power says (here at least 20 %, at most 65 %), a punctual
+/// light in three of five samples by what arrives from it, and in two like the others.
 TEST_F(LightsTest, PunctualLights) {
     scene::Scene scene = sceneOf(oneTriangle);
     scene::PunctualLight point, spot;
@@ -346,21 +354,143 @@ TEST_F(LightsTest, PunctualLights) {
     spot.outerCone = 0.5f;
     scene.lights = {point, spot};
     const vec3 from(0.0f);
-    const double powers[] = {pi64 * oneTriangle[0].power(), 4.0 * pi64 * 5.0,
-                             2.0 * pi64 * (1.0 - std::cos(0.5)) * 40.0};
-    const double sum = powers[0] + powers[1] + powers[2];
+    const double arrives[] = {5.0 / 29.0, 40.0 / 14.0}, all = arrives[0] + arrives[1];
+    const double triangle =
+        std::clamp(oneTriangle[0].power() / (oneTriangle[0].power() + 4.0 * 45.0), 0.2, 0.65);
+    const double probabilities[] = {triangle, (1.0 - triangle) * (0.6 * arrives[0] / all + 0.2),
+                                    (1.0 - triangle) * (0.6 * arrives[1] / all + 0.2)};
     std::vector<double> observed(3, 0.0), expected;
-    for (const double power : powers) expected.push_back(sampleCount * power / sum);
+    for (const double probability : probabilities) expected.push_back(sampleCount * probability);
     for (const DrawnLight& light : draw(scene, from, sampleCount, 6)) {
         const bool isPoint = light.delta && light.direction.x > 0.0f;
         ++observed[light.delta ? (isPoint ? 1 : 2) : 0];
         if (!light.delta) continue;
-        ASSERT_NEAR(light.pdf, powers[isPoint ? 1 : 2] / sum, 1e-5);
+        ASSERT_NEAR(light.pdf, probabilities[isPoint ? 1 : 2], 1e-5);
         const double d2 = isPoint ? 29.0 : 14.0;  // the spot's axis goes through the point
         ASSERT_NEAR(light.radiance.g, (isPoint ? 5.0 : 40.0) / d2, 1e-4);
         ASSERT_NEAR(light.distance, std::sqrt(d2), 1e-5);
     }
     expectFit(observed, expected);
+}
+
+/// What a floor at the origin that faces up gets from a punctual light, by its own formula.
+double irradianceOf(const scene::PunctualLight& light) {
+    using Kind = scene::PunctualLight::Kind;
+    if (light.kind == Kind::Directional)
+        return double{light.intensity.r} * std::max(-double{light.direction.y}, 0.0);
+    const dvec3 way(light.position);
+    const double distance = glm::length(way), cosine = std::max(way.y / distance, 0.0);
+    double result = double{light.intensity.r} * cosine / (distance * distance);
+    if (light.range > 0.0f)
+        result *= std::clamp(1.0 - std::pow(distance / double{light.range}, 4.0), 0.0, 1.0);
+    if (light.kind == Kind::Spot) {
+        const double inner = std::cos(double{light.innerCone}), outer = std::cos(double{light.outerCone});
+        const double cone = (glm::dot(dvec3(light.direction), -way / distance) - outer) / (inner - outer);
+        result *= std::pow(std::clamp(cone, 0.0, 1.0), 2.0);
+    }
+    return result;
+}
+
+scene::PunctualLight pointLight(const vec3& position, float intensity) {
+    scene::PunctualLight light;
+    light.position = position;
+    light.intensity = vec3(intensity);
+    return light;
+}
+
+scene::PunctualLight spotLight(const vec3& position, const vec3& target, float intensity, float outerCone) {
+    scene::PunctualLight light = pointLight(position, intensity);
+    light.kind = scene::PunctualLight::Kind::Spot;
+    light.direction = glm::normalize(target - position);
+    light.innerCone = 0.5f * outerCone;
+    light.outerCone = outerCone;
+    return light;
+}
+
+/// The estimate of the floor's irradiance that one sample gives: mean and relative variance; and how often
+/// each of the scene's lamps was chosen.
+struct FloorLight {
+    double mean = 0.0, variance = 0.0;
+    std::vector<double> frequencies;
+};
+
+FloorLight floorLight(const scene::Scene& scene, const std::vector<DrawnLight>& drawn) {
+    FloorLight result;
+    result.frequencies.resize(scene.lights.size());
+    const double share = 1.0 / static_cast<double>(drawn.size());
+    double square = 0.0;
+    for (const DrawnLight& light : drawn) {
+        if (light.pdf <= 0.0f || !light.delta) continue;
+        const double value =
+            double{light.radiance.r} * std::max(double{light.direction.y}, 0.0) / double{light.pdf};
+        result.mean += value * share;
+        square += value * value * share;
+        size_t chosen = 0;
+        double nearest = 2.0;
+        for (size_t i = 0; i < scene.lights.size(); ++i) {
+            const scene::PunctualLight& lamp = scene.lights[i];
+            const bool sun = lamp.kind == scene::PunctualLight::Kind::Directional;
+            const vec3 towards = sun ? -lamp.direction : glm::normalize(lamp.position);
+            const double off = 1.0 - double{glm::dot(towards, light.direction)};
+            if (off < nearest) chosen = i;
+            nearest = std::min(nearest, off);
+        }
+        result.frequencies[chosen] += share;
+    }
+    result.variance = square / (result.mean * result.mean) - 1.0;
+    return result;
+}
+
+/// One narrow spot lights the floor; brighter lamps shine elsewhere: beyond their range, out of their cone,
+/// from below.
+TEST_F(LightsTest, ANarrowSpotAmongBrightLampsElsewhere) {
+    scene::Scene scene = sceneOf({{{{5, 1, 5}, {5, 1, 6}, {6, 1, 5}}, 4000.0f, false}});
+    scene.environment = sunnyEnvironment();
+    scene.lights = {spotLight({0.1f, 3, 0}, {0, 0, 0}, 10.0f, 0.05f), pointLight({4, 2, 0}, 5000.0f),
+                    spotLight({-2, 3, 1}, {-5, 0, 1}, 8000.0f, 0.4f), pointLight({0.5f, -1, 0}, 3000.0f)};
+    scene.lights[1].range = 4.0f;
+    ASSERT_EQ(irradianceOf(scene.lights[1]) + irradianceOf(scene.lights[2]) + irradianceOf(scene.lights[3]),
+              0.0);
+    const FloorLight found = floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 7, {0, 1, 0}));
+    fmt::print("the narrow spot: {:.4f} of the samples, relative variance {:.2f}\n", found.frequencies[0],
+               found.variance);
+    EXPECT_GE(found.frequencies[0], 0.1);
+    EXPECT_LT(found.variance, 9.0);
+    EXPECT_NEAR(found.mean / irradianceOf(scene.lights[0]), 1.0, 0.03);
+}
+
+/// No lamp is chosen with less than a tenth of its share of the light that arrives, and the estimate is
+/// right: for few lamps, as many as are all looked at, and more, of which some are drawn.
+TEST_F(LightsTest, LampsAreDrawnByWhatArrives) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    for (const size_t count : {size_t{2}, size_t{5}, size_t{32}, size_t{33}, size_t{200}}) {
+        scene::Scene scene = sceneOf(oneTriangle);
+        for (size_t i = 0; i < count; ++i) {
+            const vec3 at(3.0f * uniform(random), 2.0f * uniform(random) + 1.5f, 3.0f * uniform(random));
+            const float intensity = std::exp(3.0f * uniform(random));
+            scene.lights.push_back(i % 2 == 0
+                                       ? pointLight(at, intensity)
+                                       : spotLight(at, {0.5f * uniform(random), 0, 0}, intensity, 0.3f));
+            if (i % 7 == 3) {
+                scene.lights.back().kind = scene::PunctualLight::Kind::Directional;
+                scene.lights.back().intensity *= 0.02f;
+            }
+        }
+        double sum = 0.0;
+        for (const scene::PunctualLight& lamp : scene.lights) sum += irradianceOf(lamp);
+        const FloorLight found = floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 9, {0, 1, 0}));
+        const double error = std::sqrt(found.variance / sampleCount);
+        fmt::print("{} lamps: mean off by {:+.4f}, relative variance {:.2f}\n", count, found.mean / sum - 1.0,
+                   found.variance);
+        EXPECT_NEAR(found.mean / sum, 1.0, 4.5 * error + 1e-4) << count;
+        if (count > 32) continue;
+        for (size_t i = 0; i < count; ++i) {
+            const double share = irradianceOf(scene.lights[i]) / sum, f = found.frequencies[i];
+            EXPECT_GE(f + 4.5 * std::sqrt(f / sampleCount) + 1e-5, 0.1 * share)
+                << count << " lamps, number " << i;
+        }
+    }
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ void LiveLights::setParams(layout::SceneParams& params) const {
     params.environmentScale = packed_.params.environmentScale;
     params.environmentTurn = packed_.params.environmentTurn;
     params.environmentProbability = packed_.params.environmentProbability;
+    params.triangleLightProbability = packed_.params.triangleLightProbability;
 }
 
 }  // namespace limpid::scene

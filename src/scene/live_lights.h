@@ -18,7 +18,7 @@ class LiveLights {
     /// Adds all that update() changed to a frame. `frame` may hold what an animator writes for its moment,
     /// which goes over it.
     void addTo(SceneFrame& frame) const;
-    /// For every frame: what the environment is multiplied by, and how it is turned.
+    /// For every frame: the environment's factor and turn, and how often each kind of light is sampled.
     void setParams(layout::SceneParams& params) const;
     /// The lights as packed: for SceneAnimator::setLights().
     const SceneData& packed() const { return packed_; }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "scene/alias_table.h"
 #include "scene/mip_levels.h"
@@ -13,6 +16,10 @@ namespace {
 
 /// How often next-event estimation asks the environment where there are other lights too.
 constexpr float environmentShare = 0.5f;
+/// ... and how often at least triangles and punctual lights of what is left, where there are both.
+constexpr double leastTriangleShare = 0.2, leastPunctualShare = 0.35;
+/// Of the triangles' samples: shared equally by all lamps, the rest by power.
+constexpr double uniformShare = 0.25;
 
 double luminance(const vec3& c) {
     return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
@@ -55,13 +62,10 @@ class LightPacker {
     void pack() {
         for (size_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
         data_.features.triangleLights = !weights_.empty();
-        for (const PunctualLight& light : scene_.lights) packPunctual(light);
-        data_.features.punctualLights = !scene_.lights.empty();
-        const AliasTable table = buildAliasTable(weights_);
-        data_.lightAlias = table.entries;
-        for (size_t i = 0; i < weights_.size(); ++i) {
-            data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
-        }
+        packPunctuals();
+        const AliasTable table = buildAliasTable(triangleWeights());
+        data_.lightAlias.insert(data_.lightAlias.begin(), table.entries.begin(), table.entries.end());
+        setProbabilities(0, table);
         for (MovingLights& moving : data_.motion.lights) {
             for (size_t i = 0; i < moving.triangles.size(); ++i)
                 moving.probabilities.push_back(table.probabilities[moving.firstLight + i]);
@@ -73,10 +77,53 @@ class LightPacker {
                 data_.lightDensity[i] = table.probabilities[light] / areas_[light];
             }
         }
-        data_.params.lightCount = static_cast<uint32_t>(weights_.size());
+        data_.params.triangleLightCount = static_cast<uint32_t>(weights_.size());
     }
 
   private:
+    void setProbabilities(size_t first, const AliasTable& table) {
+        for (size_t i = 0; i < table.probabilities.size(); ++i)
+            data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
+    }
+
+    /// By power, and in part the same for every lamp: how much of a lamp's power reaches a surface is not
+    /// known here.
+    std::vector<double> triangleWeights() const {
+        const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+        std::vector<double> ofLamp;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            ofLamp.resize(std::max(ofLamp.size(), lamps_[i] + 1));
+            ofLamp[lamps_[i]] += weights_[i];
+        }
+        const auto lamps =
+            std::count_if(ofLamp.begin(), ofLamp.end(), [](double power) { return power > 0.0; });
+        if (lamps < 2) return weights_;
+        std::vector<double> result;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            const double power = weights_[i], whole = std::max(ofLamp[lamps_[i]], 1e-300);
+            result.push_back((1.0 - uniformShare) * power / sum +
+                             uniformShare * power / whole / static_cast<double>(lamps));
+        }
+        return result;
+    }
+
+    void packPunctuals() {
+        const double triangles = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+        std::vector<double> powers;
+        for (const PunctualLight& light : scene_.lights) powers.push_back(packPunctual(light));
+        const AliasTable table = buildAliasTable(powers);
+        data_.lightAlias = table.entries;
+        setProbabilities(weights_.size(), table);
+        data_.features.punctualLights = !scene_.lights.empty();
+        data_.params.punctualCount = static_cast<uint32_t>(scene_.lights.size());
+        const double sum = std::accumulate(powers.begin(), powers.end(), triangles);
+        const double share = sum > 0.0 ? triangles / sum : 0.5;
+        data_.params.triangleLightProbability =
+            weights_.empty()
+                ? 0.0f
+                : static_cast<float>(std::clamp(share, leastTriangleShare, 1.0 - leastPunctualShare));
+    }
+
     void packInstance(size_t index) {
         const Instance& instance = scene_.instances[index];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
@@ -134,17 +181,17 @@ class LightPacker {
         const bool changes = ref || material.clearcoat > 0.0f;  // from point to point, or with direction
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
-        return addWeight(std::numbers::pi * area * sides * radiance);
+        const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
+        return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
     }
 
-    void packPunctual(const PunctualLight& light) {
+    /// Returns its power; a spot's as if it shone all around: where its cone ends, other lights count, but
+    /// within it, it is as bright as that.
+    double packPunctual(const PunctualLight& light) {
         const double strength = luminance(light.intensity);
-        uint32_t kind = layout::LIGHT_POINT;
+        uint32_t kind = light.kind == PunctualLight::Kind::Spot ? layout::LIGHT_SPOT : layout::LIGHT_POINT;
         double power = 4.0 * std::numbers::pi * strength;
-        if (light.kind == PunctualLight::Kind::Spot) {
-            kind = layout::LIGHT_SPOT;
-            power = 2.0 * std::numbers::pi * (1.0 - std::cos(double{light.outerCone})) * strength;
-        } else if (light.kind == PunctualLight::Kind::Directional) {
+        if (light.kind == PunctualLight::Kind::Directional) {
             kind = layout::LIGHT_DIRECTIONAL;
             power = std::numbers::pi * double{data_.params.sceneRadius} * data_.params.sceneRadius * strength;
         }
@@ -153,18 +200,23 @@ class LightPacker {
         data_.lights.push_back(
             bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
         data_.lights.push_back(bits(light.intensity, 0u));
-        addWeight(power);
+        return finite(power);
     }
 
-    uint32_t addWeight(double weight) {
-        weights_.push_back(std::isfinite(weight) ? std::max(weight, 0.0) : 0.0);
+    static double finite(double weight) { return std::isfinite(weight) ? std::max(weight, 0.0) : 0.0; }
+
+    uint32_t addWeight(double weight, size_t lamp) {
+        weights_.push_back(finite(weight));
+        lamps_.push_back(lamp);
         return static_cast<uint32_t>(weights_.size() - 1);
     }
 
     const Scene& scene_;
     SceneData& data_;
-    std::vector<double> weights_;
-    std::vector<float> areas_;                ///< of the triangle lights, which come first
+    std::vector<double> weights_;  ///< powers of the triangle lights, which come first
+    std::vector<size_t> lamps_;    ///< which lamp each is part of: one material of one instance
+    std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
+    std::vector<float> areas_;                ///< of the triangle lights
     std::vector<uint32_t> lightOfPrimitive_;  ///< of every primitive of an emissive instance, or NONE
 };
 
@@ -217,7 +269,7 @@ void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
     params.environmentTurn = env.turn;
     // Nobody asks what sends nothing, if there is something else to ask.
     const float share = env.scale == vec3(0.0f) ? 0.0f : environmentShare;
-    params.environmentProbability = params.lightCount > 0 ? share : 1.0f;
+    params.environmentProbability = params.triangleLightCount + params.punctualCount > 0 ? share : 1.0f;
 }
 
 void packLights(const Scene& scene, SceneData& data) {

@@ -85,7 +85,7 @@ LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
 // lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
 // triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
-// | kind; direction | probability; cos inner | cos outer | range | 0; intensity | 0.
+// | kind; direction | probability if drawn by power; cos inner | cos outer | range | 0; intensity | 0.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
@@ -96,8 +96,15 @@ LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
 
+// Punctual lights that next-event estimation looks at from a point; if there are more, so many drawn by
+// power.
+LIMPID_CONST uint MAX_PUNCTUAL_CANDIDATES = 32u;
+// Probability of choosing any punctual light that reaches, not by how much.
+LIMPID_CONST float PUNCTUAL_UNIFORM_SHARE = 0.4;
+
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
-// entry. environment: radiance | probability of choosing this texel.
+// entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
+// environment: radiance | probability of choosing this texel.
 
 // ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + B),
 // their cosine-weighted averages over the row (A, B).
@@ -119,8 +126,10 @@ LIMPID_CONST float CLEARCOAT_F0 = 0.04;
 struct SceneParams {
     vec3 sceneCenter;
     float sceneRadius;
-    uint lightCount;               // entries of the alias table
-    float environmentProbability;  // of choosing the environment in next-event estimation
+    uint triangleLightCount;  // of `lights` and `lightAlias`; punctual lights follow
+    uint punctualCount;
+    float environmentProbability;    // of choosing the environment in next-event estimation
+    float triangleLightProbability;  // of triangles rather than punctual lights, where one of those reaches
     uint environmentWidth;
     uint environmentHeight;
     vec3 environmentScale;    // multiplies its radiance

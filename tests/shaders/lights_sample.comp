@@ -20,16 +20,20 @@ void main() {
     const uint i = gl_GlobalInvocationID.x;
     if (i >= params.count) return;
     uint rng = startStream(i, 0u, params.seed);
-    const LightSample light = sampleLight(params.from, params.scene, rng);
+    // A normal of no length has no sides: all light counts, wherever it comes from.
+    LightShares shares;
+    const Receiver receiver =
+        Receiver(params.from, params.normal, params.normal, dot(params.normal, params.normal) == 0.0, 0.0);
+    const LightSample light = sampleLight(receiver, params.scene, rng, shares);
     DrawnLight drawn = DrawnLight(light.direction, light.distance, light.radiance, light.pdf, light.delta ? 1u : 0u, -1.0, 0.0);
     if (!light.delta && light.pdf > 0.0) {
         const Hit hit = traceClosest(Ray(params.from, light.direction, INFINITE_DISTANCE), params.scene.rootNode, rng);
         if (isHit(hit)) {
             const Surface s = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -light.direction, 0.0);
             drawn.hitDistance = hit.t;
-            drawn.hitPdf = lightPdf(s, hit.t, light.direction, params.scene);
+            drawn.hitPdf = lightPdf(s, hit.t, light.direction, shares);
         } else if (HAS_ENVIRONMENT) {
-            drawn.hitPdf = environmentPdf(latLongOf(light.direction), params.scene) * params.scene.environmentProbability;
+            drawn.hitPdf = environmentLightPdf(latLongOf(light.direction), shares, params.scene);
         }
     }
     results.values[i] = drawn;

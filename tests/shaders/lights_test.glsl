@@ -6,6 +6,6 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     SceneParams scene;
-    vec3 from;
+    vec3 from, normal;
     uint count, seed;
 } params;

@@ -35,10 +35,11 @@ struct Seen {
     uint rays;
 };
 
-/// One light, drawn by power. Nothing else finds the lights here, so that each counts in full; a perfectly smooth lobe
+/// One light. Nothing else finds the lights here, so that each counts in full; a perfectly smooth lobe
 /// shows none of them.
 vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
-    const LightSample drawn = sampleLight(surface.position, params.scene, rng);
+    LightShares shares;
+    const LightSample drawn = sampleLight(receiverAt(surface), params.scene, rng, shares);
     const BsdfValue value = evaluateBsdf(bsdf, drawn.direction);
     vec3 scattered = drawn.radiance * (value.diffuse + value.specular) / max(drawn.pdf, 1e-30);
     if (HAS_VOLUME) {

@@ -21,7 +21,7 @@ const ParamTable<GBufferSettings>& gbufferParams();
 /// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample with the
 /// default sampler: on CPUs bit for bit (but for the sign of 0), elsewhere up to rounding.
 struct GBufferImages {
-    /// Radiance that the surface scatters of what one light, drawn by power, sends to it: an unbiased
+    /// Radiance that the surface scatters of what one light sends to it: an unbiased
     /// estimate of light scattered once. A perfectly smooth mirror or pane shows nothing.
     gpu::ImageHandle light;
     gpu::ImageHandle emission, albedo, albedoSpecular;

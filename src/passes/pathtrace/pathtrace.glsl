@@ -29,6 +29,7 @@ struct Path {
     vec3 throughput;
     vec3 diffuseShare;  // of what this path still finds, per channel
     float bsdfPdf;      // of the direction being followed
+    LightShares shares;  // where it began: the light that it may find could have been sampled from there
     bool delta;         // that direction can only be found by following it
     float coneWidth;
     vec3 medium;  // absorption of the body that the path is in, per unit of length
@@ -55,12 +56,11 @@ void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth)
 void addEnvironment(inout Path path, uint depth) {
     if (!HAS_ENVIRONMENT) return;
     const vec2 uv = latLongOf(path.ray.direction);
-    const float density = environmentPdf(uv, params.scene) * params.scene.environmentProbability;
-    addEmission(path, environmentRadiance(uv, params.scene), density, depth);
+    addEmission(path, environmentRadiance(uv, params.scene), environmentLightPdf(uv, path.shares, params.scene), depth);
 }
 
 void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
-    const LightSample light = sampleLight(surface.position, params.scene, rng);
+    const LightSample light = sampleLight(receiverAt(surface), params.scene, rng, path.shares);
     const BsdfValue value = evaluateBsdf(bsdf, light.direction);
     const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
     vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
@@ -158,7 +158,7 @@ void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bs
 
 PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view.camera);
-    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, true, cone.width, vec3(0.0),
+    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, LightShares(0.0, 0.0), true, cone.width, vec3(0.0),
                      PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u);
     float spread = cone.spread;
     FirstSight sight;
@@ -187,7 +187,7 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         met(sight, path, hit, surface, bsdf, depth);
         if (surface.emission != vec3(0.0)) {
             const float density =
-                HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, params.scene) : 0.0;
+                HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, path.shares) : 0.0;
             addEmission(path, surface.emission, density, depth);
         }
         if (depth == params.maxDepth + path.passages || surface.unlit) break;
