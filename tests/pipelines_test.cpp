@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "image/tonemap.h"
 #include "render_fixture.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/parameters.h"
@@ -208,6 +209,34 @@ TEST_F(PipelinesTest, TheScaleOfTheSceneDoesNotMatter) {
             EXPECT_LT(sum / static_cast<double>(kept), 1e-3) << pipeline << " at scale " << scale;
             RecordProperty(std::string(pipeline) + "_change_" + std::to_string(scale),
                            std::to_string(sum / static_cast<double>(kept)));
+        }
+    }
+}
+
+/// What automatic exposure is metered on: without layers too, and after every denoiser.
+TEST_F(PipelinesTest, EachTellsWhichPixelsSeeASurface) {
+    Scene scene = floorScene(vec3(0.5f));
+    scene.cameras = {scene::lookAt({0, 1, 0}, {0, 1, -1}, {0, 1, 0}, 1.0f)};
+    scene.environment = {4, 2, std::vector<vec3>(8, vec3(30.0f))};
+    const scene::SceneData data = scene::buildSceneData(scene);
+    scene::GpuScene gpuScene(device(), data);
+    for (const char* pipeline : {"path", "gbuffer", "svgf", "atrous"}) {
+        for (const bool layers : {false, true}) {
+            RenderSettings settings = settingsFor(pipeline, 16, 16);
+            settings.layers = layers;
+            FrameRenderer renderer(device(), gpuScene, settings, 1);
+            for (uint64_t frame = 0; frame < 2; ++frame) renderer.render(still(scene, settings, frame));
+            const RenderedLayers pictures = renderer.download();
+            const std::vector<float> share = surfaceShare(pictures);
+            ASSERT_EQ(share.size(), 256u) << pipeline;
+            // The floor ends 10 m away, a little below the horizon.
+            for (size_t p = 0; p < share.size(); ++p) {
+                if (p / 16 == 8) continue;
+                EXPECT_EQ(share[p], p / 16 < 8 ? 0.0f : 1.0f) << pipeline << ", pixel " << p;
+            }
+            EXPECT_GT(image::autoExposure(beautyOf(pictures), share),
+                      image::autoExposure(beautyOf(pictures)) + 0.3f)
+                << pipeline;
         }
     }
 }

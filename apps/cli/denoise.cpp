@@ -71,12 +71,21 @@ LayeredImage withBeauty(LayeredImage file, const std::vector<float>& beauty, std
     return file;
 }
 
+/// 1 where a surface is seen, 0 where none is.
+std::vector<float> surfaces(const LayeredImage& file) {
+    const image::Channel* depth = file.find("depth.Z");
+    if (!depth) return {};
+    std::vector<float> result = depth->values;
+    for (float& distance : result) distance = distance > 0.0f && distance < missDepth ? 1.0f : 0.0f;
+    return result;
+}
+
 void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
            const std::vector<float>& beauty) {
     const LayeredImage result = withBeauty(std::move(file), beauty, o.method);
     if (isExr(path)) return image::writeExr(path, result);
     const image::Image picture = result.get("", "RGB");
-    const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture));
+    const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture, surfaces(result)));
     image::writePng(path, image::toBytes(image::tonemap(picture, stops)));
 }
 
@@ -164,7 +173,8 @@ void addDenoiseCommand(CLI::App& app) {
     command->add_option("--preset", o->presets, "A named set of parameters, as course; before --set");
     command->add_option("--set", o->assignments, "A parameter: group.name=value; 'limpid info' lists them");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
-    command->add_option("--exposure", o->exposure, "Of a PNG: stops, or 'auto' (default)");
+    command->add_option("--exposure", o->exposure,
+                        "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
     command->add_option("--dump", o->dump, "Write the images of this pass beside the output");
     command->add_flag("--json", o->json, "One JSON object about the run on stdout");
     addDeviceOptions(*command, o->device);

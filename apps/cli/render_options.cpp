@@ -95,7 +95,8 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
                      "Of --pipeline path: the mean as the window keeps it, launch after launch in single "
                      "precision; not with --resume, "
                      "--shard and --time-limit");
-    command.add_option("--exposure", o.exposure, "Of a PNG: stops, or 'auto' (default)");
+    command.add_option("--exposure", o.exposure,
+                       "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
     command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
     command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
     command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");

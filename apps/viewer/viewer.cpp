@@ -493,7 +493,8 @@ void Viewer::noteTimes(bool rendered) {
 void Viewer::measureExposure() {
     if (!panel_.asked.measureExposure || !main_ || !main_.settings().pipeline.needsExposure()) return;
     panel_.asked.measureExposure = false;
-    panel_.exposure = image::autoExposure(beautyOf(main_.renderer().download()));
+    const RenderedLayers layers = main_.renderer().download();
+    panel_.exposure = image::autoExposure(beautyOf(layers), surfaceShare(layers));
 }
 
 /// What the exposure comes to with this pipeline.

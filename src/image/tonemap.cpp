@@ -39,21 +39,27 @@ double filmicCurveInverse(double display) {
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a) / double{filmicScale};
 }
 
-float autoExposure(const Image& radiance) {
-    return measuredExposure(radiance).value_or(0.0f);
+float autoExposure(const Image& radiance, std::span<const float> subject) {
+    return measuredExposure(radiance, subject).value_or(0.0f);
 }
 
-std::optional<float> measuredExposure(const Image& radiance) {
+std::optional<float> measuredExposure(const Image& radiance, std::span<const float> subject) {
+    const auto isSubject = [](float share) { return share >= 0.5f; };
+    if (std::none_of(subject.begin(), subject.end(), isSubject)) subject = {};
     const size_t count = size_t{radiance.width} * radiance.height;
     double sum = 0.0;
+    size_t counted = 0;
     for (size_t i = 0; i < count; ++i) {
+        if (!subject.empty() && !isSubject(subject[i])) continue;
         const float value = pixelLuminance(radiance, i);
         if (usable(value)) sum += value;
+        ++counted;
     }
-    const double threshold = 1e-5 * sum / std::max<double>(1.0, static_cast<double>(count));
+    const double threshold = 1e-5 * sum / std::max<double>(1.0, static_cast<double>(counted));
     double logSum = 0.0;
     size_t used = 0;
     for (size_t i = 0; i < count; ++i) {
+        if (!subject.empty() && !isSubject(subject[i])) continue;
         const float value = pixelLuminance(radiance, i);
         if (!usable(value) || value < threshold) continue;
         logSum += std::log2(static_cast<double>(value));

@@ -20,10 +20,13 @@ double filmicCurveInverse(double display);
 /// pixels that are finite and brighter than 1e-5 of the arithmetic mean: black backgrounds have no logarithm
 /// and say nothing about exposure. 0 if there is no such pixel; within [-40, 40]. `radiance`: linear, 3 or
 /// more components (1: grey).
-float autoExposure(const Image& radiance);
+///
+/// `subject`, if it is not empty, has a number for each pixel; pixels of at least 0.5 are what counts, unless
+/// there are none. So a bright sky does not darken what stands before it.
+float autoExposure(const Image& radiance, std::span<const float> subject = {});
 
 /// The same; none where autoExposure has no such pixel to go by.
-std::optional<float> measuredExposure(const Image& radiance);
+std::optional<float> measuredExposure(const Image& radiance, std::span<const float> subject = {});
 
 /// One exposure for a sequence, from measuredExposure of each frame: the mean of those that there are, so the
 /// geometric mean of the frames' averages comes to 0.18; 0 if there are none. Black frames do not count.

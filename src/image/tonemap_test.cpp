@@ -51,6 +51,16 @@ TEST(AutoExposure, BringsTheAverageToTheKey) {
     EXPECT_NEAR(autoExposure(image), 0.0f, 1e-5f) << "the geometric mean";
 }
 
+TEST(AutoExposure, IsMeteredOnTheSubject) {
+    Image image(4, 1, 3, 100.0f);  // a bright sky, and one pixel of something
+    for (uint32_t c = 0; c < 3; ++c) image.at(2, 0, c) = 0.045f;
+    const std::vector<float> subject{0.0f, 0.4f, 0.6f, 0.0f};
+    EXPECT_NEAR(autoExposure(image, subject), 2.0f, 1e-5f);
+    EXPECT_LT(autoExposure(image), -4.0f);
+    EXPECT_EQ(autoExposure(image, std::vector<float>(4, 0.0f)), autoExposure(image)) << "nothing but sky";
+    EXPECT_EQ(autoExposure(image, std::vector<float>(4, 1.0f)), autoExposure(image)) << "no sky";
+}
+
 TEST(AutoExposure, IgnoresBlackAndInvalidPixels) {
     EXPECT_EQ(autoExposure(Image(8, 8, 3)), 0.0f);
     EXPECT_EQ(autoExposure(Image()), 0.0f);

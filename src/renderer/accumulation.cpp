@@ -19,7 +19,7 @@ namespace {
 using Images = FrameImages;
 using Layers = RenderedLayers;
 
-constexpr LayerKind beautyAlone{"beauty", 3, VarianceOf::Nothing, &Images::beauty, &Layers::beauty};
+constexpr LayerKind beautyAlone{"beauty", 4, VarianceOf::Nothing, &Images::beauty, &Layers::beauty};
 
 // The first three are what beauty is made of.
 constexpr size_t partsOfBeauty = 3;

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little, "sums are stored as they lie in memory");
 
 constexpr std::array<char, 8> magic{'L', 'I', 'M', 'P', 'I', 'D', 'A', 'C'};
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 constexpr uint32_t maxHeaderBytes = 1u << 20;
 
 class Writer {

@@ -1,6 +1,6 @@
 // Files of sums: checkpoints, and what a shard of a still writes.
 //
-// Little-endian: the eight characters "LIMPIDAC"; format version (uint32: 1); length of the header (uint32);
+// Little-endian: the eight characters "LIMPIDAC"; format version (uint32: 2); length of the header (uint32);
 // the header, JSON (renderer/accumulation_header.h); rays, rejected samples, clamped means (uint64 each); one
 // bit per block, lowest first, whether it is in the sums, in whole bytes. Unless no block is: for each layer
 // its sums (int128) by pixel and component; then, if the layers have "id" and block 0 is in, instance and

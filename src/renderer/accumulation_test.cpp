@@ -101,7 +101,7 @@ TEST(FrameSums, OneBlocksMeansComeBackExactly) {
     const std::vector<float> expected = randomMeans(*sums.layers[0].kind, 0, 6);
     const std::vector<float> got = sums.means().beauty;
     for (size_t p = 0; p < 6; ++p) {
-        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(got[p * 4 + c], expected[p * 4 + c]);
+        for (size_t c = 0; c < 4; ++c) EXPECT_EQ(got[p * 4 + c], expected[p * 4 + c]);
     }
 }
 

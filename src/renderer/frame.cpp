@@ -73,6 +73,7 @@ GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, con
     if (light) {
         out.diffuse = seen.light;
         out.emission = seen.emission;
+        out.depth = seen.depth;
     }
     if (settings.layers) {
         out.albedo = seen.albedo;

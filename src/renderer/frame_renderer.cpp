@@ -93,6 +93,7 @@ RenderedLayers FrameRenderer::download() {
     if (!settings_.layers && images_.beauty) {
         wanted = {};
         wanted.beauty = images_.beauty;
+        wanted.depth = images_.depth;
     }
     const bool accumulates = settings_.pipeline.accumulates();
     RenderedLayers layers = downloadLayers(graph_, device_, wanted, accumulates ? samplesInMean_ : samples_);

@@ -12,9 +12,6 @@ namespace {
 using image::Image;
 using image::Storage;
 
-/// Depth of a pixel that sees nothing, in files.
-constexpr float missDepth = 1e10f;
-
 /// `count` components of four, starting with `first`.
 Image components(const std::vector<float>& texels, gpu::Extent extent, uint32_t first, uint32_t count) {
     Image out(extent.width, extent.height, count);
@@ -92,6 +89,12 @@ Image beautyOf(const RenderedLayers& layers) {
     const Image specular = components(layers.specular, layers.extent, 0, 3);
     for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += specular.pixels[i] + emission.pixels[i];
     return sum;
+}
+
+std::vector<float> surfaceShare(const RenderedLayers& layers) {
+    if (!layers.depth.empty()) return components(layers.depth, layers.extent, 1, 1).pixels;
+    if (!layers.beauty.empty()) return components(layers.beauty, layers.extent, 3, 1).pixels;
+    return {};
 }
 
 image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vector<std::string>& names,

@@ -11,11 +11,15 @@
 
 namespace limpid {
 
+/// Depth of a pixel that sees nothing, in files.
+inline constexpr float missDepth = 1e10f;
+
 /// Running means as they come from the device, four floats a pixel (passes/pathtrace/pathtrace.h says which).
 /// Layers that were not computed are empty.
 struct RenderedLayers {
     gpu::Extent extent;
     uint64_t samples = 0;
+    /// Alpha of a path-traced beauty: the share of the samples that met a surface. `depth` says it of others.
     std::vector<float> beauty, diffuse, specular, emission, albedo, albedoSpecular, normal, previousNormal,
         depth, motion, reflectionMotion;
     std::vector<uint32_t> ids;  ///< instance and material, two a pixel
@@ -30,6 +34,9 @@ std::vector<std::string> parseLayers(std::string_view list);
 
 /// The beauty, three components: diffuse + specular + emission, exact in float32 if layers were computed.
 image::Image beautyOf(const RenderedLayers& layers);
+
+/// Of each pixel, the share of the samples that met a surface, one component; empty where nothing says it.
+std::vector<float> surfaceShare(const RenderedLayers& layers);
 
 /// Channels for an EXR file: beauty as R G B A plus the layers named. Colours and normals are stored as
 /// `colorStorage`, depth, motion, variances and counts as float.

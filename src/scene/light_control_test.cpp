@@ -97,7 +97,8 @@ TEST(LightControl, WhatIsOffHasNoPowerAndKeepsItsPlace) {
     applyLightControls(scene, now, before);
     const SceneData dark = buildSceneData(scene);
     EXPECT_EQ(dark.lights.size(), built.lights.size());
-    EXPECT_EQ(dark.params.lightCount, built.params.lightCount);
+    EXPECT_EQ(dark.params.triangleLightCount, built.params.triangleLightCount);
+    EXPECT_EQ(dark.params.punctualCount, built.params.punctualCount);
     EXPECT_EQ(dark.features, built.features);
     for (const PunctualLight& light : scene.lights) EXPECT_EQ(light.intensity, vec3(0.0f));
     // One light alone is asked more often than among others.

@@ -38,7 +38,7 @@ struct PathtraceLayers {
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };
 struct PathtraceBeauty {
-    gpu::ImageHandle beauty;  ///< mean radiance of the launch's samples
+    gpu::ImageHandle beauty;  ///< mean radiance of the launch's samples; a: the share that met a surface
     gpu::ImageHandle counters;
 };
 
