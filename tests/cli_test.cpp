@@ -24,6 +24,20 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
 }
 
+/// Black is black only where it is asked for.
+TEST_F(CliTest, DarkScenesGetASkyUnlessABackgroundIsChosen) {
+    put("plate.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
+    const std::string render = "render " + path("plate.obj") + " -o " + path("a.png") + tiny;
+    const std::string message = "a soft sky was added";
+    expect(render, 0, message);
+    expect(render + "--light point,0,-2,0,5", 0, message);
+    for (const char* light : {"--background 0,0,0", "--background 0.2,0.2,0.2", "--light point,0,2,0,5"}) {
+        const Result result = run(render + light);
+        EXPECT_EQ(result.code, 0) << result.output;
+        EXPECT_EQ(result.output.find(message), std::string::npos) << light << result.output;
+    }
+}
+
 TEST_F(CliTest, UnreadableInputIsExitCode3AndNamesFileAndFault) {
     expect("render " + path("none.gltf") + " -o " + path("a.png") + tiny, 3, "none.gltf");
     put("broken.gltf", "{\"asset\": ");

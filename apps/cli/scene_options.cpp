@@ -48,7 +48,7 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
     command.add_option("--lights", choice.lightFile,
                        "Changes to the scene's lights, as the window saves them (JSON)");
     command.add_option("--background", choice.background,
-                       "The same radiance from everywhere instead of any environment: R,G,B");
+                       "The same radiance from everywhere instead of any environment: R,G,B; 0,0,0 is black");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
     const CLI::Range reachable(-farthest, farthest);
     command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
@@ -69,16 +69,19 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
 
 scene::Scene loadChosenScene(const SceneChoice& choice) {
     constexpr std::string_view prefix = "builtin:";
-    scene::Scene scene = choice.scene.starts_with(prefix)
-                             ? scene::builtinScene(choice.scene.substr(prefix.size()))
-                             : scene::loadScene(choice.scene);
+    const bool builtin = choice.scene.starts_with(prefix);
+    scene::Scene scene =
+        builtin ? scene::builtinScene(choice.scene.substr(prefix.size())) : scene::loadScene(choice.scene);
     if (!choice.environment.empty()) scene.environment = scene::loadEnvironment(choice.environment);
     scene::OwnLight own{{}, scene::parseBackground(choice.background)};
     for (const std::string& text : choice.lights) {
         if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);
     }
     scene::addOwnLight(scene, own);
-    scene::prepare(scene);
+    // Built-in scenes are as dark as they are meant to be.
+    scene::prepare(scene, !choice.background.empty() ? scene::SkyRule::Never
+                          : builtin                  ? scene::SkyRule::WithoutLights
+                                                     : scene::SkyRule::InTheDark);
     if (!choice.lightFile.empty()) {
         const std::vector<scene::LightControl> before = scene::lightControlsOf(scene);
         scene::applyLightControls(scene, scene::readLightFile(choice.lightFile, before), before);

@@ -22,7 +22,7 @@ std::optional<PunctualLight> parseLamp(const std::string& text);
 /// "R,G,B", none below 0. "": none. Throws UsageError.
 std::optional<vec3> parseBackground(const std::string& text);
 
-/// Before prepare(), which gives a scene without any light a soft sky.
+/// Before prepare(), which may give a dark scene a soft sky: not if the user chose a background.
 void addOwnLight(Scene& scene, const OwnLight& light);
 
 }  // namespace limpid::scene

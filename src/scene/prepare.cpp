@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "scene/environment.h"
 #include "scene/framing.h"
+#include "scene/light_reach.h"
 #include "scene/tangents.h"
 #include "scene/validate.h"
 
@@ -57,19 +58,34 @@ bool hasLight(const Scene& scene) {
     return found;
 }
 
+void addSky(Scene& scene, SkyRule rule) {
+    if (rule == SkyRule::Never || !scene.environment.empty()) return;
+    if (!hasLight(scene)) {
+        scene.environment = softSky();
+        log::warn("nothing in the scene emits light: a soft sky was added");
+        return;
+    }
+    if (rule != SkyRule::InTheDark) return;
+    const double dark = estimateLightReach(scene, scene.cameras.front()).darkShare();
+    if (dark < darkShareForSky) return;
+    scene.environment = softSky();
+    log::warn(
+        "the scene's lights leave about {:.0f} % of what is seen black: a soft sky was added (--background "
+        "0,0,0: "
+        "none)",
+        100.0 * dark);
+}
+
 }  // namespace
 
-void prepare(Scene& scene) {
+void prepare(Scene& scene, SkyRule rule) {
     if (const auto fault = findFault(scene)) throw Error("the scene '" + scene.name + "': " + *fault);
     addTangents(scene);
     if (scene.cameras.empty()) {
         scene.cameras.push_back(frameScene(scene));
         log::info("the scene has no camera: one that shows all of it was added");
     }
-    if (!hasLight(scene)) {
-        scene.environment = softSky();
-        log::warn("nothing in the scene emits light: a soft sky was added");
-    }
+    addSky(scene, rule);
 }
 
 }  // namespace limpid::scene
