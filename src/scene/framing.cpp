@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "scene/mesh_repair.h"
 #include "scene/occupancy.h"
+#include "scene/tight_view.h"
 
 namespace limpid::scene {
 namespace {
@@ -36,16 +39,23 @@ vec3 transformed(const mat4& m, const vec3& p) {
     return vec3(m * vec4(p, 1.0f));
 }
 
-/// Calls use(a, b, c) with the world positions of each triangle.
+/// Calls use(a, b, c, material) with the world positions of each triangle of the instance, at rest.
+template <typename Use>
+void forEachTriangle(const Scene& scene, const Instance& instance, const Use& use) {
+    const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
+    const auto place = [&](size_t i) {
+        return transformed(instance.transform, mesh.positions[mesh.indices[i]]);
+    };
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[i / 3];
+        use(place(i), place(i + 1), place(i + 2),
+            scene.materials[static_cast<size_t>(instance.material) + slot]);
+    }
+}
+
 template <typename Use>
 void forEachTriangle(const Scene& scene, const Use& use) {
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
-        const auto place = [&](size_t i) {
-            return transformed(instance.transform, mesh.positions[mesh.indices[i]]);
-        };
-        for (size_t i = 0; i < mesh.indices.size(); i += 3) use(place(i), place(i + 1), place(i + 2));
-    }
+    for (const Instance& instance : scene.instances) forEachTriangle(scene, instance, use);
 }
 
 Box looseBox(const Scene& scene) {
@@ -64,7 +74,7 @@ Box looseBox(const Scene& scene) {
 
 Box exactBox(const Scene& scene) {
     Box box;
-    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c) {
+    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c, const Material&) {
         box.grow(a);
         box.grow(b);
         box.grow(c);
@@ -75,11 +85,13 @@ Box exactBox(const Scene& scene) {
 /// Of what moves, at so many moments of the clip.
 constexpr int clipMoments = 16;
 
-void growByInstance(const Scene& scene, const RigPose& pose, const Instance& instance, Box& box) {
+/// Calls use(point) with each vertex of a moving instance.
+template <typename Use>
+void forEachMovedPoint(const Scene& scene, const RigPose& pose, const Instance& instance, const Use& use) {
     const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
     const mat4& toWorld = pose.toWorld[static_cast<size_t>(instance.node)];
     if (instance.movement == Movement::Rigid) {
-        for (const vec3& position : mesh.positions) box.grow(transformed(toWorld, position));
+        for (const vec3& position : mesh.positions) use(transformed(toWorld, position));
         return;
     }
     std::vector<mat4> joints;
@@ -87,17 +99,19 @@ void growByInstance(const Scene& scene, const RigPose& pose, const Instance& ins
         joints = jointMatrices(scene.rig.skins[static_cast<size_t>(instance.skin)], pose);
     const std::vector<float>& weights = pose.weights[static_cast<size_t>(instance.node)];
     for (const vec3& position : deform(*mesh.deformation, weights, joints).positions)
-        box.grow(joints.empty() ? transformed(toWorld, position) : position);
+        use(joints.empty() ? transformed(toWorld, position) : position);
 }
 
-/// Where the chosen clip takes things.
-void growByClip(const Scene& scene, Box& box) {
+/// Calls use(point, moment) with where the chosen clip takes things, moments 0 to clipMoments.
+template <typename Use>
+void forEachClipPoint(const Scene& scene, const Use& use) {
     if (scene.clip == none) return;
     const Clip& clip = scene.rig.clips[static_cast<size_t>(scene.clip)];
     for (int i = 0; i <= clipMoments; ++i) {
         const RigPose pose = evaluate(scene.rig, &clip, double{clip.duration()} * i / clipMoments);
         for (const Instance& instance : scene.instances) {
-            if (instance.movement != Movement::Still) growByInstance(scene, pose, instance, box);
+            if (instance.movement == Movement::Still) continue;
+            forEachMovedPoint(scene, pose, instance, [&](const vec3& point) { use(point, i); });
         }
     }
 }
@@ -105,33 +119,57 @@ void growByClip(const Scene& scene, Box& box) {
 /// How much of each side of the box triangles cover, as fractions: -X, +X, -Y, +Y, -Z, +Z.
 struct Walls {
     std::array<float, 6> covered{};
-    float facingInward = 0.0f;  ///< sum over all sides, triangles that face outward counted negative
+    float facingInward = 0.0f;    ///< sum over all sides, triangles that face outward counted negative
+    float seenFromBehind = 0.0f;  ///< as facingInward, but of all triangles that show their backs
+    bool somethingInside = false, lightInside = false;
 
     bool isWall(size_t side) const { return covered[side] > 0.5f; }
     bool closed() const {
         return std::all_of(covered.begin(), covered.end(), [](float c) { return c > 0.5f; });
     }
+    /// A closed box that faces outward is a thing, not a room; thick walls face both ways.
+    bool facesOutward() const { return facingInward <= -0.5f; }
+    /// ... unless it hides what it is about: furniture that could be seen from within, or a lamp.
+    bool hidesSomething() const {
+        return lightInside || (somethingInside && seenFromBehind > 0.5f * covering());
+    }
+
+  private:
+    float covering() const { return std::accumulate(covered.begin(), covered.end(), 0.0f); }
 };
 
 Walls findWalls(const Scene& scene, const Box& box) {
     const vec3 size = box.size();
     Walls walls;
-    const auto add = [&](int axis, bool isUpper, float area) {
+    const auto isInside = [&](const vec3& point) {
+        const vec3 margin = 2.0f * wallDistance * size;
+        return glm::all(glm::greaterThan(point, box.lower + margin)) &&
+               glm::all(glm::lessThan(point, box.upper - margin));
+    };
+    const auto add = [&](int axis, bool isUpper, float area, bool bothSides) {
         const float whole = size[(axis + 1) % 3] * size[(axis + 2) % 3];
         if (!(whole > 0.0f)) return;
         walls.covered[static_cast<size_t>(2 * axis + isUpper)] += std::abs(area) / whole;
         walls.facingInward += (isUpper ? -area : area) / whole;
+        if (bothSides) walls.seenFromBehind += std::abs(area) / whole;
     };
-    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c) {
+    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c, const Material& material) {
+        if (isInside(a) && isInside(b) && isInside(c)) {
+            walls.somethingInside = true;
+            walls.lightInside |= material.emission != vec3(0.0f);
+            return;
+        }
         const vec3 area = 0.5f * glm::cross(b - a, c - a);
         const vec3 low = glm::min(a, glm::min(b, c));
         const vec3 high = glm::max(a, glm::max(b, c));
         for (int axis = 0; axis < 3; ++axis) {
             const float near = wallDistance * size[axis];
-            if (high[axis] <= box.lower[axis] + near) add(axis, false, area[axis]);
-            if (low[axis] >= box.upper[axis] - near) add(axis, true, area[axis]);
+            if (high[axis] <= box.lower[axis] + near) add(axis, false, area[axis], material.doubleSided);
+            if (low[axis] >= box.upper[axis] - near) add(axis, true, area[axis], material.doubleSided);
         }
     });
+    for (const PunctualLight& light : scene.lights)
+        walls.lightInside |= light.kind != PunctualLight::Kind::Directional && isInside(light.position);
     return walls;
 }
 
@@ -154,16 +192,62 @@ float fittingDistance(const Box& box, const mat4& view, float fov) {
     return distance;
 }
 
-Camera fromOutside(const Box& box, const vec3& towardsEye) {
+constexpr float outsideFov = pi / 4;
+/// The part of the picture that is left free on each side.
+constexpr float margin = 1.0f / 42.0f;
+
+/// A room, straight through its opening.
+Camera throughOpening(const Box& box, const vec3& towardsEye) {
     Camera camera;
-    camera.verticalFov = pi / 4;
+    camera.verticalFov = outsideFov;
     camera.toWorld = lookFrom(vec3(0.0f), towardsEye);
     const float distance = std::max(1.05f * fittingDistance(box, camera.toWorld, camera.verticalFov), 1e-3f);
     camera.toWorld[3] = vec4(box.center() + distance * vec3(camera.toWorld[2]), 1.0f);
     return camera;
 }
 
+/// Calls use(point) with all that is seen as the clip begins; of an enormous scene, the corners of its box.
+template <typename Use>
+void forEachFirstPoint(const Scene& scene, const Box& box, bool isExact, const Use& use) {
+    for (int i = 0; i < 8 && !isExact; ++i) use(box.corner(i));
+    for (const Instance& instance : scene.instances) {
+        if (!isExact || (scene.clip != none && instance.movement != Movement::Still)) continue;
+        forEachTriangle(scene, instance, [&](const vec3& a, const vec3& b, const vec3& c, const Material&) {
+            use(a);
+            use(b);
+            use(c);
+        });
+    }
+    forEachClipPoint(scene, [&](const vec3& point, int moment) {
+        if (moment == 0) use(point);
+    });
+}
+
+/// So near that all that ever moves is just seen, unless what is there first would be small.
+Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3& towardsEye) {
+    constexpr float least = 0.5f;
+    Camera camera;
+    camera.verticalFov = outsideFov;
+    camera.toWorld = lookFrom(vec3(0.0f), towardsEye);
+    const float diagonal = glm::length(box.size());
+    const float room = diagonal > 0.0f ? 0.05f * diagonal : 1e-3f;
+    TightView all(camera.toWorld, box.center(), outsideFov, 1.0f - 2.0f * margin);
+    TightView half(camera.toWorld, box.center(), outsideFov, 1.1f * least);
+    forEachFirstPoint(scene, box, isExact, [&](const vec3& point) {
+        all.add(point);
+        half.add(point);
+    });
+    forEachClipPoint(scene, [&](const vec3& point, int) { all.add(point); });
+    camera.toWorld[3] = vec4(all.eye(room), 1.0f);
+    PictureSize size(camera.toWorld, outsideFov);
+    forEachFirstPoint(scene, box, isExact, [&](const vec3& point) { size.add(point); });
+    if (size.largest() < least) camera.toWorld[3] = vec4(half.eye(room), 1.0f);
+    return camera;
+}
+
 constexpr float insideFov = pi / 3;
+/// What half of such a view should exceed, of the box's depth.
+constexpr float farEnough = 0.3f;
 
 /// The distance that half of what a camera of `insideFov` shows in a picture of 16:9 exceeds.
 float medianDistance(const Occupancy& room, const mat4& view) {
@@ -205,19 +289,35 @@ mat4 openestView(const Occupancy& room, const Box& box, const mat4& otherwise) {
     return best;
 }
 
+/// A camera in a room, and how far half of what it shows is away.
+struct InsideView {
+    Camera camera;
+    float distance = 0.0f;
+};
+
 /// From the front, unless something stands before the eye there: a building has rooms within its box.
-Camera fromInside(const Scene& scene, const Box& box) {
+InsideView fromInside(const Scene& scene, const Box& box) {
     constexpr int cells = 96;
-    constexpr float farEnough = 0.3f;  // of the box's depth
     Camera camera;
     camera.verticalFov = insideFov;
     const vec3 eye = box.center() + vec3(0, 0, 0.46f * box.size().z);
     camera.toWorld = lookFrom(eye, {0, 0, 1});
     Occupancy room(box.lower, box.upper, cells);
-    forEachTriangle(scene, [&](const vec3& a, const vec3& b, const vec3& c) { room.add(a, b, c); });
+    forEachTriangle(scene,
+                    [&](const vec3& a, const vec3& b, const vec3& c, const Material&) { room.add(a, b, c); });
     if (medianDistance(room, camera.toWorld) < farEnough * box.size().z)
         camera.toWorld = openestView(room, box, camera.toWorld);
-    return camera;
+    return {camera, medianDistance(room, camera.toWorld)};
+}
+
+/// None if the scene is no closed room.
+std::optional<Camera> inClosedRoom(const Scene& scene, const Box& box, const Walls& walls) {
+    if (!walls.closed() || (walls.facesOutward() && !walls.hidesSomething())) return std::nullopt;
+    const InsideView view = fromInside(scene, box);
+    const vec3 size = box.size();
+    // A closed thing may have much in it, but no room.
+    if (walls.facesOutward() && view.distance < farEnough * std::min(size.x, size.z)) return std::nullopt;
+    return view.camera;
 }
 
 /// The side through which a room with one open wall is seen.
@@ -236,15 +336,13 @@ Camera frame(const Scene& scene) {
     if (box.empty()) return {};
     if (isExact) {
         const Walls walls = findWalls(scene, box);
-        // A closed box that faces outward is a thing, not a room; thick walls face both ways.
-        if (walls.closed() && walls.facingInward > -0.5f) return fromInside(scene, box);
-        if (const auto side = openSide(walls)) return fromOutside(box, *side);
+        if (const auto camera = inClosedRoom(scene, box, walls)) return *camera;
+        if (const auto side = openSide(walls)) return throughOpening(box, *side);
     }
-    growByClip(scene, box);
+    forEachClipPoint(scene, [&](const vec3& point, int) { box.grow(point); });
     const vec3 size = box.size();
-    if (size.z < 0.1f * std::max(size.x, size.y) && size.y > 0.1f * size.x)
-        return fromOutside(box, {0, 0, 1});
-    return fromOutside(box, {0.5f, 0.4f, 1.0f});
+    const bool isFlat = size.z < 0.1f * std::max(size.x, size.y) && size.y > 0.1f * size.x;
+    return fromOutside(scene, box, isExact, isFlat ? vec3(0, 0, 1) : vec3(0.5f, 0.4f, 1.0f));
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
 #include "scene/environment.h"
 #include "scene/framing.h"
 #include "scene/loader_test_files.h"
+#include "scene/mesh_builder.h"
 #include "scene/tangents.h"
 #include "scene/validate.h"
 
@@ -91,6 +93,89 @@ TEST(Prepare, StandsInsideAClosedRoomButOutsideABox) {
     EXPECT_GT(frameScene(scene).toWorld[3].z, 1.0f);
 }
 
+/// As OBJ files and Blender's cubes have it: walls that face outward and show both sides, with something
+/// within.
+TEST(Prepare, StandsInsideARoomWhoseWallsFaceOutward) {
+    const auto outwardRoom = [](bool bothSides, bool table, bool lamp) {
+        Scene scene = roomScene(0);
+        for (vec3& p : scene.meshes[0].positions) p *= vec3(4, 2.5f, 5);
+        std::vector<uint32_t>& indices = scene.meshes[0].indices;
+        for (size_t i = 0; i < indices.size(); i += 3) std::swap(indices[i], indices[i + 1]);
+        scene.materials[0].doubleSided = bothSides;
+        if (table) addQuad(scene.meshes[0], {1, 1, 2}, {1, 1, 3}, {2, 1, 3}, {2, 1, 2});
+        if (lamp) scene.lights.push_back({.position = {2, 2, 2}});
+        return scene;
+    };
+    const auto isInside = [](const Scene& scene) {
+        const vec3 eye(frameScene(scene).toWorld[3]);
+        return glm::all(glm::greaterThan(eye, vec3(0.0f))) && glm::all(glm::lessThan(eye, vec3(4, 2.5f, 5)));
+    };
+    EXPECT_TRUE(isInside(outwardRoom(true, true, false)));
+    EXPECT_TRUE(isInside(outwardRoom(true, false, true)));
+    EXPECT_TRUE(isInside(outwardRoom(false, true, true)));
+    EXPECT_FALSE(isInside(outwardRoom(true, false, false))) << "a box";
+    EXPECT_FALSE(isInside(outwardRoom(false, true, false))) << "its walls cannot be seen from within";
+}
+
+/// The larger of a mesh's width and height in a square picture, and whether all of it is seen.
+struct Seen {
+    float size = 0.0f;
+    bool whole = true;
+};
+
+Seen seenBy(const Camera& camera, const std::vector<vec3>& positions, const mat4& transform = mat4(1.0f)) {
+    vec2 lower(1e30f), upper(-1e30f);
+    for (const vec3& position : positions) {
+        const vec3 p(glm::inverse(camera.toWorld) * transform * vec4(position, 1.0f));
+        const vec2 at = vec2(p) / (-p.z * std::tan(camera.verticalFov / 2));
+        lower = glm::min(lower, at);
+        upper = glm::max(upper, at);
+        if (p.z >= 0.0f) return {0.0f, false};
+    }
+    const vec2 size = 0.5f * (upper - lower);
+    return {std::max(size.x, size.y),
+            glm::all(glm::greaterThan(lower, vec2(-1))) && glm::all(glm::lessThan(upper, vec2(1)))};
+}
+
+TEST(Prepare, ModelsFillThePicture) {
+    Scene scene = squareScene();
+    std::vector<vec3>& positions = scene.meshes[0].positions;
+    scene.meshes[0].normals.clear();
+    const std::vector<std::vector<vec3>> models{
+        {{0, 0, 0}, {1, 0.02f, 1}, {1, 1, 1}, {0, 0.98f, 0}},                  // a screen that stands askew
+        {{-3, 0, -3}, {-2.9f, 0, -3}, {3, 6, 3}, {2.9f, 6, 3}},                // a diagonal beam
+        {{-90, 0, 4400}, {90, 0, 4400}, {90, 200, -4400}, {-90, 200, -4400}},  // a street in centimetres
+        {{0, 0, 0}, {1e-3f, 0, 0}, {1e-3f, 1e-3f, 1e-3f}, {0, 1e-3f, 1e-3f}},
+        {{1000, 0, 1000}, {1000.5f, 0, 1000}, {1000.5f, 1, 1000.2f}, {1000, 1, 1000}}};
+    for (size_t i = 0; i < models.size(); ++i) {
+        positions = models[i];
+        const Seen seen = seenBy(frameScene(scene), positions);
+        EXPECT_TRUE(seen.whole) << i;
+        EXPECT_GT(seen.size, 0.9f) << i;
+    }
+}
+
+/// A clip that takes a small thing far away.
+TEST(Prepare, WhatAClipTakesAwayFillsHalfOfThePicture) {
+    for (const float distance : {0.5f, 200.0f}) {
+        Scene scene = squareScene();
+        scene.rig.nodes.emplace_back();
+        scene.instances[0].node = 0;
+        scene.instances[0].movement = Movement::Rigid;
+        scene.clip = 0;
+        scene.rig.order = {0};
+        scene.rig.clips = {
+            {"away",
+             {{0, AnimatedValue::Translation, Interpolation::Linear, 3, {0, 1}, {0, 0, 0, distance, 0, 0}}}}};
+        const Camera camera = frameScene(scene);
+        const Seen first = seenBy(camera, scene.meshes[0].positions);
+        EXPECT_TRUE(first.whole) << distance;
+        EXPECT_GE(first.size, 0.5f) << distance;
+        const mat4 moved = glm::translate(mat4(1.0f), vec3(distance, 0, 0));
+        EXPECT_EQ(seenBy(camera, scene.meshes[0].positions, moved).whole, distance < 1.0f);
+    }
+}
+
 /// Two rooms behind each other, of which the front one is small: a closet before the eye.
 TEST(Prepare, StandsInTheLargestRoomOfABuilding) {
     Scene scene = roomScene(0);
@@ -145,6 +230,75 @@ TEST(Prepare, AddsASkyOnlyWhereNothingShines) {
     punctual.lights.emplace_back();
     prepare(punctual);
     EXPECT_TRUE(punctual.environment.empty());
+}
+
+/// A cube with a small lamp on its back.
+Scene cubeWithALamp() {
+    Scene scene = squareScene();
+    scene.meshes[0] = MeshBuilder("cube")
+                          .box({-1, -1, -1}, {1, 1, 1})
+                          .box({-0.1f, -0.1f, -1.2f}, {0.1f, 0.1f, -1.1f}, 1)
+                          .take();
+    scene.materials.resize(2);
+    scene.materials[1].emission = vec3(10.0f);
+    return scene;
+}
+
+TEST(Prepare, AddsASkyWhereTheScenesLightsLeaveItDark) {
+    const auto getsSky = [](Scene scene, SkyRule rule = SkyRule::InTheDark) {
+        prepare(scene, rule);
+        return !scene.environment.empty();
+    };
+    EXPECT_TRUE(getsSky(cubeWithALamp()));
+    EXPECT_FALSE(getsSky(cubeWithALamp(), SkyRule::WithoutLights));
+    EXPECT_FALSE(getsSky(cubeWithALamp(), SkyRule::Never));
+    EXPECT_FALSE(getsSky(squareScene(), SkyRule::Never));
+    Scene lit = cubeWithALamp();
+    lit.meshes[0] =
+        MeshBuilder("cube").box({-1, -1, -1}, {1, 1, 1}).box({0.5f, 1.5f, 2}, {0.8f, 1.8f, 2.2f}, 1).take();
+    EXPECT_FALSE(getsSky(lit));
+
+    Scene punctual = squareScene();
+    punctual.lights = {{.kind = PunctualLight::Kind::Spot, .position = {0.5f, 0.5f, 2}}};
+    EXPECT_FALSE(getsSky(punctual));
+    punctual.lights[0].direction = {0, 1, 0};
+    EXPECT_TRUE(getsSky(punctual)) << "shines elsewhere";
+    punctual.lights[0].direction = {0, 0, -1};
+    punctual.lights[0].range = 1.0f;
+    EXPECT_TRUE(getsSky(punctual)) << "does not reach";
+    punctual.lights[0].range = 0.0f;
+    punctual.lights[0].intensity = vec3(0.0f);
+    EXPECT_TRUE(getsSky(punctual)) << "is off";
+}
+
+/// A texture that is black but for what JPEG leaves, and one that is not.
+TEST(Prepare, KnowsBlackEmissionTextures) {
+    for (const uint8_t level : {uint8_t{3}, uint8_t{90}}) {
+        Scene scene = squareScene();
+        scene.textures.push_back({"emission", 1, 1, {level, level, level, 255}, true, {}});
+        scene.materials[0].emission = vec3(1.0f);
+        scene.materials[0].emissionTexture.texture = 0;
+        prepare(scene, SkyRule::InTheDark);
+        EXPECT_EQ(scene.environment.empty(), level == 90);
+    }
+}
+
+TEST(Prepare, AddsASkyToTheDarkOnesOfTheSharedScenes) {
+    const auto scenes = sharedScenes();
+    if (!scenes) GTEST_SKIP() << "the shared scenes are missing";
+    const std::vector<std::pair<const char*, bool>> expected{
+        {"cornell_box_glb/CornellBox.glb", false},
+        {"cornell_box_obj/cornell_box.obj", false},
+        {"lights_punctual_lamp/LightsPunctualLamp.gltf", false},
+        {"stained_glass_lamp/StainedGlassLamp.gltf", false},
+        {"emissive_strength_test/EmissiveStrengthTest.gltf", false},
+        {"low_poly_jungle/scene.gltf", true},
+        {"painting_neon/scene.gltf", true}};
+    for (const auto& [path, sky] : expected) {
+        Scene scene = loadScene(*scenes / path);
+        prepare(scene, SkyRule::InTheDark);
+        EXPECT_EQ(!scene.environment.empty(), sky) << path;
+    }
 }
 
 TEST(Environment, MapsDirectionsAsDocumented) {
