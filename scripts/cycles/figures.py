@@ -1,0 +1,64 @@
+"""What two renderers' pictures say of each other. Needs numpy only.
+
+Each renderer renders a scene twice, with two seeds. The pictures that are compared are the means of the two. What
+differs between the two is noise, and says how much of a deviation noise alone would make.
+
+Pictures are height x width x 3, linear.
+"""
+
+import dataclasses
+
+import numpy
+
+
+@dataclasses.dataclass
+class Ratio:
+    """The test's mean over the reference's, and the standard error of that which noise makes."""
+
+    value: float
+    error: float
+
+    def deviates(self, tolerance=0.01):
+        """True if it is off by more than the tolerance, and surely (three standard errors)."""
+        return abs(self.value - 1) > tolerance and abs(self.value - 1) > tolerance + 3 * self.error
+
+
+def mean_pictures(test, reference):
+    """The two pictures that are compared, of each renderer's pair."""
+    return (test[0] + test[1]) / 2, (reference[0] + reference[1]) / 2
+
+
+def noise_pictures(test, reference):
+    """Two pictures whose difference has the noise that the difference of mean_pictures() has, and nothing else."""
+    return (test[0] + reference[0]) / 2, (test[1] + reference[1]) / 2
+
+
+def ratio(test, reference):
+    """Of two pairs of pictures. Pixels are taken as independent, the components of one pixel are not."""
+    mean_test, mean_reference = mean_pictures(test, reference)
+    noise_a, noise_b = noise_pictures(test, reference)
+    denominator = mean_reference.sum()
+    per_pixel = (noise_a - noise_b).sum(axis=2)
+    return Ratio(mean_test.sum() / denominator, numpy.sqrt((per_pixel**2).sum()) / denominator)
+
+
+def strips(picture, count):
+    """The picture cut into `count` upright strips of the same width, from left to right."""
+    edges = [round(picture.shape[1] * i / count) for i in range(count + 1)]
+    return [picture[:, a:b] for a, b in zip(edges, edges[1:])]
+
+
+def strip_ratios(test, reference, count):
+    """ratio() of each strip."""
+    cut = [strips(picture, count) for picture in (*test, *reference)]
+    return [ratio((a, b), (c, d)) for a, b, c, d in zip(*cut)]
+
+
+def table(rows):
+    """Markdown, of rows (number, name, samples, Ratio, relmse, relmse_noise, flip, flip_noise)."""
+    lines = ["| # | scene | samples | mean ratio | relMSE (of noise) | FLIP (of noise) |", "|---|---|---|---|---|---|"]
+    for number, name, samples, mean, relmse, relmse_noise, flip, flip_noise in rows:
+        marked = f"**{mean.value:.4f}**" if abs(mean.value - 1) > 0.01 else f"{mean.value:.4f}"
+        lines.append(f"| {number} | `{name}` | {samples} | {marked} ± {mean.error:.4f} | "
+                     f"{relmse:.2e} ({relmse_noise:.2e}) | {flip:.4f} ({flip_noise:.4f}) |")
+    return "\n".join(lines)
