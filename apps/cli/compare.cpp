@@ -19,6 +19,7 @@
 #include "image/metrics.h"
 #include "image/picture.h"
 #include "image/tonemap.h"
+#include "progress.h"
 
 namespace limpid::cli {
 namespace {
@@ -80,6 +81,15 @@ float chooseStops(const CompareOptions& options, const image::Picture& reference
     return options.autoExposure || reference.sceneReferred ? image::autoExposure(reference.linear) : 0.0f;
 }
 
+/// Shown on a terminal: large pictures take seconds.
+image::HdrFlip hdrFlipWithProgress(const image::Image& test, const image::Image& reference) {
+    std::optional<Progress> progress;
+    return image::hdrFlip(test, reference, image::flipPixelsPerDegree, [&](int done, int count) {
+        if (!progress) progress.emplace("exposures of HDR-FLIP", static_cast<uint64_t>(count));
+        progress->show(static_cast<uint64_t>(done));
+    });
+}
+
 void comparePictures(const CompareOptions& options) {
     const std::filesystem::path testFile = options.test.format(0),
                                 referenceFile = options.reference.format(0);
@@ -92,7 +102,7 @@ void comparePictures(const CompareOptions& options) {
     const image::Comparison result =
         image::compare(test.linear, reference.linear, chooseStops(options, reference));
     std::optional<image::HdrFlip> hdr;
-    if (bothHdr) hdr = image::hdrFlip(test.linear, reference.linear);
+    if (bothHdr) hdr = hdrFlipWithProgress(test.linear, reference.linear);
     if (options.errorMap) image::writeErrorMap(options.errorMap->format(0), result.flipMap);
     if (options.hdrErrorMap) image::writeErrorMap(options.hdrErrorMap->format(0), hdr->map);
     if (result.invalidPixels > 0) {

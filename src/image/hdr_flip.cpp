@@ -34,19 +34,19 @@ std::vector<double> luminances(const Image& radiance) {
     return values;
 }
 
-/// Linear display values in [0,1].
-Image toneMapped(const Image& radiance, double stops) {
-    Image mapped(radiance.width, radiance.height, 3);
+/// Sets `mapped` to linear display values in [0,1].
+void toneMap(const Image& radiance, double stops, Image& mapped) {
     const double scale = std::exp2(stops);
     const size_t rowValues = size_t{radiance.width} * 3;
     tbb::parallel_for(size_t{0}, size_t{radiance.height}, [&](size_t y) {
-        for (size_t i = y * rowValues; i < (y + 1) * rowValues; ++i) {
+        const float* const from = &radiance.pixels[y * rowValues];
+        float* const to = &mapped.pixels[y * rowValues];
+        for (size_t i = 0; i < rowValues; ++i) {
             // The curve is 1 long before the bound, which keeps the product a float.
-            const double exposed = std::min(scale * static_cast<double>(radiance.pixels[i]), 1e30);
-            mapped.pixels[i] = filmicCurve(static_cast<float>(exposed));
+            const double exposed = std::min(scale * static_cast<double>(from[i]), 1e30);
+            to[i] = filmicCurve(static_cast<float>(exposed));
         }
     });
-    return mapped;
 }
 
 }  // namespace
@@ -70,19 +70,23 @@ HdrFlipExposures hdrFlipExposures(const Image& reference) {
     return exposures;
 }
 
-HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree) {
+HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree,
+                const HdrFlipProgress& progress) {
     checkComparable(test, reference);
     const std::vector<size_t> bad = invalidPixels(test);
     HdrFlip result;
     result.exposures = hdrFlipExposures(reference);
     result.map = Image(test.width, test.height, 1, 0.0f);
+    Image shownTest(test.width, test.height, 3), shownReference = shownTest, map(test.width, test.height, 1);
+    LinearFlip flip(test.width, test.height, pixelsPerDegree);
     const double step = (result.exposures.stop - result.exposures.start) / (result.exposures.count - 1);
     for (int k = 0; k < result.exposures.count; ++k) {
+        if (progress) progress(k, result.exposures.count);
         const double stops = result.exposures.start + k * step;
-        const Image shownReference = toneMapped(reference, stops);
-        Image shownTest = toneMapped(test, stops);
+        toneMap(reference, stops, shownReference);
+        toneMap(test, stops, shownTest);
         showAsWorst(bad, shownReference, shownTest);
-        const Image map = flipOfLinear(shownTest, shownReference, pixelsPerDegree);
+        flip.compare(shownTest, shownReference, map);
         for (size_t i = 0; i < map.pixels.size(); ++i)
             result.map.pixels[i] = std::max(result.map.pixels[i], map.pixels[i]);
     }

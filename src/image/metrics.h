@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "image/image.h"
 
@@ -67,6 +68,9 @@ struct HdrFlipExposures {
 /// a black reference has start = stop = 0. Throws Error if the reference has invalid pixels.
 HdrFlipExposures hdrFlipExposures(const Image& reference);
 
+/// Is told how many exposures are done, and how many there are.
+using HdrFlipProgress = std::function<void(int done, int count)>;
+
 struct HdrFlip {
     HdrFlipExposures exposures;
     double value = 0.0;  ///< mean of the map: 0 for equal images, at most 1
@@ -75,10 +79,11 @@ struct HdrFlip {
 
 /// HDR-FLIP of linear radiance (Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images",
 /// Eurographics 2021 short papers): LDR-FLIP of both images times 2^c through the filmic curve
-/// (image/tonemap_curve.h, the paper's default, too), for every exposure c. No exposure has to be given, and
+/// (image/filmic.h, the paper's default, too), for every exposure c. No exposure has to be given, and
 /// scaling both images by one factor changes nothing. Invalid pixels of `test` count as in compare(). Throws
 /// Error as compare() does.
-HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree = flipPixelsPerDegree);
+HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegree = flipPixelsPerDegree,
+                const HdrFlipProgress& progress = {});
 
 /// Arithmetic mean of all values.
 double mean(const Image& image);

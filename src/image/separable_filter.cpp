@@ -20,19 +20,6 @@ void store(const std::vector<double>& sums, float* target) {
     for (size_t x = 0; x < sums.size(); ++x) target[x] = static_cast<float>(sums[x]);
 }
 
-}  // namespace
-
-Kernel gaussianKernel(int radius, double sigma) {
-    Kernel kernel;
-    double sum = 0.0;
-    for (int x = -radius; x <= radius; ++x) {
-        kernel.push_back(std::exp(-x * x / (2.0 * sigma * sigma)));
-        sum += kernel.back();
-    }
-    for (double& weight : kernel) weight /= sum;
-    return kernel;
-}
-
 Image filterRows(const Image& in, const Kernel& kernel) {
     Image out(in.width, in.height, 1);
     const size_t width = in.width;
@@ -70,6 +57,19 @@ Image filterColumns(const Image& in, const Kernel& kernel) {
         }
     });
     return out;
+}
+
+}  // namespace
+
+Kernel gaussianKernel(int radius, double sigma) {
+    Kernel kernel;
+    double sum = 0.0;
+    for (int x = -radius; x <= radius; ++x) {
+        kernel.push_back(std::exp(-x * x / (2.0 * sigma * sigma)));
+        sum += kernel.back();
+    }
+    for (double& weight : kernel) weight /= sum;
+    return kernel;
 }
 
 Image filterSeparably(const Image& in, const Kernel& horizontal, const Kernel& vertical) {

@@ -18,8 +18,4 @@ Kernel gaussianKernel(int radius, double sigma);
 /// picture stays what it was to the last bit (with kernels of sum 1). `in` has one component.
 Image filterSeparably(const Image& in, const Kernel& horizontal, const Kernel& vertical);
 
-/// The two halves of filterSeparably, for filters that share one.
-Image filterRows(const Image& in, const Kernel& kernel);
-Image filterColumns(const Image& in, const Kernel& kernel);
-
 }  // namespace limpid::image

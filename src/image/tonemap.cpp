@@ -11,8 +11,6 @@
 namespace limpid::image {
 namespace {
 
-#include "image/tonemap_curve.h"
-
 float pixelLuminance(const Image& image, size_t pixel) {
     const float* p = &image.pixels[pixel * image.components];
     return image.components < 3 ? p[0] : luminance(p[0], p[1], p[2]);
@@ -23,13 +21,6 @@ bool usable(float value) {
 }
 
 }  // namespace
-
-float filmicCurve(float radiance) {
-    if (!(radiance > 0.0f)) return 0.0f;
-    const float x = filmicScale * std::min(radiance, filmicLargest);
-    const float y = x * (filmicA * x + filmicB) / (x * (filmicC * x + filmicD) + filmicE);
-    return std::min(y, 1.0f);
-}
 
 double filmicCurveInverse(double display) {
     // y = x (A x + B) / (x (C x + D) + E) is a x^2 + b x + c = 0; c <= 0 <= a, so one root is not negative.

@@ -4,13 +4,10 @@
 #include <optional>
 #include <span>
 
+#include "image/filmic.h"
 #include "image/image.h"
 
 namespace limpid::image {
-
-/// Exposed linear radiance to linear display value in [0,1]; monotone. NaN and below 0 give 0.
-/// image/tonemap_curve.h
-float filmicCurve(float radiance);
 
 /// The inverse: the exposed radiance that filmicCurve takes to `display`, which lies in [0,1).
 double filmicCurveInverse(double display);

@@ -1,0 +1,28 @@
+#include "image/flip_rows.h"
+
+#include <math.h>  // NOLINT: the names that the compiler has vector versions of
+
+#include <numbers>
+#include <type_traits>
+#include <utility>
+
+namespace limpid::image {
+namespace {
+
+#include "image/flip_rows_impl.h"
+
+}  // namespace
+
+#ifdef LIMPID_FLIP_AVX2
+const FlipRows& flipRowsAvx2();
+#endif
+
+const FlipRows& flipRows() {
+#ifdef LIMPID_FLIP_AVX2
+    static const bool avx2 = __builtin_cpu_supports("avx2");
+    if (avx2) return flipRowsAvx2();
+#endif
+    return table;
+}
+
+}  // namespace limpid::image

@@ -1,0 +1,22 @@
+// As flip_rows.cpp, compiled for AVX2.
+#include <math.h>  // NOLINT: the names that the compiler has vector versions of
+
+#include <numbers>
+#include <type_traits>
+#include <utility>
+
+#include "image/flip_rows.h"
+
+namespace limpid::image {
+namespace {
+
+#include "image/flip_rows_impl.h"
+
+}  // namespace
+
+const FlipRows& flipRowsAvx2();
+const FlipRows& flipRowsAvx2() {
+    return table;
+}
+
+}  // namespace limpid::image
