@@ -168,10 +168,11 @@ ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes
         throw InputError(name, "is a deep EXR file, which is not supported");
     const bool tiled = header.hasType() ? Imf::isTiled(header.type()) : Imf::isTiled(version);
 
-    ExrFrame frame{header.dataWindow(), header.displayWindow(), 1};
+    ExrFrame frame{header.dataWindow(), header.displayWindow()};
     const Size data = sizeOf(frame.data, name);
     const Size display = sizeOf(frame.display, name);
     const uint64_t bytesPerPixel = checkChannels(header, name);
+    frame.bytesPerPixel = bytesPerPixel;
     const uint64_t ratio = largestRatio(header.compression());
     checkDimensions(name, data.width, data.height, fileBytes, maxPixels);
     if (data.width * data.height > ratio * fileBytes / bytesPerPixel + 1) {

@@ -33,6 +33,7 @@ struct ExrFrame {
     Imath::Box2i data;
     Imath::Box2i display;
     int rowsPerChunk = 1;
+    uint64_t bytesPerPixel = 0;  ///< of all channels, as stored
 
     uint32_t width() const { return static_cast<uint32_t>(display.max.x - display.min.x) + 1; }
     uint32_t height() const { return static_cast<uint32_t>(display.max.y - display.min.y) + 1; }

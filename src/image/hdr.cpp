@@ -12,8 +12,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/file_kind.h"
-#include "base/log.h"
-#include "image/exr.h"
 #include "image/limits.h"
 
 namespace limpid::image {
@@ -160,58 +158,39 @@ void convertRow(std::span<const Rgbe> row, double exposure, std::span<float> tar
     }
 }
 
-Image environmentFromExr(const fs::path& path) {
-    const LayeredImage layers = readExr(path);
-    if (const auto layer = layers.colorLayer()) return layers.get(*layer, "RGB");
-    if (layers.find("Y")) return layers.get("", "YYY");
-    throw InputError(path, "has no layer with the channels R, G and B");
-}
-
 }  // namespace
 
-Image decodeHdr(std::span<const std::byte> bytes, const fs::path& name) {
+void decodeHdrRows(std::span<const std::byte> bytes, const fs::path& name, const RowSink& sink,
+                   uint64_t most) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!text.starts_with("#?"))
         throw InputError(name, "is no Radiance picture: " + describeBeginning(bytes));
     Reader reader(bytes, name);
     const Header header = readHeader(reader);
     // Old runs have no fixed limit; a row of one colour, which is their best, takes about 12 bytes.
-    checkDimensions(name, header.width, header.height, bytes.size(), 512);
-    Image image(header.width, header.height, 3);
+    checkDimensions(name, header.width, header.height, bytes.size(), 512, most);
+    sink.begin({header.width, header.height}, uint64_t{header.width} * (sizeof(Rgbe) + 3 * sizeof(float)));
     std::vector<Rgbe> row(header.width);
+    std::vector<float> values(size_t{header.width} * 3);
     for (uint32_t i = 0; i < header.height; ++i) {
         readRow(reader, row);
-        const uint32_t y = header.bottomUp ? header.height - 1 - i : i;
-        convertRow(row, header.exposure,
-                   std::span(image.pixels).subspan(size_t{y} * header.width * 3, row.size() * 3));
+        convertRow(row, header.exposure, values);
+        sink.row(header.bottomUp ? header.height - 1 - i : i, values);
     }
+}
+
+Image decodeHdr(std::span<const std::byte> bytes, const fs::path& name) {
+    Image image;
+    const auto begin = [&](PictureSize size, uint64_t) { image = Image(size.width, size.height, 3); };
+    const auto take = [&](uint32_t y, std::span<float> row) {
+        std::copy(row.begin(), row.end(), image.pixels.begin() + static_cast<std::ptrdiff_t>(y * row.size()));
+    };
+    decodeHdrRows(bytes, name, {begin, take}, maxPixels);
     return image;
 }
 
 Image readHdr(const fs::path& path) {
     return decodeHdr(readFile(path), path);
-}
-
-Image readEnvironmentImage(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    Image image;
-    if (extension == ".hdr" || extension == ".pic") {
-        image = readHdr(path);
-    } else if (extension == ".exr") {
-        image = environmentFromExr(path);
-    } else {
-        throw InputError(path, "is no environment map: .hdr and .exr are read");
-    }
-    size_t bad = 0;
-    for (float& value : image.pixels) {
-        if (std::isfinite(value) && value >= 0.0f) continue;
-        value = 0.0f;
-        ++bad;
-    }
-    if (bad > 0) log::warn("{}: {} values that are not finite or below 0 were set to 0", path.string(), bad);
-    return image;
 }
 
 }  // namespace limpid::image

@@ -1,4 +1,4 @@
-// Radiance pictures (.hdr, .pic), and whatever serves as an environment map.
+// Radiance pictures (.hdr, .pic).
 // Format: Greg Ward, "Real Pixels", Graphics Gems II, 1991, and the Radiance file format notes.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <span>
 
 #include "image/image.h"
+#include "image/row_sink.h"
 
 namespace limpid::image {
 
@@ -20,9 +21,8 @@ Image decodeHdr(std::span<const std::byte> bytes, const std::filesystem::path& n
 /// decodeHdr for a file.
 Image readHdr(const std::filesystem::path& path);
 
-/// Linear radiance, 3 components, from .hdr/.pic or .exr (the layer of LayeredImage::colorLayer, or "Y"), by
-/// the name's extension. Values that are no radiance (NaN, infinite, negative) become 0, with one warning.
-/// Throws InputError.
-Image readEnvironmentImage(const std::filesystem::path& path);
+/// decodeHdr row by row, in the file's order. At most `most` pixels.
+void decodeHdrRows(std::span<const std::byte> bytes, const std::filesystem::path& name, const RowSink& sink,
+                   uint64_t most);
 
 }  // namespace limpid::image

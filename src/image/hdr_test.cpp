@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "image/environment_image.h"
 #include "image/exr.h"
 #include "image/temp_folder.h"
 

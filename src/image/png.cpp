@@ -1,7 +1,6 @@
 #include "image/png.h"
 
 #include <fmt/format.h>
-#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 
 #include <algorithm>
@@ -16,47 +15,40 @@
 #include "image/jpeg.h"
 #include "image/limits.h"
 #include "image/png_check.h"
+#include "image/png_read.h"
 
 namespace limpid::image {
 namespace {
 
 namespace fs = std::filesystem;
 
-template <typename T>
-struct Decoded {
-    std::unique_ptr<T, void (*)(void*)> pixels;  ///< RGBA
-    uint32_t width, height;
-};
-
-int stbLength(std::span<const std::byte> bytes) {
-    return static_cast<int>(bytes.size());
-}
-
-const stbi_uc* stbBytes(std::span<const std::byte> bytes) {
-    return reinterpret_cast<const stbi_uc*>(bytes.data());
-}
-
-/// Everything that can be known before a pixel is decoded.
-void checkBeforeDecoding(std::span<const std::byte> bytes, const fs::path& name) {
-    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-        throw InputError(name, fmt::format("is {} bytes long, too much for a picture", bytes.size()));
+/// A PNG's pixels as RGBA, after everything that can be known before one is decoded.
+class WholePng {
+  public:
+    WholePng(std::span<const std::byte> bytes, const fs::path& name) : reader_(checked(bytes, name), name) {
+        checkDimensions(name, size().width, size().height, bytes.size(), pngPixelsPerByte);
     }
-    if (looksLikeJpeg(bytes)) return checkJpeg(bytes, name);
-    // stb_image would try a dozen formats; its other decoders are not meant for files of unknown origin.
-    if (!looksLikePng(bytes)) throw InputError(name, "is neither PNG nor JPEG: " + describeBeginning(bytes));
-    checkPng(bytes, name);
-}
 
-template <typename T, typename Load>
-Decoded<T> decodeWith(Load load, std::span<const std::byte> bytes, const fs::path& name) {
-    int width = 0, height = 0, components = 0;
-    Decoded<T> decoded{
-        {load(stbBytes(bytes), stbLength(bytes), &width, &height, &components, 4), stbi_image_free}, 0, 0};
-    if (!decoded.pixels) throw InputError(name, fmt::format("cannot be decoded: {}", stbi_failure_reason()));
-    decoded.width = static_cast<uint32_t>(width);
-    decoded.height = static_cast<uint32_t>(height);
-    return decoded;
-}
+    PictureSize size() const { return reader_.size(); }
+    bool has16Bits() const { return reader_.has16Bits(); }
+
+    template <typename T>
+    std::vector<T> decode() {
+        std::vector<T> pixels(size().pixels() * 4);
+        reader_.begin(sizeof(T) == 2);
+        reader_.readAll(reinterpret_cast<uint8_t*>(pixels.data()), size_t{size().width} * 4 * sizeof(T));
+        reader_.finish();
+        return pixels;
+    }
+
+  private:
+    static std::span<const std::byte> checked(std::span<const std::byte> bytes, const fs::path& name) {
+        checkPng(bytes, name);
+        return bytes;
+    }
+
+    PngReader reader_;
+};
 
 uint8_t toByte(float value) {
     if (!(value > 0.0f)) return 0;  // NaN too
@@ -112,13 +104,13 @@ void writePng(const fs::path& path, const ByteImage& image) {
 }
 
 ByteImage decodeImage(std::span<const std::byte> bytes, const fs::path& name) {
-    checkBeforeDecoding(bytes, name);
-    if (looksLikeJpeg(bytes)) return decodeJpeg(bytes, name);
-    const auto decoded = decodeWith<stbi_uc>(stbi_load_from_memory, bytes, name);
-    ByteImage image{decoded.width, decoded.height, 4, {}};
-    const size_t count = size_t{image.width} * image.height * 4;
-    image.pixels.assign(decoded.pixels.get(), decoded.pixels.get() + count);
-    return image;
+    if (looksLikeJpeg(bytes)) {
+        checkJpeg(bytes, name);
+        return decodeJpeg(bytes, name);
+    }
+    if (!looksLikePng(bytes)) throw InputError(name, "is neither PNG nor JPEG: " + describeBeginning(bytes));
+    WholePng png(bytes, name);
+    return {png.size().width, png.size().height, 4, png.decode<uint8_t>()};
 }
 
 ByteImage readPngOrJpeg(const fs::path& path) {
@@ -126,21 +118,19 @@ ByteImage readPngOrJpeg(const fs::path& path) {
 }
 
 Image decodeImageFloat(std::span<const std::byte> bytes, const fs::path& name) {
-    const auto convert = [](uint32_t width, uint32_t height, const auto* pixels, float largest) {
+    const auto convert = [](uint32_t width, uint32_t height, const auto& pixels, float largest) {
         Image image(width, height, 4);
         for (size_t i = 0; i < image.pixels.size(); ++i)
             image.pixels[i] = static_cast<float>(pixels[i]) / largest;
         return image;
     };
-    if (!looksLikeJpeg(bytes)) {
-        checkBeforeDecoding(bytes, name);
-        if (stbi_is_16_bit_from_memory(stbBytes(bytes), stbLength(bytes))) {
-            const auto decoded = decodeWith<stbi_us>(stbi_load_16_from_memory, bytes, name);
-            return convert(decoded.width, decoded.height, decoded.pixels.get(), 65535.0f);
-        }
+    if (looksLikePng(bytes)) {
+        WholePng png(bytes, name);
+        if (png.has16Bits())
+            return convert(png.size().width, png.size().height, png.decode<uint16_t>(), 65535.0f);
     }
     const ByteImage image = decodeImage(bytes, name);
-    return convert(image.width, image.height, image.pixels.data(), 255.0f);
+    return convert(image.width, image.height, image.pixels, 255.0f);
 }
 
 }  // namespace limpid::image

@@ -98,7 +98,9 @@ void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& nam
     throw InputError(name, "is a PNG file that was cut off");
 }
 
-void checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name) {
+bool checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name) {
+    bool isProgressive = false;
+    int scans = 0;
     size_t i = 2;
     while (i + 1 < bytes.size()) {
         if (byteAt(bytes, i) != 0xFF) throw InputError(name, "is a damaged JPEG file");
@@ -107,7 +109,7 @@ void checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& na
             ++i;
             continue;
         }
-        if (marker == 0xD9) return;
+        if (marker == 0xD9) return isProgressive || scans > 1;
         if (marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7)) {  // markers without content
             i += 2;
             continue;
@@ -116,7 +118,11 @@ void checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& na
         const size_t length = bigEndian32(bytes, i) & 0xFFFF;
         if (length < 2) throw InputError(name, "is a damaged JPEG file");
         i += 2 + length;
-        if (marker == 0xDA) i = skipScan(bytes, i);
+        // Frame headers of the progressive kinds (T.81, table B.1).
+        if (marker == 0xC2 || marker == 0xC6 || marker == 0xCA || marker == 0xCE) isProgressive = true;
+        if (marker != 0xDA) continue;
+        ++scans;
+        i = skipScan(bytes, i);
     }
     throw InputError(name, "is a JPEG file that was cut off");
 }

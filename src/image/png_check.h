@@ -1,5 +1,5 @@
-// Whether the bytes are a whole, undamaged PNG or JPEG: stb_image checks no checksum, and shows a JPEG that
-// was cut off as if it were complete. Private to src/image.
+// Whether the bytes are a whole, undamaged PNG or JPEG: the decoders show a JPEG that was cut
+// off as if it were complete. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,8 @@ bool looksLikeJpeg(std::span<const std::byte> bytes);
 /// stated is one that image/limits.h accepts.
 void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// Throws InputError unless the markers lead from start to end of image.
-void checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name);
+/// Throws InputError unless the markers lead from start to end of image. Returns whether the decoder holds
+/// all coefficients at once: the file is progressive, or has several scans.
+bool checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 }  // namespace limpid::image

@@ -2,7 +2,6 @@
 // M. D. Vose, "A linear algorithm for generating random numbers with a given distribution", 1991.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "scene/scene_data.h"
@@ -15,6 +14,6 @@ struct AliasTable {
 };
 
 /// Weights are finite and not negative. All zero (or none): a uniform table.
-AliasTable buildAliasTable(std::span<const double> weights);
+AliasTable buildAliasTable(std::vector<double> weights);
 
 }  // namespace limpid::scene

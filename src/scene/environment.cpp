@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "image/hdr.h"
+#include "image/environment_image.h"
 
 namespace limpid::scene {
 namespace {
@@ -20,8 +20,8 @@ vec3 skyRadiance(float up) {
 
 }  // namespace
 
-Environment loadEnvironment(const std::filesystem::path& path) {
-    const image::Image picture = image::readEnvironmentImage(path);
+Environment loadEnvironment(const std::filesystem::path& path, uint64_t maxMemory) {
+    const image::Image picture = image::readEnvironmentImage(path, maxMemory);
     if (picture.components < 3 || picture.width == 0 || picture.height == 0) {
         throw InputError(path, "is no colour picture, which an environment must be");
     }

@@ -7,12 +7,16 @@
 
 #include <filesystem>
 
+#include "image/memory_bound.h"
 #include "scene/scene.h"
 
 namespace limpid::scene {
 
-/// Reads .hdr or .exr (image/hdr.h), linear Rec. 709. Throws InputError if the file is missing or malformed.
-Environment loadEnvironment(const std::filesystem::path& path);
+/// Reads .hdr or .exr (image/hdr.h), linear Rec. 709. A picture that would take more than `maxMemory` by the
+/// time it is on the device, with its tables, is scaled down while it is decoded, with a warning. Throws
+/// InputError if the file is missing or malformed.
+Environment loadEnvironment(const std::filesystem::path& path,
+                            uint64_t maxMemory = image::defaultImageMemory);
 
 /// A cloudless sky without sun: radiance 1 at the horizon, bluer above, a dim ground below. 64 by 32.
 Environment softSky();

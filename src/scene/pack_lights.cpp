@@ -247,8 +247,9 @@ std::vector<double> environmentWeights(const Environment& env) {
 
 void packEnvironment(const Environment& env, SceneData& data) {
     data.features.environment = true;
-    const AliasTable table = buildAliasTable(environmentWeights(env));
-    data.environmentAlias = table.entries;
+    // Nothing is held longer than needed: an environment of 8,192 by 4,096 pixels has 400 MB of weights.
+    AliasTable table = buildAliasTable(environmentWeights(env));
+    data.environmentAlias = std::move(table.entries);
     data.environment.reserve(env.radiance.size());
     for (size_t i = 0; i < env.radiance.size(); ++i) {
         data.environment.emplace_back(env.radiance[i], table.probabilities[i]);

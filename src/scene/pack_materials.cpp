@@ -17,14 +17,16 @@ struct PlacedTexture {
     uint32_t levels = 1;
 };
 
-/// Puts the texture with its mip levels into the first texel buffer that has room.
-PlacedTexture placeTexture(const Texture& texture, SceneData& data) {
-    const std::vector<uint32_t> texels = withMipLevels(texture);
+/// Puts the texture with its mip levels into the first texel buffer that has room. `allTexels`, of all
+/// textures, is reserved: a buffer that grows would be there twice.
+PlacedTexture placeTexture(const Texture& texture, uint64_t allTexels, SceneData& data) {
+    const uint64_t texels = mipTexelCount(texture);
     for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
         auto& buffer = data.texels[index];
-        if (buffer.size() + texels.size() > texelsPerBuffer) continue;
+        if (buffer.size() + texels > texelsPerBuffer) continue;
         const auto first = static_cast<uint32_t>(buffer.size());
-        buffer.insert(buffer.end(), texels.begin(), texels.end());
+        buffer.reserve(std::min(allTexels, texelsPerBuffer));
+        appendMipLevels(texture, buffer);
         return {index << layout::TEXEL_BUFFER_SHIFT | first, mipLevelCount(texture)};
     }
     throw Error(
@@ -47,7 +49,9 @@ uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
 class MaterialPacker {
   public:
     MaterialPacker(const Scene& scene, SceneData& data)
-        : scene_(scene), data_(data), placed_(scene.textures.size()) {}
+        : scene_(scene), data_(data), placed_(scene.textures.size()) {
+        for (const Texture& texture : scene.textures) allTexels_ += mipTexelCount(texture);
+    }
 
     void pack() {
         for (const Material& material : scene_.materials) packMaterial(material);
@@ -59,7 +63,7 @@ class MaterialPacker {
         data_.features.textures = true;
         const auto index = static_cast<size_t>(ref.texture);
         const Texture& texture = scene_.textures[index];
-        if (!placed_[index]) placed_[index] = placeTexture(texture, data_);
+        if (!placed_[index]) placed_[index] = placeTexture(texture, allTexels_, data_);
         const auto result = static_cast<uint32_t>(data_.textureRefs.size() / layout::TEXTURE_REF_TEXELS);
         data_.textureRefs.push_back(bits(ref.rowU, placed_[index]->firstTexel));
         data_.textureRefs.push_back(bits(ref.rowV, samplerBits(texture, ref)));
@@ -110,6 +114,7 @@ class MaterialPacker {
     const Scene& scene_;
     SceneData& data_;
     std::vector<std::optional<PlacedTexture>> placed_;
+    uint64_t allTexels_ = 0;
 };
 
 }  // namespace
