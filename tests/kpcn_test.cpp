@@ -23,9 +23,11 @@ using neural::TensorFile;
 const std::string dataFolder = std::string(LIMPID_SOURCE_DIR) + "/tests/data/";
 
 KpcnWeights weightsOf(const std::string& network) {
-    return denoise::readKpcnWeights(network == "shipped"
-                                        ? std::string(LIMPID_SOURCE_DIR) + "/weights/kpcn.safetensors"
-                                        : dataFolder + "kpcn_small.safetensors");
+    KpcnWeights weights = denoise::readKpcnWeights(
+        network == "shipped" ? std::string(LIMPID_SOURCE_DIR) + "/weights/kpcn.safetensors"
+                             : dataFolder + "kpcn_small.safetensors");
+    if (network == "anywhere") weights.facing = -2.0f;
+    return weights;
 }
 
 /// A network of random weights.
@@ -154,7 +156,7 @@ class KpcnTest : public DenoiseTest {
 
 TEST_F(KpcnTest, IsWhatPyTorchComputes) {
     const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
-    for (const std::string name : {"small", "shipped"}) {
+    for (const std::string name : {"small", "shipped", "anywhere"}) {
         const HostFrame frame = frameOf(cases, name);
         const std::vector<float> truth = pixelsOf(cases, name + "/clean", "");
         for (const KpcnPrecision precision : precisions()) {

@@ -10,7 +10,7 @@ import os
 import torch
 
 from . import data, features
-from .network import Kpcn
+from .network import network_of
 
 
 def rel_mse(image, reference):
@@ -22,7 +22,7 @@ def evaluate(run, folder, device="cpu"):
     """(scene, noisy, denoised) of every example of the dataset."""
     state = torch.load(os.path.join(run, "checkpoint.pt"), map_location=device)
     options = state["options"]
-    net = Kpcn(options["hidden"], options["channels"], options["width"]).to(device)
+    net = network_of(options).to(device)
     net.load_state_dict(state["net"])
     examples = data.Dataset(folder, options["samples"], device)
     for index in range(len(examples)):

@@ -10,15 +10,21 @@ import os
 
 import torch
 
-from . import tensor_file
+from . import features, tensor_file
 
 
 def export(run, output):
     state = torch.load(os.path.join(run, "checkpoint.pt"), map_location="cpu")
     options = state["options"]
+    if options["direct"]:
+        raise SystemExit(f"{run}: predicts colours; Limpid denoises with kernels")
+    weights = {name: weight.half() for name, weight in state["net"].items()}
+    unseen = sorted(set(range(features.INPUT_CHANNELS)) - set(features.INPUTS[options["inputs"]]))
+    for side in features.SIDES:
+        weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # what the network did not see means nothing to it
     metadata = {
         "limpid.network": "kpcn",
-        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width")}),
+        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing")}),
         "limpid.training": json.dumps(
             {
                 "dataset": state["dataset"],
@@ -28,7 +34,7 @@ def export(run, output):
             }
         ),
     }
-    tensor_file.write(output, {name: weight.half() for name, weight in state["net"].items()}, metadata)
+    tensor_file.write(output, weights, metadata)
 
 
 if __name__ == "__main__":

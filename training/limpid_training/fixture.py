@@ -15,10 +15,10 @@ import torch
 from torch.nn import functional
 
 from . import features, tensor_file
-from .network import FACING, Kpcn
+from .network import ANY_FACING, Kpcn
 
 #: name: rows, columns
-CASES = {"small": (37, 45), "shipped": (23, 30)}
+CASES = {"small": (37, 45), "shipped": (23, 30), "anywhere": (19, 26)}
 SMALL = {"hidden": 2, "channels": 20, "width": 7}
 
 
@@ -66,7 +66,7 @@ def load(path):
     return net
 
 
-def deviation(logits, variance, normal):
+def deviation(logits, variance, normal, facing):
     """Of the mean that apply_kernel() makes of light with this `variance`, whose pixels' noise is independent: all at once."""
     width = round(logits.shape[1] ** 0.5)
     rows, columns = variance.shape[2:]
@@ -78,7 +78,7 @@ def deviation(logits, variance, normal):
     unit = normal / torch.where(length > 0, length, torch.ones_like(length))
     cosine = sum(taps(unit[:, c : c + 1]) * unit[:, c : c + 1] for c in range(3))
     nothing = (length == 0).to(normal.dtype)
-    alike = (cosine >= FACING) | (taps(nothing) * nothing > 0)
+    alike = (cosine >= facing) | (taps(nothing) * nothing > 0)
     weights = torch.softmax(logits.masked_fill(~alike | (taps(torch.ones_like(variance)) == 0), -torch.inf), dim=1)
     return (weights**2 * taps(variance)).sum(dim=1, keepdim=True).sqrt()
 
@@ -102,7 +102,7 @@ def cases(networks):
         clean = {}
         for side in features.SIDES:
             clean[side + ".clean"], logits = net.side_and_logits(side, prepared)
-            clean[side + ".deviation"] = deviation(logits.double(), variance[side], exact["normal"])
+            clean[side + ".deviation"] = deviation(logits.double(), variance[side], exact["normal"], net.facing)
         clean["clean"] = net(prepared)
         for layer, image in {**layers, **clean}.items():
             result[f"{name}/{layer}"] = image[0].float()
@@ -110,7 +110,11 @@ def cases(networks):
 
 
 def networks(data, weights):
-    return {"small": load(os.path.join(data, "kpcn_small.safetensors")), "shipped": load(weights)}
+    """"anywhere" is "small" with kernels that take in whatever lies around."""
+    small = os.path.join(data, "kpcn_small.safetensors")
+    result = {"small": load(small), "shipped": load(weights), "anywhere": load(small)}
+    result["anywhere"].facing = ANY_FACING
+    return result
 
 
 SHIPPED = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.safetensors")

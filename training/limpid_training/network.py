@@ -20,43 +20,51 @@ def convolve(layer, x):
 
 class KernelPredictor(nn.Module):
     """From (batch, 34, rows, columns) to the weights of a kernel for each pixel (batch, width^2, rows, columns), not
-    yet normalised. `hidden` convolutions of `channels` channels with ReLU, and one more; all of 5x5 taps, with zeros
-    around the picture."""
+    yet normalised; or, if `direct`, to colours (batch, 3, rows, columns). `hidden` convolutions of `channels` channels
+    with ReLU, and one more; all of 5x5 taps, with zeros around the picture. `inputs`: a key of features.INPUTS; the other
+    channels are taken as 0."""
 
-    def __init__(self, hidden=8, channels=100, width=21):
+    def __init__(self, hidden=8, channels=100, width=21, direct=False, inputs="all"):
         super().__init__()
         if width % 2 != 1:
             raise ValueError(f"a kernel {width} pixels wide has no centre")
-        self.width = width
+        self.outputs = 3 if direct else width * width
+        seen = torch.zeros(1, features.INPUT_CHANNELS, 1, 1)
+        seen[:, list(features.INPUTS[inputs])] = 1.0
+        self.register_buffer("seen", seen, persistent=False)
         before = features.INPUT_CHANNELS
         self.hidden = nn.ModuleList()
         for _ in range(hidden):
             self.hidden.append(nn.Conv2d(before, channels, 5, padding=2))
             before = channels
-        self.output = nn.Conv2d(before, width * width, 5, padding=2)
+        self.output = nn.Conv2d(before, self.outputs, 5, padding=2)
         for layer in [*self.hidden, self.output]:
             nn.init.xavier_uniform_(layer.weight)
             nn.init.zeros_(layer.bias)
 
     def forward(self, x):
+        x = x * self.seen
         for layer in self.hidden:
             x = functional.relu(convolve(layer, x))
-        return convolve(self.output, x)[:, : self.width**2]
+        return convolve(self.output, x)[:, : self.outputs]
 
 
-#: Least cosine between a pixel's normal and those of what its kernel takes in (KPCN_KERNEL_FACING in kpcn_params.h).
+#: Least cosine between a pixel's normal and those of what its kernel takes in (KpcnWeights::facing).
 FACING = 0.5
+#: No condition: kernels as in the paper.
+ANY_FACING = -2.0
 
 
-def apply_kernel(logits, light, faces):
+def apply_kernel(logits, light, faces, facing=FACING):
     """The mean of the pixels around each, by the softmax of `logits` (batch, width^2, rows, columns; rows of the kernel from
-    the top) over those that lie in the picture and face the same way. `light`: (batch, channels, rows, columns), `faces`: likewise,
-    from features.faces()."""
+    the top) over those that lie in the picture and whose normal's cosine with the pixel's own is at least `facing`. `light`:
+    (batch, channels, rows, columns), `faces`: likewise, from features.faces()."""
     width = round(logits.shape[1] ** 0.5)
     radius = width // 2
     rows, columns = light.shape[2:]
     padded = functional.pad(light, [radius] * 4)
-    around = functional.pad(faces, [radius] * 4)  # with zeros, which face nowhere: nothing outside counts
+    around = functional.pad(faces, [radius] * 4)
+    outside = functional.pad(torch.zeros_like(light[:, :1]), [radius] * 4, value=-8.0)  # below any cosine
 
     def row_of_taps(image, top):
         """(batch, channels, rows, taps, columns), without a copy."""
@@ -65,7 +73,7 @@ def apply_kernel(logits, light, faces):
     def exponents(top):
         taps = logits[:, top * width : (top + 1) * width].permute(0, 2, 1, 3).unsqueeze(1)
         cosine = (row_of_taps(around, top) * faces.unsqueeze(3)).sum(dim=1, keepdim=True)
-        return taps.masked_fill(cosine < FACING, -torch.inf)
+        return taps.masked_fill(cosine + row_of_taps(outside, top) < facing, -torch.inf)
 
     # Row by row of the kernel: all of it at once would take width^2 pictures of memory.
     with torch.no_grad():
@@ -80,21 +88,30 @@ def apply_kernel(logits, light, faces):
 
 
 class Kpcn(nn.Module):
-    """Both sides, and the denoised picture without emission."""
+    """Both sides, and the denoised picture without emission. `direct`: the network predicts colours instead of kernels,
+    for comparison only; Limpid cannot denoise with that."""
 
-    def __init__(self, hidden=8, channels=100, width=21):
+    def __init__(self, hidden=8, channels=100, width=21, facing=FACING, inputs="all", direct=False):
         super().__init__()
-        self.diffuse = KernelPredictor(hidden, channels, width)
-        self.specular = KernelPredictor(hidden, channels, width)
+        self.facing, self.direct = facing, direct
+        self.diffuse = KernelPredictor(hidden, channels, width, direct, inputs)
+        self.specular = KernelPredictor(hidden, channels, width, direct, inputs)
 
     def side(self, side, prepared):
         """Denoised light of one side, as to_network() has it: what each is trained by alone. `prepared`: features.prepare()."""
         return self.side_and_logits(side, prepared)[0]
 
     def side_and_logits(self, side, prepared):
-        """And the kernels' weights before their softmax."""
-        logits = getattr(self, side)(prepared[side + ".input"]).float()
-        return apply_kernel(logits, prepared[side + ".light"], prepared["faces"]), logits
+        """And the kernels' weights before their softmax; zeros where there are no kernels."""
+        result = getattr(self, side)(prepared[side + ".input"]).float()
+        if self.direct:
+            return result, torch.zeros_like(result)
+        return apply_kernel(result, prepared[side + ".light"], prepared["faces"], self.facing), result
 
     def forward(self, prepared):
         return features.recombined({side: self.side(side, prepared) for side in features.SIDES}, prepared["albedo"])
+
+
+def network_of(options):
+    """The network that a run's options describe."""
+    return Kpcn(**{name: options[name] for name in ("hidden", "channels", "width", "facing", "inputs", "direct")})

@@ -1,5 +1,6 @@
 """Pictures for people, without further libraries: PNG files, and curves as SVG."""
 
+import math
 import struct
 import zlib
 
@@ -27,27 +28,66 @@ def write_png(path, image):
         stream.write(chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
-def write_curves(path, curves):
-    """`curves`: names to lists of numbers above 0, one an epoch; on a logarithmic axis."""
-    colors = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
-    values = [v for curve in curves.values() for v in curve if v > 0]
-    if not values:
-        return
-    low, high = min(values), max(values)
-    width, height, longest = 720, 360, max(len(curve) for curve in curves.values())
+COLORS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
 
-    def point(i, value):
-        across = 60 + (width - 80) * i / max(longest - 1, 1)
-        share = torch.log(torch.tensor(max(value, low) / low)) / max(torch.log(torch.tensor(high / low)).item(), 1e-9)
-        return f"{across:.1f},{height - 30 - (height - 60) * share:.1f}"
 
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="12">']
-    parts.append(f'<rect width="{width}" height="{height}" fill="white"/>')
-    parts.append(f'<text x="4" y="{height - 26}">{low:.3g}</text><text x="4" y="34">{high:.3g}</text>')
-    for k, (name, curve) in enumerate(curves.items()):
-        color = colors[k % len(colors)]
-        line = " ".join(point(i, value) for i, value in enumerate(curve))
-        parts.append(f'<polyline fill="none" stroke="{color}" points="{line}"/>')
-        parts.append(f'<text x="{70 + 150 * (k % 4)}" y="{16 + 16 * (k // 4)}" fill="{color}">{name}</text>')
+def ticks(low, high):
+    """1, 2 and 5 times powers of ten from `low` to `high`."""
+    powers = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1)
+    return [m * 10.0**e for e in powers for m in (1, 2, 5) if low <= m * 10.0**e <= high]
+
+
+def panel(left, width, height, title, across, curves):
+    """The elements of one plot: `curves` are names to (xs, ys), ys above 0 on a logarithmic axis."""
+    points = [(x, y) for xs, ys in curves.values() for x, y in zip(xs, ys) if y > 0]
+    if not points:
+        return []
+    low, high = min(y for _, y in points) / 1.1, max(y for _, y in points) * 1.1
+    begin, end = min(x for x, _ in points), max(x for x, _ in points)
+    begin, end = (0.0, end) if begin < end else (begin - 1, begin + 1)
+    top, bottom, inner = 60, height - 40, width - 70
+
+    def place(x, y):
+        share = math.log(max(y, low) / low) / math.log(high / low)
+        return left + 55 + inner * (x - begin) / (end - begin), bottom - (bottom - top) * share
+
+    parts = [f'<text x="{left + 55}" y="20" font-weight="bold">{title}</text>']
+    for value in ticks(low, high):
+        y = place(begin, value)[1]
+        parts.append(f'<line x1="{left + 55}" x2="{left + 55 + inner}" y1="{y:.1f}" y2="{y:.1f}" stroke="#ddd"/>')
+        parts.append(f'<text x="{left + 50}" y="{y + 4:.1f}" text-anchor="end">{value:g}</text>')
+    step = max(10 ** math.floor(math.log10((end - begin) / 2)), 1)
+    for value in range(0, math.floor(end) + 1, max(step * (2 if (end - begin) / step > 8 else 1), 1)):
+        parts.append(f'<text x="{place(value, low)[0]:.1f}" y="{bottom + 16}" text-anchor="middle">{value}</text>')
+    parts.append(f'<text x="{left + 55 + inner / 2}" y="{height - 6}" text-anchor="middle">{across}</text>')
+    for k, (name, (xs, ys)) in enumerate(curves.items()):
+        color = COLORS[k % len(COLORS)]
+        line = " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in zip(xs, ys) if y > 0)
+        parts.append(f'<polyline fill="none" stroke="{color}" stroke-width="1.5" points="{line}"/>')
+        parts.append(f'<text x="{left + 60 + inner / 2 * (k % 2)}" y="{36 + 14 * (k // 2)}" fill="{color}">{name}</text>')
+    return parts
+
+
+def write_plots(path, plots, width=460, height=340):
+    """SVG with `plots` beside each other: (title, label of the x axis, {name: (xs, ys)}) each. On white, so that it can be read
+    on dark pages, too."""
+    whole = width * len(plots)
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {whole} {height}" font-family="sans-serif" font-size="12">']
+    parts.append(f'<rect width="{whole}" height="{height}" fill="white"/>')
+    for i, (title, across, curves) in enumerate(plots):
+        parts += panel(i * width, width, height, title, across, curves)
     with open(path, "w") as stream:
         stream.write("\n".join(parts) + "\n</svg>\n")
+
+
+def write_curves(path, curves, phases=()):
+    """`curves`: names to lists of numbers above 0, one an epoch. Those named in `phases` come after the longest of the others
+    but "validation", which covers all epochs."""
+    first = max((len(y) for name, y in curves.items() if name not in phases and name != "validation"), default=0)
+
+    def epochs(name, ys):
+        begin = first if name in phases else 0
+        return [begin + i + 1 for i in range(len(ys))]
+
+    write_plots(path, [("Loss, and relMSE over the noisy picture's (validation)", "epoch",
+                        {name: (epochs(name, ys), ys) for name, ys in curves.items()})], width=720)

@@ -17,10 +17,12 @@ import torch.distributed as distributed
 
 from . import data, features, pictures
 from .evaluate import rel_mse
-from .network import Kpcn
+from .network import ANY_FACING, FACING, network_of
 
 PRESETS = {
-    "cis565": {"loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0}
+    "cis565": {
+        "loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0,
+        "inputs": "gradients", "facing": ANY_FACING}
 }
 
 
@@ -50,6 +52,12 @@ def parse(arguments=None):
     parser.add_argument("--hidden", type=int, default=8, help="convolutions before the last")
     parser.add_argument("--channels", type=int, default=100)
     parser.add_argument("--width", type=int, default=21, help="pixels of a kernel")
+    parser.add_argument("--inputs", choices=sorted(features.INPUTS), default="all",
+                        help="channels that the network sees: all 34, or of albedo, normal and depth the gradients alone")
+    parser.add_argument("--facing", type=float, default=FACING,
+                        help="least cosine between a pixel's normal and those of what its kernel takes in; -2: no condition")
+    parser.add_argument("--direct", action="store_true",
+                        help="predict colours instead of kernels, to compare the two; such a network cannot be exported")
     parser.add_argument("--validation", type=float, default=0.1, help="share of the examples that are not learnt from")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--time-limit", type=float, default=0, help="seconds after which no epoch begins; 0: none")
@@ -92,7 +100,7 @@ class Trainer:
         self.options = options
         self.workers = Workers(options.device)
         torch.manual_seed(options.seed)
-        self.net = Kpcn(options.hidden, options.channels, options.width).to(self.workers.device)
+        self.net = network_of(vars(options)).to(self.workers.device)
         if self.half:
             self.net = self.net.to(memory_format=torch.channels_last)
             torch.backends.cudnn.benchmark = True
@@ -111,7 +119,7 @@ class Trainer:
         batches = len(self.learnt) // self.workers.count * options.patches / options.batch  # in an epoch
         lengths = {"both": options.tuning_epochs}
         self.warm_up = {name: max(options.warm_up * lengths.get(name, options.epochs) * batches, 1.0) for name in self.rates}
-        self.epoch, self.seconds, self.losses = 0, 0.0, {}
+        self.epoch, self.seconds, self.losses, self.times = 0, 0.0, {}, []
 
     @property
     def half(self):
@@ -217,6 +225,7 @@ class Trainer:
             "epoch": self.epoch,
             "seconds": self.seconds,
             "losses": self.losses,
+            "times": self.times,
             "options": vars(self.options),
             "dataset": self.examples.manifest["dataset"],
             "validated": [self.examples.examples[i][2] for i in self.validated],
@@ -225,8 +234,8 @@ class Trainer:
         torch.save(state, temporary)
         os.replace(temporary, os.path.join(folder, "checkpoint.pt"))
         with open(os.path.join(folder, "losses.json"), "w") as stream:
-            json.dump({"seconds": self.seconds, "losses": self.losses}, stream, indent=1)
-        pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses)
+            json.dump({"seconds": self.seconds, "losses": self.losses, "times": self.times}, stream, indent=1)
+        pictures.write_curves(os.path.join(folder, "losses.svg"), self.losses, phases=("both",))
         row = torch.cat([pictures.shown(light[0].cpu()) for light in self.shown], dim=2)
         pictures.write_png(os.path.join(folder, "validation.png"), row)
 
@@ -238,22 +247,26 @@ class Trainer:
         self.scaler.load_state_dict(state["scaler"])
         self.batches_done = state["batches_done"]
         self.epoch, self.seconds, self.losses = state["epoch"], state["seconds"], state["losses"]
+        self.times = state["times"]
 
     def run(self):
         os.makedirs(self.options.output, exist_ok=True)
         if self.options.resume:
             self.resume()
-        began, before = time.monotonic(), self.seconds
+        began, before, judging = time.monotonic(), self.seconds, 0.0
         while self.epoch < self.epochs:
             if self.options.time_limit and time.monotonic() - began > self.options.time_limit:
                 break
             self.train_epoch()
             self.epoch += 1
-            self.seconds = before + time.monotonic() - began
+            self.seconds = before + time.monotonic() - began - judging
+            self.times.append(self.seconds)
             if self.workers.number > 0:
                 continue
+            started = time.monotonic()
             self.validate()
             self.save()
+            judging += time.monotonic() - started
             last = ", ".join(f"{name} {curve[-1]:.5f}" for name, curve in self.losses.items())
             print(f"epoch {self.epoch} of {self.epochs}, {self.seconds:.0f} s: {last}", flush=True)
         return self.losses

@@ -69,6 +69,15 @@ class FeaturesTest(unittest.TestCase):
             self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
             self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 
+    def test_a_network_of_gradients_sees_nothing_else_of_its_guides(self):
+        net = KernelPredictor(hidden=1, channels=4, width=3, inputs="gradients")
+        x = torch.rand(1, features.INPUT_CHANNELS, 8, 8)
+        raised = x.clone()
+        raised[:, [10, 11, 12, 19, 20, 22, 29, 30, 33]] += 1.0  # albedo, normal, depth, and their variances
+        self.assertTrue(torch.equal(net(x), net(raised)))
+        raised[:, 13] += 1.0  # a gradient of albedo
+        self.assertFalse(torch.equal(net(x), net(raised)))
+
     def test_nothing_seen(self):
         frame = {name: torch.zeros_like(image) for name, image in random_frame().items()}
         for side in features.SIDES:

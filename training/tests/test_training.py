@@ -8,7 +8,7 @@ import unittest
 
 import torch
 
-from limpid_training import data, evaluate, export, features, pictures, tensor_file, train
+from limpid_training import compare, data, evaluate, export, features, pictures, tensor_file, train
 from limpid_training.network import Kpcn
 
 LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
@@ -137,6 +137,21 @@ class TrainingTest(unittest.TestCase):
     def test_presets_may_be_changed(self):
         options = train.parse(["data", "-o", "run", "--preset", "cis565", "--batch", "8"])
         self.assertEqual((options.epochs, options.rate_diffuse, options.batch), (10, 1e-5, 8))
+
+    def test_kernels_against_colours(self):
+        """The comparison's pieces: a network of colours learns, is drawn beside one of kernels, and is not exported."""
+        runs = {}
+        for name, extra in (("kernels", ()), ("colours", ("--direct",))):
+            self.train(name, "--epochs", "2", "--tuning-epochs", "0", *extra)
+            runs[name] = compare.read(os.path.join(self.folder, name))
+            self.assertEqual(len(runs[name]["times"]), 2)
+        self.assertEqual(len(list(compare.table(runs))), 2)
+        plot = os.path.join(self.folder, "plot.svg")
+        pictures.write_plots(plot, compare.plots(runs))
+        with open(plot) as stream:
+            self.assertIn("colours, specular", stream.read())
+        with self.assertRaises(SystemExit):
+            export.export(os.path.join(self.folder, "colours"), os.path.join(self.folder, "w.safetensors"))
 
     def test_two_workers(self):
         """As torchrun starts them (that of Debian's PyTorch does not run with Debian's Python)."""

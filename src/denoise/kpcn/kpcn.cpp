@@ -316,8 +316,8 @@ class Recorder {
     void dispatchLayer(const std::string& pass, const gpu::ShaderCode& shader,
                        const KpcnNetwork::Layer& layer, const KpcnRegion& where, uint32_t mostTiles,
                        std::vector<gpu::Binding> bindings) {
-        const KpcnLayerParams params{where, layer.inputSlabs, layer.outputTiles, layer.weights,
-                                     network_.kernelWidth()};
+        const KpcnLayerParams params{where,         layer.inputSlabs,       layer.outputTiles,
+                                     layer.weights, network_.kernelWidth(), network_.facing()};
         bindings.push_back({"weights", &network_.weights()});
         std::vector<gpu::ConstantValue> constants;
         if (network_.precision() == KpcnPrecision::Matrices)

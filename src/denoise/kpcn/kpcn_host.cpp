@@ -59,7 +59,8 @@ inline float exponential(float x) {
 /// Where a part's surfaces face.
 class Faces {
   public:
-    explicit Faces(std::span<const uint32_t> packed) {
+    /// `least`: KpcnWeights::facing.
+    Faces(std::span<const uint32_t> packed, float least) : least_(least) {
         for (size_t c = 0; c < components_.size(); ++c) {
             components_[c].resize(packed.size());
             for (size_t i = 0; i < packed.size(); ++i)
@@ -75,12 +76,13 @@ class Faces {
         for (size_t x = begin; x < end; ++x) {
             const float cosine =
                 p[a + x] * p[b + x] + q[a + x] * q[b + x] + r[a + x] * r[b + x] + s[a + x] * s[b + x];
-            logits[x] = cosine >= KPCN_KERNEL_FACING ? logits[x] : noLogit;
+            logits[x] = cosine >= least_ ? logits[x] : noLogit;
         }
     }
 
   private:
     std::array<std::vector<float>, 4> components_;
+    float least_;
 };
 
 /// The means of one row of pixels; as if one after the other, all pixels of the row are under way at once.
@@ -155,6 +157,7 @@ class RowOfMeans {
 
 struct KpcnHost::Impl {
     uint32_t kernelWidth = 0;
+    float facing = 0.0f;
     std::array<std::unique_ptr<neural::ConvolutionChain>, 2> sides;
 };
 
@@ -164,6 +167,7 @@ bool kpcnHostAvailable() {
 
 KpcnHost::KpcnHost(const KpcnWeights& weights) : impl_(std::make_unique<Impl>()) {
     impl_->kernelWidth = weights.kernelWidth;
+    impl_->facing = weights.facing;
     for (size_t side = 0; side < 2; ++side) {
         std::vector<neural::ConvolutionLayer> layers;
         for (const KpcnLayer& layer : weights.sides[side]) {
@@ -179,7 +183,7 @@ KpcnHost::~KpcnHost() = default;
 void KpcnHost::run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,
                    std::span<const float> light, std::span<const uint32_t> packedFaces,
                    std::span<float> clean, size_t pitch) {
-    const Faces faces(packedFaces.first(size_t{tile.columns} * tile.rows));
+    const Faces faces(packedFaces.first(size_t{tile.columns} * tile.rows), impl_->facing);
     neural::ConvolutionChain& chain = *impl_->sides[side];
     chain.begin(channels, tile.columns, tile.rows);
     for (uint32_t first = tile.top; first < tile.top + tile.height; first += bandRows) {

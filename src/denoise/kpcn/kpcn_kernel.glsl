@@ -8,7 +8,7 @@ layout(set = 0, binding = 5, scalar) readonly buffer faceTexels { uint texels[];
 
 void addTap(inout WeightedMean mean, float logit, uint face, ivec2 tap) {
     const uint at = pixelTexel(params.region, tap);
-    if (alike(face, faces.texels[at])) add(mean, logit, light.texels[at]);
+    if (alike(params, face, faces.texels[at])) add(mean, logit, light.texels[at]);
 }
 
 void main() {

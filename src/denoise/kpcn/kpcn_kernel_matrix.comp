@@ -33,7 +33,7 @@ void main() {
                 if (!kernelTap(params, pixel, tile * KPCN_SLAB + i * 8u + k, tap)) continue;
                 const uint at = pixelTexel(params.region, tap);
                 const float logit = clamp(pair[k % 2u], -MAX_HALF, MAX_HALF);  // one that is infinite leaves no mean
-                if (alike(face, faces.texels[at])) add(mean, logit, light.texels[at]);
+                if (alike(params, face, faces.texels[at])) add(mean, logit, light.texels[at]);
             }
         }
     }

@@ -68,6 +68,7 @@ KpcnNetwork::KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPr
     : precision_(precision),
       kernelWidth_(weights.kernelWidth),
       slabs_(KPCN_INPUT_SLABS),
+      facing_(weights.facing),
       mostBytes_(largestBuffer(device)) {
     std::vector<float> packed;
     for (size_t side = 0; side < 2; ++side) {

@@ -42,6 +42,8 @@ class KpcnNetwork {
     KpcnHost& host() const { return *host_; }
     KpcnPrecision precision() const { return precision_; }
     uint32_t kernelWidth() const { return kernelWidth_; }
+    /// KpcnWeights::facing.
+    float facing() const { return facing_; }
     /// Of hidden layers and inputs, the most.
     uint32_t slabs() const { return slabs_; }
     /// Bytes that one buffer may have on the device.
@@ -50,6 +52,7 @@ class KpcnNetwork {
   private:
     KpcnPrecision precision_;
     uint32_t kernelWidth_, slabs_;
+    float facing_;
     uint64_t mostBytes_;
     std::array<std::vector<Layer>, 2> layers_;
     gpu::Buffer buffer_;

@@ -18,10 +18,6 @@ const uint KPCN_INPUT_SLABS = 3u;
 /// Added to albedo before light is divided by it.
 const float KPCN_EPSILON = 0.00316f;
 
-/// Least cosine between a pixel's normal and those of what its kernel takes in (FACING in
-/// training/limpid_training/network.py).
-const float KPCN_KERNEL_FACING = 0.5f;
-
 /// Of the levels after the kernels: what is another surface.
 const float KPCN_LEVEL_NORMAL = 64.0f;  // sharpness of the tolerance of normals
 const float KPCN_LEVEL_DEPTH = 0.005f;  // tolerated difference of distance, of the distance
@@ -48,6 +44,7 @@ struct KpcnLayerParams {
     uint outputTiles;  // slabs of this one
     uint weights;      // where they begin in the buffer, by 8
     uint kernelWidth;  // of the last layer: pixels
+    float facing;      // of the last layer: KpcnWeights::facing
 };
 
 struct KpcnReduceParams {

@@ -37,6 +37,6 @@ bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap)
 }
 
 /// Whether they face the same way, or both nowhere: kpcn_features.glsl packed them.
-bool alike(uint face, uint other) {
-    return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= KPCN_KERNEL_FACING;
+bool alike(KpcnLayerParams params, uint face, uint other) {
+    return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= params.facing;
 }

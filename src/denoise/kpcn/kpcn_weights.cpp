@@ -17,9 +17,11 @@ using nlohmann::json;
 
 constexpr uint32_t mostHidden = 64, mostChannels = 1024, widestKernel = 31;
 constexpr float largestHalf = 65504.0f;
+constexpr float leastFacing = -2.0f;
 
 struct Shape {
     uint32_t hidden, channels, width;
+    float facing;
 };
 
 class Reader {
@@ -30,6 +32,7 @@ class Reader {
         const Shape shape = readShape();
         KpcnWeights result;
         result.kernelWidth = shape.width;
+        result.facing = shape.facing;
         const char* names[] = {"diffuse", "specular"};
         for (size_t side = 0; side < 2; ++side) {
             uint32_t inputs = KPCN_INPUT_CHANNELS;
@@ -62,9 +65,18 @@ class Reader {
             return shape[name].get<uint32_t>();
         };
         const Shape result{number("hidden", mostHidden), number("channels", mostChannels),
-                           number("width", widestKernel)};
+                           number("width", widestKernel), readFacing(shape)};
         if (result.width % 2 == 0) fail("its kernels have no centre: limpid.shape has an even 'width'");
         return result;
+    }
+
+    /// Files that name none are of networks that were made before the condition was one of the network's.
+    float readFacing(const json& shape) const {
+        if (!shape.contains("facing")) return KpcnWeights{}.facing;
+        const json& facing = shape["facing"];
+        if (!facing.is_number() || !(facing.get<float>() >= leastFacing && facing.get<float>() <= 1.0f))
+            fail(fmt::format("its metadata limpid.shape has no 'facing' from {} to 1", leastFacing));
+        return facing.get<float>();
     }
 
     /// Taken out of the file, so that what is left is too much.

@@ -19,6 +19,9 @@ struct KpcnLayer {
 struct KpcnWeights {
     uint32_t kernelWidth = 0;                     ///< pixels; odd
     std::array<std::vector<KpcnLayer>, 2> sides;  ///< diffuse, specular: hidden layers, then the output
+    /// Least cosine between a pixel's normal and those of what its kernel takes in; -2: no condition. Of the
+    /// network, since it holds in training, too.
+    float facing = 0.5f;
 };
 
 /// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is no such network,

@@ -1,6 +1,7 @@
 // Files of weights: what is refused, and why.
 #include "denoise/kpcn/kpcn_weights.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -64,6 +65,15 @@ TEST(KpcnWeights, AreRead) {
         EXPECT_EQ(side[1].weights, std::vector<float>(9 * 2 * 25, -1.0f));
         EXPECT_EQ(side[0].bias, std::vector<float>(2, 0.25f));
     }
+    EXPECT_EQ(weights.facing, 0.5f);
+}
+
+TEST(KpcnWeights, TheNetworkSaysWhatItsKernelsTakeIn) {
+    const TempFolder folder;
+    TensorFile file = whole();
+    file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"facing":-2})";
+    neural::writeTensorFile(folder / "w.safetensors", file);
+    EXPECT_EQ(readKpcnWeights(folder / "w.safetensors").facing, -2.0f);
 }
 
 TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
@@ -87,6 +97,9 @@ TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":4})"), HasSubstr("even"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":1e3})"), HasSubstr("'width'"));
     EXPECT_THAT(shape(R"({"hidden":1,"channels":2,"width":99})"), HasSubstr("'width'"));
+    for (const char* facing : {"-2.1", "1.5", "\"any\"", "null"})
+        EXPECT_THAT(shape(fmt::format(R"({{"hidden":1,"channels":2,"width":3,"facing":{}}})", facing)),
+                    HasSubstr("'facing'"));
     EXPECT_THAT(shape(R"({"hidden":4000000000,"channels":2,"width":3})"), HasSubstr("'hidden'"));
     EXPECT_THAT(shape(R"({"hidden":2,"channels":2,"width":3})"),
                 HasSubstr("lacks the tensor 'diffuse.hidden.1.weight'"));
