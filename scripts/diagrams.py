@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Draws the diagrams of the documentation as SVG, on white, so that light and dark pages show them alike:
+
+    scripts/diagrams.py docs/images"""
+
+import os
+import sys
+
+INK, LINE = "#1b1f24", "#57606a"
+FILLS = {"image": "#dbeafe", "pass": "#fde9c9", "history": "#dcf5e3", "result": "#f3d9ea", "plain": "#eef0f2"}
+
+
+class Sheet:
+    def __init__(self, width, height):
+        self.width, self.height, self.parts = width, height, []
+
+    def text(self, x, y, words, size=13, anchor="middle", weight="normal", fill=INK):
+        self.parts.append(f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{anchor}" font-weight="{weight}" '
+                          f'fill="{fill}">{words}</text>')
+
+    def box(self, x, y, width, height, kind, *lines):
+        """Lines of text in a box; the first one is bold."""
+        radius = 14 if kind in ("image", "history") else 3
+        self.parts.append(f'<rect x="{x}" y="{y}" width="{width}" height="{height}" rx="{radius}" fill="{FILLS[kind]}" '
+                          f'stroke="{LINE}"/>')
+        middle = y + height / 2 - 8 * (len(lines) - 1) + 4.5
+        for i, line in enumerate(lines):
+            self.text(x + width / 2, middle + 16 * i, line, 13 if i == 0 else 11, weight="bold" if i == 0 else "normal")
+
+    def arrow(self, *points, dashed=False):
+        path = "M" + "L".join(f"{x} {y}" for x, y in points)
+        dash = ' stroke-dasharray="5 4"' if dashed else ""
+        self.parts.append(f'<path d="{path}" fill="none" stroke="{LINE}" stroke-width="1.5" marker-end="url(#tip)"{dash}/>')
+
+    def write(self, path):
+        head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" width="{self.width}" '
+                'font-family="sans-serif"><defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
+                f'markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z" fill="{LINE}"/></marker></defs>'
+                f'<rect width="{self.width}" height="{self.height}" rx="8" fill="#fff"/>')
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(head + "\n" + "\n".join(self.parts) + "\n</svg>\n")
+
+
+def frame():
+    """One frame with SVGF: which pass reads what, and what stays for the next frame."""
+    s = Sheet(940, 420)
+    s.text(24, 30, "One frame with SVGF", 16, "start", "bold")
+    s.box(24, 60, 150, 56, "plain", "scene", "moved by deform")
+    s.box(24, 150, 150, 56, "plain", "camera", "now and one frame ago")
+    s.box(220, 100, 150, 66, "pass", "path tracer", "1 sample per pixel")
+    s.box(420, 54, 150, 50, "image", "diffuse, specular", "noisy light")
+    s.box(420, 114, 150, 50, "image", "guides", "albedo, normal, depth, id")
+    s.box(420, 174, 150, 50, "image", "motion", "where it was")
+    s.box(420, 234, 150, 40, "image", "emission")
+    for y in (79, 139, 199, 254):
+        s.arrow((370, 133), (395, 133), (395, y), (419, y))
+    s.arrow((174, 88), (196, 88), (196, 126), (219, 126))
+    s.arrow((174, 178), (196, 178), (196, 142), (219, 142))
+    s.box(624, 74, 140, 56, "pass", "reproject", "follow each surface,", "mean and moments")
+    s.box(624, 156, 140, 44, "pass", "anti-lag", "drop what changed")
+    s.box(624, 226, 140, 44, "pass", "variance", "moments, or neighbours")
+    s.box(624, 296, 140, 56, "pass", "a-trous", "levels of step", "1, 2, 4, 8, 16")
+    for y in (79, 139, 199):
+        s.arrow((570, y), (597, y), (597, 102), (623, 102))
+    s.arrow((694, 130), (694, 155))
+    s.arrow((694, 200), (694, 225))
+    s.arrow((694, 270), (694, 295))
+    s.box(420, 304, 150, 56, "history", "histories", "mean, moments, count,", "last frame's guides")
+    s.arrow((624, 320), (571, 320), dashed=True)
+    s.text(598, 312, "level 1", 11)
+    s.arrow((420, 332), (402, 332), (402, 390), (800, 390), (800, 92), (765, 92), dashed=True)
+    s.text(610, 382, "read by the next frame", 11)
+    s.box(806, 226, 126, 44, "pass", "compose", "× albedo, + emission")
+    s.box(806, 302, 126, 44, "result", "clean frame")
+    s.arrow((764, 338), (785, 338), (785, 248), (805, 248))
+    s.arrow((869, 270), (869, 301))
+    s.arrow((570, 262), (590, 262), (590, 206), (869, 206), (869, 225))
+    return s
+
+
+def atrous():
+    """Which pixels the taps of each level read, along one row."""
+    s = Sheet(940, 330)
+    s.text(24, 30, "The levels of the a-trous filter: 5 taps along each axis, ever further apart", 16, "start", "bold")
+    middle, unit = 512, 10.5
+    for level in range(5):
+        step, y = 2**level, 78 + 46 * level
+        s.text(24, y + 4, f"level {level + 1}", 13, "start", "bold")
+        s.text(84, y + 4, f"step {step}", 12, "start")
+        for pixel in range(-32, 33):
+            x = middle + unit * pixel
+            s.parts.append(f'<rect x="{x - 4:.1f}" y="{y - 6}" width="8" height="12" fill="{FILLS["plain"]}"/>')
+        for tap, weight in zip(range(-2, 3), (1, 4, 6, 4, 1)):
+            x = middle + unit * step * tap
+            s.parts.append(f'<rect x="{x - 4:.1f}" y="{y - 6}" width="8" height="12" fill="#2f6db3" '
+                           f'fill-opacity="{0.35 + 0.65 * weight / 6:.2f}" stroke="{INK}"/>')
+            if step > 2:
+                s.text(f"{x:.1f}", y - 12, f"{weight}/16", 10)
+        s.text(926, y + 4, f"reach {2 * (2 ** (level + 1) - 1)}", 12, "end")
+    s.text(24, 312, "Each level reads what the level before it wrote: 25 taps of a 2D level reach as far as a kernel of 125 × 125 "
+           "pixels after five.", 12, "start")
+    return s
+
+
+def networks():
+    """Both sides of KPCN."""
+    s = Sheet(940, 380)
+    s.text(24, 30, "KPCN: one network for each kind of light", 16, "start", "bold")
+    for side, top in (("diffuse", 60), ("specular", 200)):
+        divided = "÷ (albedo + 0.00316)" if side == "diffuse" else "log(1 + x)"
+        back = "× (albedo + 0.00316)" if side == "diffuse" else "exp(x) − 1"
+        s.box(24, top, 116, 56, "image", side, "32 samples")
+        s.box(164, top, 130, 56, "pass", "transform", divided)
+        s.box(311, top - 8, 144, 72, "plain", "34 channels", "light, albedo, normal,", "depth, each with gradients", "and variance")
+        s.box(472, top, 120, 56, "pass", "8 convolutions", "5×5, 100 channels,", "ReLU")
+        s.box(616, top, 120, 56, "pass", "convolution", "5×5, 441 channels", "softmax")
+        s.box(616, top + 76, 120, 40, "pass", "21×21 kernel", "weighted mean")
+        s.box(760, top + 68, 150, 56, "pass", "transform back", back)
+        for x, end in ((140, 163), (294, 310), (455, 471), (592, 615)):
+            s.arrow((x, top + 28), (end, top + 28))
+        s.arrow((676, top + 56), (676, top + 75))
+        s.arrow((229, top + 56), (229, top + 96), (615, top + 96))
+        s.text(420, top + 90, "the light itself", 11)
+        s.arrow((736, top + 96), (759, top + 96))
+    s.box(670, 336, 240, 34, "result", "sum + emission = clean frame")
+    s.arrow((835, 184), (926, 184), (926, 353), (911, 353))
+    s.arrow((835, 324), (835, 335))
+    return s
+
+
+def main(folder):
+    for name, sheet in (("diagram-frame", frame()), ("diagram-atrous", atrous()), ("diagram-kpcn", networks())):
+        sheet.write(os.path.join(folder, name + ".svg"))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
