@@ -19,6 +19,7 @@
 #include "progress.h"
 #include "renderer/still.h"
 #include "scene/camera.h"
+#include "svg_plot.h"
 
 namespace limpid::cli {
 
@@ -184,8 +185,9 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
                         {"psnr", psnr}});
     };
     settings.seed = 0;
-    for (const uint64_t samples : {uint64_t{1}, uint64_t{4}, uint64_t{16}, uint64_t{64}}) {
-        if (samples >= o.referenceSamples) break;
+    // Beyond a quarter of the reference's samples its own noise would be what is measured.
+    const uint64_t most = std::max<uint64_t>(o.referenceSamples / 4, 1);
+    for (uint64_t samples = 1; samples <= most; samples *= 4) {
         ProgressiveStill still(device, *loaded.gpu, samples);
         const Picture noisy = renderPicture(still, camera, settings, samples);
         add(noisy, image::compare(beautyOf(noisy.layers), truth, stops).psnr);
@@ -193,6 +195,20 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     }
     add(converged, nullptr);
     return rows;
+}
+
+/// PSNR against samples, a line for each scene.
+void plotConvergence(const BenchOptions& o, const json& rows) {
+    std::vector<PlotLine> lines;
+    for (const json& row : rows) {
+        if (row["psnr"].is_null()) continue;
+        const std::string scene = row["scene"];
+        if (lines.empty() || lines.back().name != scene) lines.push_back({scene, {}});
+        lines.back().points.push_back({row["samples"], row["psnr"]});
+    }
+    if (lines.empty()) return;
+    writeTextAtomically(std::filesystem::path(o.folder) / "convergence.svg",
+                        linePlot("Convergence", {"samples per pixel", "PSNR, dB", true}, lines));
 }
 
 void runConvergence(const BenchOptions& o) {
@@ -213,6 +229,7 @@ void runConvergence(const BenchOptions& o) {
                        row["seconds"].get<double>(), row["million_rays_per_second"].get<double>(), psnr);
         }
     }
+    plotConvergence(o, all);
     if (o.json) fmt::print("{}\n", jsonText({{"device", device->info().name}, {"results", all}}));
 }
 
@@ -240,9 +257,11 @@ void addBenchCommand(CLI::App& app) {
         runTrace(*options);
     });
     CLI::App* converge = bench->add_subcommand(
-        "convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG and EXR");
+        "convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG, EXR and a plot");
     addCommon(*converge, options);
-    converge->add_option("--spp", options->referenceSamples, "Samples of the converged picture (1024)")
+    converge
+        ->add_option("--spp", options->referenceSamples,
+                     "Samples of the converged picture (1024); noisy ones have up to a quarter")
         ->check(CLI::Range(2, 1 << 24));
     converge->add_option("--out", options->folder, "Folder for the pictures (out)");
     converge->callback([options] {
@@ -251,6 +270,7 @@ void addBenchCommand(CLI::App& app) {
     });
     addDenoiseBench(*bench);
     addKpcnBench(*bench);
+    addLaunchesBench(*bench);
     addQualityBench(*bench);
     addSvgfBench(*bench);
 }

@@ -15,6 +15,7 @@ std::string sceneStem(const std::string& scene);
 
 void addDenoiseBench(CLI::App& bench);
 void addKpcnBench(CLI::App& bench);
+void addLaunchesBench(CLI::App& bench);
 void addQualityBench(CLI::App& bench);
 void addSvgfBench(CLI::App& bench);
 
