@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 import unittest
 
 import numpy
@@ -55,10 +56,19 @@ class FiguresTest(unittest.TestCase):
             numpy.testing.assert_array_equal(numpy.concatenate(cut, axis=1), TRUTH)
 
     def test_the_table_marks_what_deviates(self):
-        text = figures.table([(1, "sun", 8, figures.Ratio(1.002, 0.001), 0, 0, 0, 0),
-                              (2, "spot", 8, figures.Ratio(0.7, 0.001), 0, 0, 0, 0)])
+        sun = figures.Result("sun", 8, figures.Ratio(1.002, 0.001), 0, 0, 0, 0, {"1.5": figures.Ratio(0.9, 0.001)})
+        spot = figures.Result("spot", 8, figures.Ratio(0.7, 0.001), 0, 0, 0, 0, {})
+        text = figures.table([(1, sun), (2, spot)])
         self.assertIn("| 1 | `sun` | 8 | 1.0020 ± 0.0010 |", text)
         self.assertIn("| 2 | `spot` | 8 | **0.7000** ± 0.0010 |", text)
+        self.assertIn("- `sun`: 1.5: 0.900 ± 0.001", text)
+        self.assertTrue(sun.deviates())
+
+    def test_a_result_is_read_as_it_was_written(self):
+        result = figures.Result("sun", 8, figures.Ratio(1.002, 0.001), 1, 2, 3, 4, {"1.5": figures.Ratio(0.9, 0.001)})
+        with tempfile.TemporaryDirectory() as folder:
+            result.save(os.path.join(folder, "result.json"))
+            self.assertEqual(figures.Result.load(os.path.join(folder, "result.json")), result)
 
 
 class SheetTest(unittest.TestCase):

@@ -131,40 +131,46 @@ def run(given, name):
 
 
 def measure(given, name):
-    """A row of the table, the strips' ratios, and the two pictures."""
+    """Renders and compares a scene; what was found also goes to result.json in its folder."""
     settings, samples, test, reference = run(given, name)
     folder = os.path.join(given.out, name)
-    pictures = figures.mean_pictures(test, reference)
-    mean = figures.ratio(test, reference)
-    relmse, flip = compared(given, folder, "mean", *pictures)
+    relmse, flip = compared(given, folder, "mean", *figures.mean_pictures(test, reference))
     noise = compared(given, folder, "noise", *figures.noise_pictures(test, reference))
-    number = list(scenes.SCENES).index(name) + 1
-    row = (number, name, samples, mean, relmse, noise[0], flip, noise[1])
-    ratios = figures.strip_ratios(test, reference, max(1, len(settings.strips)))
-    return settings, row, dict(zip(settings.strips, ratios)), pictures
+    strips = figures.strip_ratios(test, reference, len(settings.strips)) if settings.strips else []
+    result = figures.Result(name, samples, figures.ratio(test, reference), relmse, noise[0], flip, noise[1],
+                            dict(zip(settings.strips, strips)))
+    result.save(os.path.join(folder, "result.json"))
+    return result, settings.exact
+
+
+def assemble(out):
+    """The table and the picture of all scenes that `out` holds, of this run or an earlier one."""
+    results, tiles = [], []
+    for number, name in enumerate(scenes.SCENES, 1):
+        folder = os.path.join(os.path.abspath(out), name)
+        if not os.path.exists(os.path.join(folder, "result.json")):
+            continue
+        results.append((number, figures.Result.load(os.path.join(folder, "result.json"))))
+        pictures = [images.read_picture(os.path.join(folder, f"mean.{which}.exr")) for which in ("limpid", "cycles")]
+        tiles.append(sheet.tile(number, *pictures))
+    images.save_picture(os.path.join(os.path.abspath(out), "cycles.jpg"), sheet.contact(tiles), "JPEG")
+    text = figures.table(results)
+    with open(os.path.join(out, "table.md"), "w", encoding="utf-8") as file:
+        file.write(text)
+    return text
 
 
 def main():
     given = arguments()
     os.makedirs(given.out, exist_ok=True)
     report = aside(os.path.join(given.out, "blender.log"))
-    rows, details, tiles, failed = [], [], [], []
+    failed = []
     for name in given.only or scenes.SCENES:
-        settings, row, strips, pictures = measure(given, name)
-        rows.append(row)
-        tiles.append(sheet.tile(row[0], *pictures))
-        if strips:
-            parts = ", ".join(f"{k}: {r.value:.4f} ± {r.error:.4f}" for k, r in strips.items())
-            details.append(f"- `{name}`: {parts}")
-        if settings.exact and any(r.deviates() for r in (row[3], *strips.values())):
+        result, exact = measure(given, name)
+        print(figures.line(list(scenes.SCENES).index(name) + 1, result), file=report, flush=True)
+        if exact and result.deviates():
             failed.append(name)
-        print(figures.table(rows[-1:]).splitlines()[-1], *details[-1:] if strips else [], sep="\n", file=report,
-              flush=True)
-    text = figures.table(rows) + "\n\n" + "\n".join(details) + "\n"
-    with open(os.path.join(given.out, "table.md"), "w", encoding="utf-8") as file:
-        file.write(text)
-    images.save_picture(os.path.abspath(os.path.join(given.out, "cycles.jpg")), sheet.contact(tiles), "JPEG")
-    print("\n" + text, file=report, flush=True)
+    print("\n" + assemble(given.out), file=report, flush=True)
     if given.check and failed:
         print(f"Off by more than 1 %: {', '.join(failed)}", file=sys.stderr)
         sys.exit(1)

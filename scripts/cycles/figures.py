@@ -7,6 +7,7 @@ Pictures are height x width x 3, linear.
 """
 
 import dataclasses
+import json
 
 import numpy
 
@@ -54,11 +55,51 @@ def strip_ratios(test, reference, count):
     return [ratio((a, b), (c, d)) for a, b, c, d in zip(*cut)]
 
 
-def table(rows):
-    """Markdown, of rows (number, name, samples, Ratio, relmse, relmse_noise, flip, flip_noise)."""
+@dataclasses.dataclass
+class Result:
+    """Of one scene."""
+
+    name: str
+    samples: int
+    mean: Ratio
+    relmse: float
+    relmse_noise: float
+    flip: float
+    flip_noise: float
+    strips: dict  # name -> Ratio
+
+    def deviates(self):
+        return self.mean.deviates() or any(strip.deviates() for strip in self.strips.values())
+
+    def save(self, path):
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(dataclasses.asdict(self), file, indent=1)
+
+    @staticmethod
+    def load(path):
+        with open(path, encoding="utf-8") as file:
+            result = Result(**json.load(file))
+        result.mean = Ratio(**result.mean)
+        result.strips = {name: Ratio(**strip) for name, strip in result.strips.items()}
+        return result
+
+
+def line(number, result):
+    """A row of the table."""
+    off = abs(result.mean.value - 1) > 0.01
+    mean = f"**{result.mean.value:.4f}**" if off else f"{result.mean.value:.4f}"
+    return (f"| {number} | `{result.name}` | {result.samples} | {mean} ± {result.mean.error:.4f} | "
+            f"{result.relmse:.5f} ({result.relmse_noise:.5f}) | {result.flip:.3f} ({result.flip_noise:.3f}) |")
+
+
+def strip_line(result):
+    strips = [f"{name}: {strip.value:.3f} ± {strip.error:.3f}" for name, strip in result.strips.items()]
+    return f"- `{result.name}`: {', '.join(strips)}"
+
+
+def table(results):
+    """Markdown of numbered results: the table, then a line for each scene with strips."""
     lines = ["| # | scene | samples | mean ratio | relMSE (of noise) | FLIP (of noise) |", "|---|---|---|---|---|---|"]
-    for number, name, samples, mean, relmse, relmse_noise, flip, flip_noise in rows:
-        marked = f"**{mean.value:.4f}**" if abs(mean.value - 1) > 0.01 else f"{mean.value:.4f}"
-        lines.append(f"| {number} | `{name}` | {samples} | {marked} ± {mean.error:.4f} | "
-                     f"{relmse:.2e} ({relmse_noise:.2e}) | {flip:.4f} ({flip_noise:.4f}) |")
-    return "\n".join(lines)
+    lines += [line(number, result) for number, result in results] + [""]
+    lines += [strip_line(result) for _, result in results if result.strips]
+    return "\n".join(lines) + "\n"
