@@ -23,7 +23,7 @@ using nlohmann::json;
 
 struct DenoiseBench {
     DeviceChoice device;
-    SceneChoice scene{"builtin:cornell", "", ""};
+    SceneChoice scene{.scene = "builtin:cornell"};
     std::string cameraPath = "shake", pipeline = "atrous";
     std::vector<std::string> presets, assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;

@@ -121,7 +121,7 @@ std::vector<Row> measure(gpu::Device& device, const KpcnBench& o, RenderSettings
     const auto file = o.weights.empty() ? shippedWeights() : std::filesystem::path(o.weights);
     loadNetwork(device, settings.pipeline.denoiser, file, settings.denoisers);
     const std::map<std::string, double> operations = operationsByPass(denoise::readKpcnWeights(file));
-    BenchScene scene(device, chosenTracer(o.device, device), {o.scene, "", ""});
+    BenchScene scene(device, chosenTracer(o.device, device), {.scene = o.scene});
     std::vector<Row> rows;
     for (const auto& [pass, cost] : scene.measure(settings, o.warmup, o.frames)) {
         if (!pass.starts_with("kpcn/")) continue;

@@ -87,7 +87,7 @@ std::vector<OfScene> measureScenes(gpu::Device& device, const SvgfBench& o) {
     std::vector<OfScene> result;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         const std::string name = "builtin:" + info.name;
-        BenchScene scene(device, chosenTracer(o.device, device), {name, "", ""});
+        BenchScene scene(device, chosenTracer(o.device, device), {.scene = name});
         result.push_back(
             {name, scene.triangleCount(), stagesOf(scene.measure(settingsOf(o), o.warmup, o.frames))});
     }
@@ -168,7 +168,7 @@ void run(const SvgfBench& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     Measured measured;
     {
-        BenchScene scene(*device, chosenTracer(o.device, *device), {o.scene, "", ""});
+        BenchScene scene(*device, chosenTracer(o.device, *device), {.scene = o.scene});
         measured.stages = stagesOf(scene.measure(settingsOf(o), o.warmup, o.frames));
         measured.levels = measureLevels(scene, o);
     }

@@ -39,11 +39,11 @@ TEST(OwnLight, IsAddedAndTheBackgroundReplaced) {
     Scene scene = builtinScene("cornell");
     const size_t lights = scene.lights.size();
     scene.environment = {.width = 1, .height = 1, .radiance = {vec3(9.0f)}};
-    addOwnLight(scene, {parseLamp("point,0,1,0,1"), vec3(1.0f, 2.0f, 3.0f)});
+    addOwnLight(scene, {{parseLamp("point,0,1,0,1").value()}, vec3(1.0f, 2.0f, 3.0f)});
     prepare(scene);
     EXPECT_EQ(scene.lights.size(), lights + 1);
     for (const vec3& radiance : scene.environment.radiance) EXPECT_EQ(radiance, vec3(1.0f, 2.0f, 3.0f));
-    addOwnLight(scene, {std::nullopt, vec3(0.0f)});
+    addOwnLight(scene, {{}, vec3(0.0f)});
     prepare(scene);
     EXPECT_TRUE(scene.environment.empty());
 }
