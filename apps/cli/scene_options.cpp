@@ -65,14 +65,31 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
         ->check(reachable);
     command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
         ->check(CLI::Range(0.01, 179.0));
+    command.add_option(
+        "--asset-root", choice.assetRoot,
+        "Folder that the scene's files (textures, buffers, materials) must lie in, if not in the "
+        "scene's own; default: the folder above the scene's, unless that is / or holds home folders");
+    command
+        .add_option("--max-image-memory", choice.maxImageMemory,
+                    "Host memory that one texture or environment map may take, as 512MB or 8GB (2GB); larger "
+                    "ones are scaled down while they are read")
+        ->transform(CLI::AsSizeValue(false))
+        ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 50));
 }
 
 scene::Scene loadChosenScene(const SceneChoice& choice) {
     constexpr std::string_view prefix = "builtin:";
     const bool builtin = choice.scene.starts_with(prefix);
-    scene::Scene scene =
-        builtin ? scene::builtinScene(choice.scene.substr(prefix.size())) : scene::loadScene(choice.scene);
-    if (!choice.environment.empty()) scene.environment = scene::loadEnvironment(choice.environment);
+    const auto fromFile = [&] {
+        const scene::LoadOptions options{.assetRoot = choice.assetRoot.empty()
+                                                          ? scene::defaultAssetRoot(choice.scene)
+                                                          : std::filesystem::path(choice.assetRoot),
+                                         .maxImageMemory = choice.maxImageMemory};
+        return scene::loadScene(choice.scene, options);
+    };
+    scene::Scene scene = builtin ? scene::builtinScene(choice.scene.substr(prefix.size())) : fromFile();
+    if (!choice.environment.empty())
+        scene.environment = scene::loadEnvironment(choice.environment, choice.maxImageMemory);
     scene::OwnLight own{{}, scene::parseBackground(choice.background)};
     for (const std::string& text : choice.lights) {
         if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);

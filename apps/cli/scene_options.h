@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/load_options.h"
 #include "scene/scene.h"
 
 namespace limpid::cli {
@@ -19,6 +20,8 @@ struct SceneChoice {
     std::vector<float> eye, target;  ///< three numbers each, or none: instead of the scene's cameras
     std::vector<float> up;           ///< three numbers, with these; none: +Y
     float fov = 0.0f;                ///< degrees, with these; 0: that of the camera
+    std::string assetRoot;           ///< empty: scene/load_options.h, defaultAssetRoot()
+    uint64_t maxImageMemory = image::defaultImageMemory;
 };
 
 void addSceneOptions(CLI::App& command, SceneChoice& choice);

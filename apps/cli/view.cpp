@@ -42,17 +42,17 @@ std::string eyeOptions(const SceneChoice& choice) {
 
 /// What was kept, and over it what this command line says.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
-    viewer::ViewSettings settings{
-        .source = {o.scene.scene, o.scene.environment, o.scene.lights, o.scene.background, o.scene.lightFile},
-        .animation = o.animation,
-        .render = {},
-        .preview = o.preview,
-        .controls = o.controls,
-        .weights = o.weights,
-        .shaders = o.shaders,
-        .quitAfter = o.frames,
-        .loseDeviceAt = o.loseDeviceAt,
-        .screenshot = o.screenshot};
+    viewer::ViewSettings settings{.source = {o.scene.scene, o.scene.environment, o.scene.lights,
+                                             o.scene.background, o.scene.lightFile, o.scene.assetRoot},
+                                  .animation = o.animation,
+                                  .render = {},
+                                  .preview = o.preview,
+                                  .controls = o.controls,
+                                  .weights = o.weights,
+                                  .shaders = o.shaders,
+                                  .quitAfter = o.frames,
+                                  .loseDeviceAt = o.loseDeviceAt,
+                                  .screenshot = o.screenshot};
     if (o.settings != "none")
         settings.kept = o.settings == "auto" ? viewer::keptSettingsFile() : std::filesystem::path(o.settings);
     restoreSettings(settings.kept, settings);
@@ -80,6 +80,7 @@ void run([[maybe_unused]] const ViewOptions& o) {
         choice.lights = source.lights;
         choice.lightFile.clear();  // the window keeps these changes apart
         choice.background = source.background;
+        choice.assetRoot = source.assetRoot;
         return loadChosenScene(choice);
     };
     viewer::view(

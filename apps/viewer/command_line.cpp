@@ -30,6 +30,7 @@ std::string sourceOptions(const SceneSource& source) {
     if (!source.environment.empty()) text += " --env " + quoted(source.environment);
     for (const std::string& light : source.lights) text += " --light " + quoted(light);
     if (!source.lightFile.empty()) text += " --lights " + quoted(source.lightFile);
+    if (!source.assetRoot.empty()) text += " --asset-root " + quoted(source.assetRoot);
     if (!source.background.empty()) text += " --background " + quoted(source.background);
     return text;
 }

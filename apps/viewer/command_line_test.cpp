@@ -25,7 +25,8 @@ class CommandLineTest : public testing::Test {
                                  .environment = {},
                                  .lights = {},
                                  .background = {},
-                                 .lightFile = {}},
+                                 .lightFile = {},
+                                 .assetRoot = {}},
                       .clip = {},
                       .weights = {},
                       .settings = {},
@@ -48,9 +49,12 @@ TEST_F(CommandLineTest, AStillHasItsCameraAndSamples) {
 TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
     frame_.source.lights = {"sun,0,1,0,2", "point,1,2,3,4"};
     frame_.source.background = "1,1,1";
+    frame_.source.assetRoot = "my assets";
     frame_.settings.layers = true;
     frames(1, false);
-    EXPECT_THAT(text(), HasSubstr("--light sun,0,1,0,2 --light point,1,2,3,4 --background 1,1,1"));
+    EXPECT_THAT(
+        text(),
+        HasSubstr("--light sun,0,1,0,2 --light point,1,2,3,4 --asset-root 'my assets' --background 1,1,1"));
     EXPECT_THAT(text(), HasSubstr("--aov all"));
 }
 

@@ -6,12 +6,13 @@
 
 namespace limpid::viewer {
 
-/// All but the scene may be empty.
+/// All but the scene may be empty. `assetRoot`: as --asset-root says; empty: that of a scene which is named.
 struct SceneSource {
     std::string scene, environment;
     std::vector<std::string> lights;  ///< each a --light
     std::string background;
     std::string lightFile;  ///< --lights of the first scene
+    std::string assetRoot;
 };
 
 }  // namespace limpid::viewer

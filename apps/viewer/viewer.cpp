@@ -88,7 +88,8 @@ class Viewer {
     void load(const SceneSource& source);
     void show(scene::Scene scene);
     void goTo(const scene::Camera& home);
-    void open(const std::string& file);
+    enum class Arrival { Named, Dropped };
+    void open(const std::string& file, Arrival arrival);
     void applyLightRequests();
     void relight(const SceneSource& source);
     void startAnew();
@@ -212,7 +213,7 @@ void Viewer::goTo(const scene::Camera& home) {
 }
 
 /// An environment is put around the scene that there is; anything else is a scene.
-void Viewer::open(const std::string& file) {
+void Viewer::open(const std::string& file, Arrival arrival) {
     const std::string extension = fs::path(file).extension().string();
     SceneSource source = settings_.source;
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic") {
@@ -220,6 +221,8 @@ void Viewer::open(const std::string& file) {
         source.background.clear();
     } else {
         source.scene = file;
+        // Dropping a file says nothing about the folders around it.
+        source.assetRoot = arrival == Arrival::Dropped ? fs::absolute(file).parent_path().string() : "";
     }
     load(source);
     say("opened " + file);
@@ -339,8 +342,8 @@ void Viewer::placeCamera() {
 /// What the panel asked for.
 void Viewer::applyRequests() {
     PanelRequests& asked = panel_.asked;
-    if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file); });
-    for (const std::string& file : window_.takeDropped()) attempt([&] { open(file); });
+    if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file, Arrival::Named); });
+    for (const std::string& file : window_.takeDropped()) attempt([&] { open(file, Arrival::Dropped); });
     applyLightRequests();
     if (std::exchange(asked.resetCamera, false)) {
         panel_.camera = 0;

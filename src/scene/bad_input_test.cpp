@@ -138,40 +138,56 @@ TEST_F(BadInput, MissingOrShortBuffersAndImages) {
     fs::remove(folder / "scene.bin");
 
     GltfFile rich = richFile(folder);
-    expectFault(rich, "none.png", [](GltfFile& f) { f.document["images"][0]["uri"] = "none.png"; });
     expectFault(rich, "images[0]: has neither",
                 [](GltfFile& f) { f.document["images"][0] = json::object(); });
-    expectFault(rich, "has no image", [](GltfFile& f) { f.document["textures"][0].erase("source"); });
-    expectFault(rich, "base64",
-                [](GltfFile& f) { f.document["images"][0]["uri"] = "data:image/png;base64,$$"; });
     expectFault(rich, "base64", [](GltfFile& f) {
         f.document["buffers"] = {{{"byteLength", 1}, {"uri", "data:,x"}}};
         f.document["images"][0]["uri"] = "data:image/png,$$";
     });
 }
 
-TEST_F(BadInput, DamagedImagesAreNamed) {
-    GltfFile file = richFile(folder);
-    const fs::path path = file.save(folder);
-    const std::string png = get(folder / "a.png");
-    const auto expectImageRefused = [&](const std::string& content) {
-        put(folder / "a.png", content);
-        try {
-            loadScene(path);
-            ADD_FAILURE() << "a damaged image was accepted";
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find("a.png"), std::string::npos) << error.what();
-        }
+TEST_F(BadInput, ImagesThatCannotBeHadAreNamedAndPlain) {
+    const auto expectPlain = [&](const std::string& fault, const std::function<void(GltfFile&)>& change) {
+        GltfFile file = richFile(folder);
+        change(file);
+        const fs::path path = file.save(folder);
+        const Scene scene = loadWarned(path, fault);
+        EXPECT_TRUE(scene.textures.empty());
+        EXPECT_FALSE(scene.materials.at(0).baseColorTexture || scene.materials[0].normalTexture);
     };
-    expectImageRefused("");
-    expectImageRefused("this is no image");
-    expectImageRefused(png.substr(0, png.size() / 2));
+    const auto expectUri = [&](const std::string& uri, const std::string& fault) {
+        expectPlain(fault, [&](GltfFile& f) { f.document["images"][0]["uri"] = uri; });
+    };
+    expectUri("none.png", "scene.gltf: refers to 'none.png', which does not exist");
+    expectUri("../none.png", "'../none.png', which lies outside the scene's folder");
+    expectUri("/etc/passwd", "absolute");
+    expectUri("http://localhost/a.png", "relative");
+    expectUri("data:image/png;base64,$$", "base64");
+    expectPlain("has no image", [](GltfFile& f) { f.document["textures"][0].erase("source"); });
+    const auto expectContent = [&](const std::string& content) {
+        expectPlain("a.png", [&](GltfFile&) { put(folder / "a.png", content); });
+    };
+    richFile(folder);
+    const std::string png = get(folder / "a.png");
+    expectContent("");
+    expectContent("this is no image");
+    expectContent(png.substr(0, png.size() / 2));
     std::string huge = png;
     huge[16] = huge[20] = '\x7f';  // 2 billion pixels wide and high
-    expectImageRefused(huge);
+    expectContent(huge);
+    // glTF has no TGA.
+    expectContent(tgaOf(1, 1, {1, 2, 3}));
 }
 
-TEST_F(BadInput, NamesThatLeaveTheFolder) {
+TEST_F(BadInput, AnEmissiveImageThatCannotBeHadSwitchesTheEmissionOff) {
+    GltfFile file = richFile(folder);
+    file.document["materials"][0]["emissiveTexture"] = {{"index", 0}};
+    EXPECT_EQ(loadScene(file.save(folder)).materials.at(0).emission, vec3(1.0f));
+    fs::remove(folder / "a.png");
+    EXPECT_EQ(loadWarned(file.save(folder), "a.png").materials.at(0).emission, vec3(0.0f));
+}
+
+TEST_F(BadInput, BuffersThatLeaveTheFolder) {
     const fs::path inner = folder / "inner";
     fs::create_directory(inner);
     const std::string bytes(36, '\0');
@@ -188,12 +204,12 @@ TEST_F(BadInput, NamesThatLeaveTheFolder) {
     const std::string absolute = (folder / "outside.bin").string();
     for (const char* uri : {"../outside.bin", "%2e%2e/outside.bin", "x/../../outside.bin", "..\\outside.bin",
                             "link.bin", "up/outside.bin"}) {
-        expectUri(uri, "leaves the scene's folder");
+        expectUri(uri, "lies outside the scene's folder");
     }
     expectUri(absolute, "absolute");
     for (const std::string& uri :
          {"file://" + absolute, std::string("http://localhost/a.bin"), std::string("C:/a.bin")}) {
-        expectUri(uri, "only relative paths");
+        expectUri(uri, "relative path");
     }
     expectUri("a%00.bin", "null character");
     expectUri("", "empty name");
@@ -203,13 +219,60 @@ TEST_F(BadInput, NamesThatLeaveTheFolder) {
     const SceneFiles files(inner / "scene.gltf");
     EXPECT_NO_THROW(files.resolve("x/../inside.bin"));
     EXPECT_NO_THROW(files.resolve("./inside.bin"));
-    put(inner / "scene.obj", "mtllib ../outside.bin\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    expectRefused(inner / "scene.obj", "leaves the scene's folder");
-    put(inner / "scene.obj", "mtllib scene.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    put(inner / "scene.mtl", "newmtl m\nmap_Kd ../outside.bin\n");
-    expectRefused(inner / "scene.obj", "leaves the scene's folder");
-    put(inner / "scene.mtl", "newmtl m\nmap_Kd " + absolute + "\n");
-    expectRefused(inner / "scene.obj", "absolute");
+}
+
+TEST_F(BadInput, TheAssetRootBoundsWhatMayBeRead) {
+    const fs::path outer = folder / "outer", root = outer / "root", inner = root / "inner";
+    fs::create_directories(inner);
+    fs::create_directories(root / "textures");
+    put(outer / "secret.bin", "x");
+    put(root / "textures" / "wood.bin", "x");
+    put(inner / "own.bin", "x");
+    fs::create_directory_symlink("../textures", inner / "linked");
+    fs::create_symlink(root / "textures" / "wood.bin", inner / "wood-link.bin");
+    fs::create_symlink(outer / "secret.bin", inner / "secret-link.bin");
+    fs::create_symlink("secret-link.bin", inner / "link-to-link.bin");
+    const SceneFiles files(inner / "scene.obj", root);
+    for (const char* name : {"own.bin", "../textures/wood.bin", "..\\textures\\wood.bin", "linked/wood.bin",
+                             "wood-link.bin", "../inner/own.bin", "linked/../inner/own.bin"})
+        EXPECT_TRUE(fs::is_regular_file(files.resolve(name))) << name;
+    for (const char* name :
+         {"../../secret.bin", "secret-link.bin", "link-to-link.bin", "linked/../../secret.bin",
+          "../../root-beside/a.bin", "../..", "../../none/../secret.bin"}) {
+        try {
+            files.resolve(name);
+            ADD_FAILURE() << name << " was accepted";
+        } catch (const InputError& refusal) {
+            EXPECT_NE(std::string(refusal.what()).find("outside the asset root"), std::string::npos)
+                << refusal.what();
+        }
+    }
+    // The scene's own folder counts whatever the root is; without a root it alone does.
+    EXPECT_NO_THROW(SceneFiles(inner / "scene.obj", root / "textures").resolve("own.bin"));
+    EXPECT_THROW(SceneFiles(inner / "scene.obj").resolve("linked/wood.bin"), InputError);
+    EXPECT_THROW(SceneFiles(inner / "scene.obj", root / "none"), InputError);
+    EXPECT_THROW(SceneFiles(inner / "scene.obj", inner / "own.bin"), InputError);
+}
+
+TEST_F(BadInput, TheDefaultAssetRootIsTheFolderAboveUnlessThatHoldsHomes) {
+    const fs::path own = fs::canonical(folder);
+    const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+    const auto rootWithHome = [&](const fs::path& value, const fs::path& scene) {
+        ::setenv("HOME", value.c_str(), 1);
+        return defaultAssetRoot(scene);
+    };
+    fs::create_directories(own / "homes" / "user" / "models");
+    const fs::path scene = own / "homes" / "user" / "a.obj",
+                   model = own / "homes" / "user" / "models" / "a.obj";
+    EXPECT_EQ(rootWithHome("/elsewhere/user", scene), own / "homes");
+    EXPECT_EQ(rootWithHome(own / "homes" / "user", scene), own / "homes" / "user") << "above are all homes";
+    EXPECT_EQ(rootWithHome(own / "homes" / "user", model), own / "homes" / "user");
+    EXPECT_EQ(rootWithHome(own / "homes" / "deep" / "user", scene), own / "homes" / "user");
+    EXPECT_EQ(rootWithHome("", "/a.obj"), "/");
+    EXPECT_EQ(rootWithHome("", "/folder/a.obj"), "/folder");
+    EXPECT_EQ(rootWithHome("", "/home/user/a.obj"), "/home/user");
+    EXPECT_EQ(rootWithHome("", "/home/user/models/a.obj"), "/home/user");
+    ::setenv("HOME", home.c_str(), 1);
 }
 
 TEST_F(BadInput, RelativeSceneNamesWork) {

@@ -118,7 +118,8 @@ Document::Lists::Lists(const Object& r)
     if (const auto extension = r.extension("KHR_lights_punctual")) lights = extension->objects("lights");
 }
 
-Document::Document(const std::filesystem::path& file) : files_(file) {
+Document::Document(const std::filesystem::path& file, const std::filesystem::path& assetRoot)
+    : files_(file, assetRoot) {
     std::vector<std::byte> content = readSceneFile(file);
     byteCount_ = content.size();
     const std::vector<std::byte> text = takeJson(std::move(content));

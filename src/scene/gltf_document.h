@@ -26,7 +26,7 @@ namespace limpid::scene::gltf {
 /// compressed data that is damaged.
 class Document {
   public:
-    explicit Document(const std::filesystem::path& file);
+    explicit Document(const std::filesystem::path& file, const std::filesystem::path& assetRoot = {});
     ~Document();
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;

@@ -21,7 +21,10 @@ namespace {
 /// One document's way into a Scene.
 class Loader {
   public:
-    explicit Loader(const std::filesystem::path& file) : document_(file), lists_(document_.lists()) {}
+    Loader(const std::filesystem::path& file, const LoadOptions& options)
+        : document_(file, options.assetRoot),
+          lists_(document_.lists()),
+          textures_(document_, scene_, options.maxImageMemory) {}
 
     Scene run() {
         scene_.name = document_.file().stem().string();
@@ -50,7 +53,7 @@ class Loader {
     const Document::Lists& lists_;
     Scene scene_;
     MeshLibrary meshes_{document_, scene_};
-    TextureLibrary textures_{document_, scene_};
+    TextureLibrary textures_;
     NodeTree tree_;
     std::map<int, std::vector<mat4>> joints_;  ///< by skin
     std::vector<bool> animated_;               ///< nodes that some clip moves
@@ -168,8 +171,8 @@ void Loader::addInstance(size_t nodeIndex, int mesh, int material, const Pose& p
 
 }  // namespace
 
-Scene load(const std::filesystem::path& file) {
-    Scene scene = Loader(file).run();
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+    Scene scene = Loader(file, options).run();
     if (scene.triangleCount() == 0) throw InputError(file, "has no triangles to draw");
     return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "scene/load_options.h"
 #include "scene/scene.h"
 
 namespace limpid::scene::gltf {
@@ -11,7 +12,7 @@ namespace limpid::scene::gltf {
 /// Throws InputError with the file and the fault. Memory is bounded by the limits of the parts
 /// (gltf_access.h, gltf_mesh.h, texture_pool.h, scene_files.h) and `maxInstances`, time by the document's
 /// size and those limits.
-Scene load(const std::filesystem::path& file);
+Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 
 inline constexpr size_t maxInstances = size_t{1} << 20;
 

@@ -38,7 +38,10 @@ void readEmission(Document& document, const Object& source, TextureLibrary& text
     }
     material.emission = glm::min(emission, vec3(1e30f));
     // A texture that a zero factor switches off need not be loaded.
-    if (emission != vec3(0.0f)) material.emissionTexture = textures.add(source, "emissiveTexture", true);
+    if (emission == vec3(0.0f)) return;
+    material.emissionTexture = textures.add(source, "emissiveTexture", true);
+    // The factor alone would make all of the surface glow.
+    if (source.has("emissiveTexture") && !material.emissionTexture) material.emission = vec3(0.0f);
 }
 
 void readAlpha(Document& document, const Object& source, Material& material) {

@@ -90,8 +90,14 @@ TextureRef TextureLibrary::add(const Object& owner, const char* key, bool srgb) 
 int TextureLibrary::texture(int index, bool srgb) {
     const Object& source = document_.lists().textures[static_cast<size_t>(index)];
     const int image = source.index("source", document_.lists().images.size());
-    if (image == none) source.fail("is used, but has no image in a format that is supported (PNG, JPEG)");
-    return pool_.add(imageName(image), srgb, sampler(source), [&] { return imageBytes(image); });
+    if (image == none) {
+        // glTF 2.0, 5.29.2: what a texture without source looks like is undefined.
+        document_.warn(source.place() +
+                       " is used, but has no image in a format that is supported (PNG, JPEG); a plain colour "
+                       "is used");
+        return none;
+    }
+    return pool_.add(imageName(image), srgb, sampler(source), imageReader(image));
 }
 
 std::string TextureLibrary::imageName(int image) const {
@@ -104,17 +110,19 @@ std::string TextureLibrary::imageName(int image) const {
                        name.empty() ? "" : " '" + name + "'");
 }
 
-std::vector<std::byte> TextureLibrary::imageBytes(int image) {
+/// Throws at once what is wrong with the document; what is wrong with the image, when it is read.
+std::function<std::vector<std::byte>()> TextureLibrary::imageReader(int image) {
     const Object& source = document_.lists().images[static_cast<size_t>(image)];
     if (source.has("uri")) {
-        const std::string uri = source.text("uri");
-        return Document::isDataUri(uri) ? Document::decodeDataUri(uri, source)
-                                        : document_.files().read(decodePercent(uri));
+        return [this, &source, uri = source.text("uri")] {
+            return Document::isDataUri(uri) ? Document::decodeDataUri(uri, source)
+                                            : document_.files().read(decodePercent(uri), maxImageMemory_);
+        };
     }
     const int view = source.index("bufferView", document_.lists().bufferViews.size());
     if (view == none) source.fail("has neither a URI nor a buffer view");
     const auto bytes = document_.bytes(view);
-    return {bytes.begin(), bytes.end()};
+    return [bytes] { return std::vector<std::byte>(bytes.begin(), bytes.end()); };
 }
 
 Sampler TextureLibrary::sampler(const Object& texture) {

@@ -14,20 +14,20 @@
 namespace limpid::scene {
 namespace {
 
-Scene dispatch(const std::filesystem::path& path) {
+Scene dispatch(const std::filesystem::path& path, const LoadOptions& options) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".gltf" || extension == ".glb") return gltf::load(path);
-    if (extension == ".obj") return loadObj(path);
+    if (extension == ".gltf" || extension == ".glb") return gltf::load(path, options);
+    if (extension == ".obj") return loadObj(path, options);
     throw InputError(path, "is no scene format that is read (.gltf, .glb, .obj)");
 }
 
 }  // namespace
 
-Scene loadScene(const std::filesystem::path& path) {
+Scene loadScene(const std::filesystem::path& path, const LoadOptions& options) {
     try {
-        Scene scene = dispatch(path);
+        Scene scene = dispatch(path, options);
         if (const auto fault = findFault(scene)) throw InputError(path, *fault);
         return scene;
     } catch (const std::bad_alloc&) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "scene/load.h"
 
 namespace limpid::scene::test {
@@ -152,6 +153,31 @@ inline GltfFile square() {
     attributes["TEXCOORD_0"] = file.addFloats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 2);
     file.primitive()["indices"] = file.addAccessor<uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR", 1, 5123);
     return file;
+}
+
+/// A TGA of 24 bits, rows from bottom to top, as `pixels` are: blue, green, red.
+inline std::string tgaOf(uint8_t width, uint8_t height, const std::vector<uint8_t>& pixels) {
+    std::string text(18, '\0');
+    text[2] = 2;
+    text[12] = static_cast<char>(width);
+    text[14] = static_cast<char>(height);
+    text[16] = 24;
+    return text + std::string(pixels.begin(), pixels.end());
+}
+
+/// Loads a scene of which something is odd, and expects a warning that says `fault`.
+inline Scene loadWarned(const fs::path& path, const std::string& fault, const LoadOptions& options = {}) {
+    log::setLevel(log::Level::Info);
+    testing::internal::CaptureStderr();
+    Scene scene;
+    try {
+        scene = loadScene(path, options);
+    } catch (const Error& error) {
+        ADD_FAILURE() << "refused: " << error.what();
+    }
+    const std::string messages = testing::internal::GetCapturedStderr();
+    EXPECT_NE(messages.find(fault), std::string::npos) << "expected '" << fault << "' in: " << messages;
+    return scene;
 }
 
 /// Loading fails as bad input does: exit code 3, and a message with the file's name and `fault`.

@@ -47,8 +47,11 @@ struct Group {
 
 class ObjLoader {
   public:
-    explicit ObjLoader(const std::filesystem::path& file)
-        : files_(file), textures_(file, scene_), content_(readSceneFile(file)), lines_(file, content_) {}
+    ObjLoader(const std::filesystem::path& file, const LoadOptions& options)
+        : files_(file, options.assetRoot),
+          textures_(scene_, {file, TexturePool::Formats::TgaAndBmpToo, options.maxImageMemory}),
+          content_(readSceneFile(file)),
+          lines_(file, content_) {}
 
     Scene run();
 
@@ -61,6 +64,7 @@ class ObjLoader {
     void useMaterial(std::string_view name);
     void useLibraries(std::string_view names);
     bool tryLibrary(const std::string& name);
+    bool libraryExists(const std::string& name);
     int greyIndex();
     void startGroup(std::string_view name);
     void finishGroup();
@@ -195,14 +199,24 @@ void ObjLoader::useMaterial(std::string_view name) {
 
 bool ObjLoader::tryLibrary(const std::string& name) {
     if (libraries_.contains(name)) return true;
+    if (!libraryExists(name)) return false;
     const std::filesystem::path path = files_.resolve(name);
-    std::error_code error;
-    if (!std::filesystem::exists(path, error)) return false;
     libraries_.insert(name);
     const std::vector<std::byte> text = files_.read(name);
     readMaterials(Lines(path, text), std::filesystem::path(name).parent_path(), files_, textures_, scene_,
                   materials_);
     return true;
+}
+
+/// A name that is refused is as good as missing, but says why.
+bool ObjLoader::libraryExists(const std::string& name) {
+    try {
+        std::error_code error;
+        return std::filesystem::is_regular_file(files_.resolve(name), error);
+    } catch (const InputError& refusal) {
+        if (unknown_.size() < 16 && unknown_.insert(name).second) log::warn("{}", refusal.what());
+        return false;
+    }
 }
 
 void ObjLoader::useLibraries(std::string_view names) {
@@ -215,7 +229,8 @@ void ObjLoader::useLibraries(std::string_view names) {
     while (!words.peek().empty()) {
         const std::string name(words.next());
         if (tryLibrary(name) || unknown_.size() >= 16 || !unknown_.insert(name).second) continue;
-        log::warn("{}: the material file '{}' does not exist", files_.sceneFile().string(), name);
+        log::warn("{}: line {}: there is no material file '{}', grey is used", files_.sceneFile().string(),
+                  lines_.line(), name);
     }
 }
 
@@ -270,8 +285,8 @@ Mesh ObjLoader::toMesh(const Group& group) const {
 
 }  // namespace
 
-Scene loadObj(const std::filesystem::path& file) {
-    return ObjLoader(file).run();
+Scene loadObj(const std::filesystem::path& file, const LoadOptions& options) {
+    return ObjLoader(file, options).run();
 }
 
 }  // namespace limpid::scene

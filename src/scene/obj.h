@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "scene/load_options.h"
 #include "scene/scene.h"
 
 namespace limpid::scene {
@@ -15,8 +16,8 @@ namespace limpid::scene {
 /// and a linear colour. Lines, points, curves and surfaces are skipped. Materials: see obj_material.h.
 ///
 /// Throws InputError naming file, line and fault: a number that is none or not finite, an index out of range,
-/// a texture that is missing or malformed, no triangles. A missing material file or name is a warning, and
-/// grey.
-Scene loadObj(const std::filesystem::path& file);
+/// no triangles. A warning, and a plain colour: a material file or name that is missing or refused, a texture
+/// that cannot be had.
+Scene loadObj(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace limpid::scene

@@ -147,7 +147,8 @@ class MapReader {
         Sampler sampler;
         if (map->clamp) sampler.wrapU = sampler.wrapV = Wrap::ClampToEdge;
         const std::string name = (files_.sceneFile().parent_path() / map->file).string();
-        ref.texture = textures_.add(name, srgb, sampler, [&] { return files_.read(map->file); });
+        ref.texture = textures_.add(name, srgb, sampler,
+                                    [&] { return files_.read(map->file, textures_.maxImageMemory()); });
         // -s and -o act on OBJ's coordinates (v up); ours are v' = 1 - v.
         ref.rowU = {map->scale.x, 0.0f, map->offset.x};
         ref.rowV = {0.0f, map->scale.y, 1.0f - map->scale.y - map->offset.y};
@@ -163,6 +164,8 @@ void setEmission(const Statements& m, MapReader& read, Material& material) {
     if (m.emission) material.emission = *m.emission;
     if (m.emissionMap && material.emission == vec3(0.0f)) material.emission = vec3(1.0f);
     material.emissionTexture = read(m.emissionMap, true);
+    // The factor alone would make all of the surface glow.
+    if (m.emissionMap && !material.emissionTexture) material.emission = vec3(0.0f);
     const bool isSilent = !m.emission && !m.emissionMap;
     if (isSilent && m.ambient && isNamedLight(m.name)) material.emission = *m.ambient;
 }
@@ -201,11 +204,11 @@ bool setIllumination(const Statements& m, Material& material) {
 Material toMaterial(const Statements& m, MapReader& read) {
     Material material = greyMaterial();
     material.name = m.name;
-    const vec3 absent(m.diffuseMap ? 1.0f : vec3(material.baseColor).x);
-    vec3 color = m.diffuse.value_or(absent);
-    if (m.diffuseMap && color == vec3(0.0f)) color = vec3(1.0f);
-    material.baseColor = vec4(glm::min(color, vec3(1.0f)), 1.0f);
     material.baseColorTexture = read(m.diffuseMap, true);
+    const vec3 absent = material.baseColorTexture ? vec3(1.0f) : vec3(material.baseColor);
+    vec3 color = m.diffuse.value_or(absent);
+    if (m.diffuseMap && color == vec3(0.0f)) color = absent;
+    material.baseColor = vec4(glm::min(color, vec3(1.0f)), 1.0f);
     material.normalTexture = read(m.normalMap, false);
     material.metallic = clamp01(m.metallic);
     material.specular = clamp01(largest(m.specular.value_or(vec3(0.0f))));

@@ -130,6 +130,91 @@ TEST_F(ObjTest, ReadsMaps) {
     EXPECT_EQ(m.baseColorTexture.rowV, vec3(0, 3, -2));
 }
 
+/// Two by two: red, green over blue, white; rows from bottom to top, as TGA and BMP have them.
+const std::vector<uint8_t> fourColors = {255, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0};
+
+std::string bmpOfFourColors() {
+    std::string text("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x02\0\0\0\x02\0\0\0\x01\0\x18\0", 30);
+    text.resize(54);
+    for (size_t row = 0; row < 2; ++row) {
+        text.append(fourColors.begin() + static_cast<std::ptrdiff_t>(row * 6),
+                    fourColors.begin() + static_cast<std::ptrdiff_t>(row * 6 + 6));
+        text.append(2, '\0');
+    }
+    return text;
+}
+
+TEST_F(ObjTest, ReadsTgaAndBmp) {
+    std::string runs = tgaOf(2, 2, {});
+    runs[2] = 10;
+    runs += std::string("\x00\xff\x00\x00\x80\xff\xff\xff\x01\x00\x00\xff\x00\xff\x00", 15);
+    put(folder / "a.tga", tgaOf(2, 2, fourColors));
+    put(folder / "runs.tga", runs);
+    put(folder / "a.bmp", bmpOfFourColors());
+    const std::vector<uint8_t> expected = {255, 0, 0,   255, 0,   255, 0,   255,
+                                           0,   0, 255, 255, 255, 255, 255, 255};
+    for (const char* name : {"a.tga", "runs.tga", "a.bmp"}) {
+        const Scene scene =
+            load(corners + "usemtl m\nf 1 2 3\n", "newmtl m\nmap_Kd " + std::string(name) + "\n");
+        ASSERT_EQ(scene.textures.size(), 1u) << name;
+        EXPECT_EQ(scene.textures[0].rgba, expected) << name;
+    }
+}
+
+TEST_F(ObjTest, TexturesThatCannotBeHadAreWarnedOfAndPlain) {
+    const auto expectPlain = [&](const std::string& file, const std::string& fault) {
+        put(folder / "scene.mtl", "newmtl m\nKd 0.1 0.2 0.3\nmap_Kd " + file + "\nmap_Ke " + file + "\n");
+        put(folder / "scene.obj", "mtllib scene.mtl\nusemtl m\n" + corners + "f 1 2 3\n");
+        const Scene scene = loadWarned(folder / "scene.obj", fault);
+        EXPECT_TRUE(scene.textures.empty());
+        EXPECT_EQ(scene.materials.at(0).baseColor, vec4(0.1f, 0.2f, 0.3f, 1.0f));
+        EXPECT_EQ(scene.materials[0].emission, vec3(0.0f)) << "the factor alone would glow all over";
+    };
+    expectPlain("none.png", "scene.obj: refers to 'none.png', which does not exist; a plain colour is used");
+    expectPlain("C:\\textures\\wood.png", "relative");
+    expectPlain("/etc/passwd", "'/etc/passwd', which is an absolute path");
+    expectPlain("../none.png", "lies outside the scene's folder");
+    put(folder / "text.png", "this is no picture");
+    expectPlain("text.png", "text.png: is none of PNG, JPEG, TGA and BMP");
+    put(folder / "cut.tga", tgaOf(2, 2, {1, 2, 3}));
+    expectPlain("cut.tga", "cut.tga: is a TGA file that was cut off");
+    put(folder / "cut.bmp", bmpOfFourColors().substr(0, 60));
+    expectPlain("cut.bmp", "cut.bmp: is a BMP file that was cut off");
+    fs::create_directory(folder / "folder.png");
+    expectPlain("folder.png", "is a directory");
+}
+
+TEST_F(ObjTest, ABlackColourUnderAMissingTextureIsGrey) {
+    EXPECT_EQ(material("Kd 0 0 0\nmap_Kd none.png\n").baseColor, vec4(0.8f, 0.8f, 0.8f, 1.0f));
+    EXPECT_EQ(material("map_Kd none.png\n").baseColor, vec4(0.8f, 0.8f, 0.8f, 1.0f));
+}
+
+TEST_F(ObjTest, MaterialFilesThatCannotBeHadAreWarnedOf) {
+    for (const auto& [name, fault] :
+         {std::pair{"none.mtl", "scene.obj: line 1: there is no material file 'none.mtl'"},
+          std::pair{"/etc/none.mtl", "'/etc/none.mtl', which is an absolute path"},
+          std::pair{"../none.mtl", "'../none.mtl', which lies outside the scene's folder"},
+          std::pair{"folder.mtl", "there is no material file 'folder.mtl'"}}) {
+        fs::create_directories(folder / "folder.mtl");
+        put(folder / "scene.obj", "mtllib " + std::string(name) + "\nusemtl m\n" + corners + "f 1 2 3\n");
+        EXPECT_EQ(loadWarned(folder / "scene.obj", fault).materials.at(0).name, "grey");
+    }
+}
+
+TEST_F(ObjTest, TexturesBesideTheSceneFolderAreReadWithinTheAssetRoot) {
+    fs::create_directories(folder / "models");
+    fs::create_directories(folder / "textures");
+    image::writePng(folder / "textures" / "wood.png", {1, 1, 3, {1, 2, 3}});
+    fs::create_directory_symlink("../textures", folder / "models" / "tex");
+    put(folder / "models" / "a.mtl", "newmtl m\nmap_Kd ../textures/wood.png\nnorm tex/wood.png\n");
+    put(folder / "models" / "a.obj", "mtllib a.mtl\nusemtl m\n" + corners + "f 1 2 3\n");
+    const fs::path file = folder / "models" / "a.obj";
+    const Scene whole = loadScene(file, {.assetRoot = defaultAssetRoot(file)});
+    EXPECT_TRUE(whole.materials.at(0).baseColorTexture && whole.materials[0].normalTexture);
+    const Scene alone = loadWarned(file, "lies outside the scene's folder");
+    EXPECT_FALSE(alone.materials.at(0).baseColorTexture || alone.materials[0].normalTexture);
+}
+
 float areaOf(const std::vector<vec3>& corners, const std::array<uint32_t, 3>& t) {
     return 0.5f * glm::cross(corners[t[1]] - corners[t[0]], corners[t[2]] - corners[t[0]]).z;
 }

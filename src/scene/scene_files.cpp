@@ -1,12 +1,18 @@
 #include "scene/scene_files.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/load_options.h"
 
 namespace limpid::scene {
 namespace fs = std::filesystem;
@@ -47,6 +53,21 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// Whether other users' folders, or the whole system, lie in `folder`: too much for a scene file to read
+/// from.
+bool holdsHomeFolders(const fs::path& folder) {
+    if (folder == folder.root_path() || folder == "/home" || folder == "/Users") return true;
+    const passwd* user = ::getpwuid(::getuid());
+    const std::array<const char*, 2> homes = {std::getenv("HOME"), user ? user->pw_dir : nullptr};
+    for (const char* home : homes) {
+        if (!home || !*home) continue;
+        std::error_code error;
+        const fs::path above = fs::weakly_canonical(home, error).parent_path();
+        if (!error && isInside(folder, above)) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::string decodePercent(std::string_view uri) {
@@ -65,7 +86,20 @@ std::string decodePercent(std::string_view uri) {
     return text;
 }
 
-SceneFiles::SceneFiles(fs::path sceneFile) : sceneFile_(std::move(sceneFile)) {}
+fs::path defaultAssetRoot(const fs::path& sceneFile) {
+    std::error_code error;
+    const fs::path own = fs::weakly_canonical(folderOf(sceneFile), error);
+    const fs::path above = own.parent_path();
+    return error || holdsHomeFolders(above) ? own : above;
+}
+
+SceneFiles::SceneFiles(fs::path sceneFile, const fs::path& assetRoot) : sceneFile_(std::move(sceneFile)) {
+    if (assetRoot.empty()) return;
+    std::error_code error;
+    assetRoot_ = fs::canonical(assetRoot, error);
+    if (error) throw InputError(assetRoot, "cannot be the asset root: " + error.message());
+    if (!fs::is_directory(assetRoot_, error)) throw InputError(assetRoot, "is no folder");
+}
 
 fs::path SceneFiles::resolve(std::string_view reference) const {
     const auto refuse = [&](const std::string& why) -> InputError {
@@ -74,27 +108,27 @@ fs::path SceneFiles::resolve(std::string_view reference) const {
     if (reference.empty()) throw InputError(sceneFile_, "refers to a file with an empty name");
     if (reference.size() > 4096) throw refuse("is too long a name");
     if (reference.find('\0') != std::string_view::npos) throw refuse("has a null character in its name");
-    if (hasScheme(reference))
-        throw refuse("is not a file in the scene's folder (only relative paths are read)");
+    if (hasScheme(reference)) throw refuse("is not a file's relative path (others are not read)");
     std::string text(reference);
     std::replace(text.begin(), text.end(), '\\', '/');
-    const fs::path relative = fs::path(text).lexically_normal();
-    if (relative.is_absolute()) throw refuse("is an absolute path, not one in the scene's folder");
-    if (!relative.empty() && *relative.begin() == "..") throw refuse("leaves the scene's folder");
+    const fs::path relative(text);
+    if (relative.is_absolute()) throw refuse("is an absolute path (only relative ones are read)");
     std::error_code error;
     const fs::path folder = fs::weakly_canonical(folderOf(sceneFile_), error);
     if (error) throw refuse("cannot be resolved: " + error.message());
     const fs::path target = fs::weakly_canonical(folder / relative, error);
     if (error) throw refuse("cannot be resolved: " + error.message());
-    if (!isInside(folder, target)) throw refuse("leaves the scene's folder through a symbolic link");
-    return target;
+    if (isInside(folder, target)) return target;
+    if (assetRoot_.empty()) throw refuse("lies outside the scene's folder");
+    if (isInside(assetRoot_, target)) return target;
+    throw refuse("lies outside the asset root " + assetRoot_.string() + " (--asset-root)");
 }
 
-std::vector<std::byte> SceneFiles::read(std::string_view reference) {
+std::vector<std::byte> SceneFiles::read(std::string_view reference, uint64_t maxBytes) {
     const fs::path path = resolve(reference);
     if (const auto fault = irregularity(path))
         throw InputError(sceneFile_, "refers to " + shown(reference) + ", which " + *fault);
-    std::vector<std::byte> bytes = readFile(path, bytesLeft_);
+    std::vector<std::byte> bytes = readFile(path, std::min(bytesLeft_, maxBytes));
     bytesLeft_ -= bytes.size();
     return bytes;
 }

@@ -21,7 +21,7 @@ bool obj(Bytes input);
 /// Environment maps and pictures.
 bool hdr(Bytes input);
 bool exr(Bytes input);
-/// PNG and JPEG.
+/// PNG, JPEG, TGA and BMP.
 bool png(Bytes input);
 /// Files of sums: checkpoints and shards of stills.
 bool checkpoint(Bytes input);
