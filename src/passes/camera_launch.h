@@ -24,6 +24,7 @@ struct CameraLaunch {
     uint32_t stream = 0;          ///< of random numbers; in a still the number of the launch
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
+    uint64_t samplesBefore = 0;  ///< of each pixel in the mean, before this launch
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {
@@ -37,6 +38,7 @@ inline ViewParams viewParams(const CameraLaunch& launch) {
     view.stream = launch.stream;
     view.seed = launch.seed;
     view.jitter = static_cast<uint32_t>(launch.jitter);
+    view.samplesBefore = static_cast<float>(launch.samplesBefore);
     return view;
 }
 

@@ -21,7 +21,8 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .firstSample = input.firstSample,
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
-            .jitter = settings.jitter};
+            .jitter = settings.jitter,
+            .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0};
 }
 
 /// The layers that are means over samples, and what their variances are of.
@@ -141,6 +142,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
         launch.samples = std::min(input.launchSamples, input.samples - done);
         launch.stream = static_cast<uint32_t>(input.stream + number);
         launch.firstSample = input.firstSample + done;
+        launch.samplesBefore = done;
         PathtraceLayers& mean = means[number % 2];
         PathtraceLayers& into = number == 0 ? mean : traced;
         into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;

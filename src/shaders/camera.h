@@ -37,7 +37,8 @@ struct ViewParams {
     uint firstSample;  // samples per pixel since the last reset, before this launch
     uint stream;       // of random numbers
     uint seed;
-    uint jitter;  // JITTER_*
+    uint jitter;          // JITTER_*
+    float samplesBefore;  // of each pixel in the mean, before this launch
 };
 
 #undef LIMPID_CONST

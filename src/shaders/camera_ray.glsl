@@ -35,13 +35,29 @@ Ray cameraRay(ViewParams view, vec2 pixel) {
     return cameraRay(view.camera, vec2(view.width, view.height), pixel);
 }
 
-/// A pixel's footprint, for texture levels: its width at the eye and what that grows by with distance.
+/// How wide a ray is, for textures: at the eye, and what that grows by with distance (T. Akenine-Moeller et al.,
+/// "Texture level of detail strategies for real-time ray tracing", Ray Tracing Gems, 2019).
 struct Cone {
     float width, spread;
 };
 
-Cone pixelCone(CameraParams camera) {
-    return camera.orthographic != 0u ? Cone(camera.spread, 0.0) : Cone(0.0, camera.spread);
+/// The width of the n-th ray, from 1, that looks at the same: 1 / sqrt(n), as if n rays shared it evenly. The mean tends
+/// to what no filter has blurred, and few rays are still smooth (likewise kernels shrink in C. Knaus, M. Zwicker,
+/// "Progressive photon mapping: a probabilistic approach", ACM TOG 2011).
+float shareOfRay(float n) {
+    return inversesqrt(n);
+}
+
+/// Which of its pixel's rays this is, from 1, over all launches of a mean.
+float rayNumber(ViewParams view, uint sampleIndex) {
+    return view.samplesBefore + float(sampleIndex) + 1.0;
+}
+
+/// A camera ray's share of its pixel; all of it where every ray goes through the centre.
+Cone pixelCone(ViewParams view, uint sampleIndex) {
+    const float n = view.jitter != JITTER_OFF ? rayNumber(view, sampleIndex) : 1.0;
+    const float width = view.camera.spread * shareOfRay(n);
+    return view.camera.orthographic != 0u ? Cone(width, 0.0) : Cone(0.0, width);
 }
 
 /// Pixel that sees the point (of a miss: the direction) in xy; distance in z; valid in w.

@@ -59,8 +59,8 @@ vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float
             float coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).y) : 0.0;
             if (HAS_TEXTURES) {
                 const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
-                emission *= materialTexture(imageLoad(materials, material + 4).w, data, 0.0).rgb;
-                if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data, 0.0).r;
+                emission *= materialTexture(imageLoad(materials, material + 4).w, data).rgb;
+                if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data).r;
             }
             if (HAS_CLEARCOAT) emission *= emissionThroughClearcoat(coat, cosine);
         }

@@ -68,13 +68,8 @@ struct VertexData {
     vec4 tangent;
     vec2 uv0, uv1;
     vec4 color;
-    vec2 uvDensity;  // |area in uv| of the triangle, for both sets
+    vec4 uv0Edges, uv1Edges;  // how far the two edges from the first vertex go in uv
 };
-
-float crossArea(vec2 a, vec2 b, vec2 c) {
-    const vec2 e1 = b - a, e2 = c - a;
-    return abs(e1.x * e2.y - e1.y * e2.x);
-}
 
 VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
     vec3 normals[3];
@@ -98,22 +93,56 @@ VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
     data.uv0 = uv0[0] + u * (uv0[1] - uv0[0]) + v * (uv0[2] - uv0[0]);
     data.uv1 = uv1[0] + u * (uv1[1] - uv1[0]) + v * (uv1[2] - uv1[0]);
     data.color = colors[0] + u * (colors[1] - colors[0]) + v * (colors[2] - colors[0]);
-    data.uvDensity = vec2(crossArea(uv0[0], uv0[1], uv0[2]), crossArea(uv1[0], uv1[1], uv1[2]));
+    data.uv0Edges = vec4(uv0[1] - uv0[0], uv0[2] - uv0[0]);
+    data.uv1Edges = vec4(uv1[1] - uv1[0], uv1[2] - uv1[0]);
     return data;
 }
 
-/// Looks a material's texture up; white if it has none. `footprint`: the ray's width over the surface, relative to the
-/// root of twice the triangle's area.
-vec4 materialTexture(uint index, VertexData data, float footprint) {
+/// The axes of a ray's footprint on a triangle: whole widths, in barycentrics.
+struct Footprint {
+    vec2 across, along;
+};
+
+/// Of a vector in the triangle's plane. `unitNormal`: of edge1 x edge2, whose length is doubleArea.
+vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea) {
+    return vec2(dot(cross(v, edge2), unitNormal), dot(cross(edge1, v), unitNormal)) / doubleArea;
+}
+
+/// Where a cone of this width meets the triangle's plane: an ellipse, longer by 1 / cosine along the ray (T.
+/// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021).
+Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, float width) {
+    const float cosine = dot(unitNormal, toViewer);
+    const vec3 inPlane = toViewer - cosine * unitNormal;
+    const vec3 along = inPlane * inversesqrt(max(dot(inPlane, inPlane), 1e-20));
+    const bool tilted = dot(inPlane, inPlane) > 1e-8;
+    const vec3 axis = tilted ? along : edge1 * inversesqrt(max(dot(edge1, edge1), 1e-37));
+    const vec3 other = cross(unitNormal, axis);
+    return Footprint(barycentricsOf(width * other, edge1, edge2, unitNormal, doubleArea),
+                     barycentricsOf(width / max(abs(cosine), 0.05) * axis, edge1, edge2, unitNormal, doubleArea));
+}
+
+/// Looks a material's texture up; white if it has none.
+vec4 materialTexture(uint index, VertexData data, Footprint footprint) {
     vec4 result = vec4(1.0);
     if (index != NONE) {
         const TextureRef ref = loadTextureRef(index);
         const bool second = (ref.flags & TEXTURE_UV1) != 0u;
         const vec3 uv = vec3(second ? data.uv1 : data.uv0, 1.0);
-        const float determinant = abs(ref.rowU.x * ref.rowV.y - ref.rowU.y * ref.rowV.x);
-        const float density = (second ? data.uvDensity.y : data.uvDensity.x) * determinant;
-        result = sampleTexture(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)),
-                               log2(max(footprint * sqrt(density), 1e-20)));
+        const vec4 edges = second ? data.uv1Edges : data.uv0Edges;
+        const mat2 toTexture = mat2(ref.rowU.x, ref.rowV.x, ref.rowU.y, ref.rowV.y) * mat2(edges.xy, edges.zw);
+        result = sampleFootprint(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)), toTexture * footprint.across,
+                                 toTexture * footprint.along);
+    }
+    return result;
+}
+
+/// The same at the point itself, in the finest level.
+vec4 materialTexture(uint index, VertexData data) {
+    vec4 result = vec4(1.0);
+    if (index != NONE) {
+        const TextureRef ref = loadTextureRef(index);
+        const vec3 uv = vec3((ref.flags & TEXTURE_UV1) != 0u ? data.uv1 : data.uv0, 1.0);
+        result = sampleTexture(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)), -1.0);
     }
     return result;
 }
@@ -130,7 +159,7 @@ bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) 
     if (HAS_VERTEX_DATA) {
         const VertexData data = loadVertexData(indices.xyz, barycentrics);
         alpha *= data.color.a;
-        if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data, 0.0).a;
+        if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data).a;
     }
     const bool blend = (flags & MATERIAL_BLEND) != 0u;
     const float threshold = blend ? randomOf(rng, triangle, instance) : uintBitsToFloat(alphaTexel.y);
@@ -188,27 +217,35 @@ vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
     return height >= lowest ? facing : normalize(toViewer + normalize(mirrored + (lowest - height) * geometricNormal));
 }
 
-void applySpecularTextures(inout Surface s, int material, VertexData data, float footprint) {
+void applySpecularTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
     const uvec4 refs = imageLoad(materials, material + 6);
     s.specular *= materialTexture(refs.x, data, footprint).a;
     s.specularColor *= materialTexture(refs.y, data, footprint).rgb;
 }
 
-void applyClearcoatTextures(inout Surface s, int material, VertexData data, float footprint) {
+void applyClearcoatTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
     const uvec4 refs = imageLoad(materials, material + 6);
     s.clearcoat *= materialTexture(refs.z, data, footprint).r;
     s.clearcoatRoughness *= materialTexture(refs.w, data, footprint).g;
 }
 
 /// The coat has a normal map of its own or none: the base's does not change it.
-vec3 clearcoatNormal(int material, VertexData data, float footprint, vec3 normal, vec4 tangent) {
+vec3 clearcoatNormal(int material, VertexData data, Footprint footprint, vec3 normal, vec4 tangent) {
     const uvec4 coat = imageLoad(materials, material + 7);
     if (coat.x == NONE) return normal;
     return mappedNormal(normal, tangent, materialTexture(coat.x, data, footprint).rgb, uintBitsToFloat(coat.w));
 }
 
-/// `toViewer`: unit; `coneWidth`: width of the ray's footprint here, for texture levels.
-Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, float coneWidth) {
+/// A ray's cone where it meets a surface.
+struct RayCone {
+    float width;  // textures are averaged over it
+    /// ... emission too. False where next-event estimation can find the same light, which reads textures at points: both
+    /// must tell of one light for their weighted sum to be right.
+    bool filtersEmission;
+};
+
+/// `toViewer`: unit.
+Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, RayCone cone) {
     Surface s;
     const int at = int(triangle * BVH_TRIANGLE_TEXELS);
     const vec4 t0 = imageLoad(bvhTriangles, at), t1 = imageLoad(bvhTriangles, at + 1), t2 = imageLoad(bvhTriangles, at + 2);
@@ -256,6 +293,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     const vec2 coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).yz) : vec2(0.0);
     s.clearcoat = coat.x;
     s.clearcoatRoughness = coat.y;
+    float coatOverEmission = coat.x;
     s.clearcoatNormal = s.geometricNormal;
     if (HAS_VERTEX_DATA) {
         const VertexData data = loadVertexData(shading.xyz, barycentrics);
@@ -273,9 +311,12 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         s.baseColor *= data.color.rgb;
         if (HAS_TEXTURES) {
             const uvec4 refs = imageLoad(materials, material + 4);
-            const float footprint = coneWidth / (sqrt(max(doubleArea, 1e-37)) * max(dot(s.geometricNormal, toViewer), 0.05));
+            const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
+                                                    max(doubleArea, 1e-37), toViewer, cone.width);
+            const float share = cone.filtersEmission ? 1.0 : 0.0;
+            const Footprint emitting = Footprint(share * footprint.across, share * footprint.along);
             s.baseColor *= materialTexture(refs.x, data, footprint).rgb;
-            s.emission *= materialTexture(refs.w, data, footprint).rgb;
+            s.emission *= materialTexture(refs.w, data, emitting).rgb;
             const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);
             s.roughness *= metallicRoughness.g;
             s.metallic *= metallicRoughness.b;
@@ -285,6 +326,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
                 normal = mappedNormal(normal, vec4(tangent, handedness), materialTexture(refs.z, data, footprint).rgb, scale);
             }
             if (HAS_CLEARCOAT) {
+                coatOverEmission *= materialTexture(imageLoad(materials, material + 6).z, data, emitting).r;
                 applyClearcoatTextures(s, material, data, footprint);
                 coatNormal = clearcoatNormal(material, data, footprint, coatNormal, vec4(tangent, handedness));
             }
@@ -300,7 +342,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     }
     const bool visible = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
     s.emission = s.unlit ? s.baseColor : visible ? s.emission : vec3(0.0);
-    if (HAS_CLEARCOAT) s.emission *= emissionThroughClearcoat(s.clearcoat, dot(s.geometricNormal, toViewer));
+    if (HAS_CLEARCOAT) s.emission *= emissionThroughClearcoat(coatOverEmission, dot(s.geometricNormal, toViewer));
     s.culled = !visible && s.transmission == 0.0;
     s.absorption = vec3(0.0);
     if (HAS_VOLUME) {

@@ -1,5 +1,5 @@
 // Texture look-up from texel buffers: wrap modes, nearest and bilinear filters and mip levels as glTF's samplers say
-// (glTF 2.0, section 3.8.4; OpenGL ES 3.0, section 3.8.10).
+// (glTF 2.0, section 3.8.4; OpenGL ES 3.0, section 3.8.10), and the mean over a ray's footprint.
 #ifndef LIMPID_TEXTURE_GLSL
 #define LIMPID_TEXTURE_GLSL
 
@@ -64,10 +64,8 @@ vec4 sampleLevel(TextureRef ref, vec2 uv, uint level, bool filtered) {
     return mix(top, bottom, f.y);
 }
 
-/// `uv` is already transformed; `lodBase` is the level of detail for a texture of one texel in all: log2 of the
-/// footprint in units of uv.
-vec4 sampleTexture(TextureRef ref, vec2 uv, float lodBase) {
-    const float lod = lodBase + 0.5 * log2(float(ref.width) * float(ref.height));
+/// `uv` is already transformed; `lod`: log2 of the footprint in texels.
+vec4 sampleTexture(TextureRef ref, vec2 uv, float lod) {
     const uint mip = (ref.flags >> TEXTURE_MIP_SHIFT) & 3u;
     const bool minified = lod > 0.0;
     const bool filtered = (ref.flags & (minified ? TEXTURE_MIN_LINEAR : TEXTURE_MAG_LINEAR)) != 0u;
@@ -79,6 +77,30 @@ vec4 sampleTexture(TextureRef ref, vec2 uv, float lodBase) {
         sum += (i == 0u ? 1.0 - fraction : fraction) * sampleLevel(ref, uv, uint(level) + i, filtered);
     }
     return sum;
+}
+
+/// The most taps along a footprint's long axis. Footprints that are longer yet read coarser levels.
+const uint MAX_TAPS = 4u;
+
+/// The mean over a parallelogram around `uv` with these axes (whole widths, in units of uv): the level is chosen by the
+/// short extent, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996). Without mip levels,
+/// one tap, as the sampler says.
+vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along) {
+    const vec2 size = vec2(ref.width, ref.height);
+    const vec2 a = across * size, b = along * size;
+    const bool firstLonger = dot(a, a) > dot(b, b);
+    const float longExtent = max(sqrt(max(dot(a, a), dot(b, b))), 1e-20);
+    const float shortExtent = max(abs(a.x * b.y - a.y * b.x) / longExtent, longExtent / float(MAX_TAPS));
+    const bool oneTap = ((ref.flags >> TEXTURE_MIP_SHIFT) & 3u) == 0u;
+    // Below a texel there is nothing that taps would tell apart.
+    const float wanted = min(ceil(longExtent / max(shortExtent, 1.0)), float(MAX_TAPS));
+    const uint taps = oneTap ? 1u : max(uint(wanted), 1u);
+    const vec2 step_ = (firstLonger ? across : along) / float(taps);
+    const vec2 first = uv - 0.5 * float(taps - 1u) * step_;
+    const float lod = log2(shortExtent);
+    vec4 sum = vec4(0.0);
+    for (uint i = 0u; i < taps; ++i) sum += sampleTexture(ref, first + float(i) * step_, lod);
+    return sum / float(taps);
 }
 
 #endif

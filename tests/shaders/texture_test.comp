@@ -25,5 +25,6 @@ void main() {
     const uint i = gl_GlobalInvocationID.x;
     if (i >= params.count) return;
     const Query query = queries.values[i];
-    results.values[i] = sampleTexture(loadTextureRef(query.ref), query.uv, query.lod);
+    const TextureRef ref = loadTextureRef(query.ref);
+    results.values[i] = sampleTexture(ref, query.uv, query.lod + 0.5 * log2(float(ref.width) * float(ref.height)));
 }

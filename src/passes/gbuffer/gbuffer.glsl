@@ -80,7 +80,7 @@ Seen shade(Hit hit, Surface surface, float depth, vec3 toViewer, uint rng, uint 
 
 Seen look(Ray ray, uint rng) {
     Seen seen = Seen(noHit(ray.direction), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
-    const Cone cone = pixelCone(params.view.camera);
+    const Cone cone = pixelCone(params.view, 0u);
     float coneWidth = cone.width, traveled = 0.0;
     uint culled = 0u;
     Hit hit;
@@ -94,7 +94,7 @@ Seen look(Ray ray, uint rng) {
         }
         coneWidth += cone.spread * hit.t;
         traveled += hit.t;
-        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, coneWidth);
+        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, RayCone(coneWidth, true));
     } while (passesBack(surface, culled, ray.origin));
     return shade(hit, surface, traveled, -ray.direction, rng, seen.rays);
 }

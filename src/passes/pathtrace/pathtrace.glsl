@@ -24,6 +24,10 @@ vec3 clampFirefly(vec3 radiance, uint depth) {
                                                                                : radiance;
 }
 
+// Of the solid angle that a scattered ray stands for, its cone has this share in width, and this width at most. The
+// lobe blurs what it shows by itself: much less of it in the cone costs noise, more costs contrast where samples are few.
+const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25;
+
 struct Path {
     Ray ray;
     vec3 throughput;
@@ -156,8 +160,16 @@ void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bs
     }
 }
 
-PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit first) {
-    const Cone cone = pixelCone(params.view.camera);
+/// What the cone of a scattered ray grows by with distance: as before, and by the ray's share of the lobe: of n rays
+/// with this density each stands for 1 / (n density) of solid angle. A sharp lobe is nearly a mirror.
+float spreadAfter(Path path, float spread, float n) {
+    if (path.delta) return spread;
+    const float lobe = LOBE_SHARE * inversesqrt(max(path.bsdfPdf, 1e-20));
+    return length(vec2(spread, min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
+}
+
+PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
+    const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, LightShares(0.0, 0.0), true, cone.width, vec3(0.0),
                      PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u);
     float spread = cone.spread;
@@ -175,7 +187,8 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         }
         path.coneWidth += spread * hit.t;
         const vec3 toViewer = -path.ray.direction;
-        const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, path.coneWidth);
+        const RayCone rayCone = RayCone(path.coneWidth, path.delta);
+        const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
@@ -194,8 +207,7 @@ PathRadiance tracePath(Ray ray, inout uint rng, inout uint rays, out FirstHit fi
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
         if (SPLIT_LOBES && depth == 0u) scattered(sight, path, surface, bsdf);
-        // A rough bounce blurs what lies behind it: a wider cone reads coarser mip levels.
-        if (HAS_TEXTURES && !path.delta) spread = max(spread, 0.1);
+        if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     }
     first = sight.hit;
     rays += path.rays;

@@ -44,7 +44,7 @@ void tracePixel(uvec2 pixel) {
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
-        PathRadiance path = tracePath(cameraRay(params.view, point), rng, rays, first);
+        PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
         if (!isFinite(path.emission + path.diffuse + path.specular)) {
             path = PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0));
             ++rejected;

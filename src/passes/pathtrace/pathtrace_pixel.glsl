@@ -13,7 +13,7 @@ void tracePixel(uvec2 pixel) {
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
-        const PathRadiance path = tracePath(cameraRay(params.view, point), rng, rays, first);
+        const PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
         const vec3 radiance = path.diffuse;
         if (isFinite(radiance)) {
             sum.rgb += radiance;
