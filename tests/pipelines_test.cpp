@@ -136,6 +136,26 @@ TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
     }
 }
 
+TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
+    const Scene scene = prepared(scene::cornellSpheresScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const Pipeline& pipeline : pipelines()) {
+        if (pipeline.denoiser && pipeline.denoiser->network) continue;  // traces as the others that denoise
+        RenderSettings settings =
+            settingsFor("path", 24, 16);  // no jitter: of what comes after the first hit
+        settings.pipeline = pipeline;
+        const auto picture = [&](bool tea) {
+            settings.pathtrace.samplerTea = tea;
+            FrameRenderer renderer(device(), gpuScene, settings, 1);
+            renderer.render(still(scene, settings, 0));
+            const RenderedLayers layers = renderer.download();
+            return beautyOf(layers).pixels;
+        };
+        EXPECT_NE(picture(true), picture(false)) << pipeline.name();
+        EXPECT_EQ(picture(true), picture(true)) << pipeline.name();
+    }
+}
+
 TEST_F(PipelinesTest, AccumulationGoesOnUntilAnythingChanges) {
     const Scene scene = prepared(scene::cornellScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));

@@ -19,7 +19,7 @@ inline uint32_t startStream(uint32_t pixel, uint32_t frame, uint32_t seed) {
     return tea(pixel, frame ^ seed * 0x9e3779b9u);
 }
 
-/// Numerical Recipes' generator, low 24 bits (seed document 004).
+/// Numerical Recipes' generator, low 24 bits.
 inline float lcg(uint32_t& state) {
     state = state * 1664525u + 1013904223u;
     return static_cast<float>(state & 0xffffffu) / 16777216.0f;

@@ -22,7 +22,8 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
             .jitter = settings.jitter,
-            .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0};
+            .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0,
+            .samplerTea = settings.pathtrace.samplerTea};
 }
 
 /// The layers that are means over samples, and what their variances are of.
@@ -106,8 +107,9 @@ FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& sce
                                    const RenderSettings& settings, const FrameInput& input) {
     FrameImages out;
     const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
-    const ImageHandle open = ambientOcclusion(graph, scene, settings.ambientOcclusion,
-                                              {static_cast<uint32_t>(input.stream), settings.seed}, seen);
+    const ImageHandle open = ambientOcclusion(
+        graph, scene, settings.ambientOcclusion,
+        {static_cast<uint32_t>(input.stream), settings.seed, settings.pathtrace.samplerTea}, seen);
     out.beauty =
         accumulate(graph, "ambient_occlusion", open, input.samplesBefore, input.samples, VarianceOf::Nothing);
     return out;

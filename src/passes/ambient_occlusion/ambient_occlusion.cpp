@@ -58,7 +58,7 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
                         {"normal", gbuffer.normal},
                         {"before", open},
                         {"openness", after}},
-                       gpu::paramsOf(params), {}, extent);
+                       gpu::paramsOf(params), {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}}, extent);
         open = after;
     }
     return open;

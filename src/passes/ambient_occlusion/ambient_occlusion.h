@@ -20,6 +20,7 @@ const ParamTable<AmbientOcclusionSettings>& ambientOcclusionParams();
 struct AmbientOcclusionLaunch {
     uint32_t stream = 0;
     uint32_t seed = 0;
+    bool samplerTea = false;
 };
 
 /// rgba32f. rgb: the share of rays that meet nothing, 0..1, as grey; 1 where the camera sees nothing; alpha

@@ -46,7 +46,9 @@ GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, cons
     const GBufferParams params{scene.params(), viewParams(launch)};
     dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen}, bindings,
                    gpu::paramsOf(params),
-                   {{"LIGHT", settings.light ? 1u : 0u}, {"SHADOWS", settings.shadows ? 1u : 0u}},
+                   {{"LIGHT", settings.light ? 1u : 0u},
+                    {"SHADOWS", settings.shadows ? 1u : 0u},
+                    {"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}},
                    launch.extent);
     return images;
 }

@@ -18,8 +18,8 @@ struct GBufferSettings {
 const ParamTable<GBufferSettings>& gbufferParams();
 
 /// Of one sample; rgba32f, alpha 0 unless said otherwise. All but `light`, `position` and `geometricNormal`
-/// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample with the
-/// default sampler: on CPUs bit for bit (but for the sign of 0), elsewhere up to rounding.
+/// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample: on CPUs bit
+/// for bit (but for the sign of 0), elsewhere up to rounding.
 struct GBufferImages {
     /// Radiance that the surface scatters of what one light sends to it: an unbiased
     /// estimate of light scattered once. A perfectly smooth mirror or pane shows nothing.

@@ -34,7 +34,7 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
               const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
     dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
-                   {{"SAMPLER_TEA", settings.samplerTea ? 1u : 0u}}, launch.extent);
+                   {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}}, launch.extent);
 }
 
 }  // namespace
@@ -57,7 +57,9 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
               "biased: indirect samples brighter than this are dimmed to it; 0 is off")
             .slider(0, 1000, SliderScale::Logarithmic, 0.01);
         t.add("sampler_tea", &S::samplerTea,
-              "the seed document's generator (24 low bits of an LCG) instead of PCG");
+              "random numbers of all passes by a TEA seed and the 24 low bits of a linear congruential "
+              "generator, as "
+              "many tutorials do, instead of PCG; more correlated");
         t.add("through_mirrors", &S::throughMirrors,
               "layers of a perfect mirror are those of what it shows, so that denoisers see through it as "
               "through a window; off: its own");
