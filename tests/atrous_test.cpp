@@ -12,6 +12,8 @@ struct Case {
     bool plane = true;
     float normalFactor = 0.003f, depthFactor = 1e-4f, sampleTarget = 32.0f;
     uint32_t columns = 131, rows = 77;
+    bool demodulate = true;
+    float colorFactor = 0.0f;
 };
 
 std::string nameOf(const testing::TestParamInfo<std::tuple<Case, gpu::Backing>>& info) {
@@ -44,7 +46,7 @@ class AtrousPassTest : public DenoiseTest,
                                    AtrousGeometry& geometry) {
         const std::vector<dvec4> light = download("atrous/demodulate", "demodulated");
         geometry = decodeGeometry(graph_.downloadUint(device(), written("atrous/demodulate", "geometry")));
-        const Demodulated expected = demodulate(frame, scatteredLight(frame), params.plane);
+        const Demodulated expected = demodulate(frame, scatteredLight(frame), params);
         expectNear(light, expected.light, 1e-3, "demodulated");
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             const double d = expected.geometry.distance[p];
@@ -66,13 +68,17 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
                        .normalFactor = c.normalFactor,
                        .depthFactor = c.depthFactor,
                        .sampleTarget = c.sampleTarget,
-                       .plane = c.plane};
+                       .plane = c.plane,
+                       .demodulate = c.demodulate,
+                       .colorFactor = c.colorFactor};
     denoise(*denoise::findDenoiser("atrous"), frame, settings);
     const DoubleAtrousParams params{.levels = 5,
                                     .normalFactor = double{c.normalFactor},
                                     .depthFactor = double{c.depthFactor},
                                     .sampleTarget = double{c.sampleTarget},
-                                    .plane = c.plane};
+                                    .plane = c.plane,
+                                    .demodulate = c.demodulate,
+                                    .colorFactor = double{c.colorFactor}};
     AtrousGeometry geometry;
     std::vector<dvec4> light = demodulated(frame, params, geometry);
     for (uint32_t i = 0; i < 5; ++i) {
@@ -82,7 +88,7 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
         expectNear(light, expected, 1e-3, pass);
         if (HasFatalFailure()) return;
     }
-    expectNear(download(output_.beauty), modulate(frame, light), 1e-5, "modulated");
+    expectNear(download(output_.beauty), modulate(frame, light, params), 1e-5, "modulated");
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -93,6 +99,9 @@ INSTANTIATE_TEST_SUITE_P(
                         Case{"Orthographic", {.orthographic = true}}, Case{"Scaled", {.scale = 1024}},
                         Case{"Course", {}, false, 0.003f, 0.007f, 0.0f},
                         Case{"OrthographicCourse", {.orthographic = true}, false, 0.003f, 0.007f},
+                        Case{.name = "Modulated", .options = {}, .demodulate = false},
+                        Case{.name = "Color", .options = {.cameraMoves = true}, .colorFactor = 0.5f},
+                        Case{"ColorModulated", {}, true, 10.0f, 1.0f, 0.0f, 131, 77, false, 20.0f},
                         Case{"Tiny", {}, true, 0.003f, 1e-4f, 32.0f, 3, 2},
                         Case{"Thin", {}, true, 0.003f, 1e-4f, 32.0f, 1, 40}),
         testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),

@@ -73,8 +73,13 @@ class Level {
         const double apart = params_.plane ? glm::dot(normal[p], points_[q] - points_[p]) / eyeDistances_[p]
                                            : geometry_.distance[p] - geometry_.distance[q];
         const auto step = static_cast<double>(step_);
-        return std::exp(-glm::dot(turn, turn) / (step * step * params_.normalFactor)) *
-               std::exp(-apart * apart / params_.depthFactor);
+        double weight = std::exp(-glm::dot(turn, turn) / (step * step * params_.normalFactor)) *
+                        std::exp(-apart * apart / params_.depthFactor);
+        if (params_.colorFactor > 0.0) {
+            const dvec3 change = dvec3(light_[p]) - dvec3(light_[q]);
+            weight *= std::exp(-glm::dot(change, change) * step * step / params_.colorFactor);
+        }
+        return weight;
     }
 
     int64_t width_, height_;
@@ -95,12 +100,13 @@ std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame) {
     return light;
 }
 
-Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean, bool plane) {
+Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
+                       const DoubleAtrousParams& params) {
     const DoubleFrame pixels(frame);
-    const bool alongForward = plane && frame.camera.orthographic == 0;
+    const bool alongForward = params.plane && frame.camera.orthographic == 0;
     Demodulated out;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const dvec3 light = dvec3(mean[p]) / modulation(pixels.albedo(p));
+        const dvec3 light = dvec3(mean[p]) / (params.demodulate ? modulation(pixels.albedo(p)) : dvec3(1.0));
         out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z), mean[p].w);
         out.geometry.normal.push_back(pixels.normal(p));
         const double z = pixels.distance(p);
@@ -119,12 +125,13 @@ std::vector<dvec4> level(const denoise::HostFrame& frame, const std::vector<dvec
     return filtered;
 }
 
-std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light) {
+std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
+                            const DoubleAtrousParams& params) {
     const DoubleFrame pixels(frame);
     std::vector<dvec4> result;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const dvec3 scattered =
-            pixels.hit(p) ? dvec3(light[p]) * modulation(pixels.albedo(p)) : pixels.scattered(p);
+        const dvec3 albedo = params.demodulate ? modulation(pixels.albedo(p)) : dvec3(1.0);
+        const dvec3 scattered = pixels.hit(p) ? dvec3(light[p]) * albedo : pixels.scattered(p);
         result.emplace_back(scattered + pixels.emission(p), 1.0);
     }
     return result;
@@ -132,9 +139,9 @@ std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<d
 
 std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
                                 const DoubleAtrousParams& params) {
-    Demodulated d = demodulate(frame, mean, params.plane);
+    Demodulated d = demodulate(frame, mean, params);
     for (uint32_t i = 0; i < params.levels; ++i) d.light = level(frame, d.light, d.geometry, i, params);
-    return modulate(frame, d.light);
+    return modulate(frame, d.light, params);
 }
 
 dvec3 decodeOctahedral(uint32_t packed) {

@@ -15,6 +15,8 @@ struct DoubleAtrousParams {
     double depthFactor = 1e-4;
     double sampleTarget = 32.0;  ///< 0: no limit
     bool plane = true;
+    bool demodulate = true;
+    double colorFactor = 0.0;  ///< 0: differences of light do not count
 };
 
 struct AtrousGeometry {
@@ -32,14 +34,16 @@ struct Demodulated {
 std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
 
 /// Nothing is rounded. `mean`: of the history, with its count, or scatteredLight().
-Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean, bool plane);
+Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
+                       const DoubleAtrousParams& params);
 
 /// Level `i` of the filter. Of the frame only the size and the camera are read.
 std::vector<dvec4> level(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
                          const AtrousGeometry& geometry, uint32_t i, const DoubleAtrousParams& params);
 
 /// The result; alpha 1.
-std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light);
+std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
+                            const DoubleAtrousParams& params);
 
 /// All of it.
 std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,

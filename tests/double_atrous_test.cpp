@@ -33,13 +33,13 @@ TEST(DoubleAtrous, AConstantImageStaysConstant) {
     const HostFrame frame = SyntheticScene({}).frame(0, width, height, 1);
     const DoubleFrame pixels(frame);
     const DoubleAtrousParams params{.levels = 4, .sampleTarget = 0.0};
-    Demodulated d = demodulate(frame, scatteredLight(frame), params.plane);
+    Demodulated d = demodulate(frame, scatteredLight(frame), params);
     d.light.assign(frame.pixelCount(), dvec4(0.25, 1.0, 7.0, 1.0));
     const std::vector<dvec4> constant = d.light;
     for (uint32_t i = 0; i < params.levels; ++i) d.light = level(frame, d.light, d.geometry, i, params);
     for (size_t p = 0; p < frame.pixelCount(); ++p)
         ASSERT_LT(glm::distance(d.light[p], constant[p]), 1e-12) << p;
-    const std::vector<dvec4> result = modulate(frame, d.light);
+    const std::vector<dvec4> result = modulate(frame, d.light, params);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const dvec3 scattered =
             pixels.hit(p) ? dvec3(constant[p]) * glm::max(pixels.albedo(p), 0.1) : pixels.scattered(p);
@@ -52,7 +52,7 @@ TEST(DoubleAtrous, FlatGeometryGivesTheSplineConvolution) {
     const std::vector<dvec4> light = randomLight(frame.pixelCount());
     for (const bool plane : {false, true}) {
         const DoubleAtrousParams params{.sampleTarget = 0.0, .plane = plane};
-        AtrousGeometry geometry = demodulate(frame, light, plane).geometry;
+        AtrousGeometry geometry = demodulate(frame, light, params).geometry;
         // The plane is one of equal distances along `forward`; with `plane` off they are those from the eye.
         if (plane) geometry.distance.assign(frame.pixelCount(), 2.0);
         for (uint32_t i = 0; i < 3; ++i) {
@@ -75,7 +75,7 @@ TEST(DoubleAtrous, APlaneAtAGrazingAngleIsOnePlane) {
         const HostFrame frame =
             SyntheticScene({.orthographic = orthographic, .scale = 30.0}).frame(0, width, height, 1);
         const std::vector<dvec4> light = randomLight(frame.pixelCount());
-        const AtrousGeometry geometry = demodulate(frame, light, true).geometry;
+        const AtrousGeometry geometry = demodulate(frame, light, {}).geometry;
         // A distance of 1e-4 from the plane, relative to that from the eye, would leave nothing of a weight.
         const std::vector<dvec4> filtered = level(
             frame, light, geometry, 0, {.normalFactor = 0.1, .depthFactor = 1e-10, .sampleTarget = 0.0});

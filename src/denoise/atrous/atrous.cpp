@@ -1,5 +1,6 @@
 #include "denoise/atrous/atrous.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -30,7 +31,8 @@ Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLig
     const Signal signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
-    const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u};
+    const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u,
+                                        settings.demodulate ? 1u : 0u};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch(
         {.pass = "atrous/demodulate",
@@ -74,6 +76,9 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
     params.depthScale = std::sqrt(log2e / settings.depthFactor);
     const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
     params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
+    const bool color = settings.colorFactor > 0.0f;
+    // Finite, so that equal light weighs 1 however small the tolerance.
+    if (color) params.colorScale = std::min(samplesGathered * log2e / settings.colorFactor, 1e30f);
     const bool buffers = input.filters == Backing::Buffer;
     const Extent block = buffers ? Extent{2, 2} : Extent{4, 2};  // as in the shaders
     graph.dispatch(
@@ -81,16 +86,19 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& s
          .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
          .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
          .params = gpu::paramsOf(params),
-         .constants = {{"PLANE", settings.plane ? 1u : 0u}, {"ORTHOGRAPHIC", input.camera.orthographic}},
+         .constants = {{"PLANE", settings.plane ? 1u : 0u},
+                       {"ORTHOGRAPHIC", input.camera.orthographic},
+                       {"COLOR", color ? 1u : 0u}},
          .extent = {invocations(extent.width, step, block.width),
                     invocations(extent.height, step, block.height)}});
     return filtered;
 }
 
-ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal) {
+ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal,
+                     const AtrousSettings& settings) {
     const Extent extent = graph.extent(signal);
     const ImageHandle beauty = graph.transient("atrous/beauty", gpu::Format::RGBA32Float, extent);
-    const AtrousModulateParams params{extent.width, extent.height};
+    const AtrousModulateParams params{extent.width, extent.height, settings.demodulate ? 1u : 0u};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch({.pass = "atrous/modulate",
                     .shader = buffers ? shaders::atrous_modulate_buffers_comp : shaders::atrous_modulate_comp,
@@ -129,11 +137,10 @@ const ParamTable<AtrousSettings>& atrousParams() {
               "no limit");
         t.add("plane", &S::plane,
               "weigh by the deviation from the pixel's plane instead of the difference of depths");
-        t.preset("course", {{"levels", "5"},
-                            {"normal_factor", "0.003"},
-                            {"depth_factor", "0.007"},
-                            {"sample_target", "0"},
-                            {"plane", "off"}});
+        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+        t.add("color_factor", &S::colorFactor, 0.0, 1e9, "(cd/m^2)^2",
+              "tolerated squared difference of light at level 1, a quarter of it at each further (Dammertz "
+              "2010); lower keeps shadows, and noise; 0: differences of light do not count");
         return t;
     }();
     return table;
@@ -144,7 +151,7 @@ ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const At
     Signal signal = demodulate(graph, input, light, settings);
     for (int number = 1; number <= settings.levels; ++number)
         signal.light = level(graph, input, signal, number, settings);
-    return modulate(graph, input, signal.light);
+    return modulate(graph, input, signal.light, settings);
 }
 
 }  // namespace limpid::denoise

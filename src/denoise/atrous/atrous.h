@@ -16,6 +16,8 @@ struct AtrousSettings {
     float depthFactor = 1e-4f;
     float sampleTarget = 32.0f;
     bool plane = true;
+    bool demodulate = true;
+    float colorFactor = 0.0f;
     bool operator==(const AtrousSettings&) const = default;
 };
 const ParamTable<AtrousSettings>& atrousParams();

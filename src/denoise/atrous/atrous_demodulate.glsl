@@ -24,7 +24,8 @@ void main() {
     const ivec2 at = ivec2(pixel);
     vec4 light = imageLoad(lightA, at);
     if (SUM_OF_TWO) light = vec4(light.rgb + imageLoad(lightB, at).rgb, 1.0);
-    const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) / modulation(imageLoad(albedo, at));
+    vec3 demodulated = finiteOr(light.rgb, vec3(0.0));
+    if (params.demodulate != 0u) demodulated /= modulation(imageLoad(albedo, at));
     const float z = hitDistance(imageLoad(depth, at));
     float d = z;
     if (params.plane != 0u) {

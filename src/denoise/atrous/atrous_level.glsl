@@ -6,6 +6,7 @@
 
 layout(constant_id = 1) const bool PLANE = true;
 layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 3) const bool COLOR = false;  // differences of light count
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     AtrousLevelParams params;
@@ -69,7 +70,11 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     const float point = ORTHOGRAPHIC ? tap.depth * centre.towards.x + beside : tap.depth * (centre.towards.x + beside);
     const float deviation = point - centre.here;
     // |n - n'|^2 of unit vectors is 2 - 2 dot(n, n').
-    const float exponent = dot(tap.normal, centre.normal) - params.normalScale - deviation * deviation;
+    float exponent = dot(tap.normal, centre.normal) - params.normalScale - deviation * deviation;
+    if (COLOR) {
+        const vec3 change = tap.light.rgb - centre.light.rgb;
+        exponent -= dot(change, change) * params.colorScale;
+    }
     const float weight = B3[abs(from.x)] * B3[abs(from.y)] * exp2(exponent);
     centre.sum += (tap.seen ? weight : 0.0) * vec4(tap.light.rgb, 1.0);
 }

@@ -17,6 +17,7 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    const vec3 light = LOAD_HALF4(signal, at).rgb * modulation(imageLoad(albedo, at));
+    vec3 light = LOAD_HALF4(signal, at).rgb;
+    if (params.demodulate != 0u) light *= modulation(imageLoad(albedo, at));
     imageStore(beauty, at, vec4(light + finiteOr(imageLoad(emission, at).rgb, vec3(0.0)), 1.0));
 }

@@ -12,12 +12,14 @@ struct AtrousDemodulateParams {
     CameraParams camera;
     uint width;
     uint height;
-    uint plane;  // the geometry's depth is along `forward`, not along the ray
+    uint plane;       // the geometry's depth is along `forward`, not along the ray
+    uint demodulate;  // 0: light is filtered with its albedo
 };
 
 struct AtrousModulateParams {
     uint width;
     uint height;
+    uint demodulate;
 };
 
 struct AtrousLevelParams {
@@ -29,6 +31,7 @@ struct AtrousLevelParams {
     float depthScale;   // sqrt(log2(e) / depth_factor)
     vec2 toScreen;      // 2 / width, -2 / height: there is no division to spare for every tap
     float fade;         // 4^(level - 1) / sample_target
+    float colorScale;   // 4^(level - 1) log2(e) / color_factor
 };
 
 #ifdef __cplusplus
