@@ -29,13 +29,53 @@ scene::TextureRef addTexture(scene::Scene& scene, uint32_t width, uint32_t heigh
 }
 
 /// Two by two fields of 16 by 16 texels, so that there are levels to lose the contrast in.
-scene::Material checkerboard(scene::Scene& scene, MipFilter mip) {
+scene::Material unlitCheckerboard(scene::Scene& scene, MipFilter mip) {
     scene::Material material;
     material.unlit = true;  // no light, no noise
     material.doubleSided = true;
     material.baseColorTexture = addTexture(
         scene, 32, 32, mip, [](uint32_t x, uint32_t y) -> uint8_t { return x / 16 == y / 16 ? 255 : 0; });
     return material;
+}
+
+scene::Material emittingCheckerboard(scene::Scene& scene, MipFilter mip) {
+    scene::Material material = unlitCheckerboard(scene, mip);
+    material.unlit = false;
+    std::swap(material.emissionTexture, material.baseColorTexture);
+    material.baseColor = vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    material.emission = vec3(1.0f);
+    return material;
+}
+
+/// Light and dark along u, the same all along v.
+scene::Material stripes(scene::Scene& scene, MipFilter mip) {
+    scene::Material material = unlitCheckerboard(scene, mip);
+    material.baseColorTexture =
+        addTexture(scene, 32, 32, mip, [](uint32_t x, uint32_t) -> uint8_t { return x < 16 ? 255 : 0; });
+    return material;
+}
+
+// Pictures have a column for each case, all two units of the world wide: a scene costs more to compile than
+// to render.
+constexpr uint32_t columnPixels = 40;
+constexpr float pixel = 2.0f / columnPixels;
+
+float leftOf(size_t column, size_t columns) {
+    return 2.0f * static_cast<float>(column) - static_cast<float>(columns);
+}
+
+/// A strip as wide as a column, from `low` to `high`, which are (y, z). The texture repeats every (period.x,
+/// period.y) along x and along the strip.
+void addStrip(scene::Scene& scene, float left, const vec2& low, const vec2& high, const vec2& period,
+              const scene::Material& material) {
+    scene::MeshBuilder builder("strip");
+    const float right = left + 2.0f, length = glm::length(high - low);
+    builder.quad({left, low.x, low.y}, {right, low.x, low.y}, {right, high.x, high.y},
+                 {left, high.x, high.y});
+    scene::Mesh mesh = builder.take();
+    const float u0 = left / period.x, u1 = right / period.x, v = length / period.y;
+    mesh.uv0 = {{u0, v}, {u1, v}, {u1, 0}, {u0, 0}};
+    addMesh(scene, std::move(mesh), material);
 }
 
 /// From `from` towards the origin, orthographic: two units of the world high.
@@ -46,41 +86,46 @@ scene::Camera cameraAt(const vec3& from, const vec3& up) {
     return camera;
 }
 
-/// A square in the plane y = 0; its texture repeats every (period.x, period.y) units of x and z.
-void addFloor(scene::Scene& scene, float half, const vec2& period, const scene::Material& material) {
-    scene::MeshBuilder builder("floor");
-    builder.quad({-half, 0, half}, {half, 0, half}, {half, 0, -half}, {-half, 0, -half});
-    scene::Mesh mesh = builder.take();
-    const vec2 n = half / period;
-    mesh.uv0 = {{-n.x, n.y}, {n.x, n.y}, {n.x, -n.y}, {-n.x, -n.y}};
-    addMesh(scene, std::move(mesh), material);
-}
-
-scene::Material emittingCheckerboard(scene::Scene& scene, MipFilter mip) {
-    scene::Material material = checkerboard(scene, mip);
-    material.unlit = false;
-    std::swap(material.emissionTexture, material.baseColorTexture);
-    material.baseColor = vec4(0.0f, 0.0f, 0.0f, 1.0f);
-    material.emission = vec3(1.0f);
-    return material;
-}
-
-/// A metal floor that shows, at 45 degrees, a board which stands on it. The board itself is out of sight.
-scene::Scene reflectedBoard(float roughness, float period,
-                            scene::Material (*boardMaterial)(scene::Scene&, MipFilter), MipFilter mip) {
+/// A metal floor that shows, at 45 degrees, boards which stand on it. The boards themselves are out of sight.
+struct Reflection {
+    float roughness, period;
+};
+scene::Scene reflectedBoards(const std::vector<Reflection>& columns,
+                             scene::Material (*board)(scene::Scene&, MipFilter), MipFilter mip) {
     scene::Scene scene;
-    scene::Material metal;
-    metal.roughness = roughness;
-    scene::MeshBuilder floor("metal");
-    floor.quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3});
-    addMesh(scene, floor.take(), metal);
-    scene::MeshBuilder board("board");
-    board.quad({-40, -40, -1.6f}, {40, -40, -1.6f}, {40, 40, -1.6f}, {-40, 40, -1.6f});
-    scene::Mesh mesh = board.take();
-    const float n = 40.0f / period;
-    mesh.uv0 = {{-n, n}, {n, n}, {n, -n}, {-n, -n}};
-    addMesh(scene, std::move(mesh), boardMaterial(scene, mip));
+    const scene::Material boardMaterial = board(scene, mip);
+    for (size_t i = 0; i < columns.size(); ++i) {
+        const float left = leftOf(i, columns.size());
+        scene::Material metal;
+        metal.roughness = columns[i].roughness;
+        addStrip(scene, left, {0, 3}, {0, -3}, vec2(1.0f), metal);
+        addStrip(scene, left, {-40, -1.6f}, {40, -1.6f}, vec2(columns[i].period), boardMaterial);
+    }
     scene.cameras = {cameraAt({0, 2, 2}, {0, 1, -1})};
+    return scene;
+}
+
+/// Strips that are tilted away by these angles; what is drawn on them has a period of eight pixels each way.
+constexpr float tilts[] = {0.0f, 60.0f, 80.0f};
+scene::Scene tiltedBoards(MipFilter mip) {
+    scene::Scene scene;
+    const scene::Material board = unlitCheckerboard(scene, mip);
+    for (size_t i = 0; i < std::size(tilts); ++i) {
+        const float angle = glm::radians(tilts[i]);
+        const vec2 high(1.1f, -1.1f * std::tan(angle));
+        const vec2 period = 8.0f * pixel * vec2(1.0f, 1.0f / std::cos(angle));
+        addStrip(scene, leftOf(i, std::size(tilts)), -high, high, period, board);
+    }
+    scene.cameras = {cameraAt({0, 0, 20}, {0, 1, 0})};
+    return scene;
+}
+
+/// Tilted by 80 degrees, stripes of four pixels along the view.
+scene::Scene grazedStripes(MipFilter mip) {
+    scene::Scene scene;
+    const vec2 high(1.1f, -1.1f * std::tan(glm::radians(80.0f)));
+    addStrip(scene, -1.0f, -high, high, vec2(8.0f * pixel), stripes(scene, mip));
+    scene.cameras = {cameraAt({0, 0, 20}, {0, 1, 0})};
     return scene;
 }
 
@@ -103,82 +148,71 @@ double contrastOf(const std::vector<double>& picture, const std::vector<double>&
 
 class TextureFootprintTest : public RenderTest {
   protected:
-    static RenderSettings jittered(uint32_t size, uint32_t samplesPerLaunch) {
-        RenderSettings settings;
-        settings.extent = {size, size};
-        settings.samplesPerLaunch = samplesPerLaunch;
-        return settings;
+    using Columns = std::vector<std::vector<double>>;
+
+    /// Red of each column.
+    Columns columnsOf(const scene::Scene& scene, size_t count, RenderSettings settings, uint64_t samples) {
+        settings.extent = {columnPixels * static_cast<uint32_t>(count), columnPixels};
+        const Rendered picture = render(scene, settings, samples);
+        Columns columns(count);
+        for (size_t i = 0; i < picture.pixelCount(); ++i)
+            columns[i % settings.extent.width / columnPixels].push_back(double{picture.beauty(i).r});
+        return columns;
     }
 
-    std::vector<double> reds(const scene::Scene& scene, const RenderSettings& settings, uint64_t samples) {
-        const Rendered picture = render(scene, settings, samples);
-        std::vector<double> values;
-        for (size_t i = 0; i < picture.pixelCount(); ++i) values.push_back(double{picture.beauty(i).r});
-        return values;
+    static RenderSettings jittered(uint32_t samplesPerLaunch) {
+        RenderSettings settings;
+        settings.samplesPerLaunch = samplesPerLaunch;
+        settings.pathtrace.maxDepth = 1;
+        return settings;
     }
 };
 
-/// Fields of four pixels each way in the picture, whatever the angle.
 TEST_F(TextureFootprintTest, CheckerboardSeenDirectlyKeepsItsContrast) {
-    constexpr uint32_t size = 40;
-    for (const float degrees : {0.0f, 60.0f, 80.0f}) {
-        const auto board = [&](MipFilter mip) {
-            scene::Scene scene;
-            const float angle = glm::radians(degrees), period = 8.0f * 2.0f / size;
-            addFloor(scene, 20.0f, {period, period / std::cos(angle)}, checkerboard(scene, mip));
-            scene.cameras = {cameraAt({0, 20 * std::cos(angle), 20 * std::sin(angle)},
-                                      {0, std::sin(angle), -std::cos(angle)})};
-            return scene;
-        };
-        const auto with = reds(board(MipFilter::Linear), jittered(size, 4), 128);
-        const auto without = reds(board(MipFilter::None), jittered(size, 4), 128);
-        const double kept = contrastOf(with, without);
-        RecordProperty(fmt::format("kept_at_{}", degrees), fmt::format("{:.4f}", kept));
-        EXPECT_NEAR(kept, 1.0, 0.02) << degrees << " degrees";
-        EXPECT_NEAR(meanOf(with), meanOf(without), 0.005) << degrees << " degrees";
+    constexpr size_t count = std::size(tilts);
+    const Columns with = columnsOf(tiltedBoards(MipFilter::Linear), count, jittered(4), 128);
+    const Columns without = columnsOf(tiltedBoards(MipFilter::None), count, jittered(4), 128);
+    for (size_t i = 0; i < count; ++i) {
+        const double kept = contrastOf(with[i], without[i]);
+        fmt::print("{} degrees: {:.4f} of the contrast\n", tilts[i], kept);
+        EXPECT_NEAR(kept, 1.0, 0.02) << tilts[i] << " degrees";
+        EXPECT_NEAR(meanOf(with[i]), meanOf(without[i]), 0.005) << tilts[i] << " degrees";
     }
 }
 
-/// One sample a pixel through the centres has no other filter than the footprint: fields as wide as the long
-/// axis must not be blurred along the short one. Stripes along the view at 80 degrees.
+/// One sample a pixel through the centres has no other filter than the footprint, and that is short across
+/// the view.
 TEST_F(TextureFootprintTest, GrazingViewIsBlurredAlongTheViewOnly) {
-    constexpr uint32_t size = 40;
-    const float angle = glm::radians(80.0f), period = 8.0f * 2.0f / size;
-    const auto stripes = [&](MipFilter mip) {
-        scene::Scene scene;
-        scene::Material material;
-        material.unlit = true;
-        material.baseColorTexture =
-            addTexture(scene, 32, 32, mip, [](uint32_t x, uint32_t) -> uint8_t { return x < 16 ? 255 : 0; });
-        addFloor(scene, 20.0f, vec2(period), material);
-        scene.cameras = {cameraAt({0, 20 * std::cos(angle), 20 * std::sin(angle)},
-                                  {0, std::sin(angle), -std::cos(angle)})};
-        return scene;
-    };
-    const RenderSettings settings = centred(size, size, 0);
-    const auto with = reds(stripes(MipFilter::Linear), settings, 1);
-    const double kept = contrastOf(with, reds(stripes(MipFilter::None), settings, 1));
-    EXPECT_GT(kept, 0.85) << "a pixel's width across is an eighth of the period";
+    const RenderSettings settings = centred(1, 1, 0);
+    const Columns with = columnsOf(grazedStripes(MipFilter::Linear), 1, settings, 1);
+    const Columns without = columnsOf(grazedStripes(MipFilter::None), 1, settings, 1);
+    const double kept = contrastOf(with[0], without[0]);
+    fmt::print("stripes at 80 degrees, one sample: {:.4f} of the contrast\n", kept);
+    EXPECT_GT(kept, 0.75);
 }
 
-/// A metal floor shows a board that hangs over it, at 45 degrees. With the same random numbers both pictures
-/// have the same noise.
+/// With the same random numbers both pictures have the same noise. Each board is as fine as the lobe, some
+/// alpha wide, lets through, and fields have four pixels at least.
 TEST_F(TextureFootprintTest, CheckerboardInGlossyReflectionsKeepsItsContrast) {
-    constexpr uint32_t size = 48;
+    std::vector<Reflection> glossy, smooth;
     for (const float roughness : {0.0f, 0.05f, 0.1f, 0.2f, 0.5f}) {
-        // As fine as the lobe, some alpha wide, lets through, and fields of four pixels at least.
-        const float period = std::max(0.35f, 10.0f * roughness * roughness);
-        const auto reflected = [&](float floorRoughness, MipFilter mip) {
-            return reflectedBoard(floorRoughness, period, checkerboard, mip);
-        };
-        RenderSettings settings = jittered(size, 4);
-        settings.pathtrace.maxDepth = 1;
-        const auto pattern = reds(reflected(0.0f, MipFilter::None), settings, 64);
-        const double with = contrastOf(reds(reflected(roughness, MipFilter::Linear), settings, 64), pattern);
-        const double without = contrastOf(reds(reflected(roughness, MipFilter::None), settings, 64), pattern);
-        RecordProperty(fmt::format("contrast_at_{}", roughness), fmt::format("{:.4f} {:.4f}", with, without));
-        EXPECT_GT(without, 0.08) << roughness << ": nothing to lose";
-        EXPECT_NEAR(with / without, 1.0, 0.02) << roughness;
+        const float period = std::max(8.0f * pixel, 10.0f * roughness * roughness);
+        glossy.push_back({roughness, period});
+        smooth.push_back({0.0f, period});
+    }
+    const auto picture = [&](const std::vector<Reflection>& columns, MipFilter mip, uint64_t samples) {
+        const scene::Scene scene = reflectedBoards(columns, unlitCheckerboard, mip);
+        return columnsOf(scene, columns.size(), jittered(4), samples);
+    };
+    const Columns pattern = picture(smooth, MipFilter::None, 16);
+    const Columns with = picture(glossy, MipFilter::Linear, 256);
+    const Columns without = picture(glossy, MipFilter::None, 256);
+    for (size_t i = 0; i < glossy.size(); ++i) {
+        const double wanted = contrastOf(without[i], pattern[i]), found = contrastOf(with[i], pattern[i]);
+        fmt::print("roughness {}: contrast {:.4f}, without mip levels {:.4f}\n", glossy[i].roughness, found,
+                   wanted);
+        EXPECT_GT(wanted, 0.08) << glossy[i].roughness << ": nothing to lose";
+        EXPECT_NEAR(found / wanted, 1.0, 0.02) << glossy[i].roughness;
     }
 }
 
@@ -186,15 +220,14 @@ TEST_F(TextureFootprintTest, CheckerboardInGlossyReflectionsKeepsItsContrast) {
 /// same random numbers, mip levels change nothing, even where footprints are widest. In a mirror there is one
 /// strategy only, and emission is filtered.
 TEST_F(TextureFootprintTest, BothStrategiesSeeTheSameTexturedEmitter) {
-    RenderSettings settings = jittered(48, 1);
-    settings.pathtrace.maxDepth = 1;
-    for (const float roughness : {0.0f, 0.2f, 0.6f}) {
-        const auto lit = [&](MipFilter mip) {
-            return reds(reflectedBoard(roughness, 0.35f, emittingCheckerboard, mip), settings, 1);
-        };
-        const auto with = lit(MipFilter::Linear), without = lit(MipFilter::None);
-        EXPECT_GT(meanOf(without), 0.1) << roughness;
-        EXPECT_EQ(with == without, roughness > 0.0f) << roughness;
+    const std::vector<Reflection> boards{{0.0f, 8.0f * pixel}, {0.2f, 8.0f * pixel}, {0.6f, 8.0f * pixel}};
+    const auto picture = [&](MipFilter mip) {
+        return columnsOf(reflectedBoards(boards, emittingCheckerboard, mip), boards.size(), jittered(1), 1);
+    };
+    const Columns with = picture(MipFilter::Linear), without = picture(MipFilter::None);
+    for (size_t i = 0; i < boards.size(); ++i) {
+        EXPECT_GT(meanOf(without[i]), 0.1) << boards[i].roughness;
+        EXPECT_EQ(with[i] == without[i], boards[i].roughness > 0.0f) << boards[i].roughness;
     }
 }
 

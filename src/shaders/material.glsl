@@ -98,9 +98,18 @@ VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
     return data;
 }
 
+/// A ray's cone where it meets a surface: textures are averaged over it.
+struct RayCone {
+    float width;
+    /// Sent here by a rough surface's lobe. Then next-event estimation can find the same emission, and reads it at points:
+    /// both must tell of one light for their weighted sum to be right. Other textures need less care: the lobe blurs.
+    bool scattered;
+};
+
 /// The axes of a ray's footprint on a triangle: whole widths, in barycentrics.
 struct Footprint {
     vec2 across, along;
+    bool exact;  // what sampleFootprint() makes of it
 };
 
 /// Of a vector in the triangle's plane. `unitNormal`: of edge1 x edge2, whose length is doubleArea.
@@ -110,15 +119,16 @@ vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubl
 
 /// Where a cone of this width meets the triangle's plane: an ellipse, longer by 1 / cosine along the ray (T.
 /// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021).
-Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, float width) {
+Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, RayCone cone) {
     const float cosine = dot(unitNormal, toViewer);
     const vec3 inPlane = toViewer - cosine * unitNormal;
     const vec3 along = inPlane * inversesqrt(max(dot(inPlane, inPlane), 1e-20));
     const bool tilted = dot(inPlane, inPlane) > 1e-8;
     const vec3 axis = tilted ? along : edge1 * inversesqrt(max(dot(edge1, edge1), 1e-37));
     const vec3 other = cross(unitNormal, axis);
-    return Footprint(barycentricsOf(width * other, edge1, edge2, unitNormal, doubleArea),
-                     barycentricsOf(width / max(abs(cosine), 0.05) * axis, edge1, edge2, unitNormal, doubleArea));
+    return Footprint(barycentricsOf(cone.width * other, edge1, edge2, unitNormal, doubleArea),
+                     barycentricsOf(cone.width / max(abs(cosine), 0.05) * axis, edge1, edge2, unitNormal, doubleArea),
+                     !cone.scattered);
 }
 
 /// Looks a material's texture up; white if it has none.
@@ -131,7 +141,7 @@ vec4 materialTexture(uint index, VertexData data, Footprint footprint) {
         const vec4 edges = second ? data.uv1Edges : data.uv0Edges;
         const mat2 toTexture = mat2(ref.rowU.x, ref.rowV.x, ref.rowU.y, ref.rowV.y) * mat2(edges.xy, edges.zw);
         result = sampleFootprint(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)), toTexture * footprint.across,
-                                 toTexture * footprint.along);
+                                 toTexture * footprint.along, footprint.exact);
     }
     return result;
 }
@@ -236,14 +246,6 @@ vec3 clearcoatNormal(int material, VertexData data, Footprint footprint, vec3 no
     return mappedNormal(normal, tangent, materialTexture(coat.x, data, footprint).rgb, uintBitsToFloat(coat.w));
 }
 
-/// A ray's cone where it meets a surface.
-struct RayCone {
-    float width;  // textures are averaged over it
-    /// ... emission too. False where next-event estimation can find the same light, which reads textures at points: both
-    /// must tell of one light for their weighted sum to be right.
-    bool filtersEmission;
-};
-
 /// `toViewer`: unit.
 Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, RayCone cone) {
     Surface s;
@@ -312,9 +314,9 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
         if (HAS_TEXTURES) {
             const uvec4 refs = imageLoad(materials, material + 4);
             const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
-                                                    max(doubleArea, 1e-37), toViewer, cone.width);
-            const float share = cone.filtersEmission ? 1.0 : 0.0;
-            const Footprint emitting = Footprint(share * footprint.across, share * footprint.along);
+                                                    max(doubleArea, 1e-37), toViewer, cone);
+            const float share = cone.scattered ? 0.0 : 1.0;
+            const Footprint emitting = Footprint(share * footprint.across, share * footprint.along, footprint.exact);
             s.baseColor *= materialTexture(refs.x, data, footprint).rgb;
             s.emission *= materialTexture(refs.w, data, emitting).rgb;
             const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);

@@ -84,20 +84,21 @@ const uint MAX_TAPS = 4u;
 
 /// The mean over a parallelogram around `uv` with these axes (whole widths, in units of uv): the level is chosen by the
 /// short extent, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996). Without mip levels,
-/// one tap, as the sampler says.
-vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along) {
+/// one tap, as the sampler says. `exact` false: one tap in one level, of the same area.
+vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exact) {
     const vec2 size = vec2(ref.width, ref.height);
     const vec2 a = across * size, b = along * size;
     const bool firstLonger = dot(a, a) > dot(b, b);
     const float longExtent = max(sqrt(max(dot(a, a), dot(b, b))), 1e-20);
-    const float shortExtent = max(abs(a.x * b.y - a.y * b.x) / longExtent, longExtent / float(MAX_TAPS));
-    const bool oneTap = ((ref.flags >> TEXTURE_MIP_SHIFT) & 3u) == 0u;
+    const float area = abs(a.x * b.y - a.y * b.x);
+    const float shortExtent = max(area / longExtent, longExtent / float(MAX_TAPS));
+    const bool oneTap = !exact || ((ref.flags >> TEXTURE_MIP_SHIFT) & 3u) == 0u;
     // Below a texel there is nothing that taps would tell apart.
     const float wanted = min(ceil(longExtent / max(shortExtent, 1.0)), float(MAX_TAPS));
     const uint taps = oneTap ? 1u : max(uint(wanted), 1u);
     const vec2 step_ = (firstLonger ? across : along) / float(taps);
     const vec2 first = uv - 0.5 * float(taps - 1u) * step_;
-    const float lod = log2(shortExtent);
+    const float lod = exact ? log2(shortExtent) : floor(0.5 * log2(max(area, 1e-20)) + 0.5);
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < taps; ++i) sum += sampleTexture(ref, first + float(i) * step_, lod);
     return sum / float(taps);

@@ -94,7 +94,7 @@ Seen look(Ray ray, uint rng) {
         }
         coneWidth += cone.spread * hit.t;
         traveled += hit.t;
-        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, RayCone(coneWidth, true));
+        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, RayCone(coneWidth, false));
     } while (passesBack(surface, culled, ray.origin));
     return shade(hit, surface, traveled, -ray.direction, rng, seen.rays);
 }

@@ -187,7 +187,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         }
         path.coneWidth += spread * hit.t;
         const vec3 toViewer = -path.ray.direction;
-        const RayCone rayCone = RayCone(path.coneWidth, path.delta);
+        const RayCone rayCone = RayCone(path.coneWidth, !path.delta);
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
