@@ -20,8 +20,9 @@ double fresnel(double cosine, double eta) {
     return 0.5 * (s * s + p * p);
 }
 
-/// f cos of refraction (Walter, equation 21), masking separable; times eta^2: the energy form that bsdf.glsl
-/// states. The light comes from behind the surface, where the index is eta times that of the viewer's side.
+/// f cos of refraction (Walter, equation 21), masking height-correlated (Heitz 2014, equation 99); times
+/// eta^2: the energy form that bsdf.glsl states. The light comes from behind the surface, where the index is
+/// eta times that of the viewer's side.
 double refracted(const dvec3& wo, const dvec3& wi, double alpha, double eta) {
     dvec3 h = -(wo + eta * wi);
     if (h.z < 0.0) h = -h;
@@ -29,21 +30,26 @@ double refracted(const dvec3& wo, const dvec3& wi, double alpha, double eta) {
     h /= length;
     const double oh = glm::dot(wo, h), ih = glm::dot(wi, h);
     if (oh <= 0.0 || ih >= 0.0) return 0.0;
-    const double g = 1.0 / ((1.0 + lambda(wo, alpha)) * (1.0 + lambda(wi, alpha)));
+    const double g = std::beta(1.0 + lambda(wo, alpha), 1.0 + lambda(wi, alpha));
     const double f = std::abs(oh * ih) / (std::abs(wo.z) * std::abs(wi.z)) * (1.0 - fresnel(oh, eta)) * g *
                      distribution(h, alpha) / std::pow(oh + eta * ih, 2.0);
     return f * eta * eta * std::abs(wi.z);
 }
 
-/// The table of dielectrics, linear in its three dimensions; one half for eta below 1, one for eta from 1 on.
-double dielectricTable(const std::vector<float>& table, double cosine, double roughness, double eta) {
+/// One of the two texels of the table of dielectrics, linear in its three dimensions; one half for eta below
+/// 1, one for eta from 1 on.
+glm::dvec4 dielectricTable(const std::vector<vec4>& table, double cosine, double roughness, double eta,
+                           int texel) {
     const int size = static_cast<int>(layout::DIELECTRIC_TABLE_SIZE),
               nodes = static_cast<int>(layout::DIELECTRIC_ETA_NODES);
-    const double coordinate =
-        std::sqrt(std::abs(std::log(eta)) / std::log(double{layout::DIELECTRIC_ETA_MAX}));
-    const double p[3] = {cosine * (size - 1), roughness * (size - 1), coordinate * (nodes - 1)};
+    const double scale = double{layout::DIELECTRIC_ETA_SCALE};
+    const double coordinate = std::log(1.0 + std::abs(std::log(eta)) / scale) /
+                              std::log(1.0 + std::log(double{layout::DIELECTRIC_ETA_MAX}) / scale);
+    const double below = std::min(eta, 1.0 / eta), critical = std::sqrt(1.0 - below * below);
+    const double p[3] = {cosine * (1.0 + critical) / (cosine + critical) * (size - 1), roughness * (size - 1),
+                         coordinate * (nodes - 1)};
     const int lengths[3] = {size, size, nodes};
-    double sum = 0.0;
+    glm::dvec4 sum(0.0);
     for (int corner = 0; corner < 8; ++corner) {
         double weight = 1.0;
         int index = 0, stride = 1;
@@ -53,9 +59,19 @@ double dielectricTable(const std::vector<float>& table, double cosine, double ro
             index += (low + up) * stride;
             stride *= lengths[axis];
         }
-        sum += weight * table[static_cast<size_t>(index + (eta < 1.0 ? 0 : stride))];
+        sum +=
+            weight * glm::dvec4(table[static_cast<size_t>((index + (eta < 1.0 ? 0 : stride)) * 2 + texel)]);
     }
     return sum;
+}
+
+/// What is left of white light after several facets of a metal (bsdf.glsl, multipleTint).
+double tint(double f0, double roughness, double out, double in) {
+    const double x = std::min(1.0 - roughness, 0.5);
+    const double e = std::min(0.48 + 0.89 * x - 0.66 * x * x + (0.2 - 0.095 * x) * (2.0 - out - in), 1.0);
+    const double grazing = std::pow(1.0 - out, 2.0) + std::pow(1.0 - in, 2.0);
+    const double f = f0 + (1.0 - f0) * (0.014 + 0.08 * x + (0.069 - 0.105 * x + 1.125 * x * x) * grazing);
+    return f * f * e / (1.0 - f * (1.0 - e));
 }
 
 class BsdfFormulaTest : public BsdfTest {
@@ -119,16 +135,17 @@ TEST_F(BsdfFormulaTest, MetalWithMultipleScattering) {
             dvec3 value(0.0);
             if (wi.z <= 0.0) return value;
             const glm::dvec4 out = ggxTable(data().ggxTable, wo.z, roughness),
-                             in = ggxTable(data().ggxTable, wi.z, roughness);
-            const double eo = out.x + out.y, ei = in.x + in.y, average = out.z + out.w;
+                             in = ggxTable(data().ggxTable, wi.z, roughness),
+                             averages = ggxAverages(data().ggxTable, roughness);
+            const double missing = (1.0 - out.x - out.y) * (1.0 - in.x - in.y);
+            const double spread =
+                averages.z * missing / (pi64 * (1.0 - averages.x - averages.y)) + out.w * in.w;
+            const double alpha = double{roughness} * double{roughness};
+            const double schlickTerm = schlick(0.0, 1.0, glm::dot(wo, glm::normalize(wo + wi)));
             for (int k = 0; k < 3; ++k) {
-                const double f0 = double{p.baseColor[k]}, fAverage = f0 + (1.0 - f0) / 21.0;
-                // Kulla and Conty: f_ms = (1 - Eo)(1 - Ei) / (pi (1 - Eavg)) times Favg^2 Eavg / (1 - Favg (1
-                // - Eavg)).
-                const double multiple = (1.0 - eo) * (1.0 - ei) / (pi64 * (1.0 - average)) * fAverage *
-                                        fAverage * average / (1.0 - fAverage * (1.0 - average));
-                value[k] =
-                    reflected(wo, wi, double{roughness} * double{roughness}, f0, 1.0) + multiple * wi.z;
+                const double f0 = double{p.baseColor[k]}, f = f0 + (1.0 - f0) * schlickTerm;
+                value[k] = reflected(wo, wi, alpha, f0, 1.0) * (1.0 + f * out.z * in.z) +
+                           tint(f0, double{roughness}, wo.z, wi.z) * std::max(spread, 0.0) * wi.z;
             }
             return value;
         });
@@ -158,7 +175,8 @@ TEST_F(BsdfFormulaTest, PlasticWithSpecularColour) {
         const glm::dvec4 out = ggxTable(data().ggxTable, wo.z, double{p.roughness});
         const glm::dvec4 in = ggxTable(data().ggxTable, wi.z, double{p.roughness});
         const double through = (1.0 - f0 * out.x - f90 * out.y) * (1.0 - f0 * in.x - f90 * in.y);
-        return dvec3(p.baseColor) * (through / (1.0 - f0 * out.z - f90 * out.w) / pi64 * wi.z);
+        const glm::dvec4 averages = ggxAverages(data().ggxTable, double{p.roughness});
+        return dvec3(p.baseColor) * (through / (1.0 - f0 * averages.x - f90 * averages.y) / pi64 * wi.z);
     });
 }
 
@@ -174,12 +192,25 @@ TEST_F(BsdfFormulaTest, RefractingBoundary) {
             compare({"glass", params}, true, [&](const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
                 const double alpha = double{roughness} * double{roughness};
                 const double eta = front ? double{p.ior} : 1.0 / double{p.ior};
-                const double kept = dielectricTable(data().dielectricTable, wo.z, double{roughness}, eta);
-                if (wi.z < 0.0) return dvec3(p.baseColor) * (refracted(wo, wi, alpha, eta) / kept);
+                const bool above = wi.z > 0.0;
+                const auto entry = [&](double cosine, double index, int texel) {
+                    return dielectricTable(data().dielectricTable, cosine, double{roughness}, index, texel);
+                };
+                const glm::dvec4 out = entry(wo.z, eta, 0);
+                const glm::dvec4 in = entry(std::abs(wi.z), above ? eta : 1.0 / eta, 1);
+                const double cosine = std::abs(wi.z) / pi64,
+                             unmasked = 1.0 / ((1.0 + lambda(wo, alpha)) *
+                                               std::beta(1.0 + lambda(wo, alpha), 1.0 + lambda(wi, alpha)));
+                if (!above) {
+                    return dvec3(p.baseColor) * (refracted(wo, wi, alpha, eta) * (1.0 + out.y * unmasked) +
+                                                 out.w * in.y / in.w * cosine);
+                }
                 const dvec3 m = glm::normalize(wo + wi);
-                const double f = fresnel(glm::dot(wo, m), eta) * distribution(m, alpha) / (4.0 * wo.z) /
-                                 ((1.0 + lambda(wo, alpha)) * (1.0 + lambda(wi, alpha)));
-                return dvec3(f / kept);
+                const double visible = distribution(m, alpha) / (4.0 * wo.z * (1.0 + lambda(wo, alpha)));
+                const double masking =
+                    (1.0 + lambda(wo, alpha)) / (1.0 + lambda(wo, alpha) + lambda(wi, alpha));
+                return dvec3(fresnel(glm::dot(wo, m), eta) * visible * (masking + out.x) +
+                             out.z * in.x / in.z * cosine);
             });
         }
     }

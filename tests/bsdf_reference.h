@@ -50,4 +50,13 @@ inline glm::dvec4 ggxTable(const std::vector<vec4>& table, double cosine, double
                     y - j);
 }
 
+/// The texels of that table that belong to whole rows.
+inline glm::dvec4 ggxAverages(const std::vector<vec4>& table, double roughness) {
+    const int size = static_cast<int>(layout::GGX_TABLE_SIZE);
+    const double y = roughness * (size - 1);
+    const int j = std::min(static_cast<int>(y), size - 2);
+    const auto at = [&](int row) { return glm::dvec4(table[static_cast<size_t>(size * size + row)]); };
+    return glm::mix(at(j), at(j + 1), y - j);
+}
+
 }  // namespace limpid::test

@@ -32,7 +32,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
     add("environment", Format::RGBA32Float, data.environment);
     add("environmentAlias", Format::RG32Uint, data.environmentAlias);
     add("ggxTable", Format::RGBA32Float, data.ggxTable);
-    add("dielectricTable", Format::R32Float, data.dielectricTable);
+    add("dielectricTable", Format::RGBA32Float, data.dielectricTable);
     constexpr std::array<const char*, layout::TEXEL_BUFFERS> names{"texels0", "texels1", "texels2",
                                                                    "texels3"};
     for (uint32_t i = 0; i < layout::TEXEL_BUFFERS; ++i) {

@@ -25,10 +25,10 @@ void packLights(const Scene& scene, SceneData& data);
 void packLamps(const Scene& scene, SceneData& data);
 /// How shaders multiply and turn the environment, and how often they ask it; after packLamps().
 void setEnvironmentParams(const Environment& env, layout::SceneParams& params);
-/// Directional albedo of GGX reflection (see shaders/bsdf.glsl).
+/// Directional albedo of GGX reflection, and how metals spread what several facets scatter.
 void fillGgxTable(std::vector<vec4>& table);
-/// Energy that single scattering keeps at a rough dielectric boundary.
-void fillDielectricTable(std::vector<float>& table);
+/// What several facets of a rough dielectric boundary reflect and transmit.
+void fillDielectricTable(std::vector<vec4>& table);
 
 /// Two snorm16 (Z. H. Cigolle et al., "A survey of efficient representations for independent unit vectors",
 /// JCGT 2014).

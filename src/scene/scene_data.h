@@ -29,9 +29,9 @@ struct AliasEntry {
 struct SceneData {
     std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
         textureRefs, lights;
-    std::vector<vec4> bvhTriangles, environment, ggxTable;
+    std::vector<vec4> bvhTriangles, environment, ggxTable, dielectricTable;
     std::vector<AliasEntry> lightAlias, environmentAlias;
-    std::vector<float> lightDensity, dielectricTable;
+    std::vector<float> lightDensity;
     std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
     SceneFeatures features;
     layout::SceneParams params{};

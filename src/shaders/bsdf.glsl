@@ -2,12 +2,13 @@
 //
 //   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
-// metal: GGX reflection plus what bounces several times between the facets (C. Kulla, A. Conty, "Revisiting physically
-// based shading at Imageworks", SIGGRAPH 2017). plastic: GGX reflection over a diffuse base that gets exactly the
-// energy the coat lets through, in and out. glass: thin (a pane: the transmitted lobe is the reflected one mirrored
-// behind the surface) or a boundary that refracts, divided by the energy that one scattering keeps. A white surface of
-// any kind reflects and transmits everything. Energy form: crossing a boundary does not scale radiance by eta^2; the
-// factors cancel for every path that leaves the body again.
+// metal: GGX reflection plus what bounces several times between the facets (multipleReflection). plastic: GGX
+// reflection over a diffuse base that gets exactly the energy the coat lets through, in and out. glass: thin (a pane:
+// the transmitted lobe is the reflected one mirrored behind the surface) or a boundary that refracts, plus what meets
+// several facets (addDielectricMultiple). Both pluses are fitted to a random walk on microfacets (E. Heitz et al.,
+// "Multiple-scattering microfacet BSDFs with the Smith model", SIGGRAPH 2016; tests/microfacet_walk.h; docs/gltf.md).
+// A white surface of any kind reflects and transmits everything. Energy form: crossing a boundary does not scale
+// radiance by eta^2; the factors cancel for every path that leaves the body again.
 //
 // All f below include the cosine. Directions are local: the shading normal is +Z.
 #ifndef LIMPID_BSDF_GLSL
@@ -25,16 +26,22 @@ struct Bsdf {
     vec3 f0;               // Schlick's terms of the reflecting lobe
     float f90;
     float coatF0, coatF90;  // of the dielectric coat alone
-    vec3 multiple;         // factor of the metal's multiple scattering
+    float metal;           // weight of the metal
+    vec3 metalF0;
+    vec3 multiple;         // about what is left of white light after several facets of the metal
     vec3 through;          // tint and weight of the thin pane's transmitted lobe
     vec3 glass;            // tint of the refracting boundary's transmitted light
-    float glassWeight;
+    float glassWeight;     // of the refracting boundary
+    float roughGlass;      // the same, 0 where its lobes are perfectly smooth
     float alpha, roughness, eta;
     bool smoothSurface;
     vec4 albedo;     // ggxAlbedo at wo
+    vec3 average;    // ggxAverage
     float coatLoss;  // energy that the coat keeps from the base at wo
-    float glassAlbedo;
-    vec4 probability;  // of choosing diffuse, reflecting, thin transmitting, refracting lobe
+    vec2 glassGain;     // what light that meets several facets adds to the refracting boundary's two lobes, unmasked
+    vec2 glassDiffuse;  // what the boundary reflects and transmits besides, like diffuse light
+    vec4 probability;   // of choosing diffuse, reflecting, thin transmitting, refracting lobe
+    float belowProbability;  // of choosing the diffuse-like transmission
     Clearcoat clearcoat;
 };
 
@@ -57,6 +64,17 @@ Bsdf lambertianBsdf(Surface s, vec3 toViewer) {
     b.geometricNormal = s.geometricNormal;
     b.diffuse = s.unlit ? vec3(0.0) : s.baseColor;
     return b;
+}
+
+/// What is left of white light that several facets of the metal reflect from wo to this cosine. f: the mean Fresnel
+/// term of such facets, e: the part that escapes after each; both fitted to random walks at roughness 0.5 to 1.
+vec3 multipleTint(Bsdf b, float cosine) {
+    const float x = min(1.0 - b.roughness, 0.5);
+    const vec2 grazing = 1.0 - vec2(b.wo.z, cosine);
+    const float e = min(0.48 + x * (0.89 - 0.66 * x) + (0.2 - 0.095 * x) * (grazing.x + grazing.y), 1.0);
+    const float s = 0.014 + 0.08 * x + (0.069 + x * (1.125 * x - 0.105)) * dot(grazing, grazing);
+    const vec3 f = mix(b.metalF0, vec3(1.0), s);
+    return f * f * e / (1.0 - f * (1.0 - e));
 }
 
 Bsdf makeBsdf(Surface s, vec3 toViewer) {
@@ -83,21 +101,28 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
     b.glassWeight = refracting;
     b.glass = s.baseColor;
-    b.glassAlbedo = 1.0;
+    b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
+    b.glassGain = vec2(0.0);
+    b.glassDiffuse = vec2(0.0);
     if (HAS_TRANSMISSION) {
-        if (refracting > 0.0 && !b.smoothSurface) {
-            b.glassAlbedo = dielectricAlbedo(b.wo.z, b.roughness, b.eta);
+        if (b.roughGlass > 0.0) {
+            const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
+            b.glassGain = entry.xy;
+            b.glassDiffuse = entry.zw;
         }
     }
-    const float average = b.albedo.z + b.albedo.w;
-    const vec3 averageFresnel = s.baseColor + (1.0 - s.baseColor) / 21.0;
-    b.multiple = metal * averageFresnel * averageFresnel * average / (1.0 - averageFresnel * (1.0 - average));
-    const float missing = 1.0 - b.albedo.x - b.albedo.y;
-    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + luminance(b.multiple) * missing,
-                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y,
-                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight);
-    const float sum = dot(weights, vec4(1.0));
+    b.metal = metal;
+    b.metalF0 = s.baseColor;
+    b.average = ggxAverage(b.roughness);
+    b.multiple = metal * multipleTint(b, 2.0 / 3.0);
+    const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
+    const vec2 spread = b.glassDiffuse * b.glassWeight;
+    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
+                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y + missing * (1.0 - b.average.z),
+                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
+    const float sum = dot(weights, vec4(1.0)) + spread.y;
     b.probability = weights / max(sum, 1e-20);
+    b.belowProbability = spread.y / max(sum, 1e-20);
     if (HAS_CLEARCOAT) b.clearcoat = makeClearcoat(s, toViewer, sum);
     return b;
 }
@@ -126,14 +151,27 @@ float reflectionPdf(Bsdf b, vec3 m) {
     return ggxDistribution(m, b.alpha) / (4.0 * b.wo.z * (1.0 + ggxLambda(b.wo.z, b.alpha)));
 }
 
+/// What several facets of a metal reflect, as far as it is spread like diffuse light: f for white metal. The product
+/// of missing energies is that of C. Kulla, A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH
+/// 2017. The rest follows the lobe of one facet (addReflection).
+float multipleReflection(Bsdf b, vec4 albedo) {
+    const float missing = (1.0 - b.albedo.x - b.albedo.y) * (1.0 - albedo.x - albedo.y);
+    return max(b.average.z * missing / (PI * max(1.0 - b.average.x - b.average.y, 1e-6)) + b.albedo.w * albedo.w, 0.0);
+}
+
+/// How likely light that meets a facet of this reflectance is taken to be reflected, in sampling.
+float reflectionChance(Bsdf b, float reflectance) {
+    const float reflected = reflectance * (1.0 + b.glassGain.x);
+    return reflected / (reflected + (1.0 - reflectance) * (1.0 + b.glassGain.y));
+}
+
 void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 albedo = ggxAlbedo(wi.z, b.roughness);
     const float cosinePdf = wi.z / PI;
     const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
-    const float coatAverage = b.coatF0 * albedo.z + b.coatF90 * albedo.w;
+    const float coatAverage = b.coatF0 * b.average.x + b.coatF90 * b.average.y;
     value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
-    const float missing = (1.0 - b.albedo.x - b.albedo.y) * (1.0 - albedo.x - albedo.y);
-    value.specular += b.multiple * (missing / max(1.0 - albedo.z - albedo.w, 1e-6) * cosinePdf);
+    value.specular += multipleTint(b, wi.z) * (b.metal * multipleReflection(b, albedo) * wi.z);
     value.pdf += b.probability.x * cosinePdf;
     if (b.smoothSurface) return;
     const vec3 m = normalize(b.wo + wi);
@@ -141,12 +179,16 @@ void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const float pdf = reflectionPdf(b, m);
     const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(wi.z, b.alpha);
     const vec3 fresnel = mix(b.f0, vec3(b.f90), schlickWeight(cosine));
-    value.specular += fresnel * (pdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
+    const float masking = (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn);
+    const vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    value.specular += (fresnel + metal * metal * (b.metal * b.albedo.z * albedo.z)) * (masking * pdf);
     value.pdf += b.probability.y * pdf;
     if (HAS_TRANSMISSION) {
-        const float reflectance = fresnelDielectric(cosine, b.eta);
-        value.specular += vec3(b.glassWeight * reflectance * pdf / ((1.0 + lambdaIn) * b.glassAlbedo));
-        value.pdf += b.probability.w * reflectance * pdf;
+        if (b.roughGlass > 0.0) {
+            const float reflectance = fresnelDielectric(cosine, b.eta);
+            value.specular += vec3(b.roughGlass * reflectance * pdf * (masking + b.glassGain.x));
+            value.pdf += b.probability.w * reflectionChance(b, reflectance) * pdf;
+        }
     }
 }
 
@@ -164,14 +206,26 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const float length2 = dot(m, m);
     m *= inversesqrt(max(length2, 1e-20));
     const float cosOut = dot(b.wo, m), cosIn = dot(wi, m);
-    // A half vector of nearly no length: eta is 1 and the light goes straight through; no density is left there.
-    if (cosOut <= 0.0 || cosIn >= 0.0 || length2 < 1e-12) return;
+    if (cosOut <= 0.0 || cosIn >= 0.0 || b.roughGlass <= 0.0) return;
     const float reflectance = fresnelDielectric(cosOut, b.eta);
     const float root = cosOut + b.eta * cosIn;
     const float pdf = ggxDistribution(m, b.alpha) * cosOut / (b.wo.z * (1.0 + lambdaOut)) *
-                      (b.eta * b.eta * -cosIn / max(root * root, 1e-20)) * (1.0 - reflectance);
-    value.specular += b.glass * (b.glassWeight * pdf / ((1.0 + lambdaIn) * b.glassAlbedo));
-    value.pdf += b.probability.w * pdf;
+                      (b.eta * b.eta * -cosIn / max(root * root, 1e-20));
+    const float masking = transmittedMasking(lambdaOut, lambdaIn);
+    value.specular += b.glass * (b.roughGlass * (1.0 - reflectance) * pdf * (masking + b.glassGain.y));
+    value.pdf += b.probability.w * (1.0 - reflectionChance(b, reflectance)) * pdf;
+}
+
+/// What several facets of a refracting boundary reflect or transmit, as far as it is spread like diffuse light: a
+/// product of what is missing in both directions, as for metals; on the other side, of what is missing seen from
+/// there. What is not spread follows the lobes of one facet: the gains in addReflection and addTransmission.
+void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
+    const bool above = wi.z > 0.0;
+    const float cosinePdf = abs(wi.z) / PI;
+    const vec4 entry = dielectricEntry(abs(wi.z), b.roughness, above ? b.eta : 1.0 / b.eta, 1);
+    const vec2 lobes = b.glassDiffuse * entry.xy / max(entry.zw, vec2(1e-6));
+    value.specular += (above ? vec3(lobes.x) : b.glass * lobes.y) * (b.roughGlass * cosinePdf);
+    value.pdf += above ? 0.0 : b.belowProbability * cosinePdf;
 }
 
 /// f cos and the density with which sampleBsdf draws wi (local); without the perfectly smooth lobes.
@@ -185,6 +239,7 @@ BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
     if (wi.z > 0.0) addReflection(b, wi, value);
     if (HAS_TRANSMISSION) {
         if (wi.z < 0.0) addTransmission(b, wi, value);
+        if (b.roughGlass > 0.0) addDielectricMultiple(b, wi, value);
     }
     return value;
 }
@@ -215,8 +270,8 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     } else {
         const float reflectance = fresnelDielectric(b.wo.z, b.eta);
         const bool transmits = u >= reflectance;
-        const float cosine = sqrt(max(0.0, 1.0 - (1.0 - b.wo.z * b.wo.z) / (b.eta * b.eta)));
-        wi = transmits ? vec3(-b.wo.xy / b.eta, -cosine) : reflected;
+        const float cosine = sqrt(max(0.0, b.wo.z * b.wo.z + (b.eta - 1.0) * (b.eta + 1.0)));
+        wi = transmits ? -vec3(b.wo.xy, cosine) / b.eta : reflected;
         result.value.specular = (transmits ? b.glass : vec3(1.0)) * (b.glassWeight / b.probability.w);
     }
     if (HAS_CLEARCOAT) result.value.specular *= (1.0 - b.clearcoat.albedo) / (1.0 - b.clearcoat.probability);
@@ -242,9 +297,10 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
     const vec3 reflected = 2.0 * cosine * m - b.wo;
     if (lobe == 1u) return reflected.z > 0.0 ? reflected : vec3(0.0);
     if (lobe == 2u) return reflected.z > 0.0 ? vec3(reflected.xy, -reflected.z) : vec3(0.0);
-    if (choice < fresnelDielectric(cosine, b.eta)) return reflected.z > 0.0 ? reflected : vec3(0.0);
-    const float transmitted = sqrt(max(0.0, 1.0 - (1.0 - cosine * cosine) / (b.eta * b.eta)));
-    const vec3 refracted = (cosine / b.eta - transmitted) * m - b.wo / b.eta;
+    const float reflectance = fresnelDielectric(cosine, b.eta);
+    if (choice < reflectionChance(b, reflectance)) return reflected.z > 0.0 ? reflected : vec3(0.0);
+    const float transmitted = sqrt(max(0.0, cosine * cosine + (b.eta - 1.0) * (b.eta + 1.0)));
+    const vec3 refracted = ((cosine - transmitted) * m - b.wo) / b.eta;
     return refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
@@ -263,12 +319,16 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
     float choice = 0.0;
     if (HAS_SPECULAR) {
         choice = random(rng);
-        const vec3 bounds = vec3(b.probability.x, b.probability.x + b.probability.y, 1.0 - b.probability.w);
+        vec4 bounds = vec4(b.probability.xyz, 1.0 - b.belowProbability);
+        bounds.y += bounds.x;
+        bounds.z = bounds.w - b.probability.w;
+        lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : choice < bounds.w ? 3u : 4u;
         // Reusing the number inside its interval, for the choice between reflection and refraction.
-        lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : 3u;
         choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
-        if (lobe != 0u && b.smoothSurface) return sampleSmooth(b, lobe, choice);
-        if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
+        const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
+        if (lobe != 0u && smoothLobe) return sampleSmooth(b, lobe, choice);
+        if (lobe == 4u) wi.z = -wi.z;
+        else if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
     }
     const vec3 direction = b.frame * wi;
     const BsdfValue value = HAS_CLEARCOAT ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);

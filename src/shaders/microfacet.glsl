@@ -18,6 +18,17 @@ float ggxLambda(float cosine, float alpha) {
     return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - min(c2, 1.0)) / c2) - 1.0);
 }
 
+/// Stirling's series for log Gamma(x), x >= 2, without its constant and linear terms.
+float stirling(float x) {
+    return (x - 0.5) * log(x) + (1.0 / 12.0 - 1.0 / (360.0 * x * x)) / x;
+}
+
+/// G2 / G1 of transmission: G2 is the Beta function of 1 + Lambda at both sides (E. Heitz et al., SIGGRAPH 2016).
+float transmittedMasking(float lambdaOut, float lambdaIn) {
+    return exp(stirling(2.0 + lambdaOut) + stirling(2.0 + lambdaIn) - stirling(2.0 + lambdaOut + lambdaIn) - 1.0810615) /
+           (1.0 + lambdaIn);
+}
+
 vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u) {
     const vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
     const float length2 = dot(v.xy, v.xy);
@@ -38,14 +49,15 @@ float schlickWeight(float cosine) {
 
 /// Unpolarised reflectance; eta = index behind the surface over the index before it.
 float fresnelDielectric(float cosine, float eta) {
-    const float sin2 = (1.0 - cosine * cosine) / (eta * eta);
-    const float transmitted = sqrt(max(0.0, 1.0 - sin2));
+    // Not as 1 - sin^2 / eta^2: for eta near 1 and grazing angles that has no digits left.
+    const float transmitted2 = (cosine * cosine + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
+    const float transmitted = sqrt(max(0.0, transmitted2));
     const float s = (cosine - eta * transmitted) / (cosine + eta * transmitted);
     const float p = (eta * cosine - transmitted) / (eta * cosine + transmitted);
-    return sin2 >= 1.0 ? 1.0 : 0.5 * (s * s + p * p);
+    return transmitted2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-/// Single-scattering albedo as F0 * x + F90 * y; its cosine-weighted averages are z and w (scene/ggx_table.cpp).
+/// Single-scattering albedo as F0 * x + F90 * y; z and w spread metals' multiple scattering (scene/ggx_table.cpp).
 vec4 ggxAlbedo(float cosine, float roughness) {
     const float last = float(GGX_TABLE_SIZE - 1u);
     const vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * last;
@@ -57,21 +69,34 @@ vec4 ggxAlbedo(float cosine, float roughness) {
                mix(imageLoad(ggxTable, below), imageLoad(ggxTable, below + 1), f.x), f.y);
 }
 
-/// Energy that reflection and refraction keep together after one scattering.
-float dielectricAlbedo(float cosine, float roughness, float eta) {
+/// Cosine-weighted averages of ggxAlbedo's x and y, and the share of multiple scattering that is diffuse-like.
+vec3 ggxAverage(float roughness) {
+    const int size = int(GGX_TABLE_SIZE);
+    const float p = clamp(roughness, 0.0, 1.0) * float(size - 1);
+    const int row = min(int(p), size - 2);
+    const int at = size * size + row;
+    return mix(imageLoad(ggxTable, at).xyz, imageLoad(ggxTable, at + 1).xyz, p - float(row));
+}
+
+/// One of the two texels of the entry (scene/dielectric_table.cpp, scene_layout.h).
+vec4 dielectricEntry(float cosine, float roughness, float eta, int texel) {
     const int size = int(DIELECTRIC_TABLE_SIZE);
     const vec3 last = vec3(vec2(size - 1), float(DIELECTRIC_ETA_NODES - 1u));
-    const float etaCoordinate = sqrt(abs(log2(eta)) / log2(DIELECTRIC_ETA_MAX));
-    const vec3 p = clamp(vec3(cosine, roughness, etaCoordinate), 0.0, 1.0) * last;
+    const float etaCoordinate = log(1.0 + abs(log(eta)) / DIELECTRIC_ETA_SCALE) /
+                                log(1.0 + log(DIELECTRIC_ETA_MAX) / DIELECTRIC_ETA_SCALE);
+    const float below = min(eta, 1.0 / eta);
+    const float critical = sqrt((1.0 - below) * (1.0 + below));
+    const float column = cosine * (1.0 + critical) / (cosine + critical);
+    const vec3 p = clamp(vec3(column, roughness, etaCoordinate), 0.0, 1.0) * last;
     const vec3 base = min(floor(p), last - 1.0);
     const vec3 f = p - base;
     const int half_ = eta < 1.0 ? 0 : int(DIELECTRIC_ETA_NODES);
-    float sum = 0.0;
+    vec4 sum = vec4(0.0);
     for (int corner = 0; corner < 8; ++corner) {
         const ivec3 offset = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
         const vec3 w = mix(1.0 - f, f, vec3(offset));
         const ivec3 i = ivec3(base) + offset;
-        sum += w.x * w.y * w.z * imageLoad(dielectricTable, ((half_ + i.z) * size + i.y) * size + i.x).x;
+        sum += w.x * w.y * w.z * imageLoad(dielectricTable, (((half_ + i.z) * size + i.y) * size + i.x) * 2 + texel);
     }
     return sum;
 }

@@ -38,7 +38,7 @@ layout(set = 0, binding = 10, r32f) uniform readonly imageBuffer lightDensity;
 layout(set = 0, binding = 11, rgba32f) uniform readonly imageBuffer environment;
 layout(set = 0, binding = 12, rg32ui) uniform readonly uimageBuffer environmentAlias;
 layout(set = 0, binding = 13, rgba32f) uniform readonly imageBuffer ggxTable;
-layout(set = 0, binding = 14, r32f) uniform readonly imageBuffer dielectricTable;
+layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer dielectricTable;
 layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer texels0;
 layout(set = 0, binding = 16, r32ui) uniform readonly uimageBuffer texels1;
 layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;

@@ -106,19 +106,25 @@ LIMPID_CONST float PUNCTUAL_UNIFORM_SHARE = 0.4;
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
 // environment: radiance | probability of choosing this texel.
 
-// ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + B),
-// their cosine-weighted averages over the row (A, B).
+// ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + F90
+// B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted
+// averages of A and B, the share of multiple scattering that is spread like diffuse light.
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
-// dielectricTable: energy that single scattering keeps at a rough refracting surface,
-// [eta][roughness][cosine]. The first DIELECTRIC_ETA_NODES are for eta (index behind over index before) below
-// 1, the others for above: total reflection makes two functions of it. Node i has |log eta| = (i / (NODES -
-// 1))^2 log ETA_MAX, dense near 1.
+// dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels each:
+// gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and transmission |
+// these two albedos again, their cosine-weighted averages over the row. The first DIELECTRIC_ETA_NODES are for
+// eta (index behind over index before) below 1, the others for above: total reflection makes two functions of
+// it. Node i has log(1 + |log eta| / ETA_SCALE) in proportion to i, dense near 1; the column of a cosine c is
+// c (1 + k) / (c + k) (SIZE - 1), k the cosine at which total reflection sets in on the denser side.
 LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 16u;
 LIMPID_CONST uint DIELECTRIC_ETA_NODES = 16u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
+LIMPID_CONST float DIELECTRIC_ETA_SCALE = 0.02;
 
 // Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.
 LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
+// An index of refraction closer to 1 than this lets light straight through, however rough the surface is.
+LIMPID_CONST float SMOOTH_IOR_DIFFERENCE = 1e-3;
 // Reflectance of a clear coat at normal incidence: index 1.5 (KHR_materials_clearcoat).
 LIMPID_CONST float CLEARCOAT_F0 = 0.04;
 
