@@ -229,15 +229,17 @@ Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3&
     Camera camera;
     camera.verticalFov = outsideFov;
     camera.toWorld = lookFrom(vec3(0.0f), towardsEye);
-    const float diagonal = glm::length(box.size());
-    const float room = diagonal > 0.0f ? 0.05f * diagonal : 1e-3f;
+    Box first;
     TightView all(camera.toWorld, box.center(), outsideFov, 1.0f - 2.0f * margin);
     TightView half(camera.toWorld, box.center(), outsideFov, 1.1f * least);
     forEachFirstPoint(scene, box, isExact, [&](const vec3& point) {
         all.add(point);
         half.add(point);
+        first.grow(point);
     });
     forEachClipPoint(scene, [&](const vec3& point, int) { all.add(point); });
+    const float diagonal = glm::length(first.size());
+    const float room = diagonal > 0.0f ? 0.05f * diagonal : 1e-3f;
     camera.toWorld[3] = vec4(all.eye(room), 1.0f);
     PictureSize size(camera.toWorld, outsideFov);
     forEachFirstPoint(scene, box, isExact, [&](const vec3& point) { size.add(point); });
@@ -312,7 +314,7 @@ InsideView fromInside(const Scene& scene, const Box& box) {
 
 /// None if the scene is no closed room.
 std::optional<Camera> inClosedRoom(const Scene& scene, const Box& box, const Walls& walls) {
-    if (!walls.closed() || (walls.facesOutward() && !walls.hidesSomething())) return std::nullopt;
+    if (!walls.closed()) return std::nullopt;
     const InsideView view = fromInside(scene, box);
     const vec3 size = box.size();
     // A closed thing may have much in it, but no room.
@@ -336,13 +338,16 @@ Camera frame(const Scene& scene) {
     if (box.empty()) return {};
     if (isExact) {
         const Walls walls = findWalls(scene, box);
-        if (const auto camera = inClosedRoom(scene, box, walls)) return *camera;
-        if (const auto side = openSide(walls)) return throughOpening(box, *side);
+        const bool isRoom = !walls.facesOutward() || walls.hidesSomething();
+        const auto inside = isRoom ? inClosedRoom(scene, box, walls) : std::nullopt;
+        if (inside) return *inside;
+        const auto side = isRoom ? openSide(walls) : std::nullopt;
+        if (side) return throughOpening(box, *side);
     }
     forEachClipPoint(scene, [&](const vec3& point, int) { box.grow(point); });
     const vec3 size = box.size();
     const bool isFlat = size.z < 0.1f * std::max(size.x, size.y) && size.y > 0.1f * size.x;
-    return fromOutside(scene, box, isExact, isFlat ? vec3(0, 0, 1) : vec3(0.5f, 0.4f, 1.0f));
+    return fromOutside(scene, box, isExact, isFlat ? vec3(0, 0, 1) : vec3(0.5f, 0.6f, 1.0f));
 }
 
 }  // namespace

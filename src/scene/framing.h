@@ -15,8 +15,8 @@ inline constexpr const char* framingCameraName = "framing";
 ///  - a scene that is flat along Z: straight from +Z;
 ///  - everything else: from the front (+Z), a little to the right and above.
 /// A side counts as closed if triangles within 5 % of that side of the bounding box cover half of it. A
-/// closed box whose triangles face outward is a room only if a lamp is in it, or other things and its walls
-/// show their backs, and if there is room inside.
+/// box whose triangles face outward is a room only if a lamp is in it, or other things and its walls show
+/// their backs, and if there is room inside.
 ///
 /// What is seen from outside fills the height of the picture, or a square of that height, but for a margin.
 /// Where a clip takes things far away, they fill half of it as the clip begins, and leave the picture.
