@@ -92,13 +92,46 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     EXPECT_THAT(result.output, HasSubstr("the pipelines are path gbuffer ao history atrous"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline atrous --preset nice");
     EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.output, HasSubstr("the presets are cis565 course paper"));
+    EXPECT_THAT(result.output,
+                HasSubstr("the presets are ambient-occlusion-tutorial history-tracking-course"));
+    // A preset that the pipeline would ignore.
+    result = run("render builtin:cornell -o " + path("a.png") + " --pipeline kpcn --preset svgf-paper");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("svgf-paper: is not for 'kpcn', but for svgf"));
+    result = run("denoise a.exr -o " + path("b.exr") + " --preset jitter-camera-tutorial");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("--method is missing"));
+    result = run("denoise a.exr -o " + path("b.exr") + " --method kpcn --preset svgf-cis565");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("is not for 'kpcn'"));
+    result = run("bench quality --pipeline svgf --pipeline history --preset svgf-paper");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("is not for 'history'"));
+    result = run("bench svgf --preset history-tracking-course");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("is not for 'svgf'"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline atrous --time-limit 3");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("are for --pipeline path"));
     result = run("render builtin:cornell -o " + path("a.exr") + " --pipeline ao --aov specular");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("the pipeline 'ao' has no layer 'specular'"));
+}
+
+TEST_F(CliDenoiseTest, APresetIsAllThatItsSourceSaysAndOtherOptionsWin) {
+    const auto picture = [&](const std::string& options) {
+        const Result result = run("render builtin:cornell -o " + path("a.exr") + small + options);
+        EXPECT_EQ(result.code, 0) << options << result.output;
+        return image::readExr(path("a.exr")).get("", "RGB").pixels;
+    };
+    const std::string tutorial = "--spp 3 --preset jitter-camera-tutorial ";
+    EXPECT_EQ(picture(tutorial), picture("--spp 3 --jitter pixel --sampler tea --progressive"));
+    EXPECT_EQ(picture(tutorial + "--sampler pcg --jitter off"),
+              picture("--spp 3 --jitter off --progressive"));
+    EXPECT_EQ(picture(tutorial + "--pipeline gbuffer"), picture("--spp 3 --pipeline gbuffer --sampler tea"));
+    EXPECT_EQ(picture("--preset svgf-paper --set svgf.levels=2"),
+              picture("--pipeline svgf --preset svgf-paper --set svgf.levels=2"));
+    EXPECT_NE(picture("--preset svgf-paper"), picture("--preset svgf-paper --set svgf.levels=2"));
 }
 
 TEST_F(CliDenoiseTest, TimesOfEveryPassAndFailureCasesAreReported) {

@@ -21,7 +21,7 @@ class Tracker {
           previous_(previous),
           params_(params),
           surfaces_(surfacesOf(previous)),
-          reprojection_{params.normal, params.depth, params.relative, params.search},
+          reprojection_{params.normal, params.depth, params.relative, params.search, params.identity},
           reprojector_(frame, surfaces_, reprojection_) {}
     Tracker(const Tracker&) = delete;
     Tracker& operator=(const Tracker&) = delete;
@@ -75,8 +75,8 @@ void Tracker::track(size_t p, HistoryResult& result) const {
     if (pixel.rejected) {
         colour = old.colour;  // zeros where nothing was found
     } else {
-        const bool grey = params_.greyRestart && old.failure >= 2;
-        const dvec4 before = grey ? dvec4(0.5, 0.5, 0.5, 1.0) : old.colour;
+        const bool grey = params_.greyRestart && old.failure >= (params_.greyMisses ? 1 : 2);
+        const dvec4 before = grey ? dvec4(dvec3(params_.grey), 1.0) : old.colour;
         const double count = countAfter(before.w);
         const dvec3 step = c - dvec3(before);
         colour = dvec4(dvec3(before) + step / count, count);

@@ -16,6 +16,9 @@ struct DoubleHistoryParams {
     bool demodulate = true;   ///< light is resampled, textures are not
     uint32_t maxHistory = 0;  ///< 0: no limit
     bool greyRestart = false;
+    double grey = 0.5;
+    bool greyMisses = false;
+    bool identity = true;
 };
 
 /// What lives from frame to frame. Images of another size than the frame's (none at all before the first

@@ -69,7 +69,7 @@ bool Reprojector::inPicture(const dvec2& s, Decision& decision) const {
 
 /// A test is only asked where those before it passed: where they did not, it would decide nothing.
 bool Reprojector::agrees(const Expected& expected, const PreviousSurface& was, Decision& decision) const {
-    return was.distance > 0.0 && was.hasHistory && was.id == expected.id &&
+    return was.distance > 0.0 && was.hasHistory && (!params_.identity || was.id == expected.id) &&
            decision.above(glm::dot(expected.normal, was.normal), params_.normal,
                           marginOf(params_.normal, 1.0)) &&
            decision.above(expected.tolerance, std::abs(expected.distance - was.distance),

@@ -26,6 +26,7 @@ class Decision {
 struct ReprojectionParams {
     double normal, depth;
     bool relative, search;
+    bool identity = true;  ///< off: whatever object a tap saw
 };
 
 /// What a pixel of the previous frame saw.

@@ -3,6 +3,7 @@
 
 #include "base/params.h"
 #include "denoise_fixture.h"
+#include "renderer/presets.h"
 
 namespace limpid::test {
 namespace {
@@ -16,7 +17,10 @@ DoubleHistoryParams inDouble(const denoise::HistorySettings& s) {
             .search = s.search,
             .demodulate = s.demodulate,
             .maxHistory = static_cast<uint32_t>(s.maxHistory),
-            .greyRestart = s.greyRestart};
+            .greyRestart = s.greyRestart,
+            .grey = double{s.grey},
+            .greyMisses = s.greyMisses,
+            .identity = s.identity};
 }
 
 /// Where float32's error of the position, or of the numbers, does not explain the difference.
@@ -47,7 +51,9 @@ class HistoryPassTest : public DenoiseTest, public testing::WithParamInterface<S
         for (std::string word; words >> word;) {
             const size_t equals = word.find('=');
             if (equals == std::string::npos) {
-                EXPECT_TRUE(denoise::historyParams().applyPreset(result, word));
+                RenderSettings all;
+                applyPreset(all, word);
+                result = all.denoisers.history;
             } else {
                 EXPECT_TRUE(
                     denoise::historyParams().set(result, word.substr(0, equals), word.substr(equals + 1)));
@@ -116,16 +122,19 @@ TEST_P(HistoryPassTest, AgreesWithTheFormulasInDouble) {
 
 INSTANTIATE_TEST_SUITE_P(
     Sequences, HistoryPassTest,
-    testing::Values(Sequence{"Static", {}, ""}, Sequence{"StaticUnlimited", {}, "max_history=0"},
-                    Sequence{"Camera", {.cameraMoves = true}, ""},
-                    Sequence{"CameraOrthographic", {.cameraMoves = true, .orthographic = true}, ""},
-                    Sequence{"Object", {.objectMoves = true}, ""},
-                    Sequence{"Both", {.cameraMoves = true, .objectMoves = true}, "max_history=4"},
-                    Sequence{"Resize", {.cameraMoves = true}, "", 4},
-                    Sequence{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}, ""},
-                    Sequence{"NoSearch", {.cameraMoves = true, .objectMoves = true}, "search=off"},
-                    Sequence{"Modulated", {.cameraMoves = true}, "demodulate=off"},
-                    Sequence{"Course", {.cameraMoves = true, .objectMoves = true}, "course"}),
+    testing::Values(
+        Sequence{"Static", {}, ""}, Sequence{"StaticUnlimited", {}, "max_history=0"},
+        Sequence{"Camera", {.cameraMoves = true}, ""},
+        Sequence{"CameraOrthographic", {.cameraMoves = true, .orthographic = true}, ""},
+        Sequence{"Object", {.objectMoves = true}, ""},
+        Sequence{"Both", {.cameraMoves = true, .objectMoves = true}, "max_history=4"},
+        Sequence{"Resize", {.cameraMoves = true}, "", 4},
+        Sequence{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}, ""},
+        Sequence{"NoSearch", {.cameraMoves = true, .objectMoves = true}, "search=off"},
+        Sequence{"Modulated", {.cameraMoves = true}, "demodulate=off"},
+        Sequence{"Grey", {.cameraMoves = true}, "grey_restart=on grey=0.1 grey_misses=on"},
+        Sequence{"AnyObject", {.cameraMoves = true, .objectMoves = true}, "identity=off depth=0.3"},
+        Sequence{"Course", {.cameraMoves = true, .objectMoves = true}, "history-tracking-course"}),
     nameOf);
 
 class HistoryTest : public DenoiseTest {};

@@ -215,9 +215,11 @@ std::vector<std::string> pipelinesOf(const MethodChoice& choice) {
 
 TEST(QualityMethods, AVariantIsOfThePipelineWhoseParametersItNames) {
     EXPECT_THAT(pipelinesOf({{"history", "svgf", "kpcn"},
-                             {"svgf.levels=1", "history.normal=0.5", "pathtrace.max_depth=2", "preset=paper",
-                              "pathtrace.max_depth=2,svgf.levels=2"}}),
+                             {"svgf.levels=1", "history.normal=0.5", "pathtrace.max_depth=2",
+                              "preset=svgf-paper", "pathtrace.max_depth=2,svgf.levels=2"}}),
                 ElementsAre("history", "svgf", "kpcn", "svgf", "history", "kpcn", "svgf", "svgf"));
+    EXPECT_THAT(pipelinesOf({{"history", "atrous", "svgf"}, {"preset=history-tracking-course,taa.frames=2"}}),
+                ElementsAre("history", "atrous", "svgf", "atrous"));
     EXPECT_THAT(pipelinesOf({{"atrous"}, {"history.normal=0.5"}}), ElementsAre("atrous", "atrous"))
         << "which has no parameters of a pipeline of that name, but those of history tracking";
     const auto methods = methodsOf({{"svgf"}, {"svgf.levels=1,svgf.wide=on"}}, {});
@@ -236,7 +238,8 @@ TEST(QualityMethods, StepsAreOfSvgfWhateverElseIsCompared) {
 TEST(QualityMethods, WhatIsNoMethodIsRefused) {
     EXPECT_THROW(methodsOf({{"gbuffer"}, {}}, {}), UsageError);
     EXPECT_THROW(methodsOf({{"nothing"}, {}}, {}), UsageError);
-    for (const char* variant : {"", "svgf.nothing=1", "svgf.levels", "preset=nothing"})
+    for (const char* variant :
+         {"", "svgf.nothing=1", "svgf.levels", "preset=nothing", "preset=history-tracking-course"})
         EXPECT_THROW(methodsOf({{"svgf"}, {variant}}, {}), UsageError) << variant;
 }
 

@@ -8,6 +8,7 @@
 
 #include "denoise_fixture.h"
 #include "double_svgf.h"
+#include "renderer/presets.h"
 
 namespace limpid::test {
 namespace {
@@ -51,9 +52,9 @@ struct Case {
 };
 
 SvgfSettings preset(const char* name) {
-    SvgfSettings settings;
-    if (!denoise::svgfParams().applyPreset(settings, name)) throw Error("there is no such preset");
-    return settings;
+    RenderSettings settings;
+    applyPreset(settings, name);
+    return settings.denoisers.svgf;
 }
 
 struct Signal {
@@ -353,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"PositionOrthographic",
                  {.cameraMoves = true, .orthographic = true},
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
-            Case{"Cis565", moving, preset("cis565")}, Case{"Paper", moving, preset("paper")},
+            Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
             Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
             Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},

@@ -15,6 +15,7 @@
 #include "json_text.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 
 namespace limpid::cli {
 namespace {
@@ -24,12 +25,16 @@ using nlohmann::json;
 struct DenoiseBench {
     DeviceChoice device;
     SceneChoice scene{.scene = "builtin:cornell"};
-    std::string cameraPath = "shake", pipeline = "atrous";
+    std::string cameraPath = "shake", pipeline;
     std::vector<std::string> presets, assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
     std::string filters = "auto", weights;
 };
+
+Pipeline pipelineOf(const DenoiseBench& o) {
+    return pipelineFor(o.presets, o.pipeline, "atrous");
+}
 
 /// Bytes per second of a copy between images larger than any cache.
 double copyRate(gpu::Device& device) {
@@ -58,7 +63,7 @@ double copyRate(gpu::Device& device) {
 std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
-    settings.pipeline = parsePipeline(o.pipeline);
+    settings.pipeline = pipelineOf(o);
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
@@ -75,8 +80,8 @@ void run(const DenoiseBench& o) {
     json passes = json::array();
     if (!o.json) {
         fmt::print("{}, {}x{}, {}, {} frames; a copy moves {:.1f} GB/s\n{:<24}{:>12}{:>12}{:>10}{:>10}\n",
-                   device->info().name, o.width, o.height, o.pipeline, o.frames, limit * 1e-9, "pass",
-                   "ms median", "ms least", "MB", "GB/s");
+                   device->info().name, o.width, o.height, pipelineOf(o).name(), o.frames, limit * 1e-9,
+                   "pass", "ms median", "ms least", "MB", "GB/s");
     }
     for (auto& [name, cost] : measure(*device, o)) {
         const double ms = median(cost.milliseconds);
@@ -96,7 +101,7 @@ void run(const DenoiseBench& o) {
                       {"driver", device->info().driver},
                       {"scene", o.scene.scene},
                       {"camera_path", o.cameraPath},
-                      {"pipeline", o.pipeline},
+                      {"pipeline", pipelineOf(o).name()},
                       {"width", o.width},
                       {"height", o.height},
                       {"frames", o.frames},
@@ -114,8 +119,9 @@ void addDenoiseBench(CLI::App& bench) {
     command->add_option("--scene", o->scene.scene, "Scene (builtin:cornell)");
     command->add_option("--env", o->scene.environment, "Environment map, .hdr or .exr, lat-long");
     command->add_option("--camera-path", o->cameraPath, "A JSON file, or orbit, dolly or shake (shake)");
-    command->add_option("--pipeline", o->pipeline, "Pipeline (atrous)");
-    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--pipeline", o->pipeline, "Pipeline (the preset's, or atrous)");
+    command->add_option("--preset", o->presets,
+                        "All that a paper, a course or a tutorial says; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));

@@ -23,6 +23,7 @@
 #include "quality_table.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 #include "renderer/render_identity.h"
 #include "scene/camera_path.h"
 #include "scene/movement.h"
@@ -45,9 +46,10 @@ struct QualityOptions {
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
-    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;
     common.layers = true;  // the noisy frames are judged too
+    for (const std::string& pipeline : o.methods.pipelines) pipelineFor(o.presets, pipeline, "");
     for (const std::string& preset : o.presets) applyPreset(common, preset);
+    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // as the references
     for (const std::string& text : o.assignments) assign(common, text);
     return methodsOf(o.methods, common);
 }
@@ -248,9 +250,14 @@ void complete(QualityOptions& o, const CLI::App& command) {
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
     if (!o.methods.pipelines.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        if (!denoiser.network || o.samples >= leastNetworkSamples)
+        const bool fits = std::ranges::all_of(o.presets, [&](const std::string& preset) {
+            return findPreset(preset).isFor({Pipeline::Kind::Denoised, &denoiser});
+        });
+        if (fits && (!denoiser.network || o.samples >= leastNetworkSamples))
             o.methods.pipelines.emplace_back(denoiser.name);
     }
+    if (o.methods.pipelines.empty())
+        throw UsageError("--preset: no denoiser is left that all of them are for");
 }
 
 void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
@@ -294,7 +301,8 @@ void addQualityBench(CLI::App& bench) {
     command->add_option("--pipeline", o->methods.pipelines,
                         "Pipelines that denoise (repeatable; all of them, kpcn from --spp 8 on)");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
-    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--preset", o->presets,
+                        "A denoiser as a paper or a course has it; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option(
         "--variant", o->methods.variants,

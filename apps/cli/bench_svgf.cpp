@@ -14,6 +14,7 @@
 #include "bench_scene.h"
 #include "json_text.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 #include "scene/builtin.h"
 #include "svg_plot.h"
 
@@ -69,7 +70,7 @@ Stages stagesOf(const std::map<std::string, PassCost>& costs) {
 RenderSettings settingsOf(const SvgfBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
-    settings.pipeline = parsePipeline("svgf");
+    settings.pipeline = pipelineFor(o.presets, "svgf", "");
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
@@ -187,7 +188,8 @@ void addSvgfBench(CLI::App& bench) {
         "svgf", "SVGF: time per stage, against the scene's triangles, and against the levels");
     auto o = std::make_shared<SvgfBench>();
     command->add_option("--scene", o->scene, "Of the stages and levels (builtin:cornell-spheres)");
-    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--preset", o->presets,
+                        "SVGF as a paper or a course has it; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
     command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));

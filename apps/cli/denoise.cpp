@@ -20,6 +20,7 @@
 #include "renderer/frame_file.h"
 #include "renderer/network_file.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 
 namespace limpid::cli {
 namespace {
@@ -34,13 +35,15 @@ struct DenoiseOptions {
     bool json = false;
 };
 
+/// That of --method, else of --preset.
 const denoise::Denoiser& chosenMethod(const DenoiseOptions& o) {
     std::string names;
-    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        if (denoiser.name == o.method) return denoiser;
-        names += " " + std::string(denoiser.name);
-    }
-    throw UsageError("--method: there is no '" + o.method + "'; the methods are" + names);
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names += " " + std::string(denoiser.name);
+    if (!o.method.empty() && !denoise::findDenoiser(o.method))
+        throw UsageError("--method: there is no '" + o.method + "'; the methods are" + names);
+    const Pipeline pipeline = pipelineFor(o.presets, o.method, "path");
+    if (!pipeline.denoiser) throw UsageError("--method is missing; the methods are" + names);
+    return *pipeline.denoiser;
 }
 
 denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
@@ -82,7 +85,7 @@ std::vector<float> surfaces(const LayeredImage& file) {
 
 void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
            const std::vector<float>& beauty) {
-    const LayeredImage result = withBeauty(std::move(file), beauty, o.method);
+    const LayeredImage result = withBeauty(std::move(file), beauty, chosenMethod(o).name);
     if (isExr(path)) return image::writeExr(path, result);
     const image::Image picture = result.get("", "RGB");
     const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture, surfaces(result)));
@@ -145,13 +148,13 @@ void denoiseFiles(const DenoiseOptions& o) {
     const DenoiseSummary summary = denoiseFrames(o, *device);
     if (o.json) {
         const nlohmann::json object{{"output", o.output},
-                                    {"method", o.method},
+                                    {"method", chosenMethod(o).name},
                                     {"device", device->info().name},
                                     {"frames", summary.frames},
                                     {"last_frame_ms", summary.lastFrame}};
         fmt::print("{}\n", jsonText(object));
     } else {
-        log::info("{} frames by {}, on {}", summary.frames, o.method, device->info().name);
+        log::info("{} frames by {}, on {}", summary.frames, chosenMethod(o).name, device->info().name);
     }
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
@@ -169,8 +172,10 @@ void addDenoiseCommand(CLI::App& app) {
         ->required();
     std::string names;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) names += " " + std::string(denoiser.name);
-    command->add_option("--method", o->method, "One of" + names)->required();
-    command->add_option("--preset", o->presets, "A named set of parameters, as course; before --set");
+    command->add_option("--method", o->method, "One of" + names + "; needed unless --preset names it");
+    command->add_option(
+        "--preset", o->presets,
+        "A denoiser as a paper or a course has it; 'limpid info' lists them; other options win");
     command->add_option("--set", o->assignments, "A parameter: group.name=value; 'limpid info' lists them");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--exposure", o->exposure,

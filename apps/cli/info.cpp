@@ -1,7 +1,6 @@
 // limpid info: devices with features and limits, pipelines, built-in scenes, every parameter.
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "json_text.h"
 #include "renderer/layers.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 #include "scene/builtin.h"
 #include "scene/tracer.h"
 
@@ -55,16 +55,17 @@ json parametersJson() {
     return list;
 }
 
-/// By name, every parameter that it sets, and to what.
-std::map<std::string, std::map<std::string, std::string>> presets() {
-    std::map<std::string, std::map<std::string, std::string>> result;
-    for (const ParamGroup& group : paramGroups()) {
-        for (const ParamPreset& preset : group.presets) {
-            for (const auto& [parameter, text] : preset.values)
-                result[preset.name][group.name + "." + parameter] = text;
-        }
+json presetsJson() {
+    json list = json::array();
+    for (const Preset& preset : presets()) {
+        list.push_back({{"name", preset.name},
+                        {"help", preset.help},
+                        {"pipelines", preset.pipelines},
+                        {"jitter", toString(preset.jitter)},
+                        {"progressive", preset.progressive},
+                        {"parameters", preset.assignments}});
     }
-    return result;
+    return list;
 }
 
 json pipelinesJson() {
@@ -119,10 +120,10 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
         }
     }
     fmt::print("\nPresets (--preset)\n");
-    for (const auto& [name, values] : presets()) {
-        fmt::print("{:<10}", name);
-        for (const auto& [parameter, text] : values) fmt::print(" {}={}", parameter, text);
-        fmt::print("\n");
+    for (const Preset& preset : presets()) {
+        fmt::print("{}\n   {}\n   --pipeline {} --jitter {}{} --set {}\n", preset.name, preset.help,
+                   fmt::join(preset.pipelines, " or "), toString(preset.jitter),
+                   preset.progressive ? " --progressive" : "", fmt::join(preset.assignments, " --set "));
     }
 }
 
@@ -139,7 +140,7 @@ void addInfoCommand(CLI::App& app) {
         const json object{{"version", LIMPID_VERSION},      {"devices", devicesJson(devices)},
                           {"pipelines", pipelinesJson()},   {"tracers", {"compute", "pipeline"}},
                           {"scenes", scenesJson()},         {"layers", layerNames()},
-                          {"parameters", parametersJson()}, {"presets", presets()}};
+                          {"parameters", parametersJson()}, {"presets", presetsJson()}};
         fmt::print("{}\n", jsonText(object));
     });
 }

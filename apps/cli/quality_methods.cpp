@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <ranges>
+#include <span>
 #include <sstream>
 #include <string_view>
 
 #include "base/error.h"
 #include "denoise/denoiser.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 
 namespace limpid::cli {
 namespace {
@@ -18,7 +20,7 @@ namespace {
 constexpr std::string_view presetWord = "preset=";
 
 /// SVGF as others have it, without each thing that Limpid adds to the paper, and with former defaults.
-constexpr std::array svgfSteps{"preset=paper",         "preset=cis565",
+constexpr std::array svgfSteps{"preset=svgf-paper",    "preset=svgf-cis565",
                                "svgf.antilag=0",       "svgf.alpha=0.15,svgf.alpha_moments=0.2",
                                "svgf.antilag_noise=3", "svgf.antilag_pixel=1000",
                                "svgf.boost=off",       "svgf.blur_levels=10",
@@ -34,13 +36,11 @@ std::vector<std::string> wordsOf(const std::string& variant) {
     return words;
 }
 
-/// Whether a word of a variant is about the parameters of this group.
+/// Whether a word of a variant is about this pipeline: a parameter of its group, or a preset for it.
 bool isAbout(const std::string& word, const std::string& group) {
     if (!word.starts_with(presetWord)) return word.starts_with(group + ".");
     const std::string_view preset = std::string_view(word).substr(presetWord.size());
-    const auto found = std::ranges::find(paramGroups(), group, &ParamGroup::name);
-    return found != paramGroups().end() &&
-           std::ranges::find(found->presets, preset, &ParamPreset::name) != found->presets.end();
+    return std::ranges::find(findPreset(preset).pipelines, group) != findPreset(preset).pipelines.end();
 }
 
 const std::string& pipelineOf(const std::vector<std::string>& words,
@@ -58,13 +58,21 @@ RenderSettings ofPipeline(RenderSettings settings, const std::string& name) {
     return settings;
 }
 
+/// Jitter stays as the references have it.
+void applyPresetTo(RenderSettings& settings, const std::string& preset) {
+    pipelineFor(std::span(&preset, 1), settings.pipeline.name(), "");
+    const Jitter jitter = settings.jitter;
+    applyPreset(settings, preset);
+    settings.jitter = jitter;
+}
+
 QualityMethod variantOf(const std::string& variant, const std::vector<std::string>& pipelines,
                         const RenderSettings& common) {
     const std::vector<std::string> words = wordsOf(variant);
     QualityMethod method{variant, ofPipeline(common, pipelineOf(words, pipelines))};
     for (const std::string& word : words) {
         if (word.starts_with(presetWord))
-            applyPreset(method.settings, word.substr(presetWord.size()));
+            applyPresetTo(method.settings, word.substr(presetWord.size()));
         else
             assign(method.settings, word);
     }

@@ -72,7 +72,7 @@ void render(const RenderOptions& o) {
     summary.timings.uploadSeconds = since(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
-    if (settings.pipeline == Pipeline{} && !o.progressive) {
+    if (settings.pipeline == Pipeline{} && !isProgressive(o)) {
         renderIndependentFrames(job, summary);
     } else {
         renderSuccessiveFrames(job, summary);

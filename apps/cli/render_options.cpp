@@ -8,15 +8,15 @@
 #include "picture_output.h"
 #include "renderer/layers.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 
 namespace limpid::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-Jitter jitterOf(const RenderOptions& o, const Pipeline& pipeline) {
-    if (o.jitter == "auto") return defaultJitter(pipeline);
-    return o.jitter == "pixel" ? Jitter::Pixel : o.jitter == "frame" ? Jitter::Frame : Jitter::Off;
+Jitter parseJitter(const std::string& name) {
+    return name == "pixel" ? Jitter::Pixel : name == "frame" ? Jitter::Frame : Jitter::Off;
 }
 
 void checkOutput(const RenderOptions& o) {
@@ -87,8 +87,11 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
     std::string names;
     for (const Pipeline& pipeline : pipelines()) names += " " + std::string(pipeline.name());
-    command.add_option("--pipeline", o.pipeline, "What makes the picture; path (default), or one of" + names);
-    command.add_option("--preset", o.presets, "A named set of parameters, as course; before --set");
+    command.add_option("--pipeline", o.pipeline,
+                       "What makes the picture; path (default, but for --preset), or one of" + names);
+    command.add_option("--preset", o.presets,
+                       "All that a paper, a course or a tutorial says, as svgf-paper; 'limpid info' lists "
+                       "them; other options win");
     command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
     command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
     command.add_flag("--progressive", o.progressive,
@@ -105,24 +108,35 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     addDeviceOptions(command, o.device);
 }
 
+Pipeline pipelineOf(const RenderOptions& o) {
+    return pipelineFor(o.presets, o.pipeline, "path");
+}
+
+bool isProgressive(const RenderOptions& o) {
+    const bool byPreset = std::ranges::any_of(
+        o.presets, [](const std::string& preset) { return findPreset(preset).progressive; });
+    return o.progressive || (byPreset && !isLongRender(o.longRender));
+}
+
 RenderSettings settingsOf(const RenderOptions& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
     settings.seed = o.seed;
     settings.samplesPerLaunch = o.samplesPerLaunch;
-    settings.pipeline = parsePipeline(o.pipeline);
-    settings.jitter = jitterOf(o, settings.pipeline);
+    settings.pipeline = pipelineOf(o);
+    settings.jitter = defaultJitter(settings.pipeline);
     settings.layers = !o.layers.empty();
-    settings.pathtrace.samplerTea = o.sampler == "tea";
-    if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    if (!o.jitter.empty()) settings.jitter = parseJitter(o.jitter);
+    if (!o.sampler.empty()) settings.pathtrace.samplerTea = o.sampler == "tea";
+    if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings;
 }
 
 uint64_t samplesOf(const RenderOptions& o) {
     if (o.samples > 0) return o.samples;
-    const Pipeline pipeline = parsePipeline(o.pipeline);
+    const Pipeline pipeline = pipelineOf(o);
     if (pipeline.accumulates()) return 64;
     return pipeline.denoiser->network ? 32 : 1;
 }
@@ -132,7 +146,7 @@ bool writesSums(const RenderOptions& o) {
 }
 
 std::vector<std::string> chosenLayers(const RenderOptions& o) {
-    const Pipeline pipeline = parsePipeline(o.pipeline);
+    const Pipeline pipeline = pipelineOf(o);
     const std::vector<std::string> possible = pipeline.layers();
     if (o.layers == "all") return possible;
     const std::vector<std::string> chosen = parseLayers(o.layers);
@@ -149,7 +163,7 @@ std::vector<std::string> chosenLayers(const RenderOptions& o) {
 }
 
 void checkRenderOptions(const RenderOptions& o) {
-    const Pipeline pipeline = parsePipeline(o.pipeline);
+    const Pipeline pipeline = pipelineOf(o);
     if (o.progressive && isLongRender(o.longRender))
         throw UsageError("--progressive: not with --checkpoint, --resume, --shard and --time-limit");
     if (pipeline != Pipeline{} && isLongRender(o.longRender)) {

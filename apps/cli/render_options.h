@@ -24,7 +24,8 @@ struct RenderOptions {
     uint32_t samplesPerLaunch = 1;
     uint32_t seed = 0;
     int maxDepth = -1;  // -1: the parameter's own default
-    std::string pipeline = "path", sampler = "pcg", jitter = "auto", exposure = "auto", layers, dump, weights;
+    std::string pipeline, sampler, jitter, exposure = "auto", layers, dump,
+                                           weights;  ///< "": as the preset says
     std::vector<std::string> presets, assignments;
     bool progressive = false, floatExr = false, json = false;
 };
@@ -34,6 +35,10 @@ void addRenderOptions(CLI::App& command, RenderOptions& options);
 /// Throws UsageError or OutputError if the options contradict each other, or name what there is not.
 void checkRenderOptions(const RenderOptions& options);
 
+/// That of --pipeline, else of --preset, else `path`.
+Pipeline pipelineOf(const RenderOptions& options);
+/// Asked for, or by a preset where nothing speaks against it.
+bool isProgressive(const RenderOptions& options);
 RenderSettings settingsOf(const RenderOptions& options);
 /// Per pixel; of a frame, where the pipeline goes from frame to frame.
 uint64_t samplesOf(const RenderOptions& options);

@@ -57,7 +57,7 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
         return;
     }
     nlohmann::json object{{"output", o.output},
-                          {"pipeline", o.pipeline},
+                          {"pipeline", pipelineOf(o).name()},
                           {"device", device.info().name},
                           {"tracer", scene::toString(gpuScene.tracer())},
                           {"width", o.width},

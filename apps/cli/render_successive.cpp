@@ -16,7 +16,7 @@ std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t fra
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
     return {{"limpid.version", LIMPID_VERSION},
             {"limpid.scene", std::filesystem::path(job.options.scene.scene).filename().string()},
-            {"limpid.pipeline", job.options.pipeline},
+            {"limpid.pipeline", std::string(job.settings.pipeline.name())},
             {"limpid.samples", std::to_string(samples)},
             {"limpid.seed", std::to_string(job.settings.seed)},
             {"limpid.device", job.device.info().name},

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "device_options.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 #include "scene_options.h"
 #ifdef LIMPID_HAVE_VIEWER
 #include "viewer/command_line.h"
@@ -60,11 +61,13 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
     settings.maxSamples = o.maxSamples.value_or(settings.maxSamples);
     settings.shrink = o.shrink.value_or(settings.shrink);
     settings.render.extent = {o.width, o.height};
-    if (o.pipeline) settings.render.pipeline = parsePipeline(*o.pipeline);
+    settings.render.pipeline =
+        pipelineFor(o.presets, o.pipeline.value_or(""), settings.render.pipeline.name());
     settings.render.seed = o.seed;
     if (!o.scene.camera.empty()) settings.startCamera = "--camera " + viewer::quoted(o.scene.camera);
     if (!o.scene.eye.empty()) settings.startCamera += eyeOptions(o.scene);
     for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
+    if (!o.presets.empty()) settings.jitter = settings.render.jitter;
     for (const std::string& text : o.assignments) assign(settings.render, text);
     return settings;
 }
@@ -103,7 +106,8 @@ void addViewCommand(CLI::App& app) {
     command->add_option("--pipeline", o->pipeline, "What makes the picture (the last one; at first path)");
     command->add_flag("--preview", o->preview,
                       "Start with the fast preview: first hits, shaded by a light at the camera");
-    command->add_option("--preset", o->presets, "A named set of parameters");
+    command->add_option("--preset", o->presets,
+                        "All that a paper, a course or a tutorial says; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--width", o->width, "Of the window, in pixels (1280)")->check(CLI::Range(1, 16384));

@@ -14,17 +14,6 @@ std::string triple(const vec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 
-const char* nameOf(Jitter jitter) {
-    switch (jitter) {
-        case Jitter::Pixel:
-            return "pixel";
-        case Jitter::Frame:
-            return "frame";
-        default:
-            return "off";
-    }
-}
-
 std::string sourceOptions(const SceneSource& source) {
     std::string text;
     if (!source.environment.empty()) text += " --env " + quoted(source.environment);
@@ -65,7 +54,7 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     result.text = "limpid render " + quoted(frame.source.scene);
     result.text += sourceOptions(frame.source);
     result.text += fmt::format(" --pipeline {} --width {} --height {} --seed {} --jitter {} --spp {}",
-                               s.pipeline.name(), s.extent.width, s.extent.height, s.seed, nameOf(s.jitter),
+                               s.pipeline.name(), s.extent.width, s.extent.height, s.seed, toString(s.jitter),
                                accumulates ? frame.samplesInMean : frame.samples);
     if (accumulates) result.text += " --progressive";
     if (s.layers) result.text += " --aov all";

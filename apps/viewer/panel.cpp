@@ -10,6 +10,7 @@
 #include "base/bytes_text.h"
 #include "light_panel.h"
 #include "renderer/parameters.h"
+#include "renderer/presets.h"
 
 namespace limpid::viewer {
 namespace {
@@ -30,10 +31,6 @@ void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& cont
     if (!controls.header(group.name.c_str())) return;
     controls.setGroup(group.name);
     ImGui::PushID(group.name.c_str());
-    for (const ParamPreset& preset : group.presets) {
-        if (controls.button(("preset " + preset.name).c_str())) group.applyPreset(settings, preset.name);
-        ImGui::SameLine();
-    }
     if (controls.button("defaults")) {
         for (const ParamInfo& info : group.infos) group.set(settings, info.name, toString(info.defaultValue));
     }
@@ -66,6 +63,26 @@ void drawPipelines(PanelState& state, Controls& controls) {
     if (controls.checkbox("preview", preview)) state.setPreview(preview);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("first hits, shaded by a light at the camera: fast, for finding one's way (V)");
+}
+
+/// A press takes all that the preset says, its pipeline too.
+void drawPresets(PanelState& state, Controls& controls) {
+    if (!controls.header("presets")) return;
+    for (const Preset& preset : presets()) {
+        if (controls.button(preset.name.c_str())) {
+            const bool fits = preset.isFor(state.render.pipeline);
+            if (!fits) state.render.pipeline = parsePipeline(preset.pipelines.front());
+            applyPreset(state.render, preset.name);
+            state.jitter = jitterChoice(preset.jitter, state.render.pipeline);
+        }
+        if (ImGui::IsItemHovered()) {
+            ImGui::BeginTooltip();
+            ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
+            ImGui::TextUnformatted(preset.help.c_str());
+            ImGui::PopTextWrapPos();
+            ImGui::EndTooltip();
+        }
+    }
 }
 
 /// Of the pass that is chosen in the list.
@@ -235,6 +252,10 @@ void drawMessages(const PanelFacts& facts) {
 
 }  // namespace
 
+int jitterChoice(Jitter jitter, const Pipeline& pipeline) {
+    return jitter == defaultJitter(pipeline) ? 0 : 1 + static_cast<int>(jitter);
+}
+
 void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     drawMessages(facts);
     if (!state.shown) return;
@@ -254,6 +275,7 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
     drawComparison(state, facts, controls);
     drawLights(state, facts, controls);
     drawPasses(state, facts, controls);
+    drawPresets(state, controls);
     for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
     ImGui::PopItemWidth();
     ImGui::Separator();

@@ -37,6 +37,9 @@ struct CameraPose {
 };
 
 /// What the panel shows and changes.
+/// PanelState::jitter for this one.
+int jitterChoice(Jitter jitter, const Pipeline& pipeline);
+
 struct PanelState {
     RenderSettings render;  ///< its extent and jitter follow from what is below
     uint32_t samples = 1;   ///< per pixel and frame

@@ -161,6 +161,7 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       picker_(device_, reload_.replacements()) {
     panel_.render = settings.render;
     if (settings.preview) panel_.setPreview(true);
+    if (settings.jitter) panel_.jitter = jitterChoice(*settings.jitter, settings.render.pipeline);
     panel_.samples = settings.samples;
     panel_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     ownShrink_ = shrinkFor(device_, window_.pixels());

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "gpu/device.h"
@@ -15,12 +16,13 @@ namespace limpid::viewer {
 
 struct ViewSettings {
     SceneSource source;
-    std::string startCamera;  ///< options of the command line that chose the camera of the first scene;
-                              ///< empty: its first
-    std::string animation;    ///< clip by name or number; empty: the first one
-    RenderSettings render;    ///< its extent is the window's
-    bool preview = false;     ///< it starts with the pipeline `preview` instead of the chosen one
-    uint32_t samples = 1;     ///< per pixel and frame
+    std::string startCamera;       ///< options of the command line that chose the camera of the first scene;
+                                   ///< empty: its first
+    std::string animation;         ///< clip by name or number; empty: the first one
+    RenderSettings render;         ///< its extent is the window's
+    std::optional<Jitter> jitter;  ///< empty: as the pipeline needs it
+    bool preview = false;          ///< it starts with the pipeline `preview` instead of the chosen one
+    uint32_t samples = 1;          ///< per pixel and frame
     /// Frames in which nothing changes, times samples; then nothing is computed until something does.
     uint64_t maxSamples = 4096;
     /// 2^shrink pixels of the window for one of the picture's, along each axis. Below 0: 0, but on CPUs so

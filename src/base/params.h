@@ -1,5 +1,5 @@
 // Parameter tables: name, default, range, unit, one line of help, stated once per technique.
-// The table drives `--set group.name=value`, presets, `limpid info` and the viewer's sliders.
+// The table drives `--set group.name=value`, `limpid info` and the viewer's sliders.
 #pragma once
 
 #include <functional>
@@ -28,12 +28,6 @@ struct ParamInfo {
     std::string unit;   ///< "" if it has none
     std::string help;   ///< one line: what it is, and what more of it does
     SliderSpan slider;  ///< of the window
-};
-
-/// A named set of values. Parameters that it does not name keep theirs.
-struct ParamPreset {
-    std::string name;
-    std::vector<std::pair<std::string, std::string>> values;  ///< parameter and text
 };
 
 /// Text to the type of `like`. Throws UsageError naming `name` if the text is no such value.
@@ -72,28 +66,6 @@ class ParamTable {
         return *this;
     }
 
-    /// To be called after the parameters are added. Throws Error if the table has no such parameter,
-    /// UsageError on a bad value.
-    ParamTable& preset(std::string name, std::vector<std::pair<std::string, std::string>> values) {
-        Settings checked;
-        for (const auto& [parameter, text] : values) {
-            if (!set(checked, parameter, text))
-                throw Error("preset '" + name + "': no parameter '" + parameter + "'");
-        }
-        presets_.push_back({std::move(name), std::move(values)});
-        return *this;
-    }
-    const std::vector<ParamPreset>& presets() const { return presets_; }
-    /// Returns false if the table has no preset of that name.
-    bool applyPreset(Settings& settings, std::string_view name) const {
-        for (const ParamPreset& preset : presets_) {
-            if (preset.name != name) continue;
-            for (const auto& [parameter, text] : preset.values) set(settings, parameter, text);
-            return true;
-        }
-        return false;
-    }
-
     const std::string& group() const { return group_; }
     const std::vector<ParamInfo>& infos() const { return infos_; }
     ParamValue get(const Settings& settings, size_t index) const { return getters_[index](settings); }
@@ -113,7 +85,6 @@ class ParamTable {
   private:
     std::string group_;
     std::vector<ParamInfo> infos_;
-    std::vector<ParamPreset> presets_;
     std::vector<std::function<void(Settings&, const ParamValue&)>> setters_;
     std::vector<std::function<ParamValue(const Settings&)>> getters_;
 };

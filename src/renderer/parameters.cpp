@@ -1,7 +1,5 @@
 #include "renderer/parameters.h"
 
-#include <set>
-
 #include "base/error.h"
 
 namespace limpid {
@@ -13,14 +11,10 @@ ParamGroup groupOf(const ParamTable<Settings>& table, Select select) {
     return {
         .name = table.group(),
         .infos = table.infos(),
-        .presets = table.presets(),
         .set = [&table, select](RenderSettings& settings, std::string_view name,
                                 std::string_view text) { return table.set(select(settings), name, text); },
         .get = [&table, select](const RenderSettings& settings,
-                                size_t index) { return table.get(select(settings), index); },
-        .applyPreset = [&table, select](
-                           RenderSettings& settings,
-                           std::string_view preset) { return table.applyPreset(select(settings), preset); }};
+                                size_t index) { return table.get(select(settings), index); }};
 }
 
 }  // namespace
@@ -65,19 +59,6 @@ std::vector<std::string> assignmentsOf(const RenderSettings& settings) {
         }
     }
     return texts;
-}
-
-void applyPreset(RenderSettings& settings, std::string_view preset) {
-    bool found = false;
-    std::set<std::string> names;
-    for (const ParamGroup& group : paramGroups()) {
-        found = group.applyPreset(settings, preset) || found;
-        for (const ParamPreset& known : group.presets) names.insert(known.name);
-    }
-    if (found) return;
-    std::string list;
-    for (const std::string& name : names) list += " " + name;
-    throw UsageError("there is no preset '" + std::string(preset) + "'; the presets are" + list);
 }
 
 }  // namespace limpid

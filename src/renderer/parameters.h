@@ -1,4 +1,4 @@
-// Every technique's parameters in one place: for --set, --preset, `limpid info` and the viewer.
+// Every technique's parameters in one place: for --set, `limpid info` and the viewer.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,9 @@ namespace limpid {
 struct ParamGroup {
     std::string name;
     std::vector<ParamInfo> infos;
-    std::vector<ParamPreset> presets;
-    /// As ParamTable::set(), get() and applyPreset().
+    /// As ParamTable::set() and get().
     std::function<bool(RenderSettings&, std::string_view name, std::string_view text)> set;
     std::function<ParamValue(const RenderSettings&, size_t index)> get;
-    std::function<bool(RenderSettings&, std::string_view preset)> applyPreset;
 };
 
 const std::vector<ParamGroup>& paramGroups();
@@ -29,8 +27,5 @@ void assign(RenderSettings& settings, std::string_view assignment);
 
 /// What assign() must be given to come from the defaults to these settings.
 std::vector<std::string> assignmentsOf(const RenderSettings& settings);
-
-/// Of every technique that has it. Throws UsageError listing the presets if none has.
-void applyPreset(RenderSettings& settings, std::string_view preset);
 
 }  // namespace limpid

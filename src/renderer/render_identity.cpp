@@ -32,10 +32,6 @@ void addClip(Hash64& hash, const scene::Clip& clip) {
     }
 }
 
-const char* nameOf(Jitter jitter) {
-    return jitter == Jitter::Pixel ? "pixel" : jitter == Jitter::Frame ? "frame" : "off";
-}
-
 }  // namespace
 
 std::string validUtf8(const std::string& text) {
@@ -90,7 +86,7 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
         {"frames per second", fmt::format("{}", timing.framesPerSecond)},
         {"the first frame's time", fmt::format("{}", timing.start)},
         {seedEntry, fmt::format("{}", settings.seed)},
-        {"jitter", nameOf(settings.jitter)},
+        {"jitter", toString(settings.jitter)},
     };
     const ParamTable<PathtraceSettings>& table = pathtraceParams();
     for (size_t i = 0; i < table.infos().size(); ++i)

@@ -19,6 +19,11 @@ inline Jitter defaultJitter(const Pipeline& pipeline) {
     return means ? Jitter::Pixel : Jitter::Off;
 }
 
+/// As after --jitter.
+inline const char* toString(Jitter jitter) {
+    return jitter == Jitter::Pixel ? "pixel" : jitter == Jitter::Frame ? "frame" : "off";
+}
+
 struct RenderSettings {
     gpu::Extent extent{1280, 720};
     uint32_t seed = 0;

@@ -18,6 +18,9 @@ HistoryParams makeParams(gpu::Extent extent, const CameraParams& camera, const H
     params.search = settings.search;
     params.demodulate = settings.demodulate;
     params.greyRestart = settings.greyRestart;
+    params.greyMisses = settings.greyMisses;
+    params.grey = settings.grey;
+    params.identity = settings.identity;
     params.maxHistory = settings.maxHistory > 0.0f ? settings.maxHistory : std::numeric_limits<float>::max();
     return params;
 }
@@ -47,17 +50,18 @@ const ParamTable<HistorySettings>& historyParams() {
               "weight of the past at most; lower follows changing light sooner, higher is smoother; 0 is no "
               "limit")
             .slider(0, 1000, SliderScale::Logarithmic, 1);
-        t.add("grey_restart", &S::greyRestart,
-              "restart from grey 0.5 of weight 1 (seed document) instead of from the frame's own sample");
+        t.add(
+            "grey_restart", &S::greyRestart,
+            "where there is no history: a grey of weight 1, to which the frame's sample is added, instead of "
+            "that sample alone; softens the black of new pixels");
+        t.add("grey", &S::grey, 0.0, 1e6, "cd/m^2", "the grey of `grey_restart`").slider(0, 2);
+        t.add("grey_misses", &S::greyMisses, "`grey_restart` holds where nothing is hit, too");
+        t.add("identity", &S::identity,
+              "a pixel of the previous frame counts if it saw the same object; off: objects that touch may "
+              "share "
+              "their history");
         t.add("show_cases", &S::showCases,
               "show why pixels have no history: blue nothing hit, yellow off screen, red no valid tap");
-        t.preset("course", {{"normal", "0.95"},
-                            {"depth", "0.15"},
-                            {"relative", "off"},
-                            {"search", "off"},
-                            {"demodulate", "off"},
-                            {"max_history", "0"},
-                            {"grey_restart", "on"}});
         return t;
     }();
     return table;

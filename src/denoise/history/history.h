@@ -20,6 +20,9 @@ struct HistorySettings {
     bool demodulate = true;
     float maxHistory = 8.0f;
     bool greyRestart = false;
+    float grey = 0.5f;
+    bool greyMisses = false;
+    bool identity = true;
     bool showCases = false;
     bool operator==(const HistorySettings&) const = default;
 };

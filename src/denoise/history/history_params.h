@@ -29,6 +29,9 @@ struct HistoryParams {
     uint search;
     uint demodulate;
     uint greyRestart;
+    uint greyMisses;
+    float grey;        // cd/m^2
+    uint identity;     // 0: instances do not count
     float maxHistory;  // frames; infinite: no limit
 };
 

@@ -45,7 +45,7 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const vec4 ai = imageLoad(albedoIdBefore, inside);
     vec4 before = imageLoad(colorBefore, inside);
     const bool counts = at == inside && before.w > 0.0 && nd.w > 0.0 && dot(expected.normal, nd.xyz) > params.normalThreshold &&
-                        abs(expected.depth - nd.w) < expected.tolerance && ai.w == expected.id;
+                        abs(expected.depth - nd.w) < expected.tolerance && (params.identity == 0u || ai.w == expected.id);
     if (!counts || weight <= 0.0) return;
     if (params.demodulate != 0u) before.rgb /= modulation(ai);
     taps.sum += weight * before;
@@ -115,8 +115,8 @@ void main() {
     vec4 now = updated(before, radiance);
     if (failure != CASE_TRACKED) {
         before = vec4(0.0);
-        const bool grey = params.greyRestart != 0u && failure != CASE_NOTHING_HIT;
-        now = grey ? updated(vec4(vec3(0.5), 1.0), radiance) : vec4(radiance, 1.0);
+        const bool grey = params.greyRestart != 0u && (failure != CASE_NOTHING_HIT || params.greyMisses != 0u);
+        now = grey ? updated(vec4(vec3(params.grey), 1.0), radiance) : vec4(radiance, 1.0);
     }
     // Near the end of float's range resampling may overflow, too.
     if (!isFinite(before.rgb)) before = vec4(0.0);

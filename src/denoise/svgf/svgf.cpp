@@ -402,37 +402,8 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("boost", &S::boost,
               "the noise expected of a pixel falls with the length of its history (times 2 / sqrt(frames)); "
               "off: it is that of one frame");
-        t.add("position", &S::position, "weigh by distances of points and of normals, as the seed document");
-        t.preset("paper", {{"alpha", "0.2"},
-                           {"reflections", "off"},
-                           {"wide", "on"},
-                           {"alpha_moments", "0.2"},
-                           {"antilag", "0"},
-                           {"alpha_shown", "1"},
-                           {"levels", "5"},
-                           {"history_level", "1"},
-                           {"phi_normal", "128"},
-                           {"phi_depth", "1"},
-                           {"boost", "off"},
-                           {"blur_levels", "10"}});
-        t.preset("cis565", {{"separate", "off"},
-                            {"demodulate", "off"},
-                            {"alpha", "0.2"},
-                            {"alpha_moments", "0.2"},
-                            {"normal_test", "0.995"},
-                            {"depth_test", "0.1"},
-                            {"relative", "off"},
-                            {"antilag", "0"},
-                            {"alpha_shown", "1"},
-                            {"levels", "5"},
-                            {"history_level", "1"},
-                            {"wide", "on"},
-                            {"phi_color", "0.7"},
-                            {"phi_normal", "0.2"},
-                            {"phi_depth", "0.35"},
-                            {"boost", "off"},
-                            {"blur_levels", "10"},
-                            {"position", "on"}});
+        t.add("position", &S::position,
+              "weigh by distances of points and of normals instead of slopes and cosines");
         return t;
     }();
     return table;
