@@ -36,8 +36,8 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
 /// Against a mean over the pixels, on a scene with many edges. Samples that all went through the pixels'
 /// centres had stair-stepped edges whatever --jitter said.
 TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
-    const std::string scene = "render builtin:cornell-spheres" + std::string(larger) + "-o ";
-    mustRun(scene + path("truth.exr") + " --spp 512 --samples-per-launch 4 --seed 3");
+    const std::string scene = "render builtin:lab-disocclusion" + std::string(larger) + "-o ";
+    mustRun(scene + path("truth.exr") + " --spp 192 --samples-per-launch 4 --seed 3");
     const auto psnrOf = [&](const std::string& more) {
         mustRun(scene + path("own.exr") + " --pipeline kpcn" + more);
         return image::psnr(image::displayEncode(pictureOf("own.exr"), 0.0f),
@@ -46,7 +46,7 @@ TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
     const double smooth = psnrOf(""), stepped = psnrOf(" --jitter off");
     RecordProperty("smooth_dB", std::to_string(smooth));
     RecordProperty("stepped_dB", std::to_string(stepped));
-    EXPECT_GT(smooth, stepped + 3.0);
+    EXPECT_GT(smooth, stepped + 6.0);  // 33.2 and 21.8
     EXPECT_EQ(psnrOf(" --jitter pixel"), smooth) << "the default";
     EXPECT_NE(psnrOf(" --jitter frame"), stepped);
 }
