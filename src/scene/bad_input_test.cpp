@@ -140,10 +140,6 @@ TEST_F(BadInput, MissingOrShortBuffersAndImages) {
     GltfFile rich = richFile(folder);
     expectFault(rich, "images[0]: has neither",
                 [](GltfFile& f) { f.document["images"][0] = json::object(); });
-    expectFault(rich, "base64", [](GltfFile& f) {
-        f.document["buffers"] = {{{"byteLength", 1}, {"uri", "data:,x"}}};
-        f.document["images"][0]["uri"] = "data:image/png,$$";
-    });
 }
 
 TEST_F(BadInput, ImagesThatCannotBeHadAreNamedAndPlain) {
@@ -163,6 +159,7 @@ TEST_F(BadInput, ImagesThatCannotBeHadAreNamedAndPlain) {
     expectUri("/etc/passwd", "absolute");
     expectUri("http://localhost/a.png", "relative");
     expectUri("data:image/png;base64,$$", "base64");
+    expectUri("data:image/png,$$", "base64");
     expectPlain("has no image", [](GltfFile& f) { f.document["textures"][0].erase("source"); });
     const auto expectContent = [&](const std::string& content) {
         expectPlain("a.png", [&](GltfFile&) { put(folder / "a.png", content); });
@@ -526,8 +523,6 @@ TEST_F(BadInput, Obj) {
     put(folder / "scene.mtl", "newmtl m\nKd 1 x 1\n");
     put(folder / "scene.obj", "mtllib scene.mtl\n" + corners + "usemtl m\nf 1 2 3\n");
     EXPECT_THROW(loadScene(folder / "scene.obj"), InputError);
-    put(folder / "scene.mtl", "newmtl m\nmap_Kd none.png\n");
-    expectRefused(folder / "scene.obj", "none.png");
 }
 
 TEST_F(BadInput, ObjThatIsNoText) {
