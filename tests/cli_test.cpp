@@ -1,4 +1,6 @@
 // The command line as its users and scripts meet it: exit codes, messages, and outputs that survive failures.
+#include <nlohmann/json.hpp>
+
 #include "cli_fixture.h"
 
 namespace limpid {
@@ -95,6 +97,68 @@ TEST_F(CliTest, RendersComparesAndReports) {
     EXPECT_EQ(run("compare " + path("c.png") + " " + path("a.exr") + " --error-map " + path("e.png")).code,
               0);
     EXPECT_TRUE(fs::exists(folder_ / "e.png"));
+}
+
+/// A triangle, two cameras, and two clips that move it.
+constexpr const char* sceneWithCameras = R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2]}],
+  "nodes": [{"mesh": 0}, {"camera": 0, "name": "front \u001b[2J", "translation": [0.3, 0.3, 2]},
+            {"camera": 1, "name": "top", "translation": [0.1, 0.2, 1]}],
+  "cameras": [{"type": "perspective", "name": "front \u001b[2J",
+               "perspective": {"yfov": 0.7853982, "znear": 0.1}},
+              {"type": "orthographic", "name": "top", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "buffers": [{"byteLength": 68, "uri": "scene.bin"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                  {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                 "max": [1, 1, 0]},
+                {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2]},
+                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+  "animations": [
+    {"name": "move", "samplers": [{"input": 1, "output": 2}],
+     "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]},
+    {"name": "shrink", "samplers": [{"input": 1, "output": 2}],
+     "channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}]}]})";
+
+TEST_F(CliTest, InfoListsWhatASceneHoldsAndWhatItListsCanBeChosen) {
+    put("scene.gltf", sceneWithCameras);
+    const float floats[17] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0.5f};
+    put("scene.bin", std::string(reinterpret_cast<const char*>(floats), sizeof floats));
+    const std::string scene = path("scene.gltf");
+
+    const Result text = run("info " + scene);
+    EXPECT_EQ(text.code, 0) << text.output;
+    for (const char* part : {"'front \\x1b[2J'", "perspective, fov 45.0 degrees", "'top'",
+                             "orthographic, 2 high", "'move'", "2.00 s", "1 triangles"})
+        EXPECT_NE(text.output.find(part), std::string::npos) << part << "\n" << text.output;
+    EXPECT_EQ(text.output.find('\x1b'), std::string::npos);
+
+    const Result report = run("info " + scene + " --json 2>/dev/null");
+    const auto json = nlohmann::json::parse(report.output.substr(report.output.find('{')));
+    ASSERT_EQ(json["cameras"].size(), 2u);
+    EXPECT_EQ(json["cameras"][0]["type"], "perspective");
+    EXPECT_NEAR(json["cameras"][0]["fov"].get<double>(), 45.0, 1e-3);
+    EXPECT_EQ(json["cameras"][1]["name"], "top");
+    EXPECT_EQ(json["animations"].size(), 2u);
+    EXPECT_EQ(json["triangles"], 1);
+
+    const std::string render = "render " + scene + tiny + "-o ";
+    for (const char* index : {"0", "1"}) {
+        const std::string name = json["cameras"][index[0] - '0']["name"];
+        ASSERT_EQ(run(render + path("index.exr") + " --camera " + index).code, 0);
+        ASSERT_EQ(run(render + path("name.exr") + " --camera '" + name + "'").code, 0);
+        EXPECT_EQ(get("index.exr"), get("name.exr")) << name;
+        put(std::string(index) + ".exr", get("index.exr"));
+    }
+    EXPECT_NE(get("0.exr"), get("1.exr"));
+    expect(render + path("a.exr") + " --camera 2", 2, "1 'top'");
+
+    // Each clip and both together are three pictures.
+    for (const char* clip : {"none", "0", "shrink", "all"})
+        ASSERT_EQ(run(render + path(std::string(clip) + ".exr") + " --time 1 --animation " + clip).code, 0);
+    EXPECT_NE(get("all.exr"), get("0.exr"));
+    EXPECT_NE(get("all.exr"), get("shrink.exr"));
+    EXPECT_NE(get("all.exr"), get("none.exr"));
 }
 
 TEST_F(CliTest, InfoListsWhatThereIs) {

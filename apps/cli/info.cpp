@@ -1,4 +1,5 @@
-// limpid info: devices with features and limits, pipelines, built-in scenes, every parameter.
+// limpid info: devices with features and limits, pipelines, built-in scenes, every parameter; or what a scene
+// holds.
 #include <fmt/format.h>
 
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "commands.h"
 #include "gpu/device.h"
+#include "info_scene.h"
 #include "json_text.h"
 #include "renderer/layers.h"
 #include "renderer/parameters.h"
@@ -130,11 +132,15 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
 }  // namespace
 
 void addInfoCommand(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("info", "List devices, pipelines, built-in scenes and every parameter");
+    CLI::App* command = app.add_subcommand(
+        "info", "List devices, pipelines, built-in scenes and every parameter; or what a scene holds");
     auto asJson = std::make_shared<bool>(false);
+    auto scene = std::make_shared<std::string>();
+    command->add_option("SCENE", *scene,
+                        "Of this scene: cameras, animations, lights, and how much of all else");
     command->add_flag("--json", *asJson, "One JSON object on stdout");
-    command->callback([asJson] {
+    command->callback([asJson, scene] {
+        if (!scene->empty()) return printSceneInfo(*scene, *asJson);
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
         if (!*asJson) return printText(devices);
         const json object{{"version", LIMPID_VERSION},      {"devices", devicesJson(devices)},

@@ -1,10 +1,11 @@
-// limpid render: a scene to image files.
+// limpid render: a scene to image files or a clip.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "commands.h"
 #include "image/exr.h"
@@ -33,12 +34,43 @@ void writeDump(const fs::path& output, const std::vector<std::pair<std::string, 
     }
 }
 
+void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& format,
+                const RenderedLayers& layers, const std::map<std::string, std::string>& metadata) {
+    if (job.clip) return job.clip->add(beautyOf(layers));
+    writePicture(FramePattern(job.options.output).format(static_cast<int>(frame)), format, layers, metadata);
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void renderFrames(const RenderJob& job, RenderSummary& summary) {
+    if (job.settings.pipeline == Pipeline{} && !isProgressive(job.options)) {
+        renderIndependentFrames(job, summary);
+    } else {
+        renderSuccessiveFrames(job, summary);
+    }
+}
+
+void renderClip(RenderJob job, RenderSummary& summary) {
+    const RenderOptions& o = job.options;
+    // What a process left that was killed in the act.
+    removeStaleTemporaries(o.output);
+    writeAtomically(o.output, [&](const fs::path& temporary) {
+        ClipWriter clip(temporary,
+                        {.width = job.settings.extent.width,
+                         .height = job.settings.extent.height,
+                         .framesPerSecond = o.sequence.timing.framesPerSecond,
+                         .stops = parseExposure(o.exposure),
+                         .shownAsIs = job.settings.pipeline.kind == Pipeline::Kind::AmbientOcclusion});
+        job.clip = &clip;
+        renderFrames(job, summary);
+        clip.finish();
+    });
 }
 
 void render(const RenderOptions& o) {
@@ -72,10 +104,10 @@ void render(const RenderOptions& o) {
     summary.timings.uploadSeconds = since(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
-    if (settings.pipeline == Pipeline{} && !isProgressive(o)) {
-        renderIndependentFrames(job, summary);
+    if (isClip(o.output)) {
+        renderClip(job, summary);
     } else {
-        renderSuccessiveFrames(job, summary);
+        renderFrames(job, summary);
     }
     reportRender(o, *device, summary, scene, gpuScene);
     if (device->validationMessages() > 0) {

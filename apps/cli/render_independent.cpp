@@ -61,9 +61,9 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         if (writesSums(o)) {
             writeAccumulation(file(frame), render.header(), sums);
         } else {
-            writePicture(file(frame), formatOf(render.header()), sums.means(),
-                         metadataOf(render.header(), frame, sums.samples(),
-                                    cameraText(job.sequence.camera(frame, job.settings.extent))));
+            writeFrame(job, frame, formatOf(render.header()), sums.means(),
+                       metadataOf(render.header(), frame, sums.samples(),
+                                  cameraText(job.sequence.camera(frame, job.settings.extent))));
         }
         if (o.dump.empty()) return;
         if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");

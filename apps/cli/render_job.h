@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "clip_output.h"
 #include "image/image.h"
+#include "picture_output.h"
 #include "render_options.h"
 #include "render_report.h"
 #include "renderer/sequence.h"
@@ -25,7 +27,12 @@ struct RenderJob {
     uint64_t sceneContent = 0;  ///< sceneHash()
     int frames = 1;
     std::chrono::steady_clock::time_point started;
+    ClipWriter* clip = nullptr;  ///< where frames go, if the output is a clip
 };
+
+/// Writes a frame's picture to the output: a file of its own, or the clip's next frame.
+void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& format,
+                const RenderedLayers& layers, const std::map<std::string, std::string>& metadata);
 
 /// `path`: each frame is a mean of its own; block by block, so that it can be stopped, resumed and shared
 /// out.

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/frame_pattern.h"
+#include "clip_output.h"
 #include "picture_output.h"
 #include "renderer/layers.h"
 #include "renderer/parameters.h"
@@ -19,8 +20,20 @@ Jitter parseJitter(const std::string& name) {
     return name == "pixel" ? Jitter::Pixel : name == "frame" ? Jitter::Frame : Jitter::Off;
 }
 
+void checkClip(const RenderOptions& o) {
+    if (FramePattern(o.output).numbered())
+        throw UsageError("'" + o.output + "': a clip is one file, whose name holds no frame number");
+    if (isLongRender(o.longRender))
+        throw UsageError(
+            "--checkpoint, --resume, --shard and --time-limit are not for clips: render frame.%04d.png");
+    if (!o.layers.empty()) throw UsageError("--aov needs an .exr output");
+    if (!o.dump.empty()) throw UsageError("--dump is not for clips: render frame.%04d.exr");
+    checkClipOutput(o.output);
+}
+
 void checkOutput(const RenderOptions& o) {
     const fs::path path = FramePattern(o.output).format(0);
+    if (isClip(path)) return checkClip(o);
     const bool sums = path.extension() == ".sums";
     if (sums != writesSums(o)) {
         throw UsageError(
@@ -62,7 +75,9 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     addSequenceOptions(command, o.sequence);
     command
         .add_option("-o,--output", o.output,
-                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames")
+                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames; "
+                    "a clip by "
+                    "the program ffmpeg: .mp4, .webm, .webp or .gif")
         ->required();
     command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));

@@ -42,7 +42,7 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
         summary.lastFrame = sumByName(renderer.passTimes());
         times.add(summary.lastFrame);
         const std::filesystem::path file = output.format(static_cast<int>(frame));
-        writePicture(file, format, layers, metadataOf(job, frame, layers.samples));
+        writeFrame(job, frame, format, layers, metadataOf(job, frame, layers.samples));
         if (!o.dump.empty()) writeDump(file, renderer.dump(o.dump));
         summary.samples = layers.samples;
         progress.show(++summary.framesFinished);

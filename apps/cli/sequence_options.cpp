@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "clip_output.h"
 #include "scene/movement.h"
 
 namespace limpid::cli {
@@ -16,6 +17,11 @@ constexpr double builtinPathSeconds = 10.0;
 /// A built-in path has 60 keys a second.
 constexpr double longestBuiltinPath = 1e5;
 constexpr int mostFrames = 1000000;
+
+/// Whether the output has room for several frames: a name with a number, or a clip.
+bool holdsFrames(const FramePattern& output) {
+    return output.numbered() || isClip(output.format(0));
+}
 
 /// All frames that there are from the first one's time to `seconds`.
 int framesUntil(double seconds, const SequenceTiming& timing) {
@@ -32,10 +38,10 @@ int framesUntil(double seconds, const SequenceTiming& timing) {
 }  // namespace
 
 void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
-    command.add_option(
-        "--animation", choice.animation,
-        "Clip by name or number; default: the first, if there is more than one frame or --time; "
-        "'none': at rest");
+    command.add_option("--animation", choice.animation,
+                       "Clip by name or number, or all: all together; default: the first, if there is more "
+                       "than one frame or "
+                       "--time; 'none': at rest");
     command
         .add_option("--frames", choice.frames,
                     "Frames; then OUTPUT holds %04d. Default: all of the animation")
@@ -51,7 +57,7 @@ void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
 
 void chooseAnimation(const SequenceChoice& choice, const FramePattern& output, scene::Scene& scene) {
     if (choice.animation == "none") return;
-    const bool timeMatters = choice.timeGiven || choice.frames > 1 || output.numbered();
+    const bool timeMatters = choice.timeGiven || choice.frames > 1 || holdsFrames(output);
     if (choice.animation.empty() && (!timeMatters || scene.rig.clips.empty())) return;
     scene::chooseClip(scene, choice.animation);
     const scene::Clip& clip = scene.rig.clips[static_cast<size_t>(scene.clip)];
@@ -78,9 +84,9 @@ int frameCount(const SequenceChoice& choice, const FramePattern& output, const s
         if (scene.clip != scene::none)
             seconds = double{scene.rig.clips[static_cast<size_t>(scene.clip)].duration()};
         if (path) seconds = std::max(seconds, path->duration());
-        frames = output.numbered() ? framesUntil(seconds, choice.timing) : 1;
+        frames = holdsFrames(output) ? framesUntil(seconds, choice.timing) : 1;
     }
-    if (frames > 1 && !output.numbered())
+    if (frames > 1 && !holdsFrames(output))
         throw UsageError("'" + output.text() +
                          "': the name of several frames holds a number, as in frame.%04d.exr");
     return frames;

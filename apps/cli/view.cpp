@@ -123,7 +123,7 @@ void addViewCommand(CLI::App& app) {
         "says; "
         "default: limpid/view.json in $XDG_CONFIG_HOME or ~/.config; 'none': nothing is kept");
     command->add_option("--seed", o->seed, "Another seed, other noise (0)");
-    command->add_option("--animation", o->animation, "Clip by name or number; default: the first");
+    command->add_option("--animation", o->animation, "Clip by name or number, or all; default: the first");
     command
         ->add_option("--shrink", o->shrink,
                      "The picture has 2^N times fewer pixels along each axis than the window, for slow "

@@ -78,7 +78,7 @@ class Viewer {
         PanelState panel;
         scene::Camera home;
         FlyCamera hand;
-        int clip;  ///< scene::none: none plays
+        std::string clip;  ///< as chooseClip() takes it; empty: none plays
         double time;
     };
     Standing standing() const;
@@ -247,7 +247,7 @@ void Viewer::applyLightRequests() {
 void Viewer::relight(const SceneSource& source) {
     scene::Scene scene = load_(source);
     const double time = playback_.time();
-    if (stage_->moves()) scene::chooseClip(scene, std::to_string(stage_->scene().clip));
+    if (stage_->moves()) scene::chooseClip(scene, scene::clipChoice(stage_->scene()));
     show(std::move(scene));
     playback_.reset(time);
     // Its file may have changed in the meantime.
@@ -564,7 +564,7 @@ ViewSettings Viewer::settingsNow() const {
 }
 
 Viewer::Standing Viewer::standing() const {
-    Standing now{panel_, rig_.home(), rig_.hand(), stage_->scene().clip, playback_.time()};
+    Standing now{panel_, rig_.home(), rig_.hand(), scene::clipChoice(stage_->scene()), playback_.time()};
     now.panel.asked = {};
     now.panel.render.denoisers.kpcn.network.reset();  // lies on the device
     return now;
@@ -648,7 +648,7 @@ std::unique_ptr<Viewer> afterLoss(const gpu::DeviceOptions& device, const Tracer
     now.render.denoisers = standing.panel.render.denoisers;
     lost.reset();
     scene::Scene scene = load(now.source);
-    if (standing.clip != scene::none) scene::chooseClip(scene, std::to_string(standing.clip));
+    if (!standing.clip.empty()) scene::chooseClip(scene, standing.clip);
     auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(scene), standing.home, now);
     viewer->takeOver(standing);
     return viewer;

@@ -18,7 +18,7 @@ struct ViewSettings {
     SceneSource source;
     std::string startCamera;       ///< options of the command line that chose the camera of the first scene;
                                    ///< empty: its first
-    std::string animation;         ///< clip by name or number; empty: the first one
+    std::string animation;         ///< clip by name or number, or "all"; empty: the first one
     RenderSettings render;         ///< its extent is the window's
     std::optional<Jitter> jitter;  ///< empty: as the pipeline needs it
     bool preview = false;          ///< it starts with the pipeline `preview` instead of the chosen one

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
+#include <utility>
 
 namespace limpid::scene {
 namespace {
@@ -113,6 +115,26 @@ std::vector<mat4> jointMatrices(const Skin& skin, const RigPose& pose) {
         matrices.push_back(pose.toWorld[static_cast<size_t>(skin.joints[j])] * skin.inverseBind[j]);
     }
     return matrices;
+}
+
+ClipsTogether playTogether(const Rig& rig) {
+    ClipsTogether result;
+    result.clip.name = "all";
+    result.clip.together = true;
+    std::map<std::pair<int, AnimatedValue>, size_t> places;
+    for (const Clip& clip : rig.clips) {
+        for (const Channel& channel : clip.channels) {
+            const auto [place, isNew] =
+                places.try_emplace({channel.node, channel.value}, result.clip.channels.size());
+            if (isNew) {
+                result.clip.channels.push_back(channel);
+            } else {
+                result.clip.channels[place->second] = channel;
+                ++result.overridden;
+            }
+        }
+    }
+    return result;
 }
 
 std::vector<bool> movedNodes(const Rig& rig, const Clip& clip) {

@@ -50,6 +50,7 @@ struct Channel {
 struct Clip {
     std::string name;
     std::vector<Channel> channels;
+    bool together = false;  ///< made by playTogether()
 
     float duration() const;  ///< seconds, to the last key
 };
@@ -72,6 +73,15 @@ RigPose evaluate(const Rig& rig, const Clip* clip, double time);
 
 /// Rest position -> world, of each joint of the skin.
 std::vector<mat4> jointMatrices(const Skin& skin, const RigPose& pose);
+
+/// All of the rig's clips as one, named "all": they begin at the same time, and each holds its last pose
+/// until the longest has ended. Where several animate the same value of a node the last one counts;
+/// `overridden` is how many values of other clips do not.
+struct ClipsTogether {
+    Clip clip;
+    size_t overridden = 0;
+};
+ClipsTogether playTogether(const Rig& rig);
 
 /// Which nodes the clip moves, directly or through a parent.
 std::vector<bool> movedNodes(const Rig& rig, const Clip& clip);

@@ -113,6 +113,61 @@ TEST_F(AnimationFile, ChoosesClipsByNameAndNumber) {
     EXPECT_THROW(chooseClip(still, ""), UsageError);
 }
 
+TEST_F(AnimationFile, PlaysAllClipsTogether) {
+    GltfFile file = moving();
+    json& clips = file.document["animations"];
+    const json first = clips[0];
+    // The second clip moves another node, and ends later; the third moves the first's node another way.
+    file.document["nodes"].push_back({{"name", "other"}});
+    file.document["scenes"][0]["nodes"] = {0, 1};
+    const auto add = [&](int node, const std::vector<float>& times, const std::vector<float>& values) {
+        json clip = first;
+        clip["name"] = "clip " + std::to_string(clips.size());
+        clip["samplers"][0] = {{"input", file.addFloats(times, "SCALAR", 1)},
+                               {"output", file.addFloats(values, "VEC3", 3)}};
+        clip["channels"][0]["target"]["node"] = node;
+        clips.push_back(clip);
+    };
+    add(1, {0, 3}, {0, 0, 0, 0, 3, 0});
+    Scene scene = loadScene(file.save(folder));
+    chooseClip(scene, "all");
+    const Clip& all = scene.rig.clips[static_cast<size_t>(scene.clip)];
+    EXPECT_EQ(all.name, "all");
+    EXPECT_EQ(all.duration(), 3.0f);
+    EXPECT_EQ(evaluate(scene.rig, &all, 1.0).toWorld[0][3].x, 2.0f);
+    EXPECT_EQ(evaluate(scene.rig, &all, 1.0).toWorld[1][3].y, 1.0f);
+    EXPECT_EQ(evaluate(scene.rig, &all, 3.0).toWorld[0][3].x, 4.0f) << "the shorter clip holds its last pose";
+    EXPECT_EQ(scene.instances[0].movement, Movement::Rigid);
+    EXPECT_EQ(playTogether(loadScene(file.save(folder)).rig).overridden, 0u);
+
+    // Chosen again, and in the file loaded anew.
+    const size_t clipsNow = scene.rig.clips.size();
+    chooseClip(scene, clipChoice(scene));
+    EXPECT_EQ(scene.rig.clips.size(), clipsNow);
+    Scene again = loadScene(file.save(folder));
+    EXPECT_EQ(clipChoice(again), "");
+    chooseClip(again, clipChoice(scene));
+    EXPECT_EQ(again.rig.clips[static_cast<size_t>(again.clip)].duration(), 3.0f);
+    chooseClip(again, "1");
+    EXPECT_EQ(clipChoice(again), "1");
+
+    add(0, {0, 1}, {0, 0, 0, 0, 0, 8});
+    const ClipsTogether conflict = playTogether(loadScene(file.save(folder)).rig);
+    EXPECT_EQ(conflict.overridden, 1u);
+    EXPECT_EQ(conflict.clip.channels.size(), 2u);
+    EXPECT_EQ(evaluate(loadScene(file.save(folder)).rig, &conflict.clip, 1.0).toWorld[0][3].z, 8.0f)
+        << "the last clip counts";
+
+    // One clip is all there are; a clip of that name is meant first.
+    Scene one = loadScene(moving().save(folder));
+    chooseClip(one, "all");
+    EXPECT_EQ(one.clip, 0);
+    clips[1]["name"] = "all";
+    Scene named = loadScene(file.save(folder));
+    chooseClip(named, "all");
+    EXPECT_EQ(named.clip, 1);
+}
+
 TEST_F(AnimationFile, TellsWhatMoves) {
     GltfFile file = skinned();
     Scene scene = loadScene(file.save(folder));

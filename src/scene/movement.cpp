@@ -5,12 +5,27 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "scene/framing.h"
 
 namespace limpid::scene {
 namespace {
 
-int findClip(const Rig& rig, std::string_view choice) {
+/// The clip of all clips; made once.
+int clipOfAll(Rig& rig) {
+    if (rig.clips.size() == 1) return 0;
+    ClipsTogether all = playTogether(rig);
+    if (all.overridden > 0) {
+        log::warn(
+            "{} values of nodes are animated by several clips; of these the last clip's count, for all play "
+            "together",
+            all.overridden);
+    }
+    rig.clips.push_back(std::move(all.clip));
+    return static_cast<int>(rig.clips.size()) - 1;
+}
+
+int findClip(Rig& rig, std::string_view choice) {
     if (choice.empty() && !rig.clips.empty()) return 0;
     std::string known;
     for (size_t i = 0; i < rig.clips.size(); ++i) {
@@ -18,7 +33,9 @@ int findClip(const Rig& rig, std::string_view choice) {
         known += fmt::format(" {} '{}'", i, rig.clips[i].name);
     }
     if (known.empty()) throw UsageError("the scene has no animations");
-    throw UsageError(fmt::format("the scene has no animation '{}'; its animations are{}", choice, known));
+    if (choice == "all") return clipOfAll(rig);
+    throw UsageError(fmt::format("the scene has no animation '{}'; its animations are{}, and 'all' together",
+                                 choice, known));
 }
 
 bool animatesWeights(const Clip& clip, int node) {
@@ -28,6 +45,11 @@ bool animatesWeights(const Clip& clip, int node) {
 }
 
 }  // namespace
+
+std::string clipChoice(const Scene& scene) {
+    if (scene.clip == none) return {};
+    return scene.rig.clips[static_cast<size_t>(scene.clip)].together ? "all" : std::to_string(scene.clip);
+}
 
 void chooseClip(Scene& scene, std::string_view choice) {
     scene.clip = findClip(scene.rig, choice);
