@@ -519,7 +519,7 @@ TEST_F(BadInput, Obj) {
     expectObj(corners + "f 1 2\n", "fewer than three");
     expectObj(corners, "no triangles");
     expectObj("mtllib\n", "without a file name");
-    expectObj(std::string(1000, '\0'), "no triangles");
+    expectObj(std::string(1000, '\0'), "NUL character");
     put(folder / "scene.mtl", "newmtl m\nKd 1 x 1\n");
     put(folder / "scene.obj", "mtllib scene.mtl\n" + corners + "usemtl m\nf 1 2 3\n");
     EXPECT_THROW(loadScene(folder / "scene.obj"), InputError);
