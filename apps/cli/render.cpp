@@ -58,9 +58,10 @@ void renderFrames(const RenderJob& job, RenderSummary& summary) {
 
 void renderClip(RenderJob job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
+    const fs::path file = FramePattern(o.output).format(0);
     // What a process left that was killed in the act.
-    removeStaleTemporaries(o.output);
-    writeAtomically(o.output, [&](const fs::path& temporary) {
+    removeStaleTemporaries(file);
+    writeAtomically(file, [&](const fs::path& temporary) {
         ClipWriter clip(temporary,
                         {.width = job.settings.extent.width,
                          .height = job.settings.extent.height,
@@ -104,7 +105,7 @@ void render(const RenderOptions& o) {
     summary.timings.uploadSeconds = since(uploadStart);
 
     const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
-    if (isClip(o.output)) {
+    if (isClip(output.format(0))) {
         renderClip(job, summary);
     } else {
         renderFrames(job, summary);

@@ -28,7 +28,7 @@ void checkClip(const RenderOptions& o) {
             "--checkpoint, --resume, --shard and --time-limit are not for clips: render frame.%04d.png");
     if (!o.layers.empty()) throw UsageError("--aov needs an .exr output");
     if (!o.dump.empty()) throw UsageError("--dump is not for clips: render frame.%04d.exr");
-    checkClipOutput(o.output);
+    checkClipOutput(FramePattern(o.output).format(0));
 }
 
 void checkOutput(const RenderOptions& o) {
