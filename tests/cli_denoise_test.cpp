@@ -89,7 +89,7 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     EXPECT_THAT(result.output, HasSubstr("the methods are history atrous"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline magic");
     EXPECT_EQ(result.code, 2);
-    EXPECT_THAT(result.output, HasSubstr("the pipelines are path gbuffer ao history atrous"));
+    EXPECT_THAT(result.output, HasSubstr("the pipelines are path gbuffer ao preview history atrous"));
     result = run("render builtin:cornell -o " + path("a.png") + " --pipeline atrous --preset nice");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output,
