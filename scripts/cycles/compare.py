@@ -17,7 +17,7 @@ import scenes  # noqa: E402
 import sheet  # noqa: E402
 import stage  # noqa: E402
 
-SEEDS = (1, 2)
+SEEDS = (0x1F123BB5, 0x6C078965)  # of bits that differ much: Cycles mixes its seed weakly, 1 and 2 share their noise
 
 
 def arguments():
@@ -123,7 +123,7 @@ def run(given, name):
     samples = max(1, round(settings.samples * given.quality))
 
     def named(renderer, seed):
-        return os.path.join(folder, f"{renderer}.{seed}.exr")
+        return os.path.join(folder, f"{renderer}.{SEEDS.index(seed) + 1}.exr")
 
     test = [render_limpid(given, named("limpid", seed), gltf, settings, samples, seed) for seed in SEEDS]
     reference = [render_cycles(named("cycles", seed), settings, samples, seed) for seed in SEEDS]
