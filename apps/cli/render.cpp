@@ -62,12 +62,11 @@ void renderClip(RenderJob job, RenderSummary& summary) {
     // What a process left that was killed in the act.
     removeStaleTemporaries(file);
     writeAtomically(file, [&](const fs::path& temporary) {
-        ClipWriter clip(temporary,
-                        {.width = job.settings.extent.width,
-                         .height = job.settings.extent.height,
-                         .framesPerSecond = o.sequence.timing.framesPerSecond,
-                         .stops = parseExposure(o.exposure),
-                         .shownAsIs = job.settings.pipeline.kind == Pipeline::Kind::AmbientOcclusion});
+        ClipWriter clip(temporary, {.width = job.settings.extent.width,
+                                    .height = job.settings.extent.height,
+                                    .framesPerSecond = o.sequence.timing.framesPerSecond,
+                                    .stops = parseExposure(o.exposure),
+                                    .shownAsIs = !job.settings.pipeline.needsExposure()});
         job.clip = &clip;
         renderFrames(job, summary);
         clip.finish();
