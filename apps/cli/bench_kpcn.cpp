@@ -118,7 +118,8 @@ RenderSettings settingsOf(const KpcnBench& o) {
 }
 
 std::vector<Row> measure(gpu::Device& device, const KpcnBench& o, RenderSettings& settings) {
-    const auto file = o.weights.empty() ? shippedWeights() : std::filesystem::path(o.weights);
+    const auto file =
+        o.weights.empty() ? shippedWeights(settings.denoisers.kpcn) : std::filesystem::path(o.weights);
     loadNetwork(device, settings.pipeline.denoiser, file, settings.denoisers);
     const std::map<std::string, double> operations = operationsByPass(denoise::readKpcnWeights(file));
     BenchScene scene(device, chosenTracer(o.device, device), {.scene = o.scene});

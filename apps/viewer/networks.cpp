@@ -13,11 +13,13 @@ bool needsNetwork(const Pipeline& pipeline) {
 }  // namespace
 
 bool Networks::lacks(const Pipeline& pipeline, const denoise::DenoiserSettings& settings) const {
-    return needsNetwork(pipeline) && (!loaded_.kpcn.network || loaded_.kpcn.half != settings.kpcn.half);
+    return needsNetwork(pipeline) && (!loaded_.kpcn.network || loaded_.kpcn.half != settings.kpcn.half ||
+                                      loaded_.kpcn.cis565 != settings.kpcn.cis565);
 }
 
 void Networks::load(const Pipeline& pipeline, const denoise::DenoiserSettings& settings) {
     loaded_.kpcn.half = settings.kpcn.half;
+    loaded_.kpcn.cis565 = settings.kpcn.cis565;
     denoise::DenoiserSettings fresh = settings;
     loadNetwork(device_, pipeline.denoiser, weights_, fresh);
     loaded_ = fresh;

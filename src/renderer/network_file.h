@@ -11,9 +11,9 @@ namespace limpid {
 /// Fewer samples per pixel tell a network too little of a frame.
 constexpr uint32_t leastNetworkSamples = 8;
 
-/// The weights that come with Limpid: kpcn.safetensors beside the program, or in ../share/limpid seen from
-/// there. Empty if there are none.
-std::filesystem::path shippedWeights();
+/// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`, beside
+/// the program, or in ../share/limpid seen from there. Empty if there are none.
+std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
 /// If the denoiser is a network, reads its weights from `file` (empty: the shipped ones) and sets it in
 /// `settings`. Throws InputError as denoise::readKpcnWeights(), and if there is no such file; UsageError if a

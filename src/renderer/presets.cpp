@@ -70,6 +70,19 @@ Preset svgfOfCis565() {
                             "taa.frames=1",           "pathtrace.through_mirrors=off"}};
 }
 
+Preset kpcnOfCis565() {
+    return {
+        .name = "kpcn-cis565",
+        .help =
+            "the network of \"Path Tracing Denoising\", a final project of the course CIS 565: trained for "
+            "10 epochs on 32 samples, with the inputs, rates and batches that it names, and nothing after "
+            "its kernels. Not as there: it sees the logarithm of diffuse light, and learnt from Limpid's "
+            "random rooms and still lifes",
+        .pipelines = {"kpcn"},
+        .jitter = Jitter::Pixel,
+        .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off"}};
+}
+
 Preset jitterCameraTutorial() {
     return {.name = "jitter-camera-tutorial",
             .help =
@@ -110,8 +123,12 @@ bool Preset::isFor(const Pipeline& pipeline) const {
 }
 
 const std::vector<Preset>& presets() {
-    static const std::vector<Preset> all{ambientOcclusionTutorial(), historyTrackingCourse(),
-                                         jitterCameraTutorial(), svgfOfCis565(), svgfOfThePaper()};
+    static const std::vector<Preset> all{ambientOcclusionTutorial(),
+                                         historyTrackingCourse(),
+                                         jitterCameraTutorial(),
+                                         kpcnOfCis565(),
+                                         svgfOfCis565(),
+                                         svgfOfThePaper()};
     return all;
 }
 

@@ -389,6 +389,9 @@ const ParamTable<KpcnSettings>& kpcnParams() {
               "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
               "smoother and blurs soft shadows");
         t.add("half", &S::half, "half precision; off: single precision, slower");
+        t.add("cis565", &S::cis565,
+              "the shipped network that was trained as the course CIS 565 describes (docs/kpcn.md); off: "
+              "Limpid's own, which is better");
         return t;
     }();
     return table;

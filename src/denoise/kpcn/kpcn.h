@@ -18,6 +18,7 @@ struct KpcnSettings {
     int levels = 4;
     float phiColor = 3.5f;
     bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
+    bool cis565 = false;                         ///< ... when its weights are read: renderer/network_file.h
     std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
     bool operator==(const KpcnSettings&) const = default;
 };
