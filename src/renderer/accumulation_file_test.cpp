@@ -39,7 +39,7 @@ class AccumulationFileTest : public testing::Test {
             const auto* first = static_cast<const std::byte*>(data);
             bytes.insert(bytes.end(), first, first + size);
         };
-        const uint32_t version = 1, size = static_cast<uint32_t>(json.size());
+        const uint32_t version = 2, size = static_cast<uint32_t>(json.size());
         const uint64_t counts[3] = {};
         const uint8_t blocks = 0;
         append("LIMPIDAC", 8);
