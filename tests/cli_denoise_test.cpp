@@ -13,6 +13,7 @@ using image::LayeredImage;
 using testing::HasSubstr;
 
 constexpr const char* small = " --device cpu --width 64 --height 36 ";
+constexpr const char* tiny = " --device cpu --width 16 --height 9 ";
 
 class CliDenoiseTest : public CliTest {
   protected:
@@ -120,7 +121,7 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
 
 TEST_F(CliDenoiseTest, APresetIsAllThatItsSourceSaysAndOtherOptionsWin) {
     const auto picture = [&](const std::string& options) {
-        const Result result = run("render builtin:cornell -o " + path("a.exr") + small + options);
+        const Result result = run("render builtin:cornell -o " + path("a.exr") + tiny + options);
         EXPECT_EQ(result.code, 0) << options << result.output;
         return image::readExr(path("a.exr")).get("", "RGB").pixels;
     };

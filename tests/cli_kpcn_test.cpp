@@ -43,7 +43,7 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
 /// Against a mean over the pixels, on a scene with many edges. Samples that all went through the pixels'
 /// centres had stair-stepped edges whatever --jitter said.
 TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
-    const std::string scene = "render builtin:lab-disocclusion" + std::string(larger) + "-o ";
+    const std::string scene = "render builtin:lab-disocclusion" + std::string(small) + "-o ";
     mustRun(scene + path("truth.exr") + " --spp 192 --samples-per-launch 4 --seed 3");
     const auto psnrOf = [&](const std::string& more) {
         mustRun(scene + path("own.exr") + " --pipeline kpcn" + more);

@@ -138,11 +138,11 @@ std::vector<std::string> numbersOf(const ParamInfo& info) {
     return {std::to_string(least), std::to_string(std::min(least + 1, most)), std::to_string(most)};
 }
 
-/// What must be set besides for a parameter to matter; "": nothing.
-std::string neededFor(const std::string& parameter) {
-    if (parameter == "history.grey" || parameter == "history.grey_misses") return "history.grey_restart=on";
-    if (parameter == "history.identity") return "history.depth=0.5";  // nothing else tells objects apart
-    return "";
+/// What must be set besides for a parameter to matter.
+std::vector<std::string> neededFor(const std::string& parameter) {
+    if (parameter == "history.grey" || parameter == "history.grey_misses") return {"history.grey_restart=on"};
+    if (parameter == "history.identity") return {"history.depth=1e6", "history.normal=-1"};
+    return {};
 }
 
 TEST_P(DenoiserSuite, EveryParameterMatters) {
@@ -156,8 +156,8 @@ TEST_P(DenoiserSuite, EveryParameterMatters) {
                 flag ? std::vector<std::string>{std::get<bool>(info.defaultValue) ? "off" : "on"}
                      : numbersOf(info);
             RenderSettings beside;
-            const std::string needed = neededFor(group.name + "." + info.name);
-            if (!needed.empty()) assign(beside, needed);
+            const std::vector<std::string> needed = neededFor(group.name + "." + info.name);
+            for (const std::string& text : needed) assign(beside, text);
             const std::vector<float> plain =
                 needed.empty() ? defaults : denoiseSequence(scene, beside.denoisers);
             bool matters = false;

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         Sequence{"NoSearch", {.cameraMoves = true, .objectMoves = true}, "search=off"},
         Sequence{"Modulated", {.cameraMoves = true}, "demodulate=off"},
         Sequence{"Grey", {.cameraMoves = true}, "grey_restart=on grey=0.1 grey_misses=on"},
-        Sequence{"AnyObject", {.cameraMoves = true, .objectMoves = true}, "identity=off depth=0.3"},
+        Sequence{"AnyObject", {.cameraMoves = true, .objectMoves = true}, "identity=off depth=0.3 normal=-1"},
         Sequence{"Course", {.cameraMoves = true, .objectMoves = true}, "history-tracking-course"}),
     nameOf);
 
