@@ -64,7 +64,8 @@ void addAll(const float* in, ptrdiff_t step, const float* weights, size_t weight
 
 [[gnu::always_inline]] inline float labCurve(float t) {
     constexpr float delta = 6.0f / 29.0f;
-    const float root = ::cbrtf(t), line = t / (3.0f * delta * delta) + 4.0f / 29.0f;
+    // Only roots of larger values count; that of 0 is slow.
+    const float root = ::cbrtf(t > 0.008f ? t : 0.008f), line = t / (3.0f * delta * delta) + 4.0f / 29.0f;
     return chosen(t > delta * delta * delta, root, line);
 }
 
@@ -99,7 +100,7 @@ struct Lab {
     return ::fabsf(l) + ::sqrtf(a * a + b * b);
 }
 
-void distances(const FlipRow& test, const FlipRow& reference, size_t count, float* distance) {
+void distances(const FlipRow& test, const FlipRow& reference, size_t count, float* __restrict distance) {
     for (size_t i = 0; i < count; ++i) distance[i] = power(distanceAt(test, reference, i), colorExponent);
 }
 
@@ -112,7 +113,8 @@ void distances(const FlipRow& test, const FlipRow& reference, size_t count, floa
     return ::fabsf(test - reference) / 116.0f;
 }
 
-void errors(const FlipRow& test, const FlipRow& reference, float largest, size_t count, float* error) {
+void errors(const FlipRow& test, const FlipRow& reference, float largest, size_t count,
+            float* __restrict error) {
     const float knee = colorKnee * largest;
     for (size_t i = 0; i < count; ++i) {
         const float difference = distanceAt(test, reference, i);
