@@ -102,8 +102,9 @@ TEST(LightControl, WhatIsOffHasNoPowerAndKeepsItsPlace) {
     EXPECT_EQ(dark.features, built.features);
     for (const PunctualLight& light : scene.lights) EXPECT_EQ(light.intensity, vec3(0.0f));
     // One light alone is asked more often than among others.
+    const std::vector<LightControl> off = now;
     now[0].on = true;
-    applyLightControls(scene, now, before);
+    applyLightControls(scene, now, off);
     const SceneData one = buildSceneData(scene);
     const size_t lamp = one.lights.size() / layout::LIGHT_TEXELS - scene.lights.size();
     const auto probability = [&](const SceneData& data) {
