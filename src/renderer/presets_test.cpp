@@ -28,7 +28,7 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
         // Histories follow what the first hit says.
         if (const denoise::Denoiser* denoiser = parsePipeline(preset.pipelines.front()).denoiser) {
             EXPECT_FALSE(settings.pathtrace.throughMirrors) << preset.name;
-            if (!denoiser->network) EXPECT_EQ(settings.jitter, Jitter::Off);
+            EXPECT_EQ(settings.jitter, denoiser->network ? Jitter::Pixel : Jitter::Off);
         }
     }
 }
