@@ -43,8 +43,9 @@ glm::dvec4 dielectricTable(const std::vector<vec4>& table, double cosine, double
     const int size = static_cast<int>(layout::DIELECTRIC_TABLE_SIZE),
               nodes = static_cast<int>(layout::DIELECTRIC_ETA_NODES);
     const double scale = double{layout::DIELECTRIC_ETA_SCALE};
-    const double coordinate = std::log(1.0 + std::abs(std::log(eta)) / scale) /
-                              std::log(1.0 + std::log(double{layout::DIELECTRIC_ETA_MAX}) / scale);
+    const double first = std::log(1.0 + double{layout::SMOOTH_IOR_DIFFERENCE});
+    const double coordinate = std::log(1.0 + (std::abs(std::log(eta)) - first) / scale) /
+                              std::log(1.0 + (std::log(double{layout::DIELECTRIC_ETA_MAX}) - first) / scale);
     const double below = std::min(eta, 1.0 / eta), critical = std::sqrt(1.0 - below * below);
     const double p[3] = {cosine * (1.0 + critical) / (cosine + critical) * (size - 1), roughness * (size - 1),
                          coordinate * (nodes - 1)};

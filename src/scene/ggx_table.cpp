@@ -86,7 +86,7 @@ void fillCorrection(float roughness, vec4* entries) {
     const float all = cosineAverage(missing);
     const float mean =
         cosineAverage([&](uint32_t i) { return missing(i) * shape(i); }) / std::max(all, 1e-20f);
-    const float amount = std::sqrt(std::max(5.8f - 11.5f * (1.0f - roughness), 0.0f));
+    const float amount = std::sqrt(std::max(6.9f - 13.0f * (1.0f - roughness), 0.0f));
     for (uint32_t i = 0; i < size; ++i) entries[i].w = amount * missing(i) * (shape(i) - mean);
 }
 

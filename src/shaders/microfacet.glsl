@@ -82,8 +82,9 @@ vec3 ggxAverage(float roughness) {
 vec4 dielectricEntry(float cosine, float roughness, float eta, int texel) {
     const int size = int(DIELECTRIC_TABLE_SIZE);
     const vec3 last = vec3(vec2(size - 1), float(DIELECTRIC_ETA_NODES - 1u));
-    const float etaCoordinate = log(1.0 + abs(log(eta)) / DIELECTRIC_ETA_SCALE) /
-                                log(1.0 + log(DIELECTRIC_ETA_MAX) / DIELECTRIC_ETA_SCALE);
+    const float first = log(1.0 + SMOOTH_IOR_DIFFERENCE);
+    const float etaCoordinate = log(1.0 + max(abs(log(eta)) - first, 0.0) / DIELECTRIC_ETA_SCALE) /
+                                log(1.0 + (log(DIELECTRIC_ETA_MAX) - first) / DIELECTRIC_ETA_SCALE);
     const float below = min(eta, 1.0 / eta);
     const float critical = sqrt((1.0 - below) * (1.0 + below));
     const float column = cosine * (1.0 + critical) / (cosine + critical);

@@ -114,12 +114,13 @@ LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
 // gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and transmission |
 // these two albedos again, their cosine-weighted averages over the row. The first DIELECTRIC_ETA_NODES are for
 // eta (index behind over index before) below 1, the others for above: total reflection makes two functions of
-// it. Node i has log(1 + |log eta| / ETA_SCALE) in proportion to i, dense near 1; the column of a cosine c is
+// it. Node i has log(1 + (|log eta| - e) / ETA_SCALE) in proportion to i, e = log(1 + SMOOTH_IOR_DIFFERENCE):
+// dense near 1; the column of a cosine c is
 // c (1 + k) / (c + k) (SIZE - 1), k the cosine at which total reflection sets in on the denser side.
-LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 16u;
-LIMPID_CONST uint DIELECTRIC_ETA_NODES = 16u;
+LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 20u;
+LIMPID_CONST uint DIELECTRIC_ETA_NODES = 32u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
-LIMPID_CONST float DIELECTRIC_ETA_SCALE = 0.02;
+LIMPID_CONST float DIELECTRIC_ETA_SCALE = 0.005;
 
 // Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.
 LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
