@@ -68,6 +68,7 @@ class BsdfTest : public GpuTest {
         scene.materials.emplace_back();
         scene.materials[0].metallic = 0.0f;
         scene.materials[0].transmission = 0.5f;
+        scene.materials[0].thin = false;  // so that tests may ask for panes and for rough bodies
         scene.meshes.push_back(
             scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
         scene.instances.emplace_back();

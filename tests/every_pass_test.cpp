@@ -68,9 +68,10 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
         for (uint64_t frame = 0; frame < 3; ++frame)
             renderer.render(sequence_->moment(frame, settings.extent));
         const RenderedLayers layers = renderer.download();
-        ASSERT_EQ(layers.beauty.size(), size_t{4} * settings.extent.width * settings.extent.height);
-        EXPECT_TRUE(std::ranges::all_of(layers.beauty, [](float v) { return std::isfinite(v); }));
-        EXPECT_TRUE(std::ranges::any_of(layers.beauty, [](float v) { return v > 0.0f && v != 1.0f; }));
+        const std::vector<float> beauty = beautyOf(layers).pixels;
+        ASSERT_EQ(beauty.size(), size_t{3} * settings.extent.width * settings.extent.height);
+        EXPECT_TRUE(std::ranges::all_of(beauty, [](float v) { return std::isfinite(v); }));
+        EXPECT_TRUE(std::ranges::any_of(beauty, [](float v) { return v > 0.0f; }));
         renderer.counters();
         renderer.historyCounts();
         renderer.motion();
@@ -79,9 +80,10 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
         for (const gpu::PassTime& pass : renderer.passTimes()) passes.insert(pass.name);
         EXPECT_FALSE(passes.empty());
         for (const std::string& pass : passes) {
+            run_.insert(pass);
+            if (pass.starts_with("deform/")) continue;  // writes the scene's buffers, no image
             for (const auto& [name, picture] : renderer.dump(pass))
                 EXPECT_FALSE(picture.pixels.empty()) << name;
-            run_.insert(pass);
         }
     }
 

@@ -300,7 +300,7 @@ TEST_F(BadInput, GlbHeadersThatLie) {
         std::memcpy(changed.data() + at, &value, 4);
         expectRefused(write("scene.glb", changed), fault);
     };
-    expectHeader(0, 0, "not valid JSON");
+    expectHeader(0, 0, "neither GLB nor a glTF document: it begins with 00 00 00 00");
     expectHeader(4, 1, "version");
     for (const uint32_t length : {0u, 11u, 19u}) expectHeader(8, length, "first GLB chunk");
     expectHeader(8, 100, "does not fit");

@@ -108,6 +108,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_CLEARCOAT", features_.clearcoat},
             {"HAS_VOLUME", features_.volume},
             {"HAS_SPECULAR_TEXTURES", features_.specularTextures},
+            {"HAS_ROUGH_GLASS", features_.roughGlass},
             {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

@@ -89,6 +89,8 @@ class MaterialPacker {
             m.metallic == 0.0f && m.specular == 0.0f && m.transmission == 0.0f && clearcoat == 0.0f;
         features.specular |= !lambertian && !m.unlit;
         features.transmission |= m.transmission > 0.0f && !m.unlit;
+        features.roughGlass |=
+            m.transmission > 0.0f && !m.unlit && !m.thin && m.roughness >= layout::SMOOTH_ROUGHNESS;
         features.clearcoat |= clearcoat > 0.0f;
         features.volume |= m.transmission > 0.0f && !m.thin && m.absorption != vec3(0.0f);
         features.specularTextures |= m.specularTexture || m.specularColorTexture;

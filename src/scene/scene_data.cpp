@@ -46,7 +46,7 @@ SceneData buildSceneData(const Scene& scene) {
     packGeometry(scene, data);
     packLights(scene, data);
     if (data.features.specular) fillGgxTable(data.ggxTable);
-    if (data.features.transmission) fillDielectricTable(data.dielectricTable);
+    if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
     return data;
 }
 

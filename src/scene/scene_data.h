@@ -16,7 +16,8 @@ namespace limpid::scene {
 struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
-         mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false;
+         mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
+         roughGlass = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

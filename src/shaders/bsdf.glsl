@@ -101,10 +101,11 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
     b.glassWeight = refracting;
     b.glass = s.baseColor;
-    b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
+    b.roughGlass = 0.0;
     b.glassGain = vec2(0.0);
     b.glassDiffuse = vec2(0.0);
-    if (HAS_TRANSMISSION) {
+    if (HAS_ROUGH_GLASS) {
+        b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
         if (b.roughGlass > 0.0) {
             const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
             b.glassGain = entry.xy;
@@ -183,7 +184,7 @@ void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
     value.specular += (fresnel + metal * metal * (b.metal * b.albedo.z * albedo.z)) * (masking * pdf);
     value.pdf += b.probability.y * pdf;
-    if (HAS_TRANSMISSION) {
+    if (HAS_ROUGH_GLASS) {
         if (b.roughGlass > 0.0) {
             const float reflectance = fresnelDielectric(cosine, b.eta);
             value.specular += vec3(b.roughGlass * reflectance * pdf * (masking + b.glassGain.x));
@@ -201,6 +202,7 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const float single = b.albedo.x + b.albedo.y;
     value.specular += b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
     value.pdf += b.probability.z * panePdf;
+    if (!HAS_ROUGH_GLASS) return;
     vec3 m = b.wo + b.eta * wi;
     m *= m.z < 0.0 ? -1.0 : 1.0;
     const float length2 = dot(m, m);
@@ -239,6 +241,8 @@ BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
     if (wi.z > 0.0) addReflection(b, wi, value);
     if (HAS_TRANSMISSION) {
         if (wi.z < 0.0) addTransmission(b, wi, value);
+    }
+    if (HAS_ROUGH_GLASS) {
         if (b.roughGlass > 0.0) addDielectricMultiple(b, wi, value);
     }
     return value;
@@ -297,6 +301,7 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
     const vec3 reflected = 2.0 * cosine * m - b.wo;
     if (lobe == 1u) return reflected.z > 0.0 ? reflected : vec3(0.0);
     if (lobe == 2u) return reflected.z > 0.0 ? vec3(reflected.xy, -reflected.z) : vec3(0.0);
+    if (!HAS_ROUGH_GLASS) return vec3(0.0);
     const float reflectance = fresnelDielectric(cosine, b.eta);
     if (choice < reflectionChance(b, reflectance)) return reflected.z > 0.0 ? reflected : vec3(0.0);
     const float transmitted = sqrt(max(0.0, cosine * cosine + (b.eta - 1.0) * (b.eta + 1.0)));

@@ -23,6 +23,7 @@ layout(constant_id = 13) const bool HAS_MOTION = false;         // something mov
 layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
 layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
 layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
+layout(constant_id = 18) const bool HAS_ROUGH_GLASS = true;   // rough boundaries that refract
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
 layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;
