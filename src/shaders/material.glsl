@@ -104,6 +104,7 @@ struct RayCone {
     /// Sent here by a rough surface's lobe. Then next-event estimation can find the same emission, and reads it at points:
     /// both must tell of one light for their weighted sum to be right. Other textures need less care: the lobe blurs.
     bool scattered;
+    bool wide;  // as wide across as along, for rays through the centres of pixels: nothing else keeps those from shimmering
 };
 
 /// The axes of a ray's footprint on a triangle: whole widths, in barycentrics.
@@ -118,7 +119,8 @@ vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubl
 }
 
 /// Where a cone of this width meets the triangle's plane: an ellipse, longer by 1 / cosine along the ray (T.
-/// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021).
+/// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021); a circle around it if
+/// the cone is `wide`.
 Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, RayCone cone) {
     const float cosine = dot(unitNormal, toViewer);
     const vec3 inPlane = toViewer - cosine * unitNormal;
@@ -126,8 +128,9 @@ Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea,
     const bool tilted = dot(inPlane, inPlane) > 1e-8;
     const vec3 axis = tilted ? along : edge1 * inversesqrt(max(dot(edge1, edge1), 1e-37));
     const vec3 other = cross(unitNormal, axis);
-    return Footprint(barycentricsOf(cone.width * other, edge1, edge2, unitNormal, doubleArea),
-                     barycentricsOf(cone.width / max(abs(cosine), 0.05) * axis, edge1, edge2, unitNormal, doubleArea),
+    const float length_ = cone.width / max(abs(cosine), 0.05);
+    return Footprint(barycentricsOf((cone.wide ? length_ : cone.width) * other, edge1, edge2, unitNormal, doubleArea),
+                     barycentricsOf(length_ * axis, edge1, edge2, unitNormal, doubleArea),
                      !cone.scattered);
 }
 

@@ -64,19 +64,30 @@ vec4 sampleLevel(TextureRef ref, vec2 uv, uint level, bool filtered) {
     return mix(top, bottom, f.y);
 }
 
-/// `uv` is already transformed; `lod`: log2 of the footprint in texels.
-vec4 sampleTexture(TextureRef ref, vec2 uv, float lod) {
+/// The mean of `taps` points, from `first` on, that lie `step_` apart. `lod`: log2 of the footprint in texels.
+vec4 sampleTaps(TextureRef ref, vec2 first, vec2 step_, uint taps, float lod) {
     const uint mip = (ref.flags >> TEXTURE_MIP_SHIFT) & 3u;
     const bool minified = lod > 0.0;
     const bool filtered = (ref.flags & (minified ? TEXTURE_MIN_LINEAR : TEXTURE_MAG_LINEAR)) != 0u;
     const float level = mip != 0u && minified ? min(lod, float(ref.levels - 1u)) : 0.0;
-    if (mip != 2u) return sampleLevel(ref, uv, uint(level + 0.5), filtered);
-    const float fraction = level - floor(level);
+    const uint finer = uint(mip == 2u ? level : level + 0.5);
+    const float fraction = mip == 2u ? level - floor(level) : 0.0;
+    const uint levels = fraction > 0.0 ? 2u : 1u;
     vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < (fraction > 0.0 ? 2u : 1u); ++i) {
-        sum += (i == 0u ? 1.0 - fraction : fraction) * sampleLevel(ref, uv, uint(level) + i, filtered);
+    // One loop, not one in the other: CPUs run the body of each once more, masked. (With the test at the end of the body
+    // lavapipe 22.3 goes on adding in lanes that are done.)
+    const uint count = taps * levels;
+    for (uint i = 0u; i < count; ++i) {
+        const uint coarser = i & (levels - 1u);
+        const vec2 uv = first + float(i >> (levels - 1u)) * step_;
+        sum += (coarser == 0u ? 1.0 - fraction : fraction) * sampleLevel(ref, uv, finer + coarser, filtered);
     }
-    return sum;
+    return sum / float(taps);
+}
+
+/// `uv` is already transformed; `lod`: log2 of the footprint in texels.
+vec4 sampleTexture(TextureRef ref, vec2 uv, float lod) {
+    return sampleTaps(ref, uv, vec2(0.0), 1u, lod);
 }
 
 /// The most taps along a footprint's long axis. Footprints that are longer yet read coarser levels.
@@ -99,9 +110,7 @@ vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exac
     const vec2 step_ = (firstLonger ? across : along) / float(taps);
     const vec2 first = uv - 0.5 * float(taps - 1u) * step_;
     const float lod = exact ? log2(shortExtent) : floor(0.5 * log2(max(area, 1e-20)) + 0.5);
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < taps; ++i) sum += sampleTexture(ref, first + float(i) * step_, lod);
-    return sum / float(taps);
+    return sampleTaps(ref, first, step_, taps, lod);
 }
 
 #endif

@@ -22,7 +22,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 Bsdf testBsdf() {
     // What is not set below is the scene's default material.
-    Surface s = loadSurface(0u, NONE, vec2(0.25), params.toViewer, RayCone(0.0, false));
+    Surface s = loadSurface(0u, NONE, vec2(0.25), params.toViewer, RayCone(0.0, false, false));
     s.geometricNormal = params.geometricNormal;
     s.normal = params.normal;
     s.front = params.front != 0u;

@@ -29,7 +29,7 @@ void main() {
     if (!light.delta && light.pdf > 0.0) {
         const Hit hit = traceClosest(Ray(params.from, light.direction, INFINITE_DISTANCE), params.scene.rootNode, rng);
         if (isHit(hit)) {
-            const Surface s = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -light.direction, RayCone(0.0, false));
+            const Surface s = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -light.direction, RayCone(0.0, false, false));
             drawn.hitDistance = hit.t;
             drawn.hitPdf = lightPdf(s, hit.t, light.direction, shares);
         } else if (HAS_ENVIRONMENT) {

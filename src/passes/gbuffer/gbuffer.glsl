@@ -94,7 +94,8 @@ Seen look(Ray ray, uint rng) {
         }
         coneWidth += cone.spread * hit.t;
         traveled += hit.t;
-        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, RayCone(coneWidth, false));
+        const RayCone rayCone = RayCone(coneWidth, false, params.view.jitter == JITTER_OFF);
+        surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, rayCone);
     } while (passesBack(surface, culled, ray.origin));
     return shade(hit, surface, traveled, -ray.direction, rng, seen.rays);
 }

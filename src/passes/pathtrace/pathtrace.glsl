@@ -26,7 +26,7 @@ vec3 clampFirefly(vec3 radiance, uint depth) {
 
 // Of the solid angle that a scattered ray stands for, its cone has this share in width, and this width at most. The
 // lobe blurs what it shows by itself: much less of it in the cone costs noise, more costs contrast where samples are few.
-const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25;
+const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25, WITHOUT_JITTER = 4.0;
 
 struct Path {
     Ray ray;
@@ -161,17 +161,20 @@ void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bs
 }
 
 /// What the cone of a scattered ray grows by with distance: as before, and by the ray's share of the lobe: of n rays
-/// with this density each stands for 1 / (n density) of solid angle. A sharp lobe is nearly a mirror.
+/// with this density each stands for 1 / (n density) of solid angle. A sharp lobe is nearly a mirror. Wider where no jitter
+/// averages: what a denoiser sees of textures in reflections must not shimmer.
 float spreadAfter(Path path, float spread, float n) {
     if (path.delta) return spread;
     const float lobe = LOBE_SHARE * inversesqrt(max(path.bsdfPdf, 1e-20));
-    return length(vec2(spread, min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
+    const float widened = params.view.jitter == JITTER_OFF ? WITHOUT_JITTER : 1.0;
+    return length(vec2(spread, widened * min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
 }
 
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, LightShares(0.0, 0.0), true, cone.width, vec3(0.0),
                      PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u);
+    const bool throughCentres = params.view.jitter == JITTER_OFF;
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);
@@ -187,7 +190,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         }
         path.coneWidth += spread * hit.t;
         const vec3 toViewer = -path.ray.direction;
-        const RayCone rayCone = RayCone(path.coneWidth, !path.delta);
+        const RayCone rayCone = RayCone(path.coneWidth, !path.delta, throughCentres);
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
         // Nothing is absorbed on the way to the sky: a body that is never left was none.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
