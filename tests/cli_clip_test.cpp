@@ -67,11 +67,14 @@ TEST_F(CliClipTest, WritesEveryFormat) {
 }
 
 TEST_F(CliClipTest, ColoursAreThoseOfThePictures) {
-    const std::string options = "--pipeline path --exposure 1 --frames 1 -o ";
-    ASSERT_EQ(run(scene + options + path("a.mp4")).code, 0);
-    ASSERT_EQ(run(scene + options + path("a.png")).code, 0);
-    ASSERT_EQ(runProgram("ffmpeg -v error -i " + path("a.mp4") + " -vf crop=33:17:0:0 " + path("b.png")).code,
-              0);
+    // Of even size and with little noise: halved colours of noisy pixels leave the range and are clamped.
+    const std::string render =
+        "render builtin:cornell-moving --width 64 --height 36 --spp 64 --device cpu --pipeline path "
+        "--exposure 1 "
+        "--frames 1 -o ";
+    ASSERT_EQ(run(render + path("a.mp4")).code, 0);
+    ASSERT_EQ(run(render + path("a.png")).code, 0);
+    ASSERT_EQ(runProgram("ffmpeg -v error -i " + path("a.mp4") + " " + path("b.png")).code, 0);
     for (size_t component = 0; component < 3; ++component)
         EXPECT_NEAR(meanOf("b.png", component), meanOf("a.png", component), 1.5) << component;
 }

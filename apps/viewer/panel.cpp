@@ -200,6 +200,7 @@ void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) 
     asked.place |= controls.vector("eye", state.pose.eye, speed);
     asked.place |= controls.vector("target", state.pose.target, speed);
     asked.place |= controls.vector("up", state.pose.up, 0.01f);
+    state.holdsPose = ImGui::IsAnyItemActive();
     asked.resetCamera |= controls.button("reset camera");
     ImGui::SameLine();
     asked.seeAll |= controls.button("see everything");

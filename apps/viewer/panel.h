@@ -49,13 +49,14 @@ struct PanelState {
     float exposure = 0.0f;  ///< stops
     float fovDegrees = 45.0f;
     CameraPose pose;
-    bool running = true;   ///< frames are rendered as long as there is something to gain
-    bool playing = false;  ///< the clip, or the camera's path
-    float time = 0.0f;     ///< seconds
-    int camera = 0;        ///< of PanelFacts::cameras
-    std::string file;      ///< scene or environment to open
-    std::string pass;      ///< whose images are shown instead of the picture; empty: none
-    int image = 0;         ///< of PanelFacts::images
+    bool holdsPose = false;  ///< a control is held or typed into: `pose` is what it says
+    bool running = true;     ///< frames are rendered as long as there is something to gain
+    bool playing = false;    ///< the clip, or the camera's path
+    float time = 0.0f;       ///< seconds
+    int camera = 0;          ///< of PanelFacts::cameras
+    std::string file;        ///< scene or environment to open
+    std::string pass;        ///< whose images are shown instead of the picture; empty: none
+    int image = 0;           ///< of PanelFacts::images
     InspectorView view;
     ComparisonChoice comparison;
     float divider = 0.65f;   ///< of the window's width: what it is compared with lies right of it

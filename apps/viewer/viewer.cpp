@@ -321,6 +321,8 @@ void Viewer::focus() {
 
 /// In the panel, as it is now.
 void Viewer::showPose() {
+    // The camera makes a unit vector of `up`: shown at once, that would be taken for the next input.
+    if (panel_.holdsPose) return;
     if (rig_.isFree()) {
         panel_.pose = {rig_.hand().eye(), rig_.hand().target(), rig_.hand().up()};
         return;
