@@ -56,7 +56,8 @@ void writePicture(const fs::path& path, const PictureFormat& format, const Rende
         const image::Image beauty = beautyOf(layers);
         if (format.shownAsIs)
             return image::writePng(path, image::toBytes(image::displayEncode(beauty, 0.0f)));
-        const float stops = parseExposure(format.exposure).value_or(image::autoExposure(beauty, surfaceShare(layers)));
+        const float stops =
+            parseExposure(format.exposure).value_or(image::autoExposure(beauty, surfaceShare(layers)));
         image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
         return;
     }

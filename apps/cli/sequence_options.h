@@ -10,7 +10,8 @@
 namespace limpid::cli {
 
 struct SequenceChoice {
-    std::string animation;   ///< a clip's name or number, or "all"; "none": at rest; "": the first, if time matters
+    std::string
+        animation;  ///< a clip's name or number, or "all"; "none": at rest; "": the first, if time matters
     std::string cameraPath;  ///< a file or a built-in path
     int frames = 0;          ///< 0: one, or as many as the animation and the path last
     SequenceTiming timing;

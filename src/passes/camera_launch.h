@@ -25,7 +25,7 @@ struct CameraLaunch {
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
     uint64_t samplesBefore = 0;  ///< of each pixel in the mean, before this launch
-    bool samplerTea = false;  ///< instead of PCG (shaders/rng.glsl)
+    bool samplerTea = false;     ///< instead of PCG (shaders/rng.glsl)
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {

@@ -22,10 +22,12 @@ struct CameraParams {
     vec3 up;
 };
 
-// Where in its pixel a primary ray goes. The first sample since the last reset always goes through the centre.
+// Where in its pixel a primary ray goes. The first sample since the last reset always goes through the
+// centre.
 LIMPID_CONST uint JITTER_PIXEL = 0u;  // anywhere, each pixel by its own random numbers
-LIMPID_CONST uint JITTER_FRAME = 1u;  // one point for all pixels, another one for each sample: Halton, bases 2 and 3
-LIMPID_CONST uint JITTER_OFF = 2u;    // the centre
+LIMPID_CONST uint JITTER_FRAME =
+    1u;  // one point for all pixels, another one for each sample: Halton, bases 2 and 3
+LIMPID_CONST uint JITTER_OFF = 2u;  // the centre
 
 /// A launch of primary rays: from where, through which points of the pixels, by which random numbers.
 struct ViewParams {

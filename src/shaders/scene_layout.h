@@ -110,13 +110,13 @@ LIMPID_CONST float PUNCTUAL_UNIFORM_SHARE = 0.4;
 // B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted
 // averages of A and B, the share of multiple scattering that is spread like diffuse light.
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
-// dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels each:
-// gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and transmission |
-// these two albedos again, their cosine-weighted averages over the row. The first DIELECTRIC_ETA_NODES are for
-// eta (index behind over index before) below 1, the others for above: total reflection makes two functions of
-// it. Node i has log(1 + (|log eta| - e) / ETA_SCALE) in proportion to i, e = log(1 + SMOOTH_IOR_DIFFERENCE):
-// dense near 1; the column of a cosine c is
-// c (1 + k) / (c + k) (SIZE - 1), k the cosine at which total reflection sets in on the denser side.
+// dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels
+// each: gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and
+// transmission | these two albedos again, their cosine-weighted averages over the row. The first
+// DIELECTRIC_ETA_NODES are for eta (index behind over index before) below 1, the others for above: total
+// reflection makes two functions of it. Node i has log(1 + (|log eta| - e) / ETA_SCALE) in proportion to i, e
+// = log(1 + SMOOTH_IOR_DIFFERENCE): dense near 1; the column of a cosine c is c (1 + k) / (c + k) (SIZE - 1),
+// k the cosine at which total reflection sets in on the denser side.
 LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 20u;
 LIMPID_CONST uint DIELECTRIC_ETA_NODES = 32u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
