@@ -98,6 +98,8 @@ class Workers:
 class Trainer:
     def __init__(self, options):
         self.options = options
+        if options.direct and options.loss != "absolute":
+            raise SystemExit("--direct needs --loss absolute: predicted colours can be negative and have no logarithm")
         self.workers = Workers(options.device)
         torch.manual_seed(options.seed)
         self.net = network_of(vars(options)).to(self.workers.device)

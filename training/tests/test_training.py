@@ -142,7 +142,7 @@ class TrainingTest(unittest.TestCase):
         """The comparison's pieces: a network of colours learns, is drawn beside one of kernels, and is not exported."""
         runs = {}
         for name, extra in (("kernels", ()), ("colours", ("--direct",))):
-            self.train(name, "--epochs", "2", "--tuning-epochs", "0", *extra)
+            self.train(name, "--epochs", "2", "--tuning-epochs", "0", "--loss", "absolute", *extra)
             runs[name] = compare.read(os.path.join(self.folder, name))
             self.assertEqual(len(runs[name]["times"]), 2)
         self.assertEqual(len(list(compare.table(runs))), 2)
