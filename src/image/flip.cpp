@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "image/color.h"
 #include "image/flip_rows.h"
@@ -111,7 +112,7 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
     : width_(width), height_(height), stride_(flipPadded(width)), margin_(radiusOf(pixelsPerDegree)) {
     const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widestB / (2.0 * pi2)) * pixelsPerDegree));
     const auto gaussian = [&](double b) {
-        return gaussianWeights(radius, std::sqrt(b / (2.0 * pi2)) * pixelsPerDegree);
+        return zeroPadded(gaussianWeights(radius, std::sqrt(b / (2.0 * pi2)) * pixelsPerDegree));
     };
     luma_ = gaussian(achromatic.b1);
     redGreen_ = gaussian(redGreen.b1);
@@ -131,10 +132,10 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
         slopes += slope(x);
         (curve(x) > 0.0 ? positive : negative) += 2.0 * curve(x);
     }
-    smooth_ = gaussianWeights(featureRadius, sigma);
-    edge_ = weightsOf(featureRadius, slopes, slope);
-    point_ = weightsOf(featureRadius, 1.0,
-                       [&](int x) { return curve(x) / (curve(x) > 0.0 ? positive : -negative); });
+    smooth_ = zeroPadded(gaussianWeights(featureRadius, sigma));
+    edge_ = zeroPadded(weightsOf(featureRadius, slopes, slope));
+    point_ = zeroPadded(weightsOf(featureRadius, 1.0,
+                                  [&](int x) { return curve(x) / (curve(x) > 0.0 ? positive : -negative); }));
     largest_ = largestColorDistance();
     for (Planes* planes : {&test_, &reference_})
         planes->resize(PlaneCount * stride_ * (height_ + 2 * margin_));
@@ -160,23 +161,29 @@ void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, Planes&
         std::fill_n(v - margin_, margin_, v[0]);
         std::fill_n(v + width_, stride_ - width_ + margin_, v[width_ - 1]);
     }
-    const auto begin = [&](int plane, const float* from) {
-        float* const target = row(planes, plane, y);
-        if (from) std::copy_n(from, stride_, target);
-        if (!from) std::fill_n(target, stride_, 0.0f);
-        return target;
+    const auto even = [&](const Weights& weights, int plane, float middle = 1.0f) {
+        return FlipEven{weights.values.data(), middle, row(planes, plane, y)};
     };
-    const auto even = [&](int plane, size_t c, const Weights& weights, bool aroundZero = false) {
-        loops.addEven(values[c], 1, weights.data(), weights.size(), stride_,
-                      begin(plane, aroundZero ? nullptr : values[c]));
-    };
-    even(Smooth, 0, smooth_);
-    even(Point, 0, point_, true);
-    loops.addOdd(values[0], 1, edge_.data(), edge_.size(), stride_, begin(Edge, nullptr));
-    even(Luma, 0, luma_);
-    even(RedGreen, 1, redGreen_);
-    even(BlueYellow, 2, blueYellow_);
-    even(BlueYellowSecond, 2, blueYellowSecond_);
+    const size_t features = std::max({smooth_.reach, edge_.reach, point_.reach, luma_.reach});
+    loops.filter(values[0], 1,
+                 {features,
+                  3,
+                  {even(smooth_, Smooth), even(point_, Point, 0.0f), even(luma_, Luma)},
+                  {edge_.values.data(), row(planes, Edge, y)}},
+                 stride_);
+    loops.filter(values[1], 1, {redGreen_.reach, 1, {even(redGreen_, RedGreen)}, {}}, stride_);
+    loops.filter(values[2], 1,
+                 {std::max(blueYellow_.reach, blueYellowSecond_.reach),
+                  2,
+                  {even(blueYellow_, BlueYellow), even(blueYellowSecond_, BlueYellowSecond)},
+                  {}},
+                 stride_);
+}
+
+LinearFlip::Weights LinearFlip::zeroPadded(std::vector<float> values) const {
+    const size_t reach = values.size();
+    values.resize(margin_, 0.0f);
+    return {std::move(values), reach};
 }
 
 void LinearFlip::filterRows(const Image& picture, Planes& planes) const {
@@ -196,22 +203,20 @@ void LinearFlip::filterRows(const Image& picture, Planes& planes) const {
 
 void LinearFlip::smoothColumn(const Planes& planes, int plane, const Weights& weights, int64_t y,
                               float* result) const {
-    const float* const middle = row(planes, plane, y);
-    std::copy_n(middle, stride_, result);
-    flipRows().addEven(middle, static_cast<ptrdiff_t>(stride_), weights.data(), weights.size(), stride_,
-                       result);
+    flipRows().filter(row(planes, plane, y), static_cast<ptrdiff_t>(stride_),
+                      {weights.reach, 1, {{weights.values.data(), 1.0f, result}}, {}}, stride_);
 }
 
 void LinearFlip::filterColumns(const Planes& planes, int64_t y, RowBuffers& buffers) const {
-    const auto step = static_cast<ptrdiff_t>(stride_);
     const FlipRow& out = buffers.row;
     smoothColumn(planes, Edge, smooth_, y, out.edgeX);
     smoothColumn(planes, Point, smooth_, y, out.pointX);
-    const float* const smoothed = row(planes, Smooth, y);
-    std::fill_n(out.edgeY, stride_, 0.0f);
-    flipRows().addOdd(smoothed, step, edge_.data(), edge_.size(), stride_, out.edgeY);
-    std::fill_n(out.pointY, stride_, 0.0f);
-    flipRows().addEven(smoothed, step, point_.data(), point_.size(), stride_, out.pointY);
+    flipRows().filter(row(planes, Smooth, y), static_cast<ptrdiff_t>(stride_),
+                      {std::max(edge_.reach, point_.reach),
+                       1,
+                       {{point_.values.data(), 0.0f, out.pointY}},
+                       {edge_.values.data(), out.edgeY}},
+                      stride_);
     smoothColumn(planes, Luma, luma_, y, out.y);
     smoothColumn(planes, RedGreen, redGreen_, y, out.cx);
     // A sum of two Gaussians; each of them is separable, their sum is not.

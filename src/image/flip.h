@@ -21,7 +21,10 @@ class LinearFlip {
   private:
     /// The weights at 1, 2 .. of filters that are symmetric or antisymmetric; their middle follows from their
     /// sum.
-    using Weights = std::vector<float>;
+    struct Weights {
+        std::vector<float> values;  ///< zeros behind `reach`, as many as the longest filter needs
+        size_t reach;
+    };
     /// What rows are filtered to before columns are: filters, and the plane that they look at.
     enum Plane { Edge, Smooth, Point, Luma, RedGreen, BlueYellow, BlueYellowSecond, PlaneCount };
     using Planes = std::vector<float>;
@@ -34,6 +37,7 @@ class LinearFlip {
     void filterColumns(const Planes& planes, int64_t y, RowBuffers& buffers) const;
     void smoothColumn(const Planes& planes, int plane, const Weights& weights, int64_t y,
                       float* result) const;
+    Weights zeroPadded(std::vector<float> values) const;
 
     size_t width_, height_;
     size_t stride_;  ///< of rows

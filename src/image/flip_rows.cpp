@@ -3,13 +3,13 @@
 #include <math.h>  // NOLINT: the names that the compiler has vector versions of
 
 #include <numbers>
-#include <type_traits>
-#include <utility>
 
 namespace limpid::image {
 namespace {
 
 #include "image/flip_rows_impl.h"
+
+constexpr FlipRows table = tableWith(flipFilter);
 
 }  // namespace
 
@@ -19,7 +19,7 @@ const FlipRows& flipRowsAvx2();
 
 const FlipRows& flipRows() {
 #ifdef LIMPID_FLIP_AVX2
-    static const bool avx2 = __builtin_cpu_supports("avx2");
+    static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     if (avx2) return flipRowsAvx2();
 #endif
     return table;

@@ -2,8 +2,6 @@
 #include <math.h>  // NOLINT: the names that the compiler has vector versions of
 
 #include <numbers>
-#include <type_traits>
-#include <utility>
 
 #include "image/flip_rows.h"
 
@@ -11,6 +9,8 @@ namespace limpid::image {
 namespace {
 
 #include "image/flip_rows_impl.h"
+
+constexpr FlipRows table = tableWith(flipFilterAvx2);
 
 }  // namespace
 

@@ -20,37 +20,6 @@ void toYcxcz(const float* rgb, size_t count, float* y, float* cx, float* cz) {
     }
 }
 
-/// Several weights at once, so that a sum is loaded and stored less often.
-template <bool odd, size_t... k>
-void addTaps(const float* in, ptrdiff_t step, ptrdiff_t first, const float* weights, size_t count,
-             float* __restrict sum, std::index_sequence<k...>) {
-    const float w[] = {weights[k]...};
-    const float* const after[] = {in + (first + static_cast<ptrdiff_t>(k)) * step...};
-    const float* const before[] = {in - (first + static_cast<ptrdiff_t>(k)) * step...};
-    for (size_t x = 0; x < count; ++x) {
-        if constexpr (odd) {
-            sum[x] += ((w[k] * (after[k][x] - before[k][x])) + ...);
-        } else {
-            const float twice = 2.0f * in[x];
-            sum[x] += ((w[k] * (after[k][x] + before[k][x] - twice)) + ...);
-        }
-    }
-}
-
-template <bool odd>
-void addAll(const float* in, ptrdiff_t step, const float* weights, size_t weightCount, size_t count,
-            float* sum) {
-    size_t k = 0;
-    const auto take = [&](auto taps) {
-        for (; k + taps <= weightCount; k += taps)
-            addTaps<odd>(in, step, static_cast<ptrdiff_t>(k + 1), weights + k, count, sum,
-                         std::make_index_sequence<taps>());
-    };
-    take(std::integral_constant<size_t, 5>());
-    take(std::integral_constant<size_t, 2>());
-    take(std::integral_constant<size_t, 1>());
-}
-
 [[gnu::always_inline]] inline float clamped(float v) {
     return v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
 }
@@ -134,4 +103,6 @@ void errors(const FlipRow& test, const FlipRow& reference, float largest, size_t
     }
 }
 
-constexpr FlipRows table{toYcxcz, addAll<false>, addAll<true>, errors, distances};
+constexpr FlipRows tableWith(decltype(FlipRows::filter) filter) {
+    return {toYcxcz, filter, errors, distances};
+}
