@@ -2,6 +2,8 @@
 // faults.
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "image/exr.h"
 #include "image/metrics.h"
 #include "image/picture.h"
@@ -425,17 +427,51 @@ TEST_F(ViewToolsTest, ShadersAreCompiledWhenTheyAreSaved) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
+#ifdef LIMPID_DROP_FILES
+void dropOn(const DrivenViewer& viewer, const std::string& file) {
+    viewer.run(std::string("'") + LIMPID_DROP_FILES + "' " + viewer.window() + " " + file);
+}
+#endif
+
+/// A scene that is named on the command line may read from the folder above its own; one that is dropped may
+/// not.
+TEST_F(ViewToolsTest, WhatIsDroppedSeesItsOwnFolderOnly) {
+#ifdef LIMPID_DROP_FILES
+    constexpr std::array<float, 9> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    put("corners.bin", std::string(reinterpret_cast<const char*>(corners.data()), sizeof corners));
+    fs::create_directories(folder_ / "inner");
+    put("inner/triangle.gltf",
+        R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"uri": "../corners.bin", "byteLength": 36}]})");
+    EXPECT_EQ(run("info " + path("inner/triangle.gltf")).code, 0);
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+    const std::string start = viewer.settledPicture();
+    dropOn(viewer, path("inner/triangle.gltf"));
+    viewer.waitFor("a fault", [&] { return !viewer.fact("fault").empty(); });
+    EXPECT_THAT(viewer.fact("fault"), HasSubstr("../corners.bin"));
+    EXPECT_THAT(viewer.fact("fault"), HasSubstr("lies outside"));
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+#else
+    GTEST_SKIP() << "NOT TESTED: built without libx11-dev, which the test drops files with.";
+#endif
+}
+
 TEST_F(ViewToolsTest, FilesAreDroppedOnIt) {
 #ifdef LIMPID_DROP_FILES
     put("broken.gltf", "{\"asset\": {");
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
     const std::string start = viewer.settledPicture();
-    viewer.run(std::string("'") + LIMPID_DROP_FILES + "' " + viewer.window() + " " + path("broken.gltf"));
+    dropOn(viewer, path("broken.gltf"));
     viewer.waitFor("a fault", [&] { return !viewer.fact("fault").empty(); });
     EXPECT_THAT(viewer.fact("fault"), HasSubstr("broken.gltf"));
     EXPECT_EQ(viewer.settledPicture(), start);
     put("lone.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    viewer.run(std::string("'") + LIMPID_DROP_FILES + "' " + viewer.window() + " " + path("lone.obj"));
+    dropOn(viewer, path("lone.obj"));
     viewer.waitFor("the scene", [&] { return viewer.fact("message").find("lone.obj") != std::string::npos; });
     EXPECT_EQ(viewer.fact("fault"), "");
     EXPECT_NE(viewer.settledPicture(), start);
