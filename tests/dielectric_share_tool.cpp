@@ -1,6 +1,6 @@
 // Writes src/scene/dielectric_share.inc from random walks on microfacets:
 //   build/release/tests/limpid_dielectric_share > src/scene/dielectric_share.inc
-// Takes about a minute of one core; the same numbers each time.
+// Takes about two minutes of one core; the same numbers each time.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

@@ -88,7 +88,8 @@ vec2 cosineAverage(const vec4* texels, float eta) {
 
 /// The two texels of one entry, without the averages.
 void fillEntry(float cosine, float roughness, float eta, vec4* texels) {
-    const FirstFacet first = firstFacet(cosine, std::max(roughness * roughness, 1e-4f), eta, 384);
+    static const std::vector<vec2> disk = halfDisk(1024);
+    const FirstFacet first = firstFacet(cosine, std::max(roughness * roughness, 1e-4f), eta, disk);
     const float missing = std::max(first.missing(), 0.0f);
     const float part = reflectedShare(cosine, roughness, eta);
     const vec2 several(missing * part, missing * (1.0f - part));
@@ -117,14 +118,17 @@ float eta(uint32_t node) {
 }
 }  // namespace share
 
-FirstFacet firstFacet(float cosine, float alpha, float eta, uint32_t samples) {
+std::vector<vec2> halfDisk(uint32_t count) {
+    return diskPoints(count, -0.25f, 0.25f);
+}
+
+FirstFacet firstFacet(float cosine, float alpha, float eta, std::span<const vec2> disk) {
     const vec3 wo = directionAt(cosine);
+    const VisibleNormals normals(wo, alpha);
     const float out = smithLambda(wo.z, alpha);
     FirstFacet sum;
-    for (uint32_t i = 0; i < samples; ++i) {
-        // One side of the plane of incidence is enough: the other is its mirror image.
-        const vec3 m =
-            sampleVisibleNormal(wo, alpha, hammersley(i, samples) * vec2(1.0f, 0.5f) - vec2(0.0f, 0.25f));
+    for (const vec2& point : disk) {
+        const vec3 m = normals(point);
         const float vdoth = glm::dot(wo, m);
         const float reflectance = fresnelDielectric(vdoth, eta);
         const float reflected = 2.0f * vdoth * m.z - wo.z;
@@ -141,7 +145,7 @@ FirstFacet firstFacet(float cosine, float alpha, float eta, uint32_t samples) {
                 (1.0f - reflectance) * transmittedMasking(out, smithLambda(refracted, alpha));
         }
     }
-    const float each = 1.0f / static_cast<float>(samples);
+    const float each = 1.0f / static_cast<float>(disk.size());
     return {sum.reflected * each, sum.transmitted * each, sum.reflectedOnce * each,
             sum.transmittedOnce * each};
 }

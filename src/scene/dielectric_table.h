@@ -4,6 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/math.h"
 
 namespace limpid::scene {
 
@@ -16,12 +20,16 @@ struct FirstFacet {
     float missing() const { return 1.0f - reflectedOnce - transmittedOnce; }
 };
 
+/// The points of the disk with which firstFacet() integrates. Half of it is enough: the other side of the
+/// plane of incidence is its mirror image.
+std::vector<vec2> halfDisk(uint32_t count);
+
 /// eta: index behind the surface over the one before it.
-FirstFacet firstFacet(float cosine, float alpha, float eta, uint32_t samples);
+FirstFacet firstFacet(float cosine, float alpha, float eta, std::span<const vec2> disk);
 
 /// The nodes of the table of shares: [eta][roughness][cosine], in 255ths. The first half is for eta below 1.
 namespace share {
-constexpr uint32_t cosines = 12, roughnesses = 8, etas = 14;
+constexpr uint32_t cosines = 18, roughnesses = 8, etas = 20;
 constexpr uint32_t count = 2 * etas * roughnesses * cosines;
 
 float cosine(uint32_t node, float eta);

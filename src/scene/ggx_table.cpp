@@ -23,9 +23,11 @@ struct Reflected {
 vec2 reflectionAlbedo(float cosine, float alpha, Reflected* reflected) {
     const vec3 wo = directionAt(cosine);
     const float out = smithLambda(wo.z, alpha);
+    const VisibleNormals normals(wo, alpha);
+    static const std::vector<vec2> disk = diskPoints(sampleCount);
     double a = 0.0, b = 0.0;
     for (uint32_t i = 0; i < sampleCount; ++i) {
-        const vec3 m = sampleVisibleNormal(wo, alpha, hammersley(i, sampleCount));
+        const vec3 m = normals(disk[i]);
         const float vdoth = glm::dot(wo, m);
         const vec3 wi = 2.0f * vdoth * m - wo;
         reflected[i] = {.cosine = 0.0f, .weight = 0.0f};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/math.h"
 
@@ -21,17 +22,39 @@ inline vec3 directionAt(float cosine) {
     return {std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
 }
 
-inline vec3 sampleVisibleNormal(const vec3& wo, float alpha, const vec2& u) {
-    const vec3 v = glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    const float length2 = v.x * v.x + v.y * v.y;
-    const vec3 t1 = length2 > 0.0f ? vec3(-v.y, v.x, 0.0f) / std::sqrt(length2) : vec3(1, 0, 0);
-    const vec3 t2 = glm::cross(v, t1);
-    const float r = std::sqrt(u.x), phi = 2.0f * pi * u.y, s = 0.5f * (1.0f + v.z);
-    const float p1 = r * std::cos(phi);
-    const float p2 = (1.0f - s) * std::sqrt(std::max(0.0f, 1.0f - p1 * p1)) + s * r * std::sin(phi);
-    const vec3 n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0f, 1.0f - p1 * p1 - p2 * p2)) * v;
-    return glm::normalize(vec3(alpha * n.x, alpha * n.y, std::max(0.0f, n.z)));
+/// `count` points of the unit disk, evenly spread over the angles from `firstTurn` to `lastTurn` (1: a whole
+/// turn).
+inline std::vector<vec2> diskPoints(uint32_t count, float firstTurn = 0.0f, float lastTurn = 1.0f) {
+    std::vector<vec2> points(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        const vec2 u = hammersley(i, count);
+        const float r = std::sqrt(u.x), phi = 2.0f * pi * glm::mix(firstTurn, lastTurn, u.y);
+        points[i] = {r * std::cos(phi), r * std::sin(phi)};
+    }
+    return points;
 }
+
+/// The facets that are seen from wo: evenly spread points of the disk become their normals.
+class VisibleNormals {
+  public:
+    VisibleNormals(const vec3& wo, float alpha)
+        : alpha_(alpha), v_(glm::normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z))) {
+        const float length2 = v_.x * v_.x + v_.y * v_.y;
+        t1_ = length2 > 0.0f ? vec3(-v_.y, v_.x, 0.0f) / std::sqrt(length2) : vec3(1, 0, 0);
+        t2_ = glm::cross(v_, t1_);
+    }
+
+    vec3 operator()(const vec2& disk) const {
+        const float s = 0.5f * (1.0f + v_.z), p1 = disk.x;
+        const float p2 = (1.0f - s) * std::sqrt(std::max(0.0f, 1.0f - p1 * p1)) + s * disk.y;
+        const vec3 n = p1 * t1_ + p2 * t2_ + std::sqrt(std::max(0.0f, 1.0f - p1 * p1 - p2 * p2)) * v_;
+        return glm::normalize(vec3(alpha_ * n.x, alpha_ * n.y, std::max(0.0f, n.z)));
+    }
+
+  private:
+    float alpha_;
+    vec3 v_, t1_, t2_;
+};
 
 /// Smith's Lambda for GGX.
 inline float smithLambda(float cosine, float alpha) {
