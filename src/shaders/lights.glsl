@@ -7,6 +7,13 @@
 #include "shaders/material.glsl"
 #include "shaders/trace.glsl"
 
+/// Next-event estimation looks at each punctual light if there are at most so many ...
+const uint PUNCTUAL_LIGHTS_ALL_LOOKED_AT = 256u;
+/// ... and else at so many, drawn by power.
+const uint PUNCTUAL_CANDIDATES = 32u;
+/// Probability of choosing any punctual light that reaches, not by how much.
+const float PUNCTUAL_UNIFORM_SHARE = 0.4;
+
 /// Where light is wanted.
 struct Receiver {
     vec3 position, normal, geometricNormal;
@@ -140,12 +147,12 @@ struct PunctualChoice {
     float pdf;
 };
 
-/// Looks at all punctual lights, or at MAX_PUNCTUAL_CANDIDATES of them drawn by power (resampled importance sampling,
+/// Looks at all punctual lights, or at PUNCTUAL_CANDIDATES of them drawn by power (resampled importance sampling,
 /// J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005), and chooses by usable light or, with
 /// PUNCTUAL_UNIFORM_SHARE, any that has some: the brightest may be hidden. One pass: two weighted reservoirs.
 PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
-    const bool all = scene.punctualCount <= MAX_PUNCTUAL_CANDIDATES;
-    const uint count = min(scene.punctualCount, MAX_PUNCTUAL_CANDIDATES);
+    const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
+    const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
     float u = random(rng), v = random(rng);
     PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf: the weight, for now
     float bestSource = 1.0, anySource = 1.0, sum = 0.0, reaching = 0.0;

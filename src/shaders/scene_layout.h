@@ -96,12 +96,6 @@ LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
 
-// Punctual lights that next-event estimation looks at from a point; if there are more, so many drawn by
-// power.
-LIMPID_CONST uint MAX_PUNCTUAL_CANDIDATES = 32u;
-// Probability of choosing any punctual light that reaches, not by how much.
-LIMPID_CONST float PUNCTUAL_UNIFORM_SHARE = 0.4;
-
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
 // environment: radiance | probability of choosing this texel.
