@@ -12,7 +12,7 @@
 namespace limpid::test {
 namespace {
 
-constexpr gpu::Extent extent{160, 90};
+constexpr gpu::Extent extent{112, 63};
 constexpr double framesPerSecond = 30.0;
 constexpr auto stop = static_cast<uint64_t>(framesPerSecond * double{scene::labChangeTime});
 constexpr uint64_t allowed = 8, steadyFrom = stop + 40, end = stop + 56;  // frames
