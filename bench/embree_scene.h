@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_data.h"
+#include "scene/device/scene_data.h"
 
 namespace limpid::bench {
 

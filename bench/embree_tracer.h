@@ -5,7 +5,7 @@
 #include <span>
 
 #include "embree_scene.h"
-#include "shaders/camera.h"
+#include "shaders/common/camera.h"
 
 namespace limpid::bench {
 

@@ -11,11 +11,11 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "embree_tracer.h"
-#include "image/metrics.h"
-#include "renderer/still.h"
-#include "scene/builtin.h"
-#include "scene/camera.h"
-#include "scene/prepare.h"
+#include "image/metrics/metrics.h"
+#include "renderer/frame/still.h"
+#include "scene/builtin/builtin.h"
+#include "scene/model/camera.h"
+#include "scene/model/prepare.h"
 
 namespace limpid::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "embree_tracer.h"
-#include "render_fixture.h"
-#include "scene/builtin.h"
-#include "scene/prepare.h"
+#include "scene/builtin/builtin.h"
+#include "scene/model/prepare.h"
+#include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {
 namespace {

@@ -1,7 +1,8 @@
 # Helpers that every folder's CMakeLists.txt uses, so that a folder lists only what it has.
 
+# How Limpid's own files are compiled; whoever links its libraries sees none of it.
 add_library(limpid_options INTERFACE)
-target_include_directories(limpid_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_include_directories(limpid_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
 target_compile_options(limpid_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 sees overlaps inside std::string that are not there (its bug 105651).
@@ -46,12 +47,12 @@ function(limpid_precompile)
   if(NOT LIMPID_PCH OR LIMPID_FUZZ)
     return()
   endif()
-  file(WRITE ${CMAKE_BINARY_DIR}/pch/pch.cpp "// Compiled only to have its headers parsed.\n")
-  add_library(limpid_pch OBJECT ${CMAKE_BINARY_DIR}/pch/pch.cpp)
+  file(WRITE ${PROJECT_BINARY_DIR}/pch/pch.cpp "// Compiled only to have its headers parsed.\n")
+  add_library(limpid_pch OBJECT ${PROJECT_BINARY_DIR}/pch/pch.cpp)
   target_link_libraries(limpid_pch PRIVATE limpid_options PUBLIC fmt::fmt glm::glm nlohmann_json::nlohmann_json)
   target_precompile_headers(limpid_pch PRIVATE ${LIMPID_PCH_HEADERS})
   if(LIMPID_TESTS)
-    add_library(limpid_test_pch OBJECT ${CMAKE_BINARY_DIR}/pch/pch.cpp)
+    add_library(limpid_test_pch OBJECT ${PROJECT_BINARY_DIR}/pch/pch.cpp)
     target_link_libraries(limpid_test_pch
       PRIVATE limpid_options PUBLIC fmt::fmt glm::glm nlohmann_json::nlohmann_json GTest::gmock GTest::gtest)
     target_precompile_headers(limpid_test_pch PRIVATE ${LIMPID_PCH_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
@@ -72,7 +73,9 @@ function(limpid_library NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(limpid_${NAME} STATIC ${ARG_SOURCES})
   add_library(limpid::${NAME} ALIAS limpid_${NAME})
-  target_link_libraries(limpid_${NAME} PUBLIC limpid_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+  target_link_libraries(limpid_${NAME} PUBLIC ${ARG_DEPS} PRIVATE limpid_options ${ARG_PRIVATE_DEPS})
+  set_target_properties(limpid_${NAME} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
   limpid_use_pch(limpid_${NAME} limpid_pch)
 endfunction()
 
@@ -80,17 +83,18 @@ endfunction()
 function(limpid_program NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(${NAME} ${ARG_SOURCES})
-  target_link_libraries(${NAME} PRIVATE ${ARG_DEPS})
+  target_link_libraries(${NAME} PRIVATE limpid_options ${ARG_DEPS})
+  target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   limpid_use_pch(${NAME} limpid_pch)
 endfunction()
 
 # limpid_shaders(TARGET a/b.comp ...): compiles shaders below the current folder and embeds each in TARGET as
-# `limpid::shaders::b_comp` (gpu/shader.h: ShaderCode), declared in the generated header "b.comp.h".
+# `limpid::shaders::b_comp` (gpu/graph/shader.h: ShaderCode), declared in the generated header "b.comp.h".
 # -g and no -O: the names that the frame graph binds by must survive.
 function(limpid_shaders TARGET)
   set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   file(MAKE_DIRECTORY ${GENERATED})
-  file(RELATIVE_PATH FOLDER ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  file(RELATIVE_PATH FOLDER ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
   foreach(SOURCE ${ARGN})
     get_filename_component(FILE ${SOURCE} NAME)
     string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
@@ -98,11 +102,11 @@ function(limpid_shaders TARGET)
     set(SHADER_FILE ${FILE})
     set(SHADER_NAME ${FOLDER}/${SOURCE})
     set(SHADER_WORDS ${GENERATED}/${FILE}.inc)
-    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${FILE}.h @ONLY)
-    configure_file(${CMAKE_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${FILE}.h @ONLY)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
     add_custom_command(
       OUTPUT ${SHADER_WORDS}
-      COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -mfmt=num -MD -MF ${SHADER_WORDS}.d -I ${CMAKE_SOURCE_DIR}/src
+      COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -mfmt=num -MD -MF ${SHADER_WORDS}.d -I ${PROJECT_SOURCE_DIR}/src
               -o ${SHADER_WORDS} ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
       DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
       DEPFILE ${SHADER_WORDS}.d
@@ -119,14 +123,15 @@ endfunction()
 function(limpid_text TARGET)
   set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/embedded)
   foreach(SOURCE ${ARGN})
-    string(MAKE_C_IDENTIFIER ${SOURCE} SYMBOL)
+    get_filename_component(FILE ${SOURCE} NAME)
+    string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
     add_custom_command(
-      OUTPUT ${GENERATED}/${SOURCE}.h
-      COMMAND ${CMAKE_COMMAND} -D INPUT=${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} -D OUTPUT=${GENERATED}/${SOURCE}.h
-              -D NAME=${SYMBOL} -P ${CMAKE_SOURCE_DIR}/cmake/embed_text.cmake
-      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} ${CMAKE_SOURCE_DIR}/cmake/embed_text.cmake
+      OUTPUT ${GENERATED}/${FILE}.h
+      COMMAND ${CMAKE_COMMAND} -D INPUT=${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} -D OUTPUT=${GENERATED}/${FILE}.h
+              -D NAME=${SYMBOL} -P ${PROJECT_SOURCE_DIR}/cmake/embed_text.cmake
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE} ${PROJECT_SOURCE_DIR}/cmake/embed_text.cmake
       VERBATIM)
-    target_sources(${TARGET} PRIVATE ${GENERATED}/${SOURCE}.h)
+    target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.h)
   endforeach()
   target_include_directories(${TARGET} PRIVATE ${GENERATED})
 endfunction()
@@ -146,8 +151,9 @@ function(limpid_test NAME)
     set(ARG_LABELS fast)
   endif()
   add_executable(${NAME} ${ARG_SOURCES})
-  target_link_libraries(${NAME} PRIVATE ${ARG_DEPS} GTest::gmock_main GTest::gtest)
-  target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${NAME} PRIVATE limpid_options ${ARG_DEPS} GTest::gmock_main GTest::gtest)
+  target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   limpid_use_pch(${NAME} limpid_test_pch)
   if(ARG_LABELS STREQUAL fast)
     add_dependencies(limpid_fast_tests ${NAME})

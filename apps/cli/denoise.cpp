@@ -6,21 +6,21 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/frame_pattern.h"
+#include "base/files/frame_pattern.h"
 #include "base/log.h"
+#include "cli/options/device_options.h"
+#include "cli/render/picture_output.h"
+#include "cli/render/render_job.h"
 #include "commands.h"
-#include "device_options.h"
-#include "image/exr.h"
-#include "image/png.h"
+#include "image/io/exr/exr.h"
+#include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "json_text.h"
-#include "picture_output.h"
 #include "progress.h"
-#include "render_job.h"
-#include "renderer/frame_file.h"
-#include "renderer/network_file.h"
-#include "renderer/parameters.h"
-#include "renderer/presets.h"
+#include "renderer/frame/network_file.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "renderer/layers/frame_file.h"
 
 namespace limpid::cli {
 namespace {

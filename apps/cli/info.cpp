@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "gpu/device.h"
+#include "gpu/vulkan/device.h"
 #include "info_scene.h"
 #include "json_text.h"
-#include "renderer/layers.h"
-#include "renderer/parameters.h"
-#include "renderer/presets.h"
-#include "scene/builtin.h"
-#include "scene/tracer.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "renderer/layers/layers.h"
+#include "scene/builtin/builtin.h"
+#include "scene/device/tracer.h"
 
 namespace limpid::cli {
 namespace {

@@ -6,10 +6,10 @@
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
-#include "base/terminal_text.h"
+#include "base/text/terminal_text.h"
+#include "cli/options/scene_options.h"
 #include "json_text.h"
-#include "scene/animation.h"
-#include "scene_options.h"
+#include "scene/motion/animation.h"
 
 namespace limpid::cli {
 namespace {

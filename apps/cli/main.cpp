@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/terminal_text.h"
+#include "base/text/terminal_text.h"
 #include "commands.h"
 
 namespace limpid::cli {

@@ -1,5 +1,5 @@
 // limpid merge: the shards of a render to what one run gives.
-#include "renderer/merge.h"
+#include "renderer/long/merge.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/frame_pattern.h"
+#include "base/files/frame_pattern.h"
 #include "base/log.h"
+#include "cli/render/picture_output.h"
 #include "commands.h"
 #include "json_text.h"
-#include "picture_output.h"
-#include "renderer/merge_frames.h"
-#include "renderer/render_identity.h"
+#include "renderer/long/merge_frames.h"
+#include "renderer/long/render_identity.h"
 
 namespace limpid::cli {
 namespace {

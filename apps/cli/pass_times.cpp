@@ -1,4 +1,4 @@
-#include "pass_times.h"
+#include "cli/pass_times.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 
 namespace limpid::cli {
 

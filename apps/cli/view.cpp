@@ -6,14 +6,14 @@
 #include <optional>
 
 #include "base/error.h"
+#include "cli/options/device_options.h"
+#include "cli/options/scene_options.h"
 #include "commands.h"
-#include "device_options.h"
-#include "renderer/parameters.h"
-#include "renderer/presets.h"
-#include "scene_options.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
 #ifdef LIMPID_HAVE_VIEWER
 #include "viewer/command_line.h"
-#include "viewer/kept_settings.h"
+#include "viewer/panel/kept_settings.h"
 #include "viewer/viewer.h"
 #endif
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "renderer/parameters.h"
+#include "renderer/frame/parameters.h"
 
 namespace limpid::viewer {
 namespace {

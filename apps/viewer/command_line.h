@@ -4,7 +4,7 @@
 #include <string>
 
 #include "playback.h"
-#include "renderer/settings.h"
+#include "renderer/frame/settings.h"
 #include "scene_source.h"
 
 namespace limpid::viewer {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "renderer/parameters.h"
+#include "renderer/frame/parameters.h"
 
 namespace limpid::viewer {
 namespace {

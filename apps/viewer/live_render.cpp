@@ -1,6 +1,6 @@
 #include "live_render.h"
 
-#include "image/png.h"
+#include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "passes/tonemap/tonemap.h"
 

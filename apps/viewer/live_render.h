@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "gpu/presenter.h"
-#include "renderer/frame_renderer.h"
+#include "gpu/present/presenter.h"
+#include "renderer/frame/frame_renderer.h"
 #include "stage.h"
-#include "texels.h"
+#include "viewer/compare/texels.h"
 
 namespace limpid::viewer {
 

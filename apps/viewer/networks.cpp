@@ -1,6 +1,6 @@
 #include "networks.h"
 
-#include "renderer/network_file.h"
+#include "renderer/frame/network_file.h"
 
 namespace limpid::viewer {
 

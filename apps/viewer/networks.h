@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "gpu/device.h"
-#include "renderer/settings.h"
+#include "gpu/vulkan/device.h"
+#include "renderer/frame/settings.h"
 
 namespace limpid::viewer {
 
@@ -16,8 +16,8 @@ class Networks {
 
     /// Whether the pipeline needs one that is not there in the precision of `settings`.
     bool lacks(const Pipeline& pipeline, const denoise::DenoiserSettings& settings) const;
-    /// Of a pipeline that lacks one. Throws InputError as renderer/network_file.h does; then what was there
-    /// stays, and stands for that precision.
+    /// Of a pipeline that lacks one. Throws InputError as renderer/frame/network_file.h does; then what was
+    /// there stays, and stands for that precision.
     void load(const Pipeline& pipeline, const denoise::DenoiserSettings& settings);
     /// Sets the network that the settings' pipeline needs, or none: settings of the others do not depend on
     /// it.

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/still.h"
-#include "scene/camera_path.h"
+#include "renderer/frame/still.h"
+#include "scene/framing/camera_path.h"
 
 namespace limpid::viewer {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/sequence.h"
+#include "renderer/frame/sequence.h"
 
 namespace limpid::viewer {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/shader.h"
+#include "gpu/graph/shader.h"
 
 namespace limpid::viewer {
 

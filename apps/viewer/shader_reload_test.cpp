@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 TEST(ShaderReload, FindsWhatIsIncludedHoweverFar) {
     const fs::path source = fs::path(LIMPID_SOURCE_DIR) / "src";
     const std::vector<fs::path> files = includedFiles(source, source / "passes/pathtrace/pathtrace.comp");
-    for (const char* name : {"passes/pathtrace/pathtrace_pixel.glsl", "shaders/rng.glsl", "shaders/camera.h"})
+    for (const char* name :
+         {"passes/pathtrace/pathtrace_pixel.glsl", "shaders/common/rng.glsl", "shaders/common/camera.h"})
         EXPECT_NE(std::ranges::find(files, source / name), files.end()) << name;
 }
 

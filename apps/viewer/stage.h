@@ -3,18 +3,18 @@
 
 #include <optional>
 
-#include "scene/framing.h"
-#include "scene/gpu_scene.h"
-#include "scene/light_control.h"
-#include "scene/live_lights.h"
-#include "scene/scene_animator.h"
+#include "scene/device/gpu_scene.h"
+#include "scene/framing/framing.h"
+#include "scene/model/light_control.h"
+#include "scene/model/live_lights.h"
+#include "scene/motion/scene_animator.h"
 
 namespace limpid::viewer {
 
 class Stage {
   public:
-    /// `scene` is complete (scene/prepare.h), with its clip chosen if one shall play. Throws as GpuScene
-    /// does.
+    /// `scene` is complete (scene/model/prepare.h), with its clip chosen if one shall play. Throws as
+    /// GpuScene does.
     Stage(gpu::Device& device, scene::Scene scene, scene::Tracer tracer);
     Stage(const Stage&) = delete;  // the animator refers to the scene
     Stage& operator=(const Stage&) = delete;

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "gpu/device.h"
-#include "renderer/settings.h"
-#include "scene/scene.h"
-#include "scene/tracer.h"
+#include "gpu/vulkan/device.h"
+#include "renderer/frame/settings.h"
+#include "scene/device/tracer.h"
+#include "scene/model/scene.h"
 #include "scene_source.h"
 
 namespace limpid::viewer {
@@ -41,7 +41,7 @@ struct ViewSettings {
 /// How rays are traced on the device that there is.
 using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
 
-/// A complete scene (scene/prepare.h). Throws InputError, and UsageError.
+/// A complete scene (scene/model/prepare.h). Throws InputError, and UsageError.
 using SceneLoader = std::function<scene::Scene(const SceneSource& source)>;
 
 /// Opens the window and returns when it is closed. Throws Error where there is no display, or a device that

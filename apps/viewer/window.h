@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/frame_graph.h"
-#include "input.h"
+#include "gpu/graph/frame_graph.h"
+#include "viewer/camera/input.h"
 
 struct GLFWwindow;
 

@@ -1,6 +1,6 @@
 #include "base/error.h"
 
-#include "base/terminal_text.h"
+#include "base/text/terminal_text.h"
 
 namespace limpid {
 

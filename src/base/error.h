@@ -27,7 +27,7 @@ class UsageError : public Error {
 };
 
 /// An input file could not be read. Exit code 3; the message is "file: fault", the file's name as a terminal
-/// can show it (base/terminal_text.h).
+/// can show it (base/text/terminal_text.h).
 class InputError : public Error {
   public:
     InputError(const std::filesystem::path& file, const std::string& fault);

@@ -3,7 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "base/terminal_text.h"
+#include "base/text/terminal_text.h"
 
 namespace limpid::log {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "image/png.h"
+#include "image/io/png/png.h"
 
 namespace limpid::image {
 

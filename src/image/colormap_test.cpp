@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "image/png.h"
-#include "image/temp_folder.h"
+#include "image/io/png/png.h"
+#include "image/io/temp_folder.h"
 
 namespace limpid::image {
 namespace {

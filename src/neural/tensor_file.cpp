@@ -14,7 +14,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/files/file.h"
 
 namespace limpid::neural {
 namespace {

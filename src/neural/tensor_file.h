@@ -36,7 +36,7 @@ struct TensorFile {
     std::map<std::string, Tensor> tensors;
 };
 
-/// Written so that an earlier file survives a failure (base/file.h), with the checksum of all elements,
+/// Written so that an earlier file survives a failure (base/files/file.h), with the checksum of all elements,
 /// CRC-32 in hexadecimal, as metadata "crc32". Tensors lie in the order of their names. Throws OutputError,
 /// or Error where a tensor's bytes do not fit its shape.
 void writeTensorFile(const std::filesystem::path& path, const TensorFile& file);

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "image/temp_folder.h"
+#include "image/io/temp_folder.h"
 
 namespace limpid::neural {
 namespace {

@@ -2,8 +2,8 @@
 // numbers.
 #pragma once
 
-#include "gpu/frame_graph.h"
-#include "shaders/camera.h"
+#include "gpu/graph/frame_graph.h"
+#include "shaders/common/camera.h"
 
 namespace limpid {
 
@@ -25,7 +25,7 @@ struct CameraLaunch {
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
     uint64_t samplesBefore = 0;  ///< of each pixel in the mean, before this launch
-    bool samplerTea = false;     ///< instead of PCG (shaders/rng.glsl)
+    bool samplerTea = false;     ///< instead of PCG (shaders/common/rng.glsl)
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {

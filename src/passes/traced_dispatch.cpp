@@ -1,6 +1,6 @@
 #include "passes/traced_dispatch.h"
 
-#include "shaders/ray_shaders.h"
+#include "shaders/trace/ray_shaders.h"
 
 namespace limpid {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "gpu/frame_graph.h"
-#include "scene/gpu_scene.h"
+#include "gpu/graph/frame_graph.h"
+#include "scene/device/gpu_scene.h"
 
 namespace limpid {
 

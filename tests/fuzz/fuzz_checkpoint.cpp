@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "renderer/accumulation_file.h"
-#include "renderer/layers.h"
+#include "renderer/layers/layers.h"
+#include "renderer/long/accumulation_file.h"
 #include "scratch.h"
 
 namespace limpid::fuzz {

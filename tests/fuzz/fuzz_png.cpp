@@ -1,8 +1,8 @@
 #include <utility>
 
-#include "image/png.h"
-#include "image/texture_decode.h"
-#include "scene/mip_levels.h"
+#include "image/io/png/png.h"
+#include "image/io/texture_decode.h"
+#include "scene/device/mip_levels.h"
 #include "scratch.h"
 
 namespace limpid::fuzz {

@@ -1,8 +1,8 @@
 #include "picture_target.h"
 
-#include "image/picture.h"
-#include "scene/environment.h"
-#include "scene/validate.h"
+#include "image/io/picture.h"
+#include "scene/model/environment.h"
+#include "scene/model/validate.h"
 #include "scratch.h"
 
 namespace limpid::fuzz {

@@ -6,13 +6,13 @@
 #include <fstream>
 #include <string>
 
-#include "image/png.h"
-#include "scene/camera.h"
-#include "scene/load.h"
-#include "scene/movement.h"
-#include "scene/pack.h"
-#include "scene/prepare.h"
-#include "scene/scene_animator.h"
+#include "image/io/png/png.h"
+#include "scene/device/pack.h"
+#include "scene/model/camera.h"
+#include "scene/model/load.h"
+#include "scene/model/prepare.h"
+#include "scene/motion/movement.h"
+#include "scene/motion/scene_animator.h"
 
 namespace limpid::fuzz {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "scene/scene.h"
-#include "scene/scene_data.h"
+#include "scene/device/scene_data.h"
+#include "scene/model/scene.h"
 #include "targets.h"
 
 namespace limpid::fuzz {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "base/params.h"
-#include "denoise/denoiser_input.h"
+#include "denoise/api/denoiser_input.h"
 #include "denoise/kpcn/kpcn_network.h"
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 
 namespace limpid::denoise {
 
@@ -17,8 +17,8 @@ struct KpcnSettings {
     float standardErrors = 6.0f;
     int levels = 4;
     float phiColor = 3.5f;
-    bool half = true;                            ///< heeded when the network is made: kpcnPrecision()
-    bool cis565 = false;                         ///< ... when its weights are read: renderer/network_file.h
+    bool half = true;     ///< heeded when the network is made: kpcnPrecision()
+    bool cis565 = false;  ///< ... when its weights are read: renderer/frame/network_file.h
     std::shared_ptr<const KpcnNetwork> network;  ///< must be set, and of the device that executes the graph
     bool operator==(const KpcnSettings&) const = default;
 };

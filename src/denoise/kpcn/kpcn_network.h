@@ -8,7 +8,7 @@
 
 #include "denoise/kpcn/kpcn_host.h"
 #include "denoise/kpcn/kpcn_weights.h"
-#include "gpu/device.h"
+#include "gpu/vulkan/device.h"
 
 namespace limpid::denoise {
 

@@ -2,7 +2,7 @@
 #ifndef LIMPID_DENOISE_KPCN_PARAMS_H
 #define LIMPID_DENOISE_KPCN_PARAMS_H
 
-#include "shaders/camera.h"
+#include "shaders/common/camera.h"
 
 #ifdef __cplusplus
 namespace limpid::denoise {

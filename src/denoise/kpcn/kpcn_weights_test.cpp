@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "image/temp_folder.h"
+#include "image/io/temp_folder.h"
 #include "neural/tensor_file.h"
 
 namespace limpid::denoise {

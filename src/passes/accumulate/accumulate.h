@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 
 namespace limpid {
 

@@ -13,7 +13,7 @@ namespace {
 /// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a ray may take two
 /// thousand. More rays would be lost without a word.
 constexpr uint32_t maxRaysPerDispatch = 32;
-constexpr float unlimited = 1e30f;  ///< INFINITE_DISTANCE of shaders/trace.glsl
+constexpr float unlimited = 1e30f;  ///< INFINITE_DISTANCE of shaders/trace/trace.glsl
 
 }  // namespace
 

@@ -2,7 +2,7 @@
 // G. Kronin, "An ambient light illumination model", 1998, with obstacles that count in full. Without a limit it is what a
 // white surface reflects of a white sky. The same for every tracer.
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
-#include "shaders/trace.glsl"
+#include "shaders/trace/trace.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     AmbientOcclusionParams params;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/params.h"
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 #include "passes/gbuffer/gbuffer.h"
-#include "scene/gpu_scene.h"
+#include "scene/device/gpu_scene.h"
 
 namespace limpid {
 

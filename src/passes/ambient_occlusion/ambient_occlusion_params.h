@@ -2,7 +2,7 @@
 #ifndef LIMPID_PASSES_AMBIENT_OCCLUSION_PARAMS_H
 #define LIMPID_PASSES_AMBIENT_OCCLUSION_PARAMS_H
 
-#include "shaders/scene_layout.h"
+#include "shaders/common/scene_layout.h"
 
 #ifdef __cplusplus
 namespace limpid {

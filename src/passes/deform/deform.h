@@ -1,9 +1,9 @@
 // Bringing the scene to a moment: uploads what moved, poses vertices on the device, refits their trees.
 #pragma once
 
-#include "gpu/frame_graph.h"
-#include "scene/gpu_scene.h"
-#include "scene/scene_animator.h"
+#include "gpu/graph/frame_graph.h"
+#include "scene/device/gpu_scene.h"
+#include "scene/motion/scene_animator.h"
 
 namespace limpid {
 

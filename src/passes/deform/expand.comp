@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Nodes from the quantised format to the expanded one, as scene/expanded_nodes.cpp does when a scene is loaded.
+// Nodes from the quantised format to the expanded one, as scene/model/expanded_nodes.cpp does when a scene is loaded.
 #include "passes/deform/deform_params.h"
-#include "shaders/scene_layout.h"
+#include "shaders/common/scene_layout.h"
 
 layout(local_size_x = 64) in;
 

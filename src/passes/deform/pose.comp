@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 // Morph targets, then the skin, of one deforming instance: where its vertices are now and were in the previous frame.
 // glTF 2.0, sections 3.7.2.2 and 3.7.3.
-#include "shaders/sampling.glsl"
-#include "shaders/scene_layout.h"
+#include "shaders/common/sampling.glsl"
+#include "shaders/common/scene_layout.h"
 
 layout(local_size_x = 64) in;
 

@@ -3,7 +3,7 @@
 // Fits the nodes of one level of the deforming trees to their moved triangles; the tree keeps its shape. Written as
 // makeBvhNode() in scene/bvh.cpp.
 #include "passes/deform/deform_params.h"
-#include "shaders/scene_layout.h"
+#include "shaders/common/scene_layout.h"
 
 layout(local_size_x = 64) in;
 

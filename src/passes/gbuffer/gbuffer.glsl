@@ -2,9 +2,9 @@
 //
 // Rays, random numbers and surfaces are those of the path tracer's first sample, so that its layers and these are equal.
 #include "passes/gbuffer/gbuffer_params.h"
-#include "shaders/first_hit.glsl"
-#include "shaders/lights.glsl"
-#include "shaders/medium.glsl"
+#include "shaders/common/first_hit.glsl"
+#include "shaders/material/lights.glsl"
+#include "shaders/material/medium.glsl"
 
 layout(constant_id = 21) const bool LIGHT = true;    // false: the layer `light` is black
 layout(constant_id = 22) const bool SHADOWS = true;  // false: lights shine through everything

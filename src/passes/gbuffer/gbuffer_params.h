@@ -2,8 +2,8 @@
 #ifndef LIMPID_PASSES_GBUFFER_PARAMS_H
 #define LIMPID_PASSES_GBUFFER_PARAMS_H
 
-#include "shaders/camera.h"
-#include "shaders/scene_layout.h"
+#include "shaders/common/camera.h"
+#include "shaders/common/scene_layout.h"
 
 #ifdef __cplusplus
 namespace limpid {

@@ -5,9 +5,9 @@
 // The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
 // and a dozen registers are free for traversal.
 #include "passes/pathtrace/pathtrace_params.h"
-#include "shaders/lights.glsl"
-#include "shaders/medium.glsl"
-#include "shaders/reflection.glsl"
+#include "shaders/material/lights.glsl"
+#include "shaders/material/medium.glsl"
+#include "shaders/common/reflection.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;

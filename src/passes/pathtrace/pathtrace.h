@@ -2,10 +2,10 @@
 #pragma once
 
 #include "base/params.h"
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 #include "passes/camera_launch.h"
 #include "passes/pathtrace/pathtrace_params.h"
-#include "scene/gpu_scene.h"
+#include "scene/device/gpu_scene.h"
 
 namespace limpid {
 

@@ -2,7 +2,7 @@
 #ifndef LIMPID_PASSES_PREVIEW_PARAMS_H
 #define LIMPID_PASSES_PREVIEW_PARAMS_H
 
-#include "shaders/camera.h"
+#include "shaders/common/camera.h"
 
 #ifdef __cplusplus
 namespace limpid {

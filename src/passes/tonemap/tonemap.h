@@ -1,7 +1,7 @@
 // The tone-mapping pass: linear radiance to what a screen shows.
 #pragma once
 
-#include "gpu/frame_graph.h"
+#include "gpu/graph/frame_graph.h"
 
 namespace limpid {
 

@@ -1,0 +1,23 @@
+// --device and --tracer, the same for every command that uses a device.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "gpu/vulkan/device.h"
+#include "scene/device/tracer.h"
+
+namespace limpid::cli {
+
+struct DeviceChoice {
+    gpu::DeviceOptions device;
+    std::string tracer = "auto";
+};
+
+void addDeviceOptions(CLI::App& command, DeviceChoice& choice);
+
+std::unique_ptr<gpu::Device> openDevice(const DeviceChoice& choice);
+/// Throws UsageError if the tracer that was asked for is not to be had on the device.
+scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device);
+
+}  // namespace limpid::cli

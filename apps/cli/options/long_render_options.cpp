@@ -1,0 +1,69 @@
+#include "cli/options/long_render_options.h"
+
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/files/file.h"
+
+namespace limpid::cli {
+namespace {
+
+/// 0 if it is none.
+uint32_t positiveNumber(std::string_view text) {
+    uint32_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size() ? value : 0;
+}
+
+}  // namespace
+
+void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice) {
+    command
+        .add_option("--time-limit", choice.timeLimit,
+                    "Seconds from the start of the program until it writes what it has")
+        ->check(CLI::Range(1e-3, 1e9));
+    command.add_option("--checkpoint", choice.checkpoint,
+                       "Keep the state of the render in this file (docs/long-renders.md)");
+    command.add_flag("--resume", choice.resume,
+                     "Go on from the checkpoint; from the beginning if there is none yet");
+    command.add_option(
+        "--shard", choice.shard,
+        "I/N: the I-th of N parts, of a sequence's frames or a still's samples; a still's OUTPUT "
+        "is then a .sums file for 'limpid merge'");
+}
+
+bool isLongRender(const LongRenderChoice& choice) {
+    return choice.timeLimit > 0.0 || !choice.checkpoint.empty() || choice.resume || !choice.shard.empty();
+}
+
+Shard chosenShard(const std::string& choice) {
+    if (choice.empty()) return {};
+    const size_t slash = std::min(choice.find('/'), choice.size());
+    const std::string_view text = choice;
+    const Shard shard{.index = positiveNumber(text.substr(0, slash)),
+                      .count = positiveNumber(text.substr(std::min(slash + 1, text.size())))};
+    if (shard.index == 0 || shard.count == 0 || shard.index > shard.count) {
+        throw UsageError("--shard: '" + choice + "' is not I/N, the I-th of N parts, I from 1 to N");
+    }
+    return shard;
+}
+
+void checkLongRender(const LongRenderChoice& choice) {
+    if (choice.resume && choice.checkpoint.empty())
+        throw UsageError("--resume needs --checkpoint FILE, the file to go on from");
+    std::error_code status;
+    if (!choice.checkpoint.empty() && !choice.resume && std::filesystem::exists(choice.checkpoint, status)) {
+        throw UsageError("'" + choice.checkpoint +
+                         "' exists: --resume goes on from it; remove it to begin anew");
+    }
+    if (choice.checkpoint.empty()) return;
+    const std::optional<std::string> fault = irregularity(choice.checkpoint);
+    if (fault && std::filesystem::exists(choice.checkpoint, status))
+        throw InputError(choice.checkpoint, *fault);
+    checkWritable(choice.checkpoint);
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,199 @@
+#include "cli/options/render_options.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/files/frame_pattern.h"
+#include "cli/render/clip_output.h"
+#include "cli/render/picture_output.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "renderer/layers/layers.h"
+
+namespace limpid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Jitter parseJitter(const std::string& name) {
+    return name == "pixel" ? Jitter::Pixel : name == "frame" ? Jitter::Frame : Jitter::Off;
+}
+
+void checkClip(const RenderOptions& o) {
+    if (FramePattern(o.output).numbered())
+        throw UsageError("'" + o.output + "': a clip is one file, whose name holds no frame number");
+    if (isLongRender(o.longRender))
+        throw UsageError(
+            "--checkpoint, --resume, --shard and --time-limit are not for clips: render frame.%04d.png");
+    if (!o.layers.empty()) throw UsageError("--aov needs an .exr output");
+    if (!o.dump.empty()) throw UsageError("--dump is not for clips: render frame.%04d.exr");
+    checkClipOutput(FramePattern(o.output).format(0));
+}
+
+void checkOutput(const RenderOptions& o) {
+    const fs::path path = FramePattern(o.output).format(0);
+    if (isClip(path)) return checkClip(o);
+    const bool sums = path.extension() == ".sums";
+    if (sums != writesSums(o)) {
+        throw UsageError(
+            "'" + o.output +
+            (sums ? "': only a shard of a still is written to a .sums file"
+                  : "': the name of a still's shard ends in .sums; 'limpid merge' makes the picture"));
+    }
+    if (sums) return checkWritable(path);
+    checkPictureOutput(path, !o.layers.empty());
+}
+
+/// The frames of the output that may be the file of this name.
+std::vector<int> framesThatMayBe(const FramePattern& output, const fs::path& file) {
+    if (!output.numbered()) return {0};
+    std::vector<int> frames = output.existingFrames();  // one may be a symbolic link
+    for (const fs::path& name : {file, linkTarget(file)}) {
+        if (const std::optional<int> frame = output.frameOf(name.filename().string()))
+            frames.push_back(*frame);
+    }
+    return frames;
+}
+
+/// Otherwise each would be written over the other.
+void checkCheckpointIsNoOutput(const RenderOptions& o) {
+    if (o.longRender.checkpoint.empty()) return;
+    const FramePattern output(o.output);
+    for (const int frame : framesThatMayBe(output, o.longRender.checkpoint)) {
+        const fs::path file = output.format(frame);
+        if (isSameFile(file, o.longRender.checkpoint))
+            throw UsageError("--checkpoint: '" + o.longRender.checkpoint + "' is the output '" +
+                             file.string() + "'; they must be two files");
+    }
+}
+
+}  // namespace
+
+void addRenderOptions(CLI::App& command, RenderOptions& o) {
+    addSceneOptions(command, o.scene);
+    addSequenceOptions(command, o.sequence);
+    command
+        .add_option("-o,--output", o.output,
+                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames; "
+                    "a clip by "
+                    "the program ffmpeg: .mp4, .webm, .webp or .gif")
+        ->required();
+    command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
+    command
+        .add_option("--spp", o.samples,
+                    "Samples per pixel (64); with a denoiser, per pixel and frame (1; kpcn 32)")
+        ->check(CLI::Range(1, 1 << 24));
+    command
+        .add_option("--samples-per-launch", o.samplesPerLaunch,
+                    "Of these, so many in one launch (1); at most 4 on a CPU")
+        ->check(CLI::Range(1, 4096));
+    command.add_option("--max-depth", o.maxDepth, "Bounces (8); the same as --set pathtrace.max_depth")
+        ->check(CLI::Range(0, 1024));
+    command.add_option("--seed", o.seed, "Another seed, other noise (0)");
+    command.add_option("--sampler", o.sampler, "Random numbers: pcg (default) or tea")
+        ->check(CLI::IsMember({"pcg", "tea"}));
+    command
+        .add_option(
+            "--jitter", o.jitter,
+            "Where in its pixel a ray goes: pixel, frame or off (the centre); default: pixel, but off with "
+            "denoisers that keep a history")
+        ->check(CLI::IsMember({"pixel", "frame", "off"}));
+    std::string names;
+    for (const Pipeline& pipeline : pipelines()) names += " " + std::string(pipeline.name());
+    command.add_option("--pipeline", o.pipeline,
+                       "What makes the picture; path (default, but for --preset), or one of" + names);
+    command.add_option("--preset", o.presets,
+                       "All that a paper, a course or a tutorial says, as svgf-paper; 'limpid info' lists "
+                       "them; other options win");
+    command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
+    command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
+    command.add_flag("--progressive", o.progressive,
+                     "Of --pipeline path: the mean as the window keeps it, launch after launch in single "
+                     "precision; not with --resume, "
+                     "--shard and --time-limit");
+    command.add_option("--exposure", o.exposure,
+                       "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
+    command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
+    command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
+    command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");
+    command.add_flag("--json", o.json, "One JSON object about the run on stdout");
+    addLongRenderOptions(command, o.longRender);
+    addDeviceOptions(command, o.device);
+}
+
+Pipeline pipelineOf(const RenderOptions& o) {
+    return pipelineFor(o.presets, o.pipeline, "path");
+}
+
+bool isProgressive(const RenderOptions& o) {
+    const bool byPreset = std::ranges::any_of(
+        o.presets, [](const std::string& preset) { return findPreset(preset).progressive; });
+    return o.progressive || (byPreset && !isLongRender(o.longRender));
+}
+
+RenderSettings settingsOf(const RenderOptions& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.seed = o.seed;
+    settings.samplesPerLaunch = o.samplesPerLaunch;
+    settings.pipeline = pipelineOf(o);
+    settings.jitter = defaultJitter(settings.pipeline);
+    settings.layers = !o.layers.empty();
+    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    if (!o.jitter.empty()) settings.jitter = parseJitter(o.jitter);
+    if (!o.sampler.empty()) settings.pathtrace.samplerTea = o.sampler == "tea";
+    if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;
+    for (const std::string& text : o.assignments) assign(settings, text);
+    return settings;
+}
+
+uint64_t samplesOf(const RenderOptions& o) {
+    if (o.samples > 0) return o.samples;
+    const Pipeline pipeline = pipelineOf(o);
+    if (pipeline.accumulates()) return 64;
+    return pipeline.denoiser->network ? 32 : 1;
+}
+
+bool writesSums(const RenderOptions& o) {
+    return !FramePattern(o.output).numbered() && chosenShard(o.longRender.shard).count > 1;
+}
+
+std::vector<std::string> chosenLayers(const RenderOptions& o) {
+    const Pipeline pipeline = pipelineOf(o);
+    const std::vector<std::string> possible = pipeline.layers();
+    if (o.layers == "all") return possible;
+    const std::vector<std::string> chosen = parseLayers(o.layers);
+    for (const std::string& name : chosen) {
+        if (std::ranges::find(possible, name) == possible.end())
+            throw UsageError("--aov: the pipeline '" + std::string(pipeline.name()) + "' has no layer '" +
+                             name + "'");
+    }
+    std::vector<std::string> layers;
+    std::ranges::copy_if(possible, std::back_inserter(layers), [&](const std::string& name) {
+        return std::ranges::find(chosen, name) != chosen.end();
+    });
+    return layers;
+}
+
+void checkRenderOptions(const RenderOptions& o) {
+    const Pipeline pipeline = pipelineOf(o);
+    if (o.progressive && isLongRender(o.longRender))
+        throw UsageError("--progressive: not with --checkpoint, --resume, --shard and --time-limit");
+    if (pipeline != Pipeline{} && isLongRender(o.longRender)) {
+        throw UsageError(
+            "--checkpoint, --resume, --shard and --time-limit are for --pipeline path: the frames of '" +
+            std::string(pipeline.name()) + "' build on each other");
+    }
+    if (!pipeline.accumulates() && samplesOf(o) > 65536)
+        throw UsageError("--spp: a frame that is denoised takes 65536 samples at most");
+    checkLongRender(o.longRender);
+    checkOutput(o);
+    checkCheckpointIsNoOutput(o);
+    parseExposure(o.exposure);
+    chosenLayers(o);
+    settingsOf(o);
+}
+
+}  // namespace limpid::cli

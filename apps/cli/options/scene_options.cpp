@@ -1,0 +1,124 @@
+#include "cli/options/scene_options.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "scene/builtin/builtin.h"
+#include "scene/framing/own_light.h"
+#include "scene/model/camera.h"
+#include "scene/model/environment.h"
+#include "scene/model/light_file.h"
+#include "scene/model/load.h"
+#include "scene/model/prepare.h"
+
+namespace limpid::cli {
+
+namespace {
+
+/// Squares of coordinates must stay within a float.
+constexpr double farthest = 1e18;
+
+const scene::Camera& namedCamera(const scene::Scene& scene, const std::string& choice) {
+    if (choice.empty()) return scene.cameras.front();
+    std::string known;
+    for (size_t i = 0; i < scene.cameras.size(); ++i) {
+        const scene::Camera& camera = scene.cameras[i];
+        if (camera.name == choice || std::to_string(i) == choice) return camera;
+        known += fmt::format(" {} '{}'", i, camera.name);
+    }
+    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
+}
+
+}  // namespace
+
+void addSceneOptions(CLI::App& command, SceneChoice& choice) {
+    std::string builtins;
+    for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
+    command
+        .add_option(
+            "SCENE", choice.scene,
+            "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
+        ->required();
+    command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
+    command
+        .add_option("--light", choice.lights,
+                    "A white light besides the scene's: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY in "
+                    "that direction; once for each")
+        ->allow_extra_args(false);
+    command.add_option("--lights", choice.lightFile,
+                       "Changes to the scene's lights, as the window saves them (JSON)");
+    command.add_option("--background", choice.background,
+                       "The same radiance from everywhere instead of any environment: R,G,B; 0,0,0 is black");
+    command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
+    const CLI::Range reachable(-farthest, farthest);
+    command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
+        ->delimiter(',')
+        ->expected(3)
+        ->check(reachable);
+    command.add_option("--target", choice.target, "What it looks at: X,Y,Z")
+        ->delimiter(',')
+        ->expected(3)
+        ->check(reachable);
+    command.add_option("--up", choice.up, "What is up in its picture: X,Y,Z (0,1,0)")
+        ->delimiter(',')
+        ->expected(3)
+        ->check(reachable);
+    command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
+        ->check(CLI::Range(0.01, 179.0));
+    command.add_option(
+        "--asset-root", choice.assetRoot,
+        "Folder that the scene's files (textures, buffers, materials) must lie in, if not in the "
+        "scene's own; default: the folder above the scene's, unless that is / or holds home folders");
+    command
+        .add_option("--max-image-memory", choice.maxImageMemory,
+                    "Host memory that one texture or environment map may take, as 512MB or 8GB (2GB); larger "
+                    "ones are scaled down while they are read")
+        ->transform(CLI::AsSizeValue(false))
+        ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 50));
+}
+
+scene::Scene loadChosenScene(const SceneChoice& choice) {
+    constexpr std::string_view prefix = "builtin:";
+    const bool builtin = choice.scene.starts_with(prefix);
+    const auto fromFile = [&] {
+        const scene::LoadOptions options{.assetRoot = choice.assetRoot.empty()
+                                                          ? scene::defaultAssetRoot(choice.scene)
+                                                          : std::filesystem::path(choice.assetRoot),
+                                         .maxImageMemory = choice.maxImageMemory};
+        return scene::loadScene(choice.scene, options);
+    };
+    scene::Scene scene = builtin ? scene::builtinScene(choice.scene.substr(prefix.size())) : fromFile();
+    if (!choice.environment.empty())
+        scene.environment = scene::loadEnvironment(choice.environment, choice.maxImageMemory);
+    scene::OwnLight own{{}, scene::parseBackground(choice.background)};
+    for (const std::string& text : choice.lights) {
+        if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);
+    }
+    scene::addOwnLight(scene, own);
+    // Built-in scenes are as dark as they are meant to be.
+    scene::prepare(scene, !choice.background.empty() ? scene::SkyRule::Never
+                          : builtin                  ? scene::SkyRule::WithoutLights
+                                                     : scene::SkyRule::InTheDark);
+    if (!choice.lightFile.empty()) {
+        const std::vector<scene::LightControl> before = scene::lightControlsOf(scene);
+        scene::applyLightControls(scene, scene::readLightFile(choice.lightFile, before), before);
+    }
+    return scene;
+}
+
+scene::Camera chosenCamera(const scene::Scene& scene, const SceneChoice& choice) {
+    scene::Camera camera = namedCamera(scene, choice.camera);
+    if (choice.eye.empty() && choice.target.empty() && choice.up.empty() && choice.fov == 0.0f) return camera;
+    if (choice.eye.size() != 3 || choice.target.size() != 3)
+        throw UsageError("--eye and --target go together, three numbers each; --fov and --up go with them");
+    const vec3 eye(choice.eye[0], choice.eye[1], choice.eye[2]),
+        target(choice.target[0], choice.target[1], choice.target[2]);
+    if (eye == target) throw UsageError("--eye and --target are the same point");
+    const vec3 up =
+        choice.up.empty() ? vec3(0.0f, 1.0f, 0.0f) : vec3(choice.up[0], choice.up[1], choice.up[2]);
+    const bool isFlat = glm::length(up) > 0.0f && glm::length(glm::cross(target - eye, up)) > 0.0f;
+    if (!choice.up.empty() && !isFlat) throw UsageError("--up is zero or along the view");
+    return scene::lookAt(eye, target, up, choice.fov > 0.0f ? glm::radians(choice.fov) : camera.verticalFov);
+}
+
+}  // namespace limpid::cli

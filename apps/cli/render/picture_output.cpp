@@ -1,0 +1,70 @@
+#include "cli/render/picture_output.h"
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/params.h"
+#include "image/io/exr/exr.h"
+#include "image/io/png/png.h"
+#include "image/metrics/metrics.h"
+#include "image/tonemap.h"
+#include "renderer/frame/camera_text.h"
+#include "renderer/long/merge_frames.h"
+#include "renderer/long/render_identity.h"
+
+namespace limpid::cli {
+
+namespace fs = std::filesystem;
+
+std::optional<float> parseExposure(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    const ParamValue value = parseParam("--exposure", text, ParamValue(0.0f));
+    checkRange("--exposure", {"stops", 0.0f, -100.0, 100.0, "stops", ""}, value);
+    return std::get<float>(value);
+}
+
+bool isExr(const fs::path& path) {
+    return path.extension() == ".exr";
+}
+
+void checkPictureOutput(const fs::path& path, bool layers) {
+    if (!isExr(path) && path.extension() != ".png")
+        throw UsageError("'" + path.string() + "': an output's name ends in .exr or .png");
+    if (layers && !isExr(path)) throw UsageError("--aov needs an .exr output");
+    checkWritable(path);
+}
+
+PictureFormat formatOf(const AccumulationHeader& header) {
+    return {header.layers, header.floatColors, header.exposure};
+}
+
+std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
+                                              uint64_t samples, const std::string& camera) {
+    std::map<std::string, std::string> metadata{{"limpid.version", std::string(header.value(versionEntry))},
+                                                {"limpid.scene", std::string(header.value(sceneEntry))},
+                                                {"limpid.samples", std::to_string(samples)},
+                                                {"limpid.seed", std::string(header.value(seedEntry))},
+                                                {"limpid.device", header.device},
+                                                {"limpid.driver", header.driver},
+                                                {cameraAttribute, camera}};
+    metadata.merge(frameMetadata(header, frame));
+    return metadata;
+}
+
+void writePicture(const fs::path& path, const PictureFormat& format, const RenderedLayers& layers,
+                  const std::map<std::string, std::string>& metadata) {
+    if (!isExr(path)) {
+        const image::Image beauty = beautyOf(layers);
+        if (format.shownAsIs)
+            return image::writePng(path, image::toBytes(image::displayEncode(beauty, 0.0f)));
+        const float stops =
+            parseExposure(format.exposure).value_or(image::autoExposure(beauty, surfaceShare(layers)));
+        image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
+        return;
+    }
+    image::LayeredImage exr = toLayeredImage(
+        layers, format.layers, format.floatColors ? image::Storage::Float : image::Storage::Half);
+    exr.metadata = metadata;
+    image::writeExr(path, exr);
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,40 @@
+// What `limpid render`, `merge` and `denoise` write: a frame's picture.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/layers/layers.h"
+#include "renderer/long/accumulation_header.h"
+
+namespace limpid::cli {
+
+/// Stops, or nothing for "auto". Throws UsageError.
+std::optional<float> parseExposure(const std::string& text);
+
+bool isExr(const std::filesystem::path& path);
+
+/// Throws UsageError unless the name ends in .exr or .png, and layers go to an .exr; OutputError if no such
+/// file can be written.
+void checkPictureOutput(const std::filesystem::path& path, bool layers);
+
+struct PictureFormat {
+    std::vector<std::string> layers;  ///< of an EXR, besides beauty
+    bool floatColors = false;         ///< of an EXR; else half
+    std::string exposure = "auto";    ///< of a PNG
+    bool shownAsIs = false;           ///< of a PNG: values are shares in [0,1], no radiance
+};
+PictureFormat formatOf(const AccumulationHeader& header);
+
+/// The string attributes of an EXR; `camera` is the frame's cameraText().
+std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
+                                              uint64_t samples, const std::string& camera);
+
+/// An EXR with layers and metadata, or a PNG.
+void writePicture(const std::filesystem::path& path, const PictureFormat& format,
+                  const RenderedLayers& layers, const std::map<std::string, std::string>& metadata);
+
+}  // namespace limpid::cli

@@ -1,0 +1,127 @@
+// limpid render: a scene to image files or a clip.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/render/render_job.h"
+#include "image/io/exr/exr.h"
+#include "renderer/frame/network_file.h"
+#include "renderer/long/render_identity.h"
+
+namespace limpid::cli {
+
+namespace fs = std::filesystem;
+
+void writeDump(const fs::path& output, const std::vector<std::pair<std::string, image::Image>>& images) {
+    for (const auto& [name, picture] : images) {
+        std::string flat = name;
+        std::ranges::replace(flat, '/', '.');
+        if (const size_t mark = flat.find(" (previous)"); mark != std::string::npos)
+            flat.replace(mark, std::string::npos, ".previous");
+        fs::path path(output);
+        path.replace_extension("." + flat + ".exr");
+        image::LayeredImage exr;
+        exr.width = picture.width;
+        exr.height = picture.height;
+        exr.add("", std::string_view("RGBA").substr(0, picture.components), picture, image::Storage::Float);
+        image::writeExr(path, exr);
+        log::info("wrote {}", path.string());
+    }
+}
+
+void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& format,
+                const RenderedLayers& layers, const std::map<std::string, std::string>& metadata) {
+    if (job.clip) return job.clip->add(beautyOf(layers));
+    writePicture(FramePattern(job.options.output).format(static_cast<int>(frame)), format, layers, metadata);
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void renderFrames(const RenderJob& job, RenderSummary& summary) {
+    if (job.settings.pipeline == Pipeline{} && !isProgressive(job.options)) {
+        renderIndependentFrames(job, summary);
+    } else {
+        renderSuccessiveFrames(job, summary);
+    }
+}
+
+void renderClip(RenderJob job, RenderSummary& summary) {
+    const RenderOptions& o = job.options;
+    const fs::path file = FramePattern(o.output).format(0);
+    // What a process left that was killed in the act.
+    removeStaleTemporaries(file);
+    writeAtomically(file, [&](const fs::path& temporary) {
+        ClipWriter clip(temporary, {.width = job.settings.extent.width,
+                                    .height = job.settings.extent.height,
+                                    .framesPerSecond = o.sequence.timing.framesPerSecond,
+                                    .stops = parseExposure(o.exposure),
+                                    .shownAsIs = !job.settings.pipeline.needsExposure()});
+        job.clip = &clip;
+        renderFrames(job, summary);
+        clip.finish();
+    });
+}
+
+void render(const RenderOptions& o) {
+    checkRenderOptions(o);
+    RenderSettings settings = settingsOf(o);
+    const FramePattern output(o.output);
+    RenderSummary summary;
+    const Clock::time_point started = Clock::now();
+    scene::Scene scene = loadChosenScene(o.scene);
+    chooseAnimation(o.sequence, output, scene);
+    const scene::Camera camera = chosenCamera(scene, o.scene);
+    const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
+    summary.frames = frameCount(o.sequence, output, scene, path);
+    if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
+        throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
+    summary.timings.loadSeconds = since(started);
+
+    const Clock::time_point uploadStart = Clock::now();
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    if (settings.pipeline.denoiser && settings.pipeline.denoiser->network &&
+        samplesOf(o) < leastNetworkSamples)
+        log::warn("{} learnt from frames of 32 samples; {} tell it little", settings.pipeline.denoiser->name,
+                  samplesOf(o));
+    loadNetwork(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
+    scene::SceneData data = scene::buildSceneData(scene);
+    scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
+    const Sequence sequence(scene, data, camera, path, o.sequence.timing);
+    const uint64_t content = sceneHash(scene, data);
+    data = {};  // it is on the device now, and so are the textures
+    scene.textures.clear();
+    summary.timings.uploadSeconds = since(uploadStart);
+
+    const RenderJob job{o, settings, *device, gpuScene, sequence, content, summary.frames, started};
+    if (isClip(output.format(0))) {
+        renderClip(job, summary);
+    } else {
+        renderFrames(job, summary);
+    }
+    reportRender(o, *device, summary, scene, gpuScene);
+    if (device->validationMessages() > 0) {
+        throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
+    }
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Render a scene to EXR or PNG files");
+    auto options = std::make_shared<RenderOptions>();
+    addRenderOptions(*command, *options);
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace limpid::cli

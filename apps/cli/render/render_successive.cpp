@@ -1,0 +1,58 @@
+// limpid render with the pipelines that go from frame to frame.
+#include "base/log.h"
+#include "cli/progress.h"
+#include "cli/render/picture_output.h"
+#include "cli/render/render_job.h"
+#include "renderer/frame/camera_text.h"
+#include "renderer/frame/frame_renderer.h"
+#include "renderer/long/render_identity.h"
+
+namespace limpid::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t frame, uint64_t samples) {
+    const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
+    return {{"limpid.version", LIMPID_VERSION},
+            {"limpid.scene", std::filesystem::path(job.options.scene.scene).filename().string()},
+            {"limpid.pipeline", std::string(job.settings.pipeline.name())},
+            {"limpid.samples", std::to_string(samples)},
+            {"limpid.seed", std::to_string(job.settings.seed)},
+            {"limpid.device", job.device.info().name},
+            {"limpid.driver", job.device.info().driver},
+            {cameraAttribute, cameraText(camera)}};
+}
+
+}  // namespace
+
+void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
+    const RenderOptions& o = job.options;
+    const FramePattern output(o.output);
+    const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure,
+                               !job.settings.pipeline.needsExposure()};
+    FrameRenderer renderer(job.device, job.scene, job.settings, static_cast<uint32_t>(samplesOf(o)));
+    Progress progress("frames", static_cast<uint64_t>(job.frames));
+    const Clock::time_point start = Clock::now();
+    PassTimes times;
+    summary.framesToDo = static_cast<uint64_t>(job.frames);
+    for (uint64_t frame = 0; frame < summary.framesToDo; ++frame) {
+        renderer.render(job.sequence.moment(frame, job.settings.extent));
+        const RenderedLayers layers = renderer.download();
+        summary.lastFrame = sumByName(renderer.passTimes());
+        times.add(summary.lastFrame);
+        const std::filesystem::path file = output.format(static_cast<int>(frame));
+        writeFrame(job, frame, format, layers, metadataOf(job, frame, layers.samples));
+        if (!o.dump.empty()) writeDump(file, renderer.dump(o.dump));
+        summary.samples = layers.samples;
+        progress.show(++summary.framesFinished);
+    }
+    summary.complete = true;
+    summary.medians = times.medians();
+    summary.timings.renderSeconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const RenderCounters counters = renderer.counters();
+    summary.counts = {.rays = counters.rays, .rejected = counters.rejected};
+    if (!job.settings.pipeline.accumulates()) summary.history = renderer.historyCounts();
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,22 @@
+// What the subcommands of `limpid bench` share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cli/options/device_options.h"
+#include "cli/options/scene_options.h"
+#include "cli/pass_times.h"
+
+namespace limpid::cli {
+
+/// What files of a scene are named after: its name without path and prefix.
+std::string sceneStem(const std::string& scene);
+
+void addDenoiseBench(CLI::App& bench);
+void addKpcnBench(CLI::App& bench);
+void addLaunchesBench(CLI::App& bench);
+void addQualityBench(CLI::App& bench);
+void addSvgfBench(CLI::App& bench);
+
+}  // namespace limpid::cli

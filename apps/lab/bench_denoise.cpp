@@ -1,0 +1,138 @@
+// limpid bench denoise: milliseconds of every pass of a pipeline, and how near its memory traffic comes to
+// what the device can do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "bench_copy.comp.h"
+#include "cli/json_text.h"
+#include "lab/bench.h"
+#include "lab/bench_scene.h"
+#include "renderer/frame/network_file.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+
+namespace limpid::cli {
+namespace {
+
+using nlohmann::json;
+
+struct DenoiseBench {
+    DeviceChoice device;
+    SceneChoice scene{.scene = "builtin:cornell"};
+    std::string cameraPath = "shake", pipeline;
+    std::vector<std::string> presets, assignments;
+    uint32_t width = 640, height = 360, frames = 100, warmup = 20;
+    bool json = false;
+    std::string filters = "auto", weights;
+};
+
+Pipeline pipelineOf(const DenoiseBench& o) {
+    return pipelineFor(o.presets, o.pipeline, "atrous");
+}
+
+/// Bytes per second of a copy between images larger than any cache.
+double copyRate(gpu::Device& device) {
+    const gpu::Extent extent = device.isCpu() ? gpu::Extent{2048, 1024} : gpu::Extent{8192, 4096};
+    const std::vector<float> pixels(size_t{4} * extent.width * extent.height);
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    gpu::ImageHandle source = graph.transient("source", gpu::Format::RGBA32Float, extent);
+    gpu::ImageHandle result = graph.transient("result", gpu::Format::RGBA32Float, extent);
+    graph.upload(source, gpu::bytesOf(pixels));
+    for (int i = 0; i < 10; ++i) {
+        graph.dispatch({.pass = "copy",
+                        .shader = shaders::bench_copy_comp,
+                        .bindings = {{"source", source}, {"result", result}},
+                        .params = {},
+                        .constants = {},
+                        .extent = extent});
+        std::swap(source, result);
+    }
+    graph.execute(device);
+    std::vector<double> times;
+    for (const gpu::PassTime& pass : graph.passTimes(device)) times.push_back(pass.milliseconds);
+    return 2.0 * static_cast<double>(gpu::bytesOf(pixels).size()) / (median(times) * 1e-3);
+}
+
+std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.pipeline = pipelineOf(o);
+    settings.jitter = Jitter::Off;
+    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    for (const std::string& text : o.assignments) assign(settings, text);
+    loadNetwork(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
+    BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
+    std::optional<gpu::Backing> filters;
+    if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
+    return scene.measure(settings, o.warmup, o.frames, filters);
+}
+
+void run(const DenoiseBench& o) {
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const double limit = copyRate(*device);
+    json passes = json::array();
+    if (!o.json) {
+        fmt::print("{}, {}x{}, {}, {} frames; a copy moves {:.1f} GB/s\n{:<24}{:>12}{:>12}{:>10}{:>10}\n",
+                   device->info().name, o.width, o.height, pipelineOf(o).name(), o.frames, limit * 1e-9,
+                   "pass", "ms median", "ms least", "MB", "GB/s");
+    }
+    for (auto& [name, cost] : measure(*device, o)) {
+        const double ms = median(cost.milliseconds);
+        const double least = *std::ranges::min_element(cost.milliseconds);
+        const double rate = static_cast<double>(cost.bytes) / (ms * 1e-3);
+        passes.push_back({{"pass", name},
+                          {"ms_median", ms},
+                          {"ms_minimum", least},
+                          {"image_bytes", cost.bytes},
+                          {"bytes_per_second", rate}});
+        if (o.json) continue;
+        fmt::print("{:<24}{:>12.4f}{:>12.4f}{:>10.1f}{:>10.1f}\n", name, ms, least,
+                   static_cast<double>(cost.bytes) * 1e-6, rate * 1e-9);
+    }
+    if (!o.json) return;
+    const json object{{"device", device->info().name},
+                      {"driver", device->info().driver},
+                      {"scene", o.scene.scene},
+                      {"camera_path", o.cameraPath},
+                      {"pipeline", pipelineOf(o).name()},
+                      {"width", o.width},
+                      {"height", o.height},
+                      {"frames", o.frames},
+                      {"copy_bytes_per_second", limit},
+                      {"passes", passes}};
+    fmt::print("{}\n", jsonText(object));
+}
+
+}  // namespace
+
+void addDenoiseBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "denoise", "Milliseconds of every pass of a pipeline under a moving camera, and the bytes it moves");
+    auto o = std::make_shared<DenoiseBench>();
+    command->add_option("--scene", o->scene.scene, "Scene (builtin:cornell)");
+    command->add_option("--env", o->scene.environment, "Environment map, .hdr or .exr, lat-long");
+    command->add_option("--camera-path", o->cameraPath, "A JSON file, or orbit, dolly or shake (shake)");
+    command->add_option("--pipeline", o->pipeline, "Pipeline (the preset's, or atrous)");
+    command->add_option("--preset", o->presets,
+                        "All that a paper, a course or a tutorial says; 'limpid info' lists them");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
+    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--frames", o->frames, "Frames timed (100)")->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Frames before them (20)")->check(CLI::Range(0, 100000));
+    command->add_option("--filters", o->filters, "What filters read lies in images or buffers; default: auto")
+        ->check(CLI::IsMember({"auto", "image", "buffer"}));
+    command->add_flag("--json", o->json, "One JSON object on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,152 @@
+// limpid bench launches: the same number of samples per pixel in many launches of few or in few launches of
+// many, and how good each picture is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "base/files/file.h"
+#include "cli/json_text.h"
+#include "image/metrics/metrics.h"
+#include "image/tonemap.h"
+#include "lab/bench.h"
+#include "lab/svg_plot.h"
+#include "renderer/frame/still.h"
+#include "scene/model/camera.h"
+
+namespace limpid::cli {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+struct LaunchesBench {
+    DeviceChoice device;
+    std::string scene = "builtin:cornell", folder;
+    uint32_t width = 640, height = 360, samples = 64, referenceSamples = 1024, repeats = 3;
+    bool json = false;
+};
+
+struct Row {
+    uint32_t perLaunch = 1, launches = 1;
+    double milliseconds = 0.0;  ///< for all samples; wall time, the median of the repeats
+    double psnr = 0.0;          ///< against the reference
+};
+
+class Still {
+  public:
+    Still(gpu::Device& device, const LaunchesBench& o)
+        : device_(device), o_(o), scene_(loadChosenScene({.scene = o.scene})) {
+        gpu_ = std::make_unique<scene::GpuScene>(device, scene::buildSceneData(scene_),
+                                                 scene::TraceOptions{chosenTracer(o.device, device), {}});
+    }
+
+    /// Renders `samples`, and says how long that took. The first launch, at which drivers compile, is apart.
+    std::pair<image::Image, double> render(uint32_t perLaunch, uint32_t samples, uint32_t seed) {
+        RenderSettings settings;
+        settings.extent = {o_.width, o_.height};
+        settings.samplesPerLaunch = perLaunch;
+        settings.seed = seed;
+        const CameraParams camera = scene::cameraParams(scene_.cameras.front(), o_.width, o_.height);
+        ProgressiveStill warmup(device_, *gpu_, perLaunch);
+        warmup.update(camera, settings);
+        warmup.launch();
+        warmup.finish();
+        ProgressiveStill still(device_, *gpu_, samples);
+        still.update(camera, settings);
+        const Clock::time_point start = Clock::now();
+        while (still.launch()) {
+        }
+        still.finish();
+        const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
+        return {beautyOf(still.download()), elapsed.count()};
+    }
+
+  private:
+    gpu::Device& device_;
+    const LaunchesBench& o_;
+    scene::Scene scene_;
+    std::unique_ptr<scene::GpuScene> gpu_;
+};
+
+std::vector<Row> measure(gpu::Device& device, const LaunchesBench& o) {
+    Still still(device, o);
+    const image::Image truth = still.render(4, o.referenceSamples, 1).first;
+    const float stops = image::autoExposure(truth);
+    RenderSettings wanted;
+    std::vector<Row> rows;
+    for (uint32_t n = 1; n <= o.samples; n *= 2) {
+        wanted.samplesPerLaunch = n;
+        if (samplesPerLaunch(device, wanted) != n) break;  // CPUs have a limit
+        std::vector<double> times;
+        image::Image picture;
+        for (uint32_t i = 0; i < o.repeats; ++i) {
+            double milliseconds = 0.0;
+            std::tie(picture, milliseconds) = still.render(n, o.samples, 0);
+            times.push_back(milliseconds);
+        }
+        rows.push_back(
+            {n, (o.samples + n - 1) / n, median(times), image::compare(picture, truth, stops).psnr});
+    }
+    return rows;
+}
+
+void print(const LaunchesBench& o, const std::string& device, const std::vector<Row>& rows) {
+    fmt::print("{}, {}x{}, {}, {} samples per pixel\n{:<20}{:>10}{:>12}{:>12}\n", device, o.width, o.height,
+               o.scene, o.samples, "samples a launch", "launches", "ms", "PSNR, dB");
+    for (const Row& row : rows)
+        fmt::print("{:<20}{:>10}{:>12.2f}{:>12.2f}\n", row.perLaunch, row.launches, row.milliseconds,
+                   row.psnr);
+}
+
+void printJson(const LaunchesBench& o, const std::string& device, const std::vector<Row>& rows) {
+    json results = json::array();
+    for (const Row& row : rows)
+        results.push_back({{"samples_per_launch", row.perLaunch},
+                           {"launches", row.launches},
+                           {"ms", row.milliseconds},
+                           {"psnr", row.psnr}});
+    const json object{{"device", device}, {"width", o.width},     {"height", o.height},
+                      {"scene", o.scene}, {"samples", o.samples}, {"results", results}};
+    fmt::print("{}\n", jsonText(object));
+}
+
+void run(const LaunchesBench& o) {
+    if (!o.folder.empty()) makeFolder(o.folder);
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const std::vector<Row> rows = measure(*device, o);
+    if (!o.folder.empty()) {
+        PlotLine line{fmt::format("{} samples per pixel", o.samples), {}};
+        for (const Row& row : rows) line.points.push_back({double(row.perLaunch), row.milliseconds});
+        writeTextAtomically(
+            std::filesystem::path(o.folder) / "launches.svg",
+            linePlot("Samples per launch, " + o.scene, {"samples per launch", "ms", true}, {line}));
+    }
+    o.json ? printJson(o, device->info().name, rows) : print(o, device->info().name, rows);
+}
+
+}  // namespace
+
+void addLaunchesBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "launches", "The same samples in many launches of few or in few launches of many: time and PSNR");
+    auto o = std::make_shared<LaunchesBench>();
+    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
+    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--spp", o->samples, "Samples per pixel of each picture (64)")
+        ->check(CLI::Range(1, 1 << 20));
+    command->add_option("--reference-spp", o->referenceSamples, "... of the reference (1024)")
+        ->check(CLI::Range(1, 1 << 24));
+    command->add_option("--repeats", o->repeats, "Renderings of each; their median counts (3)")
+        ->check(CLI::Range(1, 1000));
+    command->add_option("--out", o->folder, "Folder for a plot, launches.svg");
+    command->add_flag("--json", o->json, "One JSON object on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

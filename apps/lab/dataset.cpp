@@ -1,0 +1,195 @@
+// limpid dataset: pictures of many scenes with few and with many samples, to train networks on.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/hash.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/options/device_options.h"
+#include "cli/options/long_render_options.h"
+#include "cli/options/scene_options.h"
+#include "cli/progress.h"
+#include "lab/dataset_example.h"
+#include "scene/device/scene_data.h"
+
+namespace limpid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* parametersKey = "limpid.dataset";
+constexpr const char* examplesKey = "limpid.examples";
+
+struct DatasetOptions {
+    DeviceChoice device;
+    std::string folder, shard = "1/1";
+    std::vector<std::string> scenes;
+    uint32_t rooms = 100, stillLifes = 0, perFile = 8;
+    ExampleSettings example;
+};
+
+uint32_t numberFrom(uint32_t seed, std::string_view purpose, uint64_t index) {
+    Hash64 hash;
+    hash.add(fmt::format("{} {} {}", purpose, seed, index));
+    // The hash alone keeps the order of texts that differ in their last letter: the finalizer of splitmix64
+    // (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014) does not.
+    uint64_t x = hash.value();
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+    return static_cast<uint32_t>(x ^ (x >> 31));
+}
+
+class Dataset {
+  public:
+    explicit Dataset(const DatasetOptions& options) : o_(options) {}
+
+    uint64_t examples() const { return uint64_t{o_.rooms} + o_.stillLifes + o_.scenes.size(); }
+    uint64_t files() const { return (examples() + o_.perFile - 1) / o_.perFile; }
+    fs::path file(uint64_t number) const {
+        return fs::path(o_.folder) / fmt::format("examples.{:05}.safetensors", number);
+    }
+
+    /// Rooms first, then still lifes, then the scenes that are named.
+    std::string sceneOf(uint64_t example) const {
+        if (example < o_.rooms)
+            return fmt::format("builtin:room-{}", numberFrom(o_.example.seed, "room", example));
+        example -= o_.rooms;
+        if (example < o_.stillLifes)
+            return fmt::format("builtin:still-life-{}", numberFrom(o_.example.seed, "still life", example));
+        return o_.scenes[example - o_.stillLifes];
+    }
+
+    /// What decides its content: the same in every file of one dataset.
+    json parameters() const {
+        return {{"version", 2},
+                {"seed", o_.example.seed},
+                {"rooms", o_.rooms},
+                {"still_lifes", o_.stillLifes},
+                {"scenes", o_.scenes},
+                {"per_file", o_.perFile},
+                {"width", o_.example.extent.width},
+                {"height", o_.example.extent.height},
+                {"samples", o_.example.samples},
+                {"reference_samples", o_.example.referenceSamples}};
+    }
+
+    /// The metadata of a file that is whole; none if it is missing or damaged. Throws UsageError if it is of
+    /// another dataset.
+    std::optional<std::map<std::string, std::string>> finished(uint64_t number) const {
+        if (!fs::exists(file(number))) return std::nullopt;
+        try {
+            auto metadata = neural::readTensorFile(file(number)).metadata;
+            if (metadata[parametersKey] != parameters().dump())
+                throw UsageError(fmt::format("'{}' is of a dataset with other parameters: {}",
+                                             file(number).string(), metadata[parametersKey]));
+            return metadata;
+        } catch (const InputError& fault) {
+            log::warn("{}; it is made anew", fault.what());
+            return std::nullopt;
+        }
+    }
+
+    void make(gpu::Device& device, scene::Tracer tracer, uint64_t number) const {
+        neural::TensorFile result;
+        json list = json::array();
+        for (uint64_t example = number * o_.perFile;
+             example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
+            const std::string name = fmt::format("{:06}", example);
+            const scene::Scene scene = loadChosenScene({.scene = sceneOf(example)});
+            const scene::SceneData data = scene::buildSceneData(scene);
+            scene::GpuScene gpuScene(device, data, {tracer, {}});
+            ExampleSettings settings = o_.example;
+            settings.seed = numberFrom(o_.example.seed, "samples", example);
+            // Networks meet both: stills, and sequences whose rays go through the pixels' centres.
+            settings.jitter = example % 2 == 0 ? Jitter::Pixel : Jitter::Off;
+            addExample(device, gpuScene, scene.cameras.front(), settings, name, result);
+            list.push_back({{"name", name},
+                            {"scene", sceneOf(example)},
+                            {"jitter", example % 2 == 0 ? "pixel" : "off"}});
+        }
+        result.metadata = {{parametersKey, parameters().dump()}, {examplesKey, list.dump()}};
+        neural::writeTensorFile(file(number), result);
+    }
+
+    /// Of all files, if all are there: whichever process finishes last writes it.
+    bool writeManifest() const {
+        for (uint64_t number = 0; number < files(); ++number) {
+            if (!fs::exists(file(number))) return false;
+        }
+        json manifest{{"dataset", parameters()}, {"files", json::array()}};
+        for (uint64_t number = 0; number < files(); ++number) {
+            const auto metadata = finished(number);
+            if (!metadata) return false;
+            manifest["files"].push_back({{"name", file(number).filename().string()},
+                                         {"bytes", fs::file_size(file(number))},
+                                         {"crc32", metadata->at("crc32")},
+                                         {"examples", json::parse(metadata->at(examplesKey))}});
+        }
+        writeTextAtomically(fs::path(o_.folder) / "manifest.json", manifest.dump(1) + "\n");
+        return true;
+    }
+
+  private:
+    const DatasetOptions& o_;
+};
+
+void run(const DatasetOptions& o) {
+    const Shard shard = chosenShard(o.shard);
+    if (!std::ranges::is_sorted(o.example.samples, std::less_equal{}) || o.example.samples.front() == 0)
+        throw UsageError("--samples are above 0 and ascend");
+    const Dataset dataset(o);
+    if (dataset.examples() == 0) throw UsageError("a dataset of no rooms, no still lifes and no scenes");
+    makeFolder(o.folder);
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const scene::Tracer tracer = chosenTracer(o.device, *device);
+    Progress progress("files", dataset.files());
+    for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {
+        removeStaleTemporaries(dataset.file(number));
+        if (!dataset.finished(number)) dataset.make(*device, tracer, number);
+        progress.show(number);
+    }
+    if (dataset.writeManifest())
+        log::info("{} examples in {} files, and their manifest, in {}", dataset.examples(), dataset.files(),
+                  o.folder);
+    else
+        log::info("the shard {} is done; the others are not yet", o.shard);
+}
+
+}  // namespace
+
+void addDatasetCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "dataset", "Pictures of many scenes with few and with many samples, to train networks on");
+    auto o = std::make_shared<DatasetOptions>();
+    ExampleSettings& example = o->example;
+    command->add_option("-o,--output", o->folder, "Folder")->required();
+    command->add_option("--rooms", o->rooms, "Rooms drawn from the seed (100)")
+        ->check(CLI::Range(0, 1000000));
+    command->add_option("--still-lifes", o->stillLifes, "Still lifes drawn from the seed (0)")
+        ->check(CLI::Range(0, 1000000));
+    command->add_option("--scene", o->scenes, "More scenes: files or built-in ones (repeatable)");
+    command->add_option("--seed", example.seed,
+                        "The same seed makes the same dataset on the same device (0)");
+    command->add_option("--width", example.extent.width, "Pixels (256)")->check(CLI::Range(1, 16384));
+    command->add_option("--height", example.extent.height, "Pixels (256)")->check(CLI::Range(1, 16384));
+    command->add_option("--samples", example.samples, "Per pixel, of the noisy pictures (1,4,8,32,128)")
+        ->delimiter(',');
+    command->add_option("--reference-samples", example.referenceSamples, "Of the clean ones (1024)")
+        ->check(CLI::Range(1, 1 << 24));
+    command->add_option("--per-file", o->perFile, "Examples in a file (8)")->check(CLI::Range(1, 10000));
+    command->add_option("--shard", o->shard,
+                        "I/N: the I-th of N parts, from 1/N to N/N; files that are there are kept (1/1)");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

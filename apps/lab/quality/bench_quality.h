@@ -1,0 +1,45 @@
+// What `limpid bench quality` measures: pipelines on a moving sequence against converged references of the
+// same frames.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gpu/vulkan/device.h"
+#include "image/metrics/frame_scores.h"
+#include "lab/quality/quality_methods.h"
+#include "lab/quality/quality_reference.h"
+#include "renderer/frame/sequence.h"
+#include "renderer/frame/settings.h"
+
+namespace limpid::cli {
+
+/// The noisy frames, or what a pipeline made of them.
+struct MethodQuality {
+    std::string name;
+    std::vector<image::FrameScores> scores;
+    image::Image last;                       ///< linear radiance
+    image::Image lastError;                  ///< its FLIP map
+    std::map<std::string, double> medianMs;  ///< by pass; empty for the noisy frames
+    std::vector<double> denoisingMs;  ///< of the denoising passes, by compared frame; empty for noisy frames
+    /// Device memory of all images that the denoising passes write, with their histories; 0 for noisy frames.
+    double denoisingBytesPerPixel = 0.0;
+};
+
+struct SequenceQuality {
+    std::vector<MethodQuality> methods;  ///< the noisy frames first
+    /// PSNR of the mean reference against the truth, from the difference of its two independent halves.
+    double referencePsnr = 0.0;
+    float exposure = 0.0f;   ///< stops, from the references
+    image::Image reference;  ///< of the last frame
+};
+
+/// Judges every method, at `samples` per frame, by the references of `frames` (makeReferences). Rays go
+/// through the pixels' centres.
+SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
+                               const std::vector<QualityMethod>& methods, const QualityFrames& frames,
+                               const std::vector<Reference>& references, uint32_t samples);
+
+}  // namespace limpid::cli

@@ -1,0 +1,323 @@
+// limpid bench quality: how near denoised sequences come to converged ones, in numbers and pictures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/log.h"
+#include "cli/command_text.h"
+#include "cli/json_text.h"
+#include "image/io/png/png.h"
+#include "image/tonemap.h"
+#include "lab/bench.h"
+#include "lab/quality/bench_quality.h"
+#include "lab/quality/quality_json.h"
+#include "lab/quality/quality_page.h"
+#include "lab/quality/quality_sequences.h"
+#include "lab/quality/quality_table.h"
+#include "renderer/frame/network_file.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "renderer/long/render_identity.h"
+#include "scene/framing/camera_path.h"
+#include "scene/motion/movement.h"
+
+namespace limpid::cli {
+namespace {
+
+struct QualityOptions {
+    DeviceChoice device;
+    MethodChoice methods;
+    std::vector<std::string> scenes, presets, assignments;
+    std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder,
+                             weights;
+    uint32_t width = 640, height = 360, samples = 1;
+    std::optional<uint64_t> referenceSamples;  ///< of every sequence, in place of its own
+    std::optional<uint64_t> first, frames;     ///< likewise
+    bool lab = false, quick = false, json = false, smoothEdges = false;
+};
+
+std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
+    RenderSettings common;
+    common.extent = {o.width, o.height};
+    common.layers = true;  // the noisy frames are judged too
+    for (const std::string& pipeline : o.methods.pipelines) pipelineFor(o.presets, pipeline, "");
+    for (const std::string& preset : o.presets) applyPreset(common, preset);
+    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // as the references
+    for (const std::string& text : o.assignments) assign(common, text);
+    return methodsOf(o.methods, common);
+}
+
+/// Those of --scene and --scenes-folder, then the laboratory's.
+std::vector<QualitySequence> chosenSequences(const QualityOptions& o) {
+    const QualitySequence common{.cameraPath = o.cameraPath, .environment = o.environment};
+    std::vector<QualitySequence> sequences;
+    for (const std::string& scene : o.scenes) {
+        sequences.push_back(common);
+        sequences.back().name = sceneStem(scene);
+        sequences.back().scene = scene;
+    }
+    if (!o.scenesFolder.empty()) {
+        const std::vector<QualitySequence> found = sequencesInFolder(o.scenesFolder, o.pathsFolder, common);
+        if (found.empty()) throw InputError(o.scenesFolder, "has no glTF files in its folders");
+        sequences.insert(sequences.end(), found.begin(), found.end());
+    }
+    if (o.lab) sequences.insert(sequences.end(), labSequences().begin(), labSequences().end());
+    return sequences;
+}
+
+std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
+    std::vector<QualitySequence> sequences = chosenSequences(o);
+    std::set<std::string> taken;  // pictures and references are named after sequences
+    for (QualitySequence& sequence : sequences) {
+        const std::string name = sequence.name;
+        for (int number = 2; !taken.insert(sequence.name).second; ++number)
+            sequence.name = fmt::format("{}-{}", name, number);
+        sequence.referenceSamples = o.referenceSamples.value_or(sequence.referenceSamples);
+        QualityFrames& frames = sequence.frames;
+        frames = {o.first.value_or(frames.first), o.frames.value_or(frames.count)};
+        if (frames.first >= frames.count) {
+            throw UsageError(
+                fmt::format("{}: of {} frames none is compared, the first would be {}: see "
+                            "--first and --frames",
+                            sequence.name, frames.count, frames.first));
+        }
+    }
+    return sequences;
+}
+
+/// What several sequences share, or what cannot be skipped, should not fail after the first of them.
+void checkInputs(const QualityOptions& o) {
+    const auto mustExist = [](const std::string& file) {
+        if (!std::filesystem::exists(file)) throw InputError(file, "does not exist");
+    };
+    if (!o.environment.empty()) mustExist(o.environment);
+    for (const std::string& scene : o.scenes) {
+        if (!scene.starts_with("builtin:")) mustExist(scene);
+    }
+    if (!o.pathsFolder.empty() && !std::filesystem::is_directory(o.pathsFolder))
+        throw InputError(o.pathsFolder, "is no folder");
+    if (o.cameraPath != "none" && !scene::isBuiltinCameraPath(o.cameraPath))
+        scene::loadCameraPath(o.cameraPath);
+}
+
+/// A sequence on the device.
+struct LoadedSequence {
+    scene::Scene scene;
+    scene::SceneData data;
+    std::unique_ptr<scene::GpuScene> gpu;
+    std::optional<scene::CameraPath> path;
+    SequenceTiming timing;
+
+    Sequence frames() const { return {scene, data, scene.cameras.front(), path, timing}; }
+};
+
+/// What --quick leaves out.
+struct TooLarge : Error {
+    using Error::Error;
+};
+
+LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence) {
+    LoadedSequence loaded;
+    loaded.scene = loadChosenScene({.scene = sequence.scene, .environment = sequence.environment});
+    const uint64_t triangles = loaded.scene.triangleCount();
+    if (o.quick && triangles >= quick::maxTriangles) {
+        throw TooLarge(
+            fmt::format("has {} triangles, and --quick takes less than {}", triangles, quick::maxTriangles));
+    }
+    if (!loaded.scene.rig.clips.empty()) scene::chooseClip(loaded.scene, "");
+    if (scene::isBuiltinCameraPath(sequence.cameraPath)) {
+        loaded.path =
+            scene::builtinCameraPath(sequence.cameraPath, loaded.scene, loaded.scene.cameras.front(),
+                                     loaded.timing.timeOf(sequence.frames.count));
+    } else if (sequence.cameraPath != "none") {
+        loaded.path = scene::loadCameraPath(sequence.cameraPath);
+    }
+    loaded.data = scene::buildSceneData(loaded.scene);
+    loaded.gpu = std::make_unique<scene::GpuScene>(device, loaded.data,
+                                                   scene::TraceOptions{chosenTracer(o.device, device), {}});
+    return loaded;
+}
+
+/// With their networks on the device.
+std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions& o) {
+    std::vector<QualityMethod> methods = methodsOf(o);
+    for (QualityMethod& method : methods) {
+        const denoise::Denoiser* const denoiser = method.settings.pipeline.denoiser;
+        if (denoiser->network) loadNetwork(device, denoiser, o.weights, method.settings.denoisers);
+    }
+    return methods;
+}
+
+MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
+                         const std::vector<QualityMethod>& methods, const QualitySequence& sequence,
+                         LoadedSequence& loaded) {
+    const Sequence frames = loaded.frames();
+    ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
+    if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
+    const std::vector<Reference> references =
+        makeReferences(device, *loaded.gpu, frames, methods.front().settings, sequence.frames,
+                       sequence.referenceSamples, files);
+    return {sequence, loaded.scene.triangleCount(),
+            measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
+}
+
+/// Noisy, every method, reference, side by side.
+void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& quality) {
+    std::vector<const image::Image*> pictures;
+    for (const MethodQuality& method : quality.methods) pictures.push_back(&method.last);
+    pictures.push_back(&quality.reference);
+    const uint32_t width = quality.reference.width, height = quality.reference.height;
+    image::Image all(width * static_cast<uint32_t>(pictures.size()), height, 3);
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        for (uint32_t y = 0; y < height; ++y) {
+            std::copy_n(&pictures[i]->pixels[size_t{3} * y * width], 3 * width,
+                        &all.pixels[size_t{3} * (size_t{y} * all.width + i * width)]);
+        }
+    }
+    image::writePng(file, image::toBytes(image::tonemap(all, quality.exposure)));
+}
+
+void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
+    log::warn("SKIPPED: {}: {}", sequence.name, why.what());
+    run.skipped.push_back({sequence.name, why.what()});
+}
+
+/// What has been measured goes into the page after each sequence: a run that ends early leaves the rest.
+void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector<QualityMethod>& methods,
+                 const QualitySequence& sequence, QualityRun& run) {
+    std::optional<LoadedSequence> loaded;
+    try {
+        loaded = load(device, o, sequence);
+    } catch (const TooLarge& error) {
+        return skip(sequence, error, run);
+    } catch (const Error& error) {
+        if (!sequence.optional) throw;
+        return skip(sequence, error, run);
+    }
+    run.sequences.push_back(measure(device, o, methods, sequence, *loaded));
+    const MeasuredSequence& measured = run.sequences.back();
+    if (!o.json) printSequence(measured);
+    if (!o.folder.empty()) {
+        const std::filesystem::path folder(o.folder);
+        writeSideBySide(folder / ("quality." + sequence.name + ".png"), measured.quality);
+    }
+    if (!o.report.empty()) writeQualityPage(o.report, run);
+}
+
+void run(const QualityOptions& o, const std::string& command) {
+    methodsOf(o);  // what is wrong with them shows before the device is opened
+    const std::vector<QualitySequence> sequences = sequencesOf(o);
+    checkInputs(o);
+    if (!o.report.empty()) checkWritable(o.report);
+    for (const std::string& folder : {o.folder, o.referenceFolder}) {
+        if (!folder.empty()) makeFolder(folder);
+    }
+    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const std::vector<QualityMethod> methods = loadMethods(*device, o);
+    QualityRun all{.version = LIMPID_VERSION,
+                   .command = command,
+                   .device = device->info().name,
+                   .driver = device->info().driver,
+                   .tracer = std::string(scene::toString(chosenTracer(o.device, *device))),
+                   .extent = {o.width, o.height},
+                   .samples = o.samples};
+    if (!o.json) printHead(all);
+    for (const QualitySequence& sequence : sequences) addSequence(*device, o, methods, sequence, all);
+    if (all.sequences.empty()) throw Error("no sequence could be measured");
+    if (!o.report.empty()) writeQualityPage(o.report, all);  // with what was skipped last
+    if (!o.json && all.sequences.size() > 1) printRanking(all);
+    if (o.json) fmt::print("{}\n", jsonText(qualityJson(all)));
+}
+
+/// What the user left open.
+void complete(QualityOptions& o, const CLI::App& command) {
+    const auto given = [&](const char* option) { return command.count(option) > 0; };
+    if (o.quick) {
+        if (!given("--width")) o.width = quick::width;
+        if (!given("--height")) o.height = quick::height;
+        o.first = o.first.value_or(quick::frames.first);
+        o.frames = o.frames.value_or(quick::frames.count);
+        o.referenceSamples = o.referenceSamples.value_or(quick::referenceSamples);
+        if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
+    }
+    if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
+    if (!o.methods.pipelines.empty()) return;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
+        const bool fits = std::ranges::all_of(o.presets, [&](const std::string& preset) {
+            return findPreset(preset).isFor({Pipeline::Kind::Denoised, &denoiser});
+        });
+        if (fits && (!denoiser.network || o.samples >= leastNetworkSamples))
+            o.methods.pipelines.emplace_back(denoiser.name);
+    }
+    if (o.methods.pipelines.empty())
+        throw UsageError("--preset: no denoiser is left that all of them are for");
+}
+
+void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
+    command.add_option("--scene", o->scenes, "Scenes (repeatable; builtin:cornell)");
+    command.add_flag("--lab", o->lab, "The fixed set of built-in sequences");
+    command.add_flag("--quick", o->quick,
+                     "Small enough for a CPU: 160x90, frames 6 to 8, references of 256 samples, scenes under "
+                     "1000 triangles; of --lab, unless scenes are named");
+    command.add_option("--scenes-folder", o->scenesFolder,
+                       "All glTF scenes in the folders of this one; those that cannot be loaded are skipped");
+    command.add_option("--paths-folder", o->pathsFolder,
+                       "Camera paths for these, NAME.json; those without take --camera-path");
+    command.add_option("--env", o->environment, "Environment map of --scene and --scenes-folder");
+    command.add_option("--camera-path", o->cameraPath,
+                       "Of --scene and --scenes-folder: orbit (default), dolly, shake, a file, or none");
+    command.add_option("--frames", o->frames, "Frames (61; --lab has its own)")->check(CLI::Range(1, 100000));
+    command.add_option("--first", o->first, "First frame that is compared (16; --lab has its own)")
+        ->check(CLI::Range(0, 100000));
+    command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
+    command
+        .add_option("--reference-spp", o->referenceSamples,
+                    "Samples of the references (4096; --lab has its own)")
+        ->check(CLI::Range(2, 1 << 24));
+    command.add_flag(
+        "--smooth-edges", o->smoothEdges,
+        "Rays go through another point of their pixels in each frame, and references are means over the "
+        "pixels; otherwise all go through the centres");
+    command.add_option("--reference-folder", o->referenceFolder,
+                       "Keeps the references there, and reads those that are there already");
+    command.add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+}
+
+}  // namespace
+
+void addQualityBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
+    auto o = std::make_shared<QualityOptions>();
+    addSequenceOptions(*command, o);
+    command->add_option("--pipeline", o->methods.pipelines,
+                        "Pipelines that denoise (repeatable; all of them, kpcn from --spp 8 on)");
+    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
+    command->add_option("--preset", o->presets,
+                        "A denoiser as a paper or a course has it; 'limpid info' lists them");
+    command->add_option("--set", o->assignments, "A parameter: group.name=value");
+    command->add_option(
+        "--variant", o->methods.variants,
+        "A pipeline once more with these of its parameters, or preset=NAME, by commas; the last "
+        "one if they are of none (repeatable)");
+    command->add_flag("--steps", o->methods.steps,
+                      "SVGF's presets, and SVGF without each step beyond its paper and with former defaults");
+    command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
+    command->add_option("--report", o->report, "An HTML page with everything, pictures included");
+    command->add_flag("--json", o->json, "One JSON object on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o, command] {
+        complete(*o, *command);
+        run(*o, "limpid bench " + commandText(*command));
+    });
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,151 @@
+#include "lab/quality/quality_reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "cli/progress.h"
+#include "image/io/exr/exr.h"
+#include "renderer/frame/still.h"
+#include "renderer/layers/layers.h"
+#include "renderer/long/render_identity.h"
+
+namespace limpid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using image::Image;
+using image::LayeredImage;
+
+RenderedLayers rendered(ProgressiveStill& still, Moment moment, const RenderSettings& settings) {
+    still.update(std::move(moment), settings);
+    while (still.launch()) continue;
+    return still.download();
+}
+
+/// In the form of a file, so that a reference is the same whether it was rendered or read.
+class ReferenceRenderer {
+  public:
+    ReferenceRenderer(gpu::Device& device, scene::GpuScene& scene, RenderSettings settings, uint64_t samples)
+        : first_(device, scene, samples / 2),
+          second_(device, scene, samples - samples / 2),
+          settings_(settings) {
+        settings_.pipeline = {};
+        settings_.samplesPerLaunch = 64;
+        settings_.layers = true;
+        if (settings_.jitter == Jitter::Frame) settings_.jitter = Jitter::Pixel;
+    }
+
+    LayeredImage render(const Sequence& sequence, uint64_t frame) {
+        settings_.seed = 1;  // its noise must not be the noise of what it judges
+        const RenderedLayers first = rendered(first_, sequence.moment(frame, settings_.extent), settings_);
+        settings_.seed = 2;
+        Image difference = beautyOf(rendered(second_, sequence.moment(frame, settings_.extent), settings_));
+        Image picture = beautyOf(first);
+        for (size_t i = 0; i < picture.pixels.size(); ++i) {
+            const float other = difference.pixels[i];
+            difference.pixels[i] -= picture.pixels[i];
+            picture.pixels[i] = 0.5f * (picture.pixels[i] + other);
+        }
+        LayeredImage layers = toLayeredImage(first, {"motion", "depth", "normal"}, image::Storage::Float);
+        std::erase_if(layers.channels, [](const image::Channel& c) { return c.name.size() == 1; });
+        layers.add("", "RGB", picture, image::Storage::Float);
+        layers.add("difference", "RGB", difference, image::Storage::Float);
+        return layers;
+    }
+
+  private:
+    ProgressiveStill first_, second_;
+    RenderSettings settings_;
+};
+
+Reference referenceOf(const LayeredImage& layers) {
+    return {layers.get("", "RGB"), image::geometryOf(layers), layers.get("difference", "RGB")};
+}
+
+/// Of what decides the frame's pixels, but for its size and the noise.
+uint64_t identityOf(const ReferenceFiles& files, const Sequence& sequence, const RenderSettings& settings,
+                    uint64_t frame) {
+    const Moment moment = sequence.moment(frame, settings.extent);
+    Hash64 hash;
+    hash.addValue(files.sceneHash);
+    hash.addValue(frame);
+    hash.addValue(moment.camera);
+    hash.addValue(moment.previousCamera.value_or(moment.camera));
+    hash.addValue(uint32_t{moment.previousCamera.has_value()});
+    const ParamTable<PathtraceSettings>& table = pathtraceParams();
+    for (size_t i = 0; i < table.infos().size(); ++i)
+        hash.add(toString(table.get(settings.pathtrace, i)) + "\n");
+    if (settings.jitter != Jitter::Off) hash.add("means over the pixels\n");
+    return hash.value();
+}
+
+std::string fileName(std::string sequence, gpu::Extent extent, uint64_t samples, const std::string& identity,
+                     uint64_t frame) {
+    for (char& c : sequence) {
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    }
+    return fmt::format("{}.{}x{}.{}spp.{}.{:04}.exr", sequence, extent.width, extent.height, samples,
+                       identity, frame);
+}
+
+/// Throws InputError unless the file is the reference of this name.
+void checkFile(const fs::path& file, const LayeredImage& layers, gpu::Extent extent,
+               const std::map<std::string, std::string>& metadata) {
+    if (layers.width != extent.width || layers.height != extent.height) {
+        throw InputError(file, fmt::format("is {}x{} pixels, not {}x{}", layers.width, layers.height,
+                                           extent.width, extent.height));
+    }
+    for (const auto& [name, value] : metadata) {
+        const auto found = layers.metadata.find(name);
+        if (found == layers.metadata.end() || found->second != value)
+            throw InputError(file, "is no reference of this frame: its " + name + " is not " + value);
+    }
+    for (const char* name : {"R", "G", "B", "difference.R", "difference.G", "difference.B", "motion.X",
+                             "motion.Y", "motion.Z", "depth.Z", "normal.X", "normal.Y", "normal.Z"}) {
+        const image::Channel* channel = layers.find(name);
+        if (!channel) throw InputError(file, fmt::format("is no reference: it has no channel {}", name));
+        if (!std::ranges::all_of(channel->values, [](float v) { return std::isfinite(v); }))
+            throw InputError(file, fmt::format("has values in {} that are NaN or infinite", name));
+    }
+}
+
+}  // namespace
+
+std::vector<Reference> makeReferences(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
+                                      const RenderSettings& settings, const QualityFrames& frames,
+                                      uint64_t samples, const ReferenceFiles& files) {
+    ReferenceRenderer renderer(device, scene, settings, samples);
+    Progress progress("references", frames.count - frames.first);
+    std::vector<Reference> references;
+    for (uint64_t frame = frames.first; frame < frames.count; ++frame) {
+        progress.show(references.size());
+        if (files.folder.empty()) {
+            references.push_back(referenceOf(renderer.render(sequence, frame)));
+            continue;
+        }
+        const std::string identity = hashText(identityOf(files, sequence, settings, frame));
+        const fs::path file =
+            files.folder / fileName(files.sequence, settings.extent, samples, identity, frame);
+        const std::map<std::string, std::string> metadata{{"limpid.reference", identity},
+                                                          {"limpid.frame", std::to_string(frame)},
+                                                          {"limpid.samples", std::to_string(samples)}};
+        LayeredImage layers;
+        if (fs::exists(file)) {
+            layers = image::readExr(file);
+            checkFile(file, layers, settings.extent, metadata);
+        } else {
+            layers = renderer.render(sequence, frame);
+            layers.metadata = metadata;
+            image::writeExr(file, layers);
+        }
+        references.push_back(referenceOf(layers));
+    }
+    return references;
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,154 @@
+#include "viewer/camera/controls.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>  // whether a slider is being typed into
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "image/color.h"
+
+namespace limpid::viewer {
+namespace {
+
+constexpr float mostOfAVector = 1e9f;
+
+/// ImGui's slider over positions from 0 to 1 that shows the value as its text: the scale is ours, and a
+/// number that is typed (Ctrl and a click) is the value itself, which may lie outside the slider's span.
+std::optional<double> slide(const char* name, const std::string& shown, const SliderSpan& span,
+                            double value) {
+    constexpr double first = 0.0, last = 1.0;
+    const bool typing = ImGui::TempInputIsActive(ImGui::GetID(name));
+    double number = typing ? value : sliderPosition(span, value);
+    if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &first, &last, shown.c_str()))
+        return std::nullopt;
+    if (typing) return std::isnan(number) ? value : number;
+    return sliderValue(span, number);
+}
+
+}  // namespace
+
+void Controls::note(const std::string& name, const std::string& value) {
+    const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
+    note(name, value, lower.x, lower.y, upper.x, upper.y);
+}
+
+void Controls::note(const std::string& name, const std::string& value, float left, float top, float right,
+                    float bottom) {
+    drawn_.push_back({group_.empty() ? name : group_ + "." + name, value, left, top, right, bottom});
+}
+
+bool Controls::button(const char* name) {
+    const bool pressed = ImGui::SmallButton(name);
+    note(name);
+    return pressed;
+}
+
+bool Controls::checkbox(const char* name, bool& value) {
+    const bool changed = ImGui::Checkbox(name, &value);
+    note(name, value ? "on" : "off");
+    return changed;
+}
+
+bool Controls::slider(const char* name, int& value, const Range& range) {
+    const int before = value;
+    if (const auto moved = slide(name, fmt::format("{}", value), range.slider, value))
+        value = static_cast<int>(std::llround(std::clamp(*moved, range.minimum, range.maximum)));
+    note(name, fmt::format("{}", value));
+    return value != before;
+}
+
+bool Controls::slider(const char* name, float& value, const Range& range, const char* format) {
+    const float before = value;
+    const std::string shown = fmt::format(fmt::runtime(format), value);
+    if (const auto moved = slide(name, shown, range.slider, static_cast<double>(value)))
+        value = static_cast<float>(std::clamp(*moved, range.minimum, range.maximum));
+    note(name, fmt::format("{}", value));
+    return value != before;
+}
+
+bool Controls::vector(const char* name, vec3& value, float speed) {
+    bool changed = false;
+    ImGui::PushID(name);
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = (ImGui::CalcItemWidth() - 2.0f * gap) / 3.0f;
+    const char* const axes[] = {"x", "y", "z"};
+    for (int i = 0; i < 3; ++i) {
+        float number = value[i];
+        ImGui::SetNextItemWidth(width);
+        ImGui::PushID(i);
+        if (ImGui::DragFloat("##", &number, speed, -mostOfAVector, mostOfAVector, "%.5g",
+                             ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_AlwaysClamp) &&
+            std::isfinite(number)) {
+            value[i] = number;
+            changed = true;
+        }
+        ImGui::PopID();
+        note(std::string(name) + " " + axes[i], fmt::format("{}", value[i]));
+        ImGui::SameLine(0.0f, gap);
+    }
+    ImGui::TextUnformatted(name);
+    ImGui::PopID();
+    return changed;
+}
+
+bool Controls::header(const char* name) {
+    const bool open = ImGui::CollapsingHeader(name);
+    note(name, open ? "open" : "closed");
+    return open;
+}
+
+bool Controls::tree(const char* name) {
+    const bool open = ImGui::TreeNodeEx("##tree", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", name);
+    note("tree", open ? "open" : "closed");
+    return open;
+}
+
+bool Controls::color(const char* name, vec3& value) {
+    const float most = std::max({value.r, value.g, value.b, 1e-20f});
+    vec3 shown;
+    for (int i = 0; i < 3; ++i) shown[i] = image::srgbEncode(value[i] / most);
+    const bool changed = ImGui::ColorEdit3(name, &shown.x, ImGuiColorEditFlags_None);
+    note(name, fmt::format("{} {} {}", value.r, value.g, value.b));
+    if (!changed) return false;
+    vec3 picked;
+    for (int i = 0; i < 3; ++i) picked[i] = image::srgbDecode(std::clamp(shown[i], 0.0f, 1.0f));
+    const float largest = std::max({picked.r, picked.g, picked.b});
+    if (largest <= 0.0f) return false;
+    value = most / largest * picked;
+    return true;
+}
+
+bool Controls::choice(const char* name, const std::vector<std::string>& choices, int& chosen) {
+    const bool open =
+        ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str(), ImGuiComboFlags_HeightLarge);
+    note(name, choices[static_cast<size_t>(chosen)]);
+    if (!open) return false;
+    // Its place is found out in the first frame, in which it is not shown.
+    const bool appears = ImGui::IsWindowAppearing();
+    bool changed = false;
+    for (size_t i = 0; i < choices.size(); ++i) {
+        const auto number = static_cast<int>(i);
+        ImGui::PushID(number);  // two may have the same name
+        if (ImGui::Selectable(choices[i].c_str(), number == chosen)) {
+            changed = number != chosen;
+            chosen = number;
+        }
+        ImGui::PopID();
+        if (!appears) note(std::string(name) + "=" + choices[i]);
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+std::string Controls::text() const {
+    std::string lines;
+    for (const DrawnControl& c : drawn_)
+        lines += fmt::format("{:.0f}\t{:.0f}\t{:.0f}\t{:.0f}\t{}\t{}\n", c.left, c.top, c.right, c.bottom,
+                             c.name, c.value);
+    return lines;
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,80 @@
+#include "viewer/camera/input.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+namespace limpid::viewer {
+namespace {
+
+using Kind = InputEvent::Kind;
+
+bool isShift(const InputEvent& event) {
+    return event.kind == Kind::Key &&
+           (event.code == GLFW_KEY_LEFT_SHIFT || event.code == GLFW_KEY_RIGHT_SHIFT);
+}
+
+/// With these held, keys are commands.
+bool isControl(const InputEvent& event) {
+    return event.kind == Kind::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
+           event.code <= GLFW_KEY_RIGHT_SUPER && !isShift(event);
+}
+
+/// A key whose character, if it makes one, comes as Text.
+bool isPrintable(const InputEvent& event) {
+    return event.kind == Kind::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
+}
+
+/// Whether `earlier`, of the same frame, would no longer be told from `later`. `typing`: keys that print
+/// matter by their characters alone.
+bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
+    const auto matters = [&](const InputEvent& e) { return !typing || (!isPrintable(e) && !isShift(e)); };
+    switch (later.kind) {
+        case Kind::Move:
+            return earlier.kind == Kind::Button || earlier.kind == Kind::Wheel;
+        case Kind::Button:
+            // The interface finds out what is under the mouse before a button counts; and what was moved
+            // before a release was moved with the button down.
+            return (earlier.kind == Kind::Button && earlier.code == later.code) || earlier.kind == Kind::Move;
+        case Kind::Wheel:
+            return false;
+        case Kind::Key:
+            if (isControl(later)) return earlier.kind != Kind::Move;
+            if (isShift(later))
+                return earlier.kind == Kind::Button || (earlier.kind == Kind::Key && matters(earlier));
+            return earlier.kind == Kind::Key && earlier.code == later.code && matters(later);
+        case Kind::Text:
+            // Fields take a frame's characters before its keys.
+            return earlier.kind == Kind::Button ||
+                   (earlier.kind == Kind::Key && earlier.down && matters(earlier) && !isPrintable(earlier) &&
+                    !isShift(earlier) && !isControl(earlier));
+    }
+    return false;
+}
+
+}  // namespace
+
+std::vector<InputEvent> InputQueue::take(bool typing) {
+    std::vector<InputEvent> taken;
+    while (!events_.empty()) {
+        const InputEvent& next = events_.front();
+        const bool prints = typing && controls_.empty();
+        if (std::any_of(taken.begin(), taken.end(),
+                        [&](const InputEvent& earlier) { return hides(next, earlier, prints); }))
+            break;
+        if (next.kind == Kind::Move && !taken.empty() && taken.back().kind == Kind::Move)
+            taken.back() = next;
+        else
+            taken.push_back(next);
+        if (isControl(next)) {
+            if (next.down)
+                controls_.insert(next.code);
+            else
+                controls_.erase(next.code);
+        }
+        events_.pop_front();
+    }
+    return taken;
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,229 @@
+#include "viewer/compare/display.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "viewer/compare/motion_arrows.h"
+
+namespace limpid::viewer {
+namespace {
+
+constexpr float dividerReach = 6.0f;        ///< pixels of the window on either side
+constexpr uint32_t magnifiedPixels = 21;    ///< of the picture, along a side: odd, so that one is the middle
+constexpr float magnifierSide = 210.0f;     ///< pixels of the window
+constexpr float magnifierDistance = 24.0f;  ///< from the mouse
+constexpr ImU32 lineColor = IM_COL32(255, 255, 255, 200), shadowColor = IM_COL32(0, 0, 0, 160);
+
+float length(uint32_t pixels) {
+    return static_cast<float>(std::max(pixels, 1u));
+}
+
+gpu::Extent extentOf(const gpu::Pane& pane) {
+    return pane.graph->extent(pane.picture);
+}
+
+void drawLabel(ImDrawList& marks, ImVec2 at, const std::string& text) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    marks.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, shadowColor);
+    marks.AddText(at, IM_COL32_WHITE, text.c_str());
+}
+
+}  // namespace
+
+std::array<gpu::Pane, 2> splitPanes(const gpu::Pane& left, const gpu::Pane& right, gpu::Extent picture,
+                                    float divider) {
+    const float width = length(picture.width);
+    const float at = std::round(std::clamp(divider, 0.0f, 1.0f) * width) / width;
+    std::array<gpu::Pane, 2> panes{left, right};
+    panes[0].source.right = panes[0].target.right = at;
+    panes[1].source.left = panes[1].target.left = at;
+    return panes;
+}
+
+gpu::Pane magnified(const gpu::Pane& pane, gpu::Extent picture, gpu::Extent window,
+                    const std::array<float, 2>& mouse, int number) {
+    const std::array<float, 2> pixels{length(picture.width), length(picture.height)},
+        size{length(window.width), length(window.height)};
+    std::array<float, 2> from{}, to{};
+    for (size_t i = 0; i < 2; ++i) {
+        const float middle = std::floor(mouse[i] / size[i] * pixels[i]);
+        from[i] = std::clamp(middle - std::floor(magnifiedPixels / 2.0f), 0.0f,
+                             std::max(pixels[i] - magnifiedPixels, 0.0f));
+        // All squares on the same side of the mouse: where there is room.
+        const float whole = i == 0 ? 2.0f * magnifierSide : magnifierSide;
+        const bool room = mouse[i] + magnifierDistance + whole <= size[i];
+        to[i] = room ? mouse[i] + magnifierDistance : mouse[i] - magnifierDistance - whole;
+        to[i] = std::clamp(to[i], 0.0f, std::max(size[i] - whole, 0.0f));
+    }
+    to[0] += static_cast<float>(number) * magnifierSide;
+    gpu::Pane result = pane;
+    result.enlarge = true;
+    result.source = {from[0] / pixels[0], from[1] / pixels[1], (from[0] + magnifiedPixels) / pixels[0],
+                     (from[1] + magnifiedPixels) / pixels[1]};
+    result.target = {to[0] / size[0], to[1] / size[1], (to[0] + magnifierSide) / size[0],
+                     (to[1] + magnifierSide) / size[1]};
+    return result;
+}
+
+Display::Display(Window& window, gpu::Device& device)
+    : window_(window),
+      device_(device),
+      presenter_(device, [&](void* instance) { return window.makeSurface(instance); }),
+      interface_(window, presenter_) {}
+
+bool Display::dragsDivider(PanelState& panel, Controls& controls) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!panel.comparison.isOn() || io.DisplaySize.x <= 0.0f) {
+        dragging_ = false;
+        return false;
+    }
+    const float at = panel.divider * io.DisplaySize.x;
+    controls.note("divider", fmt::format("{:.3f}", panel.divider), at - dividerReach, 0.0f, at + dividerReach,
+                  io.DisplaySize.y);
+    const bool near = !io.WantCaptureMouse && std::abs(io.MousePos.x - at) <= dividerReach;
+    if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) dragging_ = true;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) dragging_ = false;
+    if (near || dragging_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (dragging_) panel.divider = std::clamp(io.MousePos.x / io.DisplaySize.x, 0.0f, 1.0f);
+    return dragging_;
+}
+
+std::array<uint32_t, 2> Display::pixelUnderMouse(gpu::Extent picture) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto along = [](float mouse, float window, uint32_t pixels) {
+        return static_cast<uint32_t>(std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f) *
+                                     length(pixels));
+    };
+    return {along(io.MousePos.x, io.DisplaySize.x, picture.width),
+            along(io.MousePos.y, io.DisplaySize.y, picture.height)};
+}
+
+std::string Display::probeOf(const image::Image& picture) const {
+    const auto [x, y] = pixelUnderMouse({picture.width, picture.height});
+    return fmt::format("({}, {}):{}", x, y, valuesAt(picture, x, y));
+}
+
+std::string Display::valuesAt(const image::Image& picture, uint32_t x, uint32_t y) {
+    std::string text;
+    for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
+    return text;
+}
+
+std::string Display::probeAll(LiveRender& main) const {
+    const auto [x, y] = pixelUnderMouse(main.settings().extent);
+    std::string text = fmt::format("pixel ({}, {})\n", x, y);
+    std::vector<std::string> seen;
+    for (const gpu::RecordedPass& pass : main.renderer().graph().passes()) {
+        if (main.renderer().graph().imagesWrittenBy(pass.name).empty()) continue;
+        for (const auto& [name, picture] : main.renderer().dump(pass.name)) {
+            if (std::ranges::find(seen, name) != seen.end()) continue;
+            seen.push_back(name);
+            const bool same = gpu::Extent{picture.width, picture.height} == main.settings().extent;
+            text += name + (same ? ":" + valuesAt(picture, x, y) : " " + probeOf(picture)) + "\n";
+        }
+    }
+    return text;
+}
+
+/// Whether an image of a pass is shown instead of the picture.
+bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main) {
+    if (panel.pass.empty() || !main) return false;
+    const auto wanted = std::tuple(main.frames(), panel.pass, panel.image, panel.view);
+    if (wanted != inspected_) {
+        try {
+            images_ = main.renderer().dump(panel.pass);
+        } catch (const UsageError&) {  // of another pipeline
+            panel.pass.clear();
+            return false;
+        }
+        facts.images.clear();
+        for (const auto& [name, picture] : images_) facts.images.push_back(name);
+        panel.image = std::min(panel.image, static_cast<int>(images_.size()) - 1);
+        const image::Image& shown = images_[static_cast<size_t>(panel.image)].second;
+        inspector_.show(device_, shownTexels(shown, panel.view), {shown.width, shown.height});
+        inspected_ = wanted;
+    }
+    facts.probe = probeOf(images_[static_cast<size_t>(panel.image)].second);
+    return true;
+}
+
+void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const gpu::Extent window = window_.pixels();
+    const ImVec2 scale = io.DisplayFramebufferScale;
+    const std::array<float, 2> mouse{io.MousePos.x * scale.x, io.MousePos.y * scale.y};
+    if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    const size_t shown = panes.size();
+    for (size_t i = 0; i < shown; ++i) {
+        const gpu::Pane glass = magnified(panes[i], picture, window, mouse, static_cast<int>(i));
+        panes.push_back(glass);
+        const ImVec2 upper{glass.target.left * io.DisplaySize.x, glass.target.top * io.DisplaySize.y},
+            lower{glass.target.right * io.DisplaySize.x, glass.target.bottom * io.DisplaySize.y};
+        marks.AddRect(upper, lower, lineColor);
+        // The pixel under the mouse.
+        const auto [x, y] = pixelUnderMouse(picture);
+        const auto place = [](float from, float to, float first, float last, uint32_t pixel, uint32_t all) {
+            const float share = (static_cast<float>(pixel) / length(all) - first) / (last - first);
+            return from + share * (to - from);
+        };
+        const float left = place(upper.x, lower.x, glass.source.left, glass.source.right, x, picture.width),
+                    top = place(upper.y, lower.y, glass.source.top, glass.source.bottom, y, picture.height);
+        const float side = (lower.x - upper.x) / magnifiedPixels;
+        marks.AddRect({left, top}, {left + side, top + side}, lineColor);
+    }
+}
+
+void Display::drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    const float at = panel.divider * size.x;
+    marks.AddLine({at, 0.0f}, {at, size.y}, shadowColor, 3.0f);
+    marks.AddLine({at, 0.0f}, {at, size.y}, lineColor, 1.0f);
+    const float width = ImGui::CalcTextSize(left.c_str()).x;
+    drawLabel(marks, {at - width - 12.0f, 8.0f}, left);
+    drawLabel(marks, {at + 12.0f, 8.0f}, facts.comparedWith);
+}
+
+void Display::drawArrows(LiveRender& main) {
+    if (std::exchange(motionOf_, main.frames()) != main.frames()) motion_ = main.renderer().motion();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    for (const Arrow& arrow : motionArrows(motion_, size.x, size.y)) {
+        const ImVec2 from{arrow.from.x, arrow.from.y}, to{arrow.to.x, arrow.to.y};
+        marks.AddLine(from, to, shadowColor, 3.0f);
+        marks.AddLine(from, to, lineColor, 1.0f);
+        marks.AddCircleFilled(to, 2.5f, lineColor);
+    }
+}
+
+void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other) {
+    const bool inspects = inspect(panel, facts, main);
+    std::vector<gpu::Pane> panes;
+    if (inspects)
+        panes.push_back(inspector_.pane());
+    else if (main)
+        panes.push_back(main.pane());
+    if (panes.empty()) {
+        interface_.end();
+        return;
+    }
+    const gpu::Extent picture = extentOf(panes.front());
+    if (panel.arrows) drawArrows(main);
+    if (other && *other) {
+        const gpu::Pane whole = panes.front();
+        const auto both = splitPanes(whole, other->pane(), picture, panel.divider);
+        panes.assign(both.begin(), both.end());
+        drawDivider(inspects ? facts.images[static_cast<size_t>(panel.image)]
+                             : std::string(panel.render.pipeline.name()),
+                    panel, facts);
+    }
+    if (panel.magnifier) drawMagnifier(panes, picture);
+    presenter_.present(panes, window_.pixels(), interface_.end());
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,62 @@
+#include "viewer/compare/live_comparison.h"
+
+#include <fmt/format.h>
+
+namespace limpid::viewer {
+namespace {
+
+constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
+constexpr std::chrono::seconds betweenScores(1);
+
+}  // namespace
+
+RenderSettings settingsOfComparison(const PanelState& panel, const Networks& networks) {
+    RenderSettings settings = comparisonSettings(panel.comparison, panel.render);
+    if (panel.jitter == 0 && !panel.comparison.isReference())
+        settings.jitter = defaultJitter(settings.pipeline);
+    networks.set(settings);
+    return settings;
+}
+
+void LiveComparison::drop() {
+    other_.drop();
+    scores_.clear();
+    name_.clear();
+}
+
+bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& camera, bool moved) const {
+    const gpu::Extent extent = panel.render.extent;
+    if (!panel.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
+    const int wanted = panel.comparison.isReference() ? panel.comparison.referenceSamples : panel.maxSamples;
+    return moved || other_.differs(settingsOfComparison(panel, networks_), panel.samples) ||
+           !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
+}
+
+void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment, bool alone) {
+    const RenderSettings now = settingsOfComparison(panel, networks_);
+    if (other_.differs(now, panel.samples)) other_.noteChange();
+    const std::string pipeline = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
+    if (std::exchange(pipeline_, pipeline) != pipeline) scores_.clear();
+    if (alone) moment.number = numbersAlone + other_.framesOfSame();
+    other_.prepare(stage, now, panel.samples, now.pipeline.needsExposure() ? panel.exposure : 0.0f);
+    other_.render(std::move(moment));
+    ++frames_;
+    name_ = pipeline;
+    if (other_.accumulates()) name_ += fmt::format(", {} samples", other_.samples());
+}
+
+void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {
+    if (!main || !other_) return;
+    other_.expose(other_.settings().pipeline.needsExposure() ? exposure : 0.0f);
+    const std::tuple now(main.frames(), frames_, exposure);
+    const auto time = std::chrono::steady_clock::now();
+    if (scores_.busy() || scored_ == now || (rendering && time - lastScores_ < betweenScores)) return;
+    lastScores_ = time;
+    scored_ = now;
+    image::Image test = beautyOf(main.renderer().download()),
+                 reference = beautyOf(other_.renderer().download());
+    if (test.width == reference.width && test.height == reference.height)
+        scores_.compare(std::move(test), std::move(reference), exposure);
+}
+
+}  // namespace limpid::viewer

@@ -1,0 +1,13 @@
+// The panel's part about lights.
+#pragma once
+
+#include "viewer/camera/controls.h"
+#include "viewer/panel/panel.h"
+
+namespace limpid::viewer {
+
+/// Changes of a light take effect with the next frame; a lamp or a background that is added or taken away
+/// loads the scene again.
+void drawLights(PanelState& state, const PanelFacts& facts, Controls& controls);
+
+}  // namespace limpid::viewer

@@ -1,0 +1,290 @@
+#include "viewer/panel/panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "base/text/bytes_text.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "viewer/panel/light_panel.h"
+
+namespace limpid::viewer {
+namespace {
+
+const Range stopsRange(-32.0, 32.0, {-16.0, 16.0});
+
+/// Whether the user changed it.
+bool editValue(Controls& controls, const ParamInfo& info, ParamValue& value) {
+    const char* const name = info.name.c_str();
+    if (bool* const on = std::get_if<bool>(&value)) return controls.checkbox(name, *on);
+    const Range range(info.minimum, info.maximum, info.slider);
+    if (int* const number = std::get_if<int>(&value)) return controls.slider(name, *number, range);
+    return controls.slider(name, std::get<float>(value), range);
+}
+
+void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& controls) {
+    controls.setGroup("");
+    if (!controls.header(group.name.c_str())) return;
+    controls.setGroup(group.name);
+    ImGui::PushID(group.name.c_str());
+    if (controls.button("defaults")) {
+        for (const ParamInfo& info : group.infos) group.set(settings, info.name, toString(info.defaultValue));
+    }
+    for (size_t i = 0; i < group.infos.size(); ++i) {
+        const ParamInfo& info = group.infos[i];
+        ParamValue value = group.get(settings, i);
+        if (editValue(controls, info, value)) group.set(settings, info.name, toString(value));
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s%s", info.help.c_str(),
+                              info.unit.empty() ? "" : (" [" + info.unit + "]").c_str());
+    }
+    ImGui::PopID();
+    controls.setGroup("");
+}
+
+void drawPipelines(PanelState& state, Controls& controls) {
+    RenderSettings& settings = state.render;
+    std::vector<std::string> names;
+    int chosen = 0;
+    for (const Pipeline& pipeline : pipelines()) {
+        if (pipeline == settings.pipeline) chosen = static_cast<int>(names.size());
+        names.emplace_back(pipeline.name());
+    }
+    if (controls.choice("pipeline", names, chosen)) {
+        if (!state.isPreview()) state.pipelineBefore = settings.pipeline;
+        settings.pipeline = pipelines()[static_cast<size_t>(chosen)];
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(settings.pipeline.help()).c_str());
+    bool preview = state.isPreview();
+    if (controls.checkbox("preview", preview)) state.setPreview(preview);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("first hits, shaded by a light at the camera: fast, for finding one's way (V)");
+}
+
+/// A press takes all that the preset says, its pipeline too.
+void drawPresets(PanelState& state, Controls& controls) {
+    if (!controls.header("presets")) return;
+    for (const Preset& preset : presets()) {
+        if (controls.button(preset.name.c_str())) {
+            const bool fits = preset.isFor(state.render.pipeline);
+            if (!fits) state.render.pipeline = parsePipeline(preset.pipelines.front());
+            applyPreset(state.render, preset.name);
+            state.jitter = jitterChoice(preset.jitter, state.render.pipeline);
+        }
+        if (ImGui::IsItemHovered()) {
+            ImGui::BeginTooltip();
+            ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
+            ImGui::TextUnformatted(preset.help.c_str());
+            ImGui::PopTextWrapPos();
+            ImGui::EndTooltip();
+        }
+    }
+}
+
+/// Of the pass that is chosen in the list.
+void drawInspector(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    if (state.pass.empty() || facts.images.empty()) return;
+    state.image = std::min(state.image, static_cast<int>(facts.images.size()) - 1);
+    controls.choice("image", facts.images, state.image);
+    controls.choice("channels", {"color", "red", "green", "blue", "alpha"}, state.view.channels);
+    controls.slider("brightness, stops", state.view.stops, stopsRange, "{:.2f}");
+    controls.checkbox("false color", state.view.falseColor);
+    ImGui::TextUnformatted(facts.probe.c_str());
+}
+
+void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {
+    const float most = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
+    ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
+                     1.1f * most, size);
+}
+
+/// A click on one shows its images, another one the picture again.
+void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    if (!controls.header("passes")) return;
+    drawInspector(state, facts, controls);
+    const std::string last = fmt::format("{:.1f} ms a frame", facts.timings.frames().last());
+    plot("##frames", facts.timings.frames(),
+         {ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetTextLineHeight()}, last.c_str());
+    controls.note("frame times", last);
+    const std::string memory = fmt::format("memory {}, of it the scene's {}", bytesText(facts.memoryBytes),
+                                           bytesText(facts.sceneBytes));
+    ImGui::TextUnformatted(memory.c_str());
+    controls.note("memory", memory);
+    if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_RowBg)) return;
+    const float graphWidth = 6.0f * ImGui::GetFontSize();
+    ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("graph", ImGuiTableColumnFlags_WidthFixed, graphWidth);
+    ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.0f * ImGui::GetFontSize());
+    for (const PassTrack& pass : facts.timings.passes()) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (ImGui::Selectable(pass.name.c_str(), pass.name == state.pass,
+                              ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
+            state.pass = pass.name == state.pass ? std::string() : pass.name;
+        controls.note("pass " + pass.name);
+        ImGui::TableNextColumn();
+        plot(("##" + pass.name).c_str(), pass.milliseconds, {graphWidth, ImGui::GetTextLineHeight()});
+        ImGui::TableNextColumn();
+        ImGui::Text("%.3f ms", static_cast<double>(pass.milliseconds.last()));
+    }
+    ImGui::EndTable();
+}
+
+void drawComparison(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    controls.choice("compare with", comparisonNames(), state.comparison.with);
+    if (!state.comparison.isOn()) return;
+    if (state.comparison.isReference())
+        controls.slider("reference samples", state.comparison.referenceSamples,
+                        {1, 1 << 16, {1, 1 << 16, SliderScale::Logarithmic}});
+    ImGui::TextUnformatted(facts.scores.empty() ? "..." : facts.scores.c_str());
+    controls.note("scores", facts.scores);
+}
+
+void drawLooking(PanelState& state, Controls& controls) {
+    controls.checkbox("magnifier", state.magnifier);
+    ImGui::SameLine();
+    controls.checkbox("arrows", state.arrows);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, of pipelines that denoise");
+}
+
+void drawSampling(PanelState& state, Controls& controls) {
+    drawPipelines(state, controls);
+    int samples = static_cast<int>(state.samples), seed = static_cast<int>(state.render.seed);
+    if (controls.slider("samples a frame", samples, {1, 64, {1, 64, SliderScale::Logarithmic}}))
+        state.samples = static_cast<uint32_t>(samples);
+    controls.slider("most samples", state.maxSamples, {1, 1 << 20, {1, 1 << 20, SliderScale::Logarithmic}});
+    if (controls.slider("seed", seed, {0, 0x7fffffff, {0, 1000}}))
+        state.render.seed = static_cast<uint32_t>(seed);
+    controls.choice("jitter", {"as the pipeline needs it", "pixel", "frame", "off"}, state.jitter);
+    controls.choice("resolution", {"full", "1/2", "1/4", "1/8"}, state.shrink);
+}
+
+void drawDisplay(PanelState& state, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    controls.slider("exposure, stops", state.exposure, stopsRange, "{:.2f}");
+    asked.measureExposure |= controls.button("measure exposure");
+    ImGui::SameLine();
+    asked.screenshot |= controls.button("screenshot");
+    ImGui::SameLine();
+    asked.exr |= controls.button("EXR");
+    ImGui::SameLine();
+    controls.checkbox("layers", state.render.layers);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("in the EXR file; the path tracer alone is slower with them");
+    asked.command |= controls.button("copy command line");
+}
+
+void drawTime(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    controls.checkbox("running", state.running);
+    ImGui::SameLine();
+    asked.step |= controls.button("step");
+    ImGui::SameLine();
+    asked.reset |= controls.button("reset");
+    if (facts.duration <= 0.0) return;
+    ImGui::SameLine();
+    controls.checkbox("playing", state.playing);
+    asked.seek |= controls.slider("time, s", state.time, {0.0, facts.duration}, "{:.3f}");
+}
+
+void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    PanelRequests& asked = state.asked;
+    asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
+    controls.slider("field of view", state.fovDegrees, {0.01, 179.0, {5.0, 150.0}}, "{:.1f}");
+    // From one side of the scene to the other in about a thousand pixels.
+    const float speed = 0.002f * facts.sceneRadius;
+    asked.place |= controls.vector("eye", state.pose.eye, speed);
+    asked.place |= controls.vector("target", state.pose.target, speed);
+    asked.place |= controls.vector("up", state.pose.up, 0.01f);
+    state.holdsPose = ImGui::IsAnyItemActive();
+    asked.resetCamera |= controls.button("reset camera");
+    ImGui::SameLine();
+    asked.seeAll |= controls.button("see everything");
+    ImGui::SameLine();
+    asked.savePath |= controls.button("save path flown");
+}
+
+void drawOpen(PanelState& state, Controls& controls) {
+    std::array<char, 1024> text{};
+    state.file.copy(text.data(), text.size() - 1);
+    if (ImGui::InputText("open", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+        state.asked.open = true;
+    controls.note("open");
+    state.file = text.data();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene, or an environment (.hdr, .exr); or drop it here");
+}
+
+void drawFacts(const PanelState& state, const PanelFacts& facts) {
+    ImGui::TextUnformatted(facts.device.c_str());
+    ImGui::Text("%ux%u, %.1f ms a frame, frame %llu", state.render.extent.width, state.render.extent.height,
+                static_cast<double>(facts.timings.frames().last()),
+                static_cast<unsigned long long>(facts.frames));
+    if (facts.samplesInMean > 0)
+        ImGui::Text("mean of %llu samples", static_cast<unsigned long long>(facts.samplesInMean));
+    else
+        ImGui::TextUnformatted("with histories of earlier frames");
+}
+
+/// In a corner of its own, so that nothing moves away under the mouse.
+void drawMessages(const PanelFacts& facts) {
+    const std::string message = facts.messageIsOld ? std::string() : facts.message;
+    if (message.empty() && facts.fault.empty() && facts.allValues.empty()) return;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x - 8.0f, size.y - 8.0f}, ImGuiCond_Always, {1.0f, 1.0f});
+    ImGui::SetNextWindowBgAlpha(0.7f);
+    ImGui::Begin("messages", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::PushTextWrapPos(std::max(0.6f * size.x, 200.0f));
+    if (!facts.allValues.empty()) ImGui::TextUnformatted(facts.allValues.c_str());
+    if (!message.empty()) ImGui::TextUnformatted(message.c_str());
+    if (!facts.fault.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
+        ImGui::TextUnformatted(facts.fault.c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+}  // namespace
+
+int jitterChoice(Jitter jitter, const Pipeline& pipeline) {
+    return jitter == defaultJitter(pipeline) ? 0 : 1 + static_cast<int>(jitter);
+}
+
+void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
+    drawMessages(facts);
+    if (!state.shown) return;
+    ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(
+        {29.0f * ImGui::GetFontSize(), std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
+        ImGuiCond_FirstUseEver);
+    ImGui::Begin("Limpid");
+    ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // what is left of their names
+    drawFacts(state, facts);
+    drawSampling(state, controls);
+    drawDisplay(state, controls);
+    drawTime(state, facts, controls);
+    drawCamera(state, facts, controls);
+    drawOpen(state, controls);
+    drawLooking(state, controls);
+    drawComparison(state, facts, controls);
+    drawLights(state, facts, controls);
+    drawPasses(state, facts, controls);
+    drawPresets(state, controls);
+    for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
+    ImGui::PopItemWidth();
+    ImGui::Separator();
+    ImGui::TextWrapped(
+        "left button: orbit; double click: look at this; right: look, with WASDQE to fly; middle: pan; "
+        "wheel: zoom; V: preview; P: all values under the mouse; Tab: this panel; Space: run or stop; "
+        "Escape: leave");
+    ImGui::End();
+}
+
+}  // namespace limpid::viewer

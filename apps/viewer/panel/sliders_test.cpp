@@ -1,0 +1,87 @@
+// Of every parameter that the window has a slider for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderer/frame/parameters.h"
+
+namespace limpid {
+namespace {
+
+double numberOf(const ParamValue& value) {
+    return std::visit([](auto v) { return static_cast<double>(v); }, value);
+}
+
+template <typename Function>
+void forEachSlider(const Function& function) {
+    for (const ParamGroup& group : paramGroups()) {
+        for (const ParamInfo& info : group.infos) {
+            if (std::holds_alternative<bool>(info.defaultValue)) continue;
+            SCOPED_TRACE(group.name + "." + info.name);
+            function(info);
+        }
+    }
+}
+
+TEST(Sliders, RunInsideTheRangeAndHoldTheDefault) {
+    forEachSlider([](const ParamInfo& info) {
+        const SliderSpan& span = info.slider;
+        EXPECT_LT(span.least, span.most);
+        EXPECT_GE(span.least, info.minimum);
+        EXPECT_LE(span.most, info.maximum);
+        // A float lies beside what it stands for.
+        const double initial = numberOf(info.defaultValue);
+        EXPECT_GE(initial, span.least * (1.0 - 1e-6));
+        EXPECT_LE(initial, span.most * (1.0 + 1e-6));
+    });
+}
+
+/// A default that is not one end of the slider is nowhere near an end, so that there is a way to go from it.
+TEST(Sliders, LeaveRoomOnBothSidesOfTheDefault) {
+    forEachSlider([](const ParamInfo& info) {
+        const double initial = numberOf(info.defaultValue), at = sliderPosition(info.slider, initial);
+        if (initial == info.minimum || initial == info.maximum) return;
+        EXPECT_GE(at, 0.05);
+        EXPECT_LE(at, 0.95);
+    });
+}
+
+TEST(Sliders, OverManyDecadesAreLogarithmic) {
+    forEachSlider([](const ParamInfo& info) {
+        const SliderSpan& span = info.slider;
+        const bool logarithmic = span.scale == SliderScale::Logarithmic;
+        const double initial = numberOf(info.defaultValue);
+        if (span.least > 0.0 && span.most > 100.0 * span.least) {
+            EXPECT_TRUE(logarithmic);
+        }
+        if (initial > 0.0 && span.most > 100.0 * initial) {
+            EXPECT_TRUE(logarithmic);
+        }
+        if (logarithmic) {
+            EXPECT_GT(span.least > 0.0 ? span.least : span.smallest, 0.0);
+        }
+        EXPECT_LE(span.most, 1e5 * std::max(span.least > 0.0 ? span.least : span.smallest, 1e-3))
+            << "more than five decades are no slider";
+    });
+}
+
+/// Every tenth of the way is another value.
+TEST(Sliders, ChangeTheValueWhereverTheyAreMoved) {
+    forEachSlider([](const ParamInfo& info) {
+        double before = sliderValue(info.slider, 0.0);
+        for (int tenth = 1; tenth <= 10; ++tenth) {
+            double value = sliderValue(info.slider, 0.1 * tenth);
+            if (std::holds_alternative<int>(info.defaultValue) &&
+                info.slider.most - info.slider.least >= 10.0)
+                value = std::round(value);
+            EXPECT_GT(value, before - 1e-12);
+            if (!std::holds_alternative<int>(info.defaultValue)) {
+                EXPECT_GT(value, before);
+            }
+            before = value;
+        }
+    });
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,167 @@
+#include "base/files/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace limpid {
+namespace fs = std::filesystem;
+namespace {
+
+std::string systemMessage(int error) {
+    return std::generic_category().message(error);
+}
+
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// A name beside `path` that no other process uses; the file exists (empty) on return.
+fs::path createTemporary(const fs::path& path) {
+    const fs::path suffix = path.extension();
+    std::string pattern =
+        (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
+    const int file = ::mkstemps(pattern.data(), static_cast<int>(suffix.string().size()));
+    if (file < 0) throw OutputError(path, "cannot create a file beside it: " + systemMessage(errno));
+    // mkstemps makes files private; an output gets what the user's umask grants any new file.
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::fchmod(file, 0666 & ~mask);
+    ::close(file);
+    return pattern;
+}
+
+/// A full disk may show only when the data is flushed, after the writer closed the file.
+void flushToDisk(const fs::path& temporary, const fs::path& path) {
+    const int file = ::open(temporary.c_str(), O_RDONLY);
+    if (file < 0) throw OutputError(path, "cannot be written: " + systemMessage(errno));
+    const int result = ::fsync(file);
+    const int error = errno;
+    ::close(file);
+    if (result != 0) throw OutputError(path, "cannot be written: " + systemMessage(error));
+}
+
+}  // namespace
+
+std::optional<std::string> irregularity(const fs::path& path) {
+    std::error_code fault;
+    const fs::file_status status = fs::status(path, fault);
+    if (status.type() == fs::file_type::not_found) return "does not exist";
+    if (status.type() == fs::file_type::none) return "cannot be opened: " + fault.message();
+    if (fs::is_directory(status)) return "is a directory, not a file";
+    if (!fs::is_regular_file(status)) return "is not a regular file";
+    return std::nullopt;
+}
+
+std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
+    if (const auto fault = irregularity(path)) throw InputError(path, *fault);
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    if (!stream) throw InputError(path, "cannot be opened: " + systemMessage(errno));
+    const std::streamoff size = stream.tellg();
+    if (size < 0) throw InputError(path, "cannot be read");
+    if (static_cast<uint64_t>(size) > maxBytes) {
+        throw InputError(path, fmt::format("is {} bytes long, more than the {} accepted", size, maxBytes));
+    }
+    std::vector<std::byte> bytes(static_cast<size_t>(size));
+    stream.seekg(0);
+    stream.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (stream.gcount() != size) throw InputError(path, "ended before its stated size");
+    return bytes;
+}
+
+fs::path linkTarget(const fs::path& path) {
+    constexpr int mostLinks = 40;  // as the kernel's own limit
+    fs::path target = path;
+    std::error_code fault;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(target, fault)); ++links) {
+        if (links == mostLinks) throw OutputError(path, "is a symbolic link in a circle of them");
+        const fs::path next = fs::read_symlink(target, fault);
+        if (fault) throw OutputError(path, "is a symbolic link that cannot be read: " + fault.message());
+        target = next.is_absolute() ? next : folderOf(target) / next;
+    }
+    return target;
+}
+
+bool isSameFile(const fs::path& a, const fs::path& b) {
+    std::error_code fault;
+    const fs::path targetA = linkTarget(a), targetB = linkTarget(b);
+    if (fs::equivalent(targetA, targetB, fault)) return true;
+    // Files that are not there yet are the same if their folders and their names are.
+    return targetA.filename() == targetB.filename() &&
+           fs::equivalent(folderOf(targetA), folderOf(targetB), fault);
+}
+
+void checkWritable(const fs::path& path) {
+    if (path.filename().empty()) throw OutputError(path, "is a directory, not a file name");
+    const fs::path target = linkTarget(path);
+    std::error_code status;
+    const fs::file_status there = fs::status(target, status);
+    if (fs::is_directory(there)) throw OutputError(path, "is a directory, not a file name");
+    if (fs::exists(there) && !fs::is_regular_file(there))
+        throw OutputError(path, "is not a regular file, which alone is replaced");
+    const fs::path folder = folderOf(target);
+    if (!fs::is_directory(folder, status))
+        throw OutputError(path, "the folder " + folder.string() + " does not exist");
+    if (::access(folder.c_str(), W_OK) != 0) {
+        throw OutputError(path, "the folder cannot be written: " + systemMessage(errno));
+    }
+}
+
+void makeFolder(const fs::path& folder) {
+    std::error_code fault;
+    fs::create_directories(folder, fault);
+    if (fault) throw OutputError(folder, "cannot be made: " + fault.message());
+    checkWritable(folder / "file");
+}
+
+void removeStaleTemporaries(const fs::path& output) {
+    const fs::path path = linkTarget(output);
+    const std::string start = "." + path.stem().string() + ".", end = path.extension().string();
+    constexpr size_t unique = 6;  // characters, as in createTemporary()
+    std::error_code status;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), status)) {
+        const std::string name = entry.path().filename().string();
+        const bool ours = name.size() == start.size() + unique + end.size() && name.starts_with(start) &&
+                          name.ends_with(end) && name.find('.', start.size()) >= start.size() + unique;
+        std::error_code ignored;
+        if (ours && entry.is_regular_file(ignored)) fs::remove(entry.path(), ignored);
+    }
+}
+
+void writeAtomically(const fs::path& path, const std::function<void(const fs::path& temporary)>& write) {
+    checkWritable(path);
+    const fs::path target = linkTarget(path);
+    const fs::path temporary = createTemporary(target);
+    try {
+        write(temporary);
+        flushToDisk(temporary, path);
+        fs::rename(temporary, target);
+    } catch (const fs::filesystem_error& error) {
+        fs::remove(temporary);
+        throw OutputError(path, "cannot be renamed into place: " + error.code().message());
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        throw;
+    }
+}
+
+void writeTextAtomically(const fs::path& path, std::string_view text) {
+    writeAtomically(path, [&](const fs::path& temporary) {
+        std::ofstream stream(temporary, std::ios::binary);
+        stream << text;
+        stream.close();
+        if (!stream) throw OutputError(path, "cannot be written: the disk may be full");
+    });
+}
+
+}  // namespace limpid

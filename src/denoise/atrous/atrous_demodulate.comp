@@ -1,4 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// atrous_demodulate.glsl with gpu::Backing::Image.
-#include "denoise/atrous/atrous_demodulate.glsl"

@@ -1,4 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// kpcn_features.glsl in half precision.
-#include "denoise/kpcn/kpcn_features.glsl"

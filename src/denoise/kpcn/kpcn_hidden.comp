@@ -1,4 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// kpcn_hidden.glsl in half precision, sums in single.
-#include "denoise/kpcn/kpcn_hidden.glsl"

@@ -1,0 +1,4 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// kpcn_features.glsl in half precision.
+#include "denoise/kpcn/shaders/kpcn_features.glsl"

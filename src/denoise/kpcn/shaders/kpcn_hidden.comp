@@ -1,0 +1,4 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// kpcn_hidden.glsl in half precision, sums in single.
+#include "denoise/kpcn/shaders/kpcn_hidden.glsl"

@@ -1,0 +1,157 @@
+#include "denoise/methods/atrous/atrous.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "atrous_demodulate.comp.h"
+#include "atrous_demodulate_buffers.comp.h"
+#include "atrous_level.comp.h"
+#include "atrous_level_buffers.comp.h"
+#include "atrous_modulate.comp.h"
+#include "atrous_modulate_buffers.comp.h"
+#include "denoise/methods/atrous/atrous_params.h"
+
+namespace limpid::denoise {
+namespace {
+
+using gpu::Backing;
+using gpu::Extent;
+using gpu::FrameGraph;
+using gpu::ImageHandle;
+
+struct Signal {
+    ImageHandle light;     ///< half4: demodulated; alpha: something is seen
+    ImageHandle geometry;  ///< two words: octahedral normal, depth
+};
+
+Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                  const AtrousSettings& settings) {
+    const Extent extent = graph.extent(input.albedo);
+    const Signal signal{
+        graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
+        graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
+    const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u,
+                                        settings.demodulate ? 1u : 0u};
+    const bool buffers = input.filters == Backing::Buffer;
+    graph.dispatch(
+        {.pass = "atrous/demodulate",
+         .shader = buffers ? shaders::atrous_demodulate_buffers_comp : shaders::atrous_demodulate_comp,
+         .bindings = {{"lightA", light.first},
+                      {"lightB", light.second ? light.second : light.first},
+                      {"albedo", input.albedo},
+                      {"normal", input.normal},
+                      {"depth", input.depth},
+                      {"signal", signal.light},
+                      {"geometry", signal.geometry}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"SUM_OF_TWO", light.second ? 1u : 0u}},
+         .extent = extent});
+    return signal;
+}
+
+/// Along one axis. An invocation filters `block` pixels that lie a step apart.
+uint32_t invocations(uint32_t pixels, int step, uint32_t block) {
+    const uint32_t span = block * static_cast<uint32_t>(step);
+    return (pixels + span - 1) / span * static_cast<uint32_t>(step);
+}
+
+/// The shader takes powers of 2.
+constexpr float log2e = 1.44269504f;
+
+ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& signal, int number,
+                  const AtrousSettings& settings) {
+    const Extent extent = graph.extent(signal.light);
+    const std::string name = "atrous/level " + std::to_string(number);
+    const ImageHandle filtered = graph.transient(name, gpu::Format::RGBA16Float, extent, input.filters);
+    const int step = 1 << (number - 1);
+    AtrousLevelParams params{};
+    params.camera = input.camera;
+    params.width = extent.width;
+    params.height = extent.height;
+    params.step = step;
+    params.normalScale =
+        2.0f * log2e / (static_cast<float>(step) * static_cast<float>(step) * settings.normalFactor);
+    params.toScreen = {2.0f / static_cast<float>(extent.width), -2.0f / static_cast<float>(extent.height)};
+    params.depthScale = std::sqrt(log2e / settings.depthFactor);
+    const float samplesGathered = static_cast<float>(step) * static_cast<float>(step);
+    params.fade = settings.sampleTarget > 0.0f ? samplesGathered / settings.sampleTarget : 0.0f;
+    const bool color = settings.colorFactor > 0.0f;
+    // Finite, so that equal light weighs 1 however small the tolerance.
+    if (color) params.colorScale = std::min(samplesGathered * log2e / settings.colorFactor, 1e30f);
+    const bool buffers = input.filters == Backing::Buffer;
+    const Extent block = buffers ? Extent{2, 2} : Extent{4, 2};  // as in the shaders
+    graph.dispatch(
+        {.pass = name,
+         .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
+         .bindings = {{"signal", signal.light}, {"geometry", signal.geometry}, {"filtered", filtered}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"PLANE", settings.plane ? 1u : 0u},
+                       {"ORTHOGRAPHIC", input.camera.orthographic},
+                       {"COLOR", color ? 1u : 0u}},
+         .extent = {invocations(extent.width, step, block.width),
+                    invocations(extent.height, step, block.height)}});
+    return filtered;
+}
+
+ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal,
+                     const AtrousSettings& settings) {
+    const Extent extent = graph.extent(signal);
+    const ImageHandle beauty = graph.transient("atrous/beauty", gpu::Format::RGBA32Float, extent);
+    const AtrousModulateParams params{extent.width, extent.height, settings.demodulate ? 1u : 0u};
+    const bool buffers = input.filters == Backing::Buffer;
+    graph.dispatch({.pass = "atrous/modulate",
+                    .shader = buffers ? shaders::atrous_modulate_buffers_comp : shaders::atrous_modulate_comp,
+                    .bindings = {{"signal", signal},
+                                 {"albedo", input.albedo},
+                                 {"emission", input.emission},
+                                 {"beauty", beauty}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
+    return beauty;
+}
+
+}  // namespace
+
+const ParamTable<AtrousSettings>& atrousParams() {
+    static const auto table = [] {
+        using S = AtrousSettings;
+        ParamTable<S> t("atrous");
+        t.add("history", &S::history, "filter the running means of `history`; off: the frame's own samples");
+        t.add("levels", &S::levels, 0, 10, "levels",
+              "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels; more is smoother "
+              "and slower");
+        t.add("normal_factor", &S::normalFactor, 1e-9, 1e9, "",
+              "tolerated squared difference of normals at level 1, fourfold at each further; higher smooths "
+              "over "
+              "edges and curves");
+        t.add("depth_factor", &S::depthFactor, 1e-12, 1e12, "of the squared distance",
+              "tolerated squared deviation from the pixel's plane, relative to its distance from the eye "
+              "(without "
+              "`plane`: of depths, world units); higher smooths over steps");
+        t.add("sample_target", &S::sampleTarget, 0.0, 1e9, "samples",
+              "a pixel that has gathered so many, over time and over the levels so far, weighs itself twice "
+              "as much as "
+              "the level asks; lower keeps shadows sharper where history is long, higher is smoother; 0 is "
+              "no limit");
+        t.add("plane", &S::plane,
+              "weigh by the deviation from the pixel's plane instead of the difference of depths");
+        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+        t.add("color_factor", &S::colorFactor, 0.0, 1e9, "(cd/m^2)^2",
+              "tolerated squared difference of light at level 1, a quarter of it at each further (Dammertz "
+              "2010); lower keeps shadows, and noise; 0: differences of light do not count");
+        return t;
+    }();
+    return table;
+}
+
+ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                         const AtrousSettings& settings) {
+    Signal signal = demodulate(graph, input, light, settings);
+    for (int number = 1; number <= settings.levels; ++number)
+        signal.light = level(graph, input, signal, number, settings);
+    return modulate(graph, input, signal.light, settings);
+}
+
+}  // namespace limpid::denoise

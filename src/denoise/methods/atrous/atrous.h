@@ -1,0 +1,36 @@
+// The edge-avoiding a-trous filter: levels of a 5x5 B3 spline with growing holes, weighted by geometry, over
+// light without albedo. docs/denoising.md has the formulas and the paper.
+#pragma once
+
+#include "base/params.h"
+#include "denoise/api/denoiser_input.h"
+#include "gpu/graph/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; atrousParams() is where range and meaning stand.
+struct AtrousSettings {
+    bool history = true;
+    int levels = 5;
+    float normalFactor = 3e-4f;
+    float depthFactor = 1e-4f;
+    float sampleTarget = 32.0f;
+    bool plane = true;
+    bool demodulate = true;
+    float colorFactor = 0.0f;
+    bool operator==(const AtrousSettings&) const = default;
+};
+const ParamTable<AtrousSettings>& atrousParams();
+
+/// Scattered light, rgba32f: a mean over frames, whose number is in alpha (`second` empty), or the sum of two
+/// images of one frame.
+struct AtrousLight {
+    gpu::ImageHandle first, second;
+};
+
+/// The filtered beauty, rgba32f, alpha 1: `light` filtered, plus the frame's emission. Passes:
+/// "atrous/demodulate", "atrous/level 1" and so on, "atrous/modulate".
+gpu::ImageHandle filterAtrous(gpu::FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+                              const AtrousSettings& settings);
+
+}  // namespace limpid::denoise

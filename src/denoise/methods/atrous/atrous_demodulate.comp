@@ -1,0 +1,4 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// atrous_demodulate.glsl with gpu::Backing::Image.
+#include "denoise/methods/atrous/atrous_demodulate.glsl"

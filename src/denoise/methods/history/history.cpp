@@ -1,0 +1,114 @@
+#include "denoise/methods/history/history.h"
+
+#include <limits>
+
+#include "history_track.comp.h"
+
+namespace limpid::denoise {
+namespace {
+
+HistoryParams makeParams(gpu::Extent extent, const CameraParams& camera, const HistorySettings& settings) {
+    HistoryParams params{};
+    params.camera = camera;
+    params.width = extent.width;
+    params.height = extent.height;
+    params.normalThreshold = settings.normal;
+    params.depthThreshold = settings.depth;
+    params.relative = settings.relative;
+    params.search = settings.search;
+    params.demodulate = settings.demodulate;
+    params.greyRestart = settings.greyRestart;
+    params.greyMisses = settings.greyMisses;
+    params.grey = settings.grey;
+    params.identity = settings.identity;
+    params.maxHistory = settings.maxHistory > 0.0f ? settings.maxHistory : std::numeric_limits<float>::max();
+    return params;
+}
+
+}  // namespace
+
+const ParamTable<HistorySettings>& historyParams() {
+    static const auto table = [] {
+        using S = HistorySettings;
+        ParamTable<S> t("history");
+        t.add("normal", &S::normal, -1.0, 1.0, "cosine",
+              "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
+              "expected one "
+              "is above this; higher keeps edges, lower keeps more history on curved surfaces")
+            .slider(0.5, 1);
+        t.add("depth", &S::depth, 0.0, 1e6, "of the distance",
+              "... and if its distance is off by less than this share of the expected one (without "
+              "`relative`: "
+              "world units); lower ghosts less, higher forgets less")
+            .slider(0, 1, SliderScale::Logarithmic, 0.001);
+        t.add("relative", &S::relative,
+              "`depth` is relative to the distance, and makes room for tilted planes");
+        t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+        t.add("demodulate", &S::demodulate,
+              "divide by the albedo before resampling, multiply after it: textures stay sharp");
+        t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
+              "weight of the past at most; lower follows changing light sooner, higher is smoother; 0 is no "
+              "limit")
+            .slider(0, 1000, SliderScale::Logarithmic, 1);
+        t.add(
+            "grey_restart", &S::greyRestart,
+            "where there is no history: a grey of weight 1, to which the frame's sample is added, instead of "
+            "that sample alone; softens the black of new pixels");
+        t.add("grey", &S::grey, 0.0, 1e6, "cd/m^2", "the grey of `grey_restart`").slider(0, 2);
+        t.add("grey_misses", &S::greyMisses, "`grey_restart` holds where nothing is hit, too");
+        t.add("identity", &S::identity,
+              "a pixel of the previous frame counts if it saw the same object; off: objects that touch may "
+              "share "
+              "their history");
+        t.add("show_cases", &S::showCases,
+              "show why pixels have no history: blue nothing hit, yellow off screen, red no valid tap");
+        return t;
+    }();
+    return table;
+}
+
+HistoryImages trackHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
+                           const HistorySettings& settings) {
+    using gpu::Format;
+    const gpu::Extent extent = graph.extent(input.diffuse);
+    const gpu::History color = graph.history("history/color", Format::RGBA32Float, extent);
+    const gpu::History normalDepth = graph.history("history/normal_depth", Format::RGBA32Float, extent);
+    const gpu::History albedoId = graph.history("history/albedo_id", Format::RGBA32Float, extent);
+    const gpu::ImageHandle cases = graph.transient("history/cases", Format::R32Uint, extent);
+    const HistoryParams params = makeParams(extent, input.camera, settings);
+    graph.dispatch({.pass = "history/track",
+                    .shader = shaders::history_track_comp,
+                    .bindings = {{"diffuse", input.diffuse},
+                                 {"specular", input.specular},
+                                 {"albedo", input.albedo},
+                                 {"normal", input.normal},
+                                 {"depth", input.depth},
+                                 {"motion", input.motion},
+                                 {"previousNormal", input.previousNormal},
+                                 {"ids", input.ids},
+                                 {"colorBefore", color.previous},
+                                 {"normalDepthBefore", normalDepth.previous},
+                                 {"albedoIdBefore", albedoId.previous},
+                                 {"color", color.current},
+                                 {"normalDepth", normalDepth.current},
+                                 {"albedoId", albedoId.current},
+                                 {"cases", cases}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
+    return {color.current, normalDepth.current, albedoId.current, cases};
+}
+
+HistoryCounts countCases(std::span<const uint32_t> cases) {
+    HistoryCounts counts;
+    for (const uint32_t value : cases) {
+        const uint32_t failure = value & CASE_MASK;
+        counts.nothingHit += failure == CASE_NOTHING_HIT;
+        counts.offScreen += failure == CASE_OFF_SCREEN;
+        counts.noValidTap += failure == CASE_NO_VALID_TAP;
+        counts.rejected += (value & SAMPLE_REJECTED) != 0;
+    }
+    return counts;
+}
+
+}  // namespace limpid::denoise

@@ -1,0 +1,42 @@
+// Parameters of history tracking. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_HISTORY_PARAMS_H
+#define LIMPID_DENOISE_HISTORY_PARAMS_H
+
+#include "shaders/common/camera.h"
+
+#ifdef __cplusplus
+namespace limpid::denoise {
+#define LIMPID_CONST inline constexpr
+#else
+#define LIMPID_CONST const
+#endif
+
+// The image `history/cases`: why a pixel has no history; the bit is added where its sample was rejected.
+LIMPID_CONST uint CASE_TRACKED = 0u;
+LIMPID_CONST uint CASE_NOTHING_HIT = 1u;
+LIMPID_CONST uint CASE_OFF_SCREEN = 2u;  // or behind the previous eye, or there is no previous frame
+LIMPID_CONST uint CASE_NO_VALID_TAP = 3u;
+LIMPID_CONST uint CASE_MASK = 3u;
+LIMPID_CONST uint SAMPLE_REJECTED = 4u;
+
+struct HistoryParams {
+    CameraParams camera;
+    uint width;
+    uint height;
+    float normalThreshold;  // cosine
+    float depthThreshold;
+    uint relative;  // 0: depthThreshold is in world units
+    uint search;
+    uint demodulate;
+    uint greyRestart;
+    uint greyMisses;
+    float grey;        // cd/m^2
+    uint identity;     // 0: instances do not count
+    float maxHistory;  // frames; infinite: no limit
+};
+
+#undef LIMPID_CONST
+#ifdef __cplusplus
+}  // namespace limpid::denoise
+#endif
+#endif

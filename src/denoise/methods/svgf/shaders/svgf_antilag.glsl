@@ -1,0 +1,48 @@
+// Anti-lag: where light has changed, most of the history is taken out of what this frame accumulated. docs/denoising.md,
+// SVGF, step 4.
+#include "denoise/methods/svgf/svgf_params.h"
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    SvgfAntilagParams params;
+};
+
+#include "denoise/methods/svgf/shaders/svgf_signal.glsl"
+
+layout(set = 0, binding = 5, r32f) uniform readonly image2D tiles;
+layout(set = 0, binding = 6, rgba32f) uniform image2D moments;
+UPDATE_HALF4(7, color);
+
+/// Where a pixel's centre lies between the middles of tiles.
+struct Between {
+    ivec2 first;  // of 2x2 tiles
+    vec2 share;   // of the other ones
+};
+
+Between tilesAround(ivec2 at) {
+    const vec2 tile = (vec2(at) + 0.5) / float(SVGF_TILE) - 0.5;
+    return Between(ivec2(floor(tile)), fract(tile));
+}
+
+float tileAt(ivec2 tile) {
+    return imageLoad(tiles, clamp(tile, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE)).x;
+}
+
+/// Of 2x2 tiles, row by row.
+float lagBetween(vec4 corners, vec2 share) {
+    return mix(mix(corners.x, corners.y, share.x), mix(corners.z, corners.w, share.x), share.y);
+}
+
+void shorten(ivec2 at, float lag) {
+    if (!(lag >= SVGF_LEAST_LAG)) return;
+    const vec4 before = imageLoad(moments, at);
+    const vec3 light = lightAt(at);
+    if (before.w <= 1.0 || !isFinite(light)) return;
+    const vec3 x = demodulated(light, at);
+    const float l = luminance(x), frames = 1.0 + (before.w - 1.0) * (1.0 - lag);
+    const vec4 alphas = vec4(params.alphaMoments, params.alphaMoments, params.alphaFast, params.alpha);
+    const vec4 had = max(alphas, 1.0 / before.w), has = max(alphas, 1.0 / frames);
+    const vec4 more = (has - had) / max(1.0 - had, 1e-6);
+    const vec4 now = vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), frames);
+    imageStore(moments, at, now);
+    STORE_HALF4(color, at, vec4(mix(LOAD_HALF4(color, at).rgb, x, more.w), deviationOf(now)));
+}

@@ -1,0 +1,11 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// svgf_reproject.glsl with gpu::Backing::Image.
+#include "denoise/methods/svgf/shaders/svgf_reproject.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x < int(params.width) && at.y < int(params.height)) accumulate(at);
+}

@@ -1,0 +1,24 @@
+// What 8x8 pixels together say of one signal: how far the slow mean of the luminance lags behind the fast one.
+// docs/denoising.md, SVGF, step 4.
+#include "denoise/methods/svgf/svgf_params.h"
+
+struct TileSums {
+    float lag, noise, light;
+};
+
+/// Of a pixel of the image of moments. It is taken at its word only as far as its own noise reaches: a bright sample makes
+/// no change of light.
+TileSums tileSumsOf(vec4 m, SvgfLagParams lag) {
+    if (m.w < SVGF_LEAST_FRAMES) return TileSums(0.0, 0.0, 0.0);
+    const float noise = lag.steadyShare * max(m.y - m.x * m.x, 0.0), most = lag.antilagPixel * sqrt(noise);
+    return TileSums(clamp(m.z - m.x, -most, most), noise, max(m.z, m.x));
+}
+
+void add(inout TileSums sums, TileSums other) {
+    sums = TileSums(sums.lag + other.lag, sums.noise + other.noise, sums.light + other.light);
+}
+
+float lagOf(TileSums sums, SvgfLagParams lag) {
+    const float excess = max(abs(sums.lag) - lag.antilagNoise * sqrt(sums.noise), 0.0);
+    return sums.light > 0.0 ? min(lag.antilag * excess / sums.light, 1.0) : 0.0;
+}

@@ -1,0 +1,39 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are few and scattered, or many in one place: a group
+// collects its own, and shares out their rows among all of its invocations.
+#define LIMPID_FILTER_BUFFERS
+#include "denoise/methods/svgf/shaders/svgf_variance.glsl"
+
+const uint GROUP = 16;
+layout(local_size_x = 16, local_size_y = 16) in;
+
+shared uint count;
+shared uint young[GROUP * GROUP];
+shared vec3 sums[GROUP * GROUP];
+
+ivec2 youngAt(uint number) {
+    return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
+}
+
+/// So many invocations work on each young pixel, if there are any; more than it has rows would idle.
+uint sharers() {
+    return min(GROUP * GROUP / count, 2u * uint(RADIUS) + 1u);
+}
+
+void main() {
+    const uint own = gl_LocalInvocationIndex;
+    if (own == 0u) count = 0u;
+    barrier();
+    if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
+    barrier();
+    if (count == 0u) return;
+    const uint share = sharers(), number = own / share, part = own % share;
+    const bool has = number < count;
+    if (has) sums[own] = rowsSum(youngAt(number), int(part), int(share));
+    barrier();
+    if (!has || part != 0u) return;
+    vec3 sum = sums[own];
+    for (uint i = 1u; i < share; ++i) sum += sums[own + i];
+    storeDeviation(youngAt(number), sum);
+}

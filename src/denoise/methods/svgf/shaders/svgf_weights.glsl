@@ -1,0 +1,78 @@
+// Which pixels show the same surface: the edge-stopping functions of normals and depth. docs/denoising.md, SVGF, step 6. The
+// including shader has `SvgfFilterParams params` and READ_UINT2 `surfaces`.
+#ifndef LIMPID_SVGF_WEIGHTS_GLSL
+#define LIMPID_SVGF_WEIGHTS_GLSL
+
+#include "denoise/stages/guides.glsl"
+
+layout(constant_id = 1) const bool POSITION = false;  // distances of points instead of depths and slopes
+layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
+
+struct Surface {
+    vec3 normal;
+    float depth;  // 0: nothing seen
+    vec3 point;   // relative to the eye; of POSITION alone
+};
+
+/// What a pixel compares others with; `scale` and `slope` are for exponents of 2.
+struct SurfaceCentre {
+    Surface surface;
+    vec3 scaledNormal;
+    vec2 slope;  // of the depth, to the right and down, by one tap
+    float floor;
+};
+
+vec3 rayOf(ivec2 at) {
+    return viewVector(params.camera, pixelOnScreen(vec2(at), vec2(params.width, params.height)));
+}
+
+vec3 pointOf(ivec2 at, float depth) {
+    const vec3 ray = rayOf(at);
+    if (!ORTHOGRAPHIC) return ray * (depth * inversesqrt(dot(ray, ray)));
+    const vec2 onScreen = pixelOnScreen(vec2(at), vec2(params.width, params.height));
+    return onScreen.x * params.camera.right + onScreen.y * params.camera.up + depth * params.camera.forward;
+}
+
+Surface surfaceAt(ivec2 at) {
+    const uvec2 packed = LOAD_UINT2(surfaces, at);
+    const float depth = uintBitsToFloat(packed.y);
+    return Surface(decodeOctahedral(packed.x), depth, POSITION ? pointOf(at, depth) : vec3(0.0));
+}
+
+vec2 slopeOf(Surface surface, ivec2 at) {
+    const vec3 ray = rayOf(at);
+    const vec3 toRight = params.camera.right * (2.0 / float(params.width));
+    const vec3 down = params.camera.up * (-2.0 / float(params.height));
+    const float squared = dot(ray, ray);
+    float facing = dot(surface.normal, ray);
+    const float least = SVGF_LEAST_SLOPE * sqrt(squared);
+    facing = facing < 0.0 ? min(facing, -least) : max(facing, least);
+    const vec2 tilt = vec2(dot(surface.normal, toRight), dot(surface.normal, down)) / facing;
+    if (ORTHOGRAPHIC) return -tilt;
+    return surface.depth * (vec2(dot(ray, toRight), dot(ray, down)) / squared - tilt);
+}
+
+SurfaceCentre centreOf(Surface surface, ivec2 at) {
+    SurfaceCentre centre;
+    centre.surface = surface;
+    centre.scaledNormal = surface.normal * params.normalScale;
+    centre.slope = slopeOf(surface, at) * (float(params.step) / params.depthScale);
+    centre.floor = SVGF_DEPTH_FLOOR * surface.depth / params.depthScale;
+    return centre;
+}
+
+/// Per distance; the same for opposite taps. `from` is where the other one is, in taps.
+float perDepthOf(SurfaceCentre centre, ivec2 from) {
+    return POSITION ? 0.0 : 1.0 / (abs(dot(vec2(from), centre.slope)) + centre.floor);
+}
+
+/// The exponent of 2.
+float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
+    if (POSITION)
+        return -distance(centre.surface.normal, other.normal) * params.normalScale -
+               distance(centre.surface.point, other.point) * params.depthScale;
+    return dot(centre.scaledNormal, other.normal) - params.normalScale -
+           abs(centre.surface.depth - other.depth) * perDepth;
+}
+
+#endif

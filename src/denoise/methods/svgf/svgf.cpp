@@ -1,0 +1,416 @@
+#include "denoise/methods/svgf/svgf.h"
+
+#include <algorithm>
+#include <string>
+
+#include "denoise/methods/svgf/svgf_params.h"
+#include "svgf_antilag.comp.h"
+#include "svgf_antilag_buffers.comp.h"
+#include "svgf_level.comp.h"
+#include "svgf_level_buffers.comp.h"
+#include "svgf_modulate.comp.h"
+#include "svgf_modulate_buffers.comp.h"
+#include "svgf_reproject.comp.h"
+#include "svgf_reproject_buffers.comp.h"
+#include "svgf_surfaces.comp.h"
+#include "svgf_surfaces_buffers.comp.h"
+#include "svgf_tiles.comp.h"
+#include "svgf_variance.comp.h"
+#include "svgf_variance_buffers.comp.h"
+
+namespace limpid::denoise {
+namespace {
+
+using gpu::Backing;
+using gpu::Extent;
+using gpu::Format;
+using gpu::FrameGraph;
+using gpu::History;
+using gpu::ImageHandle;
+
+/// The shaders take powers of 2.
+constexpr float log2e = 1.44269504f;
+
+/// Light that is filtered by itself: `light`, or its sum with `otherLight`.
+struct Signal {
+    std::string name;
+    ImageHandle light, otherLight, albedo, otherAlbedo;
+    bool isSum = false, reflects = false;
+};
+
+struct Surfaces {
+    History surfaces;  ///< two words: octahedral normal, distance (0: nothing seen)
+    History instances;
+};
+
+struct Accumulated {
+    ImageHandle color;      ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
+    ImageHandle moments;    ///< rgba32f: first, second, fast first, frames
+    ImageHandle tiles;      ///< r32f: lag
+    History feedback;       ///< of colors; `current` is what the next frame reads
+    ImageHandle shown;      ///< half4: the last level's result, or as `feedback` where that is not kept
+    ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
+};
+
+class Svgf {
+  public:
+    Svgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings)
+        : graph_(graph),
+          input_(input),
+          settings_(settings),
+          extent_(graph.extent(input.diffuse)),
+          buffers_(input.filters == Backing::Buffer) {}
+
+    /// Each pass for all signals before the next pass: those of one kind do not wait for each other, and the
+    /// device starts one while the other runs out.
+    ImageHandle record() {
+        const Surfaces surfaces = recordSurfaces();
+        const std::vector<Signal> all = signals();
+        std::vector<Accumulated> accumulated;
+        std::vector<ImageHandle> filtered;
+        for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
+        if (settings_.antilag > 0.0f) {
+            for (size_t i = 0; i < all.size() && !buffers_; ++i) recordTiles(all[i], accumulated[i]);
+            for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
+        }
+        for (size_t i = 0; i < all.size(); ++i) {
+            estimateVariance(all[i], surfaces, accumulated[i]);
+            filtered.push_back(accumulated[i].color);
+        }
+        for (int number = 1; number <= settings_.levels; ++number) {
+            for (size_t i = 0; i < all.size(); ++i)
+                filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
+        }
+        return modulate(filtered.front(), filtered.back());
+    }
+
+  private:
+    std::vector<Signal> signals() const {
+        if (!settings_.separate)
+            return {{"joint", input_.diffuse, input_.specular, input_.albedo, input_.albedoSpecular, true}};
+        return {{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo},
+                {"specular", input_.specular, input_.specular, input_.albedoSpecular, input_.albedoSpecular,
+                 false, settings_.reflections}};
+    }
+
+    const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
+        return buffers_ ? buffers : images;
+    }
+
+    Surfaces recordSurfaces() {
+        const Surfaces result{graph_.history("svgf/surfaces", Format::RG32Uint, extent_, input_.filters),
+                              graph_.history("svgf/ids", Format::R32Uint, extent_)};
+        const SvgfSizeParams params{extent_.width, extent_.height};
+        graph_.dispatch({.pass = "svgf/surfaces",
+                         .shader = choose(shaders::svgf_surfaces_comp, shaders::svgf_surfaces_buffers_comp),
+                         .bindings = {{"normal", input_.normal},
+                                      {"depth", input_.depth},
+                                      {"ids", input_.ids},
+                                      {"surfaces", result.surfaces.current},
+                                      {"instances", result.instances.current}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = extent_});
+        return result;
+    }
+
+    /// Of the filter's levels; 0: none.
+    int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
+
+    /// Of the variance of one frame's samples: what fast minus slow mean has after a long history of steady
+    /// light. 0 where the slow mean is no mean at all, and the samples' variance not known.
+    float steadyShare() const {
+        const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
+        const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
+        const float common = fast * slow / (fast + slow - fast * slow);
+        if (slow >= 1.0f) return 0.0f;
+        return std::max((shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow)), 0.0f);
+    }
+
+    SvgfLagParams lagParams() const {
+        return {steadyShare(), settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
+    }
+
+    SvgfReprojectParams reprojectParams(bool wasShown) const {
+        SvgfReprojectParams params{};
+        params.camera = input_.camera;
+        params.width = extent_.width;
+        params.height = extent_.height;
+        params.normalTest = settings_.normalTest;
+        params.depthTest = settings_.depthTest;
+        params.relative = settings_.relative;
+        params.search = settings_.search;
+        params.demodulate = settings_.demodulate;
+        params.alpha = settings_.alpha;
+        params.alphaMoments = settings_.alphaMoments;
+        params.alphaFast = settings_.alphaFast;
+        params.lag = lagParams();
+        params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
+        // Shorter ones would stay young for ever.
+        params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
+        return params;
+    }
+
+    /// The last of the filter's levels does.
+    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+
+    /// What was shown lives on as what is fed back, or by itself.
+    History shownOf(const std::string& name, const History& feedback) {
+        if (!mixesShown() || fedBack() == settings_.levels) return feedback;
+        return graph_.history(name + " shown", Format::RGBA16Float, extent_, input_.filters);
+    }
+
+    /// What svgf_signal.glsl has.
+    static std::vector<gpu::Binding> withLight(const Signal& signal, std::vector<gpu::Binding> others) {
+        others.insert(others.end(), {{"lightA", signal.light},
+                                     {"lightB", signal.otherLight},
+                                     {"albedoA", signal.albedo},
+                                     {"albedoB", signal.otherAlbedo}});
+        return others;
+    }
+
+    std::vector<gpu::ConstantValue> constantsOf(const Signal& signal) const {
+        return {{"SUM_OF_TWO", signal.isSum ? 1u : 0u}, {"BOOST", settings_.boost ? 1u : 0u}};
+    }
+
+    Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
+        const std::string name = "svgf/" + signal.name;
+        const Extent tileExtent{(extent_.width + SVGF_TILE - 1) / SVGF_TILE,
+                                (extent_.height + SVGF_TILE - 1) / SVGF_TILE};
+        const History feedback =
+            graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
+        const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
+        const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
+        const History shown = shownOf(name, feedback);
+        const ImageHandle shownPast = graph_.transient(name + " shown past", Format::RGBA16Float,
+                                                       mixesShown() ? extent_ : Extent{1, 1}, input_.filters);
+        const ImageHandle color =
+            fedBack() == 0
+                ? feedback.current
+                : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
+        const SvgfReprojectParams params = reprojectParams(shown.valid);
+        std::vector<gpu::Binding> bindings{{"motion", input_.motion},
+                                           {"reflectionMotion", input_.reflectionMotion},
+                                           {"previousNormal", input_.previousNormal},
+                                           {"surfaces", surfaces.surfaces.current},
+                                           {"instances", surfaces.instances.current},
+                                           {"surfacesBefore", surfaces.surfaces.previous},
+                                           {"instancesBefore", surfaces.instances.previous},
+                                           {"colorBefore", feedback.previous},
+                                           {"momentsBefore", moments.previous},
+                                           {"color", color},
+                                           {"moments", moments.current},
+                                           {"shownBefore", shown.previous},
+                                           {"shownPast", shownPast}};
+        std::vector<gpu::ConstantValue> constants = constantsOf(signal);
+        constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
+        constants.push_back({"MIX_SHOWN", mixesShown() ? 1u : 0u});
+        if (buffers_) {
+            bindings.push_back({"tiles", tiles});
+            constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});
+        }
+        graph_.dispatch({.pass = "svgf/reproject " + signal.name,
+                         .shader = choose(shaders::svgf_reproject_comp, shaders::svgf_reproject_buffers_comp),
+                         .bindings = withLight(signal, bindings),
+                         .params = gpu::paramsOf(params),
+                         .constants = constants,
+                         .extent = extent_});
+        return {color, moments.current, tiles, feedback, shown.current, shownPast};
+    }
+
+    void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
+        const SvgfAntilagParams params{.width = extent_.width,
+                                       .height = extent_.height,
+                                       .demodulate = settings_.demodulate,
+                                       .alpha = settings_.alpha,
+                                       .alphaMoments = settings_.alphaMoments,
+                                       .alphaFast = settings_.alphaFast};
+        graph_.dispatch({.pass = "svgf/antilag " + signal.name,
+                         .shader = choose(shaders::svgf_antilag_comp, shaders::svgf_antilag_buffers_comp),
+                         .bindings = withLight(signal, {{"tiles", accumulated.tiles},
+                                                        {"moments", accumulated.moments},
+                                                        {"color", accumulated.color}}),
+                         .params = gpu::paramsOf(params),
+                         .constants = constantsOf(signal),
+                         .extent = extent_});
+    }
+
+    void recordTiles(const Signal& signal, const Accumulated& accumulated) {
+        const SvgfTilesParams params{extent_.width, extent_.height, lagParams()};
+        graph_.dispatch({.pass = "svgf/tiles " + signal.name,
+                         .shader = shaders::svgf_tiles_comp,
+                         .bindings = {{"moments", accumulated.moments}, {"tiles", accumulated.tiles}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {},
+                         .extent = graph_.extent(accumulated.tiles)});
+    }
+
+    SvgfFilterParams filterParams(int step) const {
+        SvgfFilterParams params{};
+        params.camera = input_.camera;
+        params.width = extent_.width;
+        params.height = extent_.height;
+        params.step = step;
+        params.phiColor = settings_.phiColor;
+        params.normalScale = log2e * (settings_.position ? 1.0f / settings_.phiNormal : settings_.phiNormal);
+        params.depthScale = log2e / settings_.phiDepth;
+        params.shownNoise = settings_.shownNoise;
+        return params;
+    }
+
+    std::vector<gpu::ConstantValue> filterConstants() const {
+        return {{"POSITION", settings_.position ? 1u : 0u}, {"ORTHOGRAPHIC", input_.camera.orthographic}};
+    }
+
+    void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
+        const SvgfFilterParams params = filterParams(1);
+        std::vector<gpu::ConstantValue> constants = filterConstants();
+        constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
+        graph_.dispatch({.pass = "svgf/variance " + signal.name,
+                         .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
+                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                                      {"moments", accumulated.moments},
+                                      {"color", accumulated.color}},
+                         .params = gpu::paramsOf(params),
+                         .constants = constants,
+                         .extent = extent_});
+    }
+
+    /// Of a level: one for SVGF_COLUMN pixels of a column.
+    Extent invocations(int step) const {
+        const auto span = static_cast<uint32_t>(SVGF_COLUMN * step);
+        return {extent_.width, (extent_.height + span - 1) / span * static_cast<uint32_t>(step)};
+    }
+
+    ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+                      ImageHandle before, int number) {
+        const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
+        const bool mixed = mixesShown() && number == settings_.levels;
+        const ImageHandle filtered =
+            mixed                 ? accumulated.shown
+            : number == fedBack() ? accumulated.feedback.current
+                                  : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
+        const int step = 1 << (number - 1);
+        const SvgfFilterParams params = filterParams(step);
+        std::vector<gpu::ConstantValue> constants = filterConstants();
+        constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
+        constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
+        constants.push_back({"MIX_SHOWN", mixed ? 1u : 0u});
+        constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
+        graph_.dispatch({.pass = name,
+                         .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
+                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                                      {"signal", before},
+                                      {"filtered", filtered},
+                                      {"shownPast", mixed ? accumulated.shownPast : before}},
+                         .params = gpu::paramsOf(params),
+                         .constants = constants,
+                         .extent = invocations(step)});
+        return filtered;
+    }
+
+    ImageHandle modulate(ImageHandle signal, ImageHandle otherSignal) {
+        const ImageHandle beauty = graph_.transient("svgf/beauty", Format::RGBA32Float, extent_);
+        const SvgfModulateParams params{extent_.width, extent_.height, settings_.demodulate ? 1u : 0u};
+        graph_.dispatch({.pass = "svgf/modulate",
+                         .shader = choose(shaders::svgf_modulate_comp, shaders::svgf_modulate_buffers_comp),
+                         .bindings = {{"signalA", signal},
+                                      {"signalB", otherSignal},
+                                      {"albedoA", input_.albedo},
+                                      {"albedoB", input_.albedoSpecular},
+                                      {"emission", input_.emission},
+                                      {"beauty", beauty}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"TWO_SIGNALS", settings_.separate ? 1u : 0u}},
+                         .extent = extent_});
+        return beauty;
+    }
+
+    FrameGraph& graph_;
+    const DenoiserInput& input_;
+    const SvgfSettings& settings_;
+    const Extent extent_;
+    const bool buffers_;
+};
+
+}  // namespace
+
+const ParamTable<SvgfSettings>& svgfParams() {
+    static const auto table = [] {
+        using S = SvgfSettings;
+        ParamTable<S> t("svgf");
+        t.add("separate", &S::separate,
+              "filter diffuse and specular light apart; off: their sum, in half the time");
+        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+        t.add(
+            "alpha", &S::alpha, 1e-4, 1.0, "",
+            "least weight of a frame in the running mean; lower is smoother, higher follows changes sooner");
+        t.add("alpha_moments", &S::alphaMoments, 1e-4, 1.0, "",
+              "... in the moments of the luminance, whence the variance");
+        t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "", "... in the fast mean that anti-lag compares with");
+        t.add("normal_test", &S::normalTest, -1.0, 1.0, "cosine",
+              "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
+              "expected one is above this")
+            .slider(0.5, 1);
+        t.add("depth_test", &S::depthTest, 0.0, 1e6, "of the distance",
+              "... and if its distance is off by less than this share of the expected one (without "
+              "`relative`: "
+              "world units)")
+            .slider(0, 1, SliderScale::Logarithmic, 0.001);
+        t.add("relative", &S::relative,
+              "`depth_test` is relative to the distance, and makes room for tilted planes");
+        t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+        t.add("reflections", &S::reflections,
+              "of specular light that is filtered apart: look for its history where the reflection was, not "
+              "the surface");
+        t.add("antilag", &S::antilag, 0.0, 1e6, "",
+              "history that is forgotten per relative change of light beyond noise; higher follows changes "
+              "sooner and is noisier; below 0.1 is off");
+        t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
+              "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
+              "noise for one")
+            .slider(0, 10);
+        t.add("antilag_pixel", &S::antilagPixel, 0.0, 1e6, "deviations",
+              "the most that one pixel's difference counts for in that mean, in its own deviations; higher "
+              "sees greater changes as greater; above `antilag_noise` a single firefly may pass for one, "
+              "below an eighth of it nothing does")
+            .slider(0, 10);
+        t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
+              "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
+              "changes later; 1 (and no levels) is off");
+        t.add(
+             "shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
+             "of the filtered light that what was shown before may differ by and still count in full; higher "
+             "flickers less and follows changes later")
+            .slider(0, 5);
+        t.add("levels", &S::levels, 0, 10, "levels",
+              "each doubles the filter's reach: n of them reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2");
+        t.add("history_level", &S::historyLevel, 0, 10, "levels",
+              "whose result is the next frame's history; higher is smoother and blurs over time");
+        t.add("wide", &S::wide, "5x5 taps a level; off: 3x3, half the reach in half the time");
+        t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations",
+              "tolerated difference of luminance; higher smooths over shadows");
+        t.add("phi_normal", &S::phiNormal, 1e-6, 1e5, "",
+              "sharpness of the tolerance of normals; lower smooths over edges (with `position`: tolerated "
+              "distance of normals; higher does)");
+        t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
+              "tolerated difference of distance, in units of the surface's own slope (with `position`: "
+              "tolerated distance of points, world units); higher smooths over steps");
+        t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
+              "so many first levels average the variance over 3x3 pixels before it guides them; more take "
+              "longer");
+        t.add("boost", &S::boost,
+              "the noise expected of a pixel falls with the length of its history (times 2 / sqrt(frames)); "
+              "off: it is that of one frame");
+        t.add("position", &S::position,
+              "weigh by distances of points and of normals instead of slopes and cosines");
+        return t;
+    }();
+    return table;
+}
+
+ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
+    return Svgf(graph, input, settings).record();
+}
+
+}  // namespace limpid::denoise

@@ -1,0 +1,50 @@
+// Spatiotemporal variance-guided filtering: C. Schied et al., "Spatiotemporal Variance-Guided Filtering:
+// Real-Time Reconstruction for Path-Traced Global Illumination", HPG 2017. The steps and formulas, and what
+// is added to the paper, are in docs/denoising.md.
+#pragma once
+
+#include "base/params.h"
+#include "denoise/api/denoiser_input.h"
+#include "gpu/graph/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; svgfParams() is where range and meaning stand.
+struct SvgfSettings {
+    bool separate = true;
+    bool demodulate = true;
+    float alpha = 0.1f;
+    float alphaMoments = 0.1f;
+    float alphaFast = 0.5f;
+    float normalTest = 0.95f;
+    float depthTest = 0.02f;
+    bool relative = true;
+    bool search = true;
+    bool reflections = true;
+    float antilag = 16.0f;
+    float antilagNoise = 1.5f;
+    float antilagPixel = 1.5f;
+    float alphaShown = 0.5f;
+    float shownNoise = 0.5f;
+    int levels = 4;
+    int historyLevel = 0;
+    bool wide = false;
+    float phiColor = 4.0f;
+    float phiNormal = 64.0f;
+    float phiDepth = 3.0f;
+    int blurLevels = 1;
+    bool boost = true;
+    bool position = false;
+    bool operator==(const SvgfSettings&) const = default;
+};
+const ParamTable<SvgfSettings>& svgfParams();
+
+/// One frame: the clean beauty, rgba32f, alpha 1. Passes, each once for every signal ("joint", or "diffuse"
+/// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
+/// (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag SIGNAL" (neither
+/// without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories:
+/// "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it
+/// is fed back, "svgf/SIGNAL shown".
+gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
+
+}  // namespace limpid::denoise

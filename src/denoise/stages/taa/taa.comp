@@ -1,0 +1,102 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+// Temporal anti-aliasing. docs/denoising.md.
+#include "denoise/stages/reprojection.glsl"
+#include "denoise/stages/taa/taa_params.h"
+#include "shaders/common/filter_image.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    TaaParams params;
+};
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D beauty;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D depth;
+layout(set = 0, binding = 3, rgba32f) uniform readonly image2D motion;
+READ_HALF4(4, before);  // mean, frames in it
+WRITE_HALF4(5, after);
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
+
+/// Of the 3x3 pixels around: what the past may differ from their mean by.
+const float MAX_DEVIATIONS = 1.25;
+
+/// Bright pixels weigh less, as a screen will show them; luma and two chromas.
+vec3 encode(vec3 c) {
+    const vec3 shown = c / (1.0 + luminance(c));
+    return vec3(dot(shown, vec3(0.25, 0.5, 0.25)), dot(shown, vec3(0.5, 0.0, -0.5)), dot(shown, vec3(-0.25, 0.5, -0.25)));
+}
+
+vec3 decode(vec3 v) {
+    const vec3 shown = max(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z), vec3(0.0));
+    return shown / max(1.0 - luminance(shown), 1e-6);
+}
+
+ivec2 inside(ivec2 at) {
+    return clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+}
+
+struct Neighbourhood {
+    vec3 mean, deviation;
+    ivec2 nearest;  // to the eye: edges move with what is before them
+};
+
+/// `now` is what p has: differences from it keep their digits where the picture is flat.
+Neighbourhood around(ivec2 at, vec3 now) {
+    vec3 sum = vec3(0.0), squares = vec3(0.0);
+    float least = 1e30;
+    ivec2 nearest = at;
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+            const ivec2 there = inside(at + ivec2(i, j));
+            const vec3 v = encode(imageLoad(beauty, there).rgb) - now;
+            sum += v;
+            squares += v * v;
+            const float z = hitDistance(imageLoad(depth, there));
+            if (z > 0.0 && z < least) {
+                least = z;
+                nearest = there;
+            }
+        }
+    }
+    const vec3 mean = sum / 9.0;
+    return Neighbourhood(now + mean, sqrt(max(squares / 9.0 - mean * mean, vec3(0.0))), nearest);
+}
+
+/// Catmull and Rom's cubic, of the four pixels around `t` in [0, 1).
+vec4 cubicWeights(float t) {
+    return vec4(t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (-2.5 + 1.5 * t), t * (0.5 + t * (2.0 - 1.5 * t)),
+                t * t * (-0.5 + 0.5 * t));
+}
+
+/// At `position` (pixels, minus one half): the encoded mean, and in w the frames of the nearest pixel.
+vec4 pastAt(vec2 position) {
+    const vec2 corner = floor(position), share = position - corner;
+    const vec4 wx = cubicWeights(share.x), wy = cubicWeights(share.y);
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < 4; ++j) {
+        for (int i = 0; i < 4; ++i)
+            sum += wx[i] * wy[j] * encode(LOAD_HALF4(before, inside(ivec2(corner) + ivec2(i, j) - 1)).rgb);
+    }
+    return vec4(sum, LOAD_HALF4(before, inside(ivec2(floor(position + 0.5)))).w);
+}
+
+/// Moved towards the mean until it is as near as neighbours are.
+vec3 clipped(vec3 past, Neighbourhood near) {
+    const vec3 off = past - near.mean;
+    const vec3 excess = abs(off) / max(MAX_DEVIATIONS * near.deviation, vec3(1e-6));
+    return near.mean + off / max(max(excess.x, max(excess.y, excess.z)), 1.0);
+}
+
+void main() {
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const vec3 now = encode(imageLoad(beauty, at).rgb);
+    const Neighbourhood near = around(at, now);
+    const Reprojection was =
+        reprojectionOf(imageLoad(motion, near.nearest), vec2(at), vec2(params.width, params.height));
+    const vec4 past = was.onScreen ? pastAt(was.position) : vec4(0.0);
+    const float frames = min(past.w + 1.0, params.frames);
+    const vec3 mean = decode(mix(clipped(past.rgb, near), now, 1.0 / frames));
+    STORE_HALF4(after, at, vec4(min(mean, MAX_HALF), frames));
+    imageStore(smoothed, at, vec4(mean, 1.0));
+}

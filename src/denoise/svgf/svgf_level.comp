@@ -1,6 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// svgf_level.glsl with gpu::Backing::Image.
-#include "denoise/svgf/svgf_level.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;

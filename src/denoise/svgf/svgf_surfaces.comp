@@ -1,4 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// svgf_surfaces.glsl with gpu::Backing::Image.
-#include "denoise/svgf/svgf_surfaces.glsl"

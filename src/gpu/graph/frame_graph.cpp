@@ -1,0 +1,352 @@
+// Recording: frames, images and histories. Dispatches are in dispatch_recorder.cpp, execution in
+// frame_executor.cpp.
+#include "gpu/graph/frame_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.h"
+#include "gpu/graph/dispatch_recorder.h"
+#include "gpu/graph/frame_graph_impl.h"
+#include "gpu/vulkan/execute/frame_executor.h"
+#include "gpu/vulkan/memory/memory.h"
+
+namespace limpid::gpu {
+namespace {
+
+/// A handle's lower bits are the image's index, its upper bits the frame's number modulo `generations`. One
+/// less than the bits hold, so that no handle equals the empty one.
+constexpr uint32_t indexBits = 20;
+constexpr uint32_t indexMask = (1u << indexBits) - 1;
+constexpr uint32_t generations = (1u << (32 - indexBits)) - 1;
+
+uint32_t generation(uint64_t frame) {
+    return static_cast<uint32_t>(frame % generations);
+}
+
+bool sameWords(const std::vector<uint32_t>& a, std::span<const uint32_t> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
+}
+
+bool sameCode(const Shader& shader, const std::vector<ShaderCode>& codes) {
+    return std::ranges::equal(shader.stages, codes, [](const Shader::Stage& stage, const ShaderCode& code) {
+        return sameWords(stage.words, code.words);
+    });
+}
+
+constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, ShaderStage::Miss,
+                                               ShaderStage::ClosestHit, ShaderStage::AnyHit};
+
+/// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
+Shader makeShader(const std::vector<ShaderCode>& codes) {
+    Shader shader;
+    shader.name = codes[0].name;
+    for (size_t i = 0; i < codes.size(); ++i) {
+        const ShaderCode& code = codes[i];
+        ShaderReflection reflection = reflect(code);
+        const ShaderStage wanted = codes.size() == 1 ? ShaderStage::Compute : rayStages[i];
+        if (reflection.stage != wanted)
+            throw Error(fmt::format("shader '{}' is of another stage than its use", code.name));
+        shader.stages.push_back(
+            {reflection.stage, {code.words.begin(), code.words.end()}, std::string(code.name)});
+        if (i == 0) {
+            shader.reflection = std::move(reflection);
+        } else {
+            merge(shader.reflection, reflection, code.name);
+        }
+    }
+    return shader;
+}
+
+}  // namespace
+
+FrameGraph::Impl::Impl() = default;
+FrameGraph::Impl::~Impl() = default;
+
+void FrameGraph::Impl::requireRecording() const {
+    if (frame.number == 0) throw Error("the frame graph has no frame yet: call beginFrame() first");
+    if (frame.executed) throw Error("the frame has been executed: call beginFrame() before recording more");
+}
+
+/// The frame that was executed decides what the next one inherits; one that was only recorded leaves no
+/// trace.
+void FrameGraph::Impl::commitHistories() {
+    if (!frame.executed) return;
+    for (auto& [name, state] : histories) {
+        const auto recorded = recordedHistories.find(name);
+        if (recorded == recordedHistories.end()) {
+            state.valid = false;
+            continue;
+        }
+        const RecordedImage& current = frame.images[recorded->second];
+        state.format = current.key.format;
+        state.backing = current.key.backing;
+        state.extent = current.extent();
+        state.currentHalf = current.key.half;
+        state.valid = current.written;
+    }
+    std::erase_if(histories, [&](const auto& entry) { return !recordedHistories.contains(entry.first); });
+}
+
+void FrameGraph::Impl::claimName(const std::string& name) {
+    if (name.empty()) throw Error("an image needs a name");
+    if (!names.insert(name).second)
+        throw Error(fmt::format("image '{}' is created twice in one frame", name));
+}
+
+ImageHandle FrameGraph::Impl::addImage(RecordedImage image) {
+    if (image.key.width == 0 || image.key.height == 0) {
+        throw Error(fmt::format("image '{}' is empty: {} x {} pixels", image.name, image.key.width,
+                                image.key.height));
+    }
+    const uint32_t index = static_cast<uint32_t>(frame.images.size());
+    if (index >= indexMask) throw Error("too many images in one frame");
+    frame.images.push_back(std::move(image));
+    imageUses.emplace_back();
+    return {index | generation(frame.number) << indexBits};
+}
+
+uint32_t FrameGraph::Impl::indexOf(ImageHandle handle) const {
+    if (!handle) throw Error("the image handle is empty");
+    const uint32_t index = handle.index & indexMask;
+    if (handle.index >> indexBits != generation(frame.number) || index >= frame.images.size()) {
+        throw Error("the image handle is from an earlier frame, or of another graph");
+    }
+    return index;
+}
+
+/// Compares the code itself: the viewer may load changed code under the same name, even at the same address.
+std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code, const RayShaders* rays) {
+    std::vector<ShaderCode> codes{code};
+    if (rays) codes.insert(codes.end(), {rays->miss, rays->closestHit, rays->anyHit});
+    for (ShaderCode& used : codes) {
+        if (!replacements) break;
+        const auto replacement = replacements->find(used.name);
+        if (replacement != replacements->end()) used.words = replacement->second;
+    }
+    const auto found = shaders.find(code.name);
+    if (found != shaders.end() && sameCode(*found->second, codes)) return found->second;
+    const auto shader = std::make_shared<const Shader>(makeShader(codes));
+    shaders.insert_or_assign(std::string(code.name), shader);
+    return shader;
+}
+
+void FrameGraph::setReplacements(const ShaderReplacements* replacements) {
+    impl_->replacements = replacements;
+}
+
+std::vector<ShaderCode> FrameGraph::usedShaders() const {
+    std::vector<ShaderCode> codes;
+    for (const auto& [name, shader] : impl_->shaders)
+        for (const Shader::Stage& stage : shader->stages) codes.push_back({stage.name, stage.words});
+    return codes;
+}
+
+FrameGraph::FrameGraph() : impl_(std::make_unique<Impl>()) {}
+FrameGraph::~FrameGraph() = default;
+
+void FrameGraph::beginFrame() {
+    impl_->commitHistories();
+    if (std::exchange(impl_->resetRequested, false)) impl_->histories.clear();
+    const uint64_t number = impl_->frame.number + 1;
+    impl_->frame = {};
+    impl_->frame.number = number;
+    impl_->names.clear();
+    impl_->recordedHistories.clear();
+    impl_->imageUses.clear();
+    impl_->bufferUses.clear();
+    impl_->lastBarrier = 0;
+}
+
+ImageHandle FrameGraph::transient(const std::string& name, Format format, Extent extent, Backing backing) {
+    impl_->requireRecording();
+    impl_->claimName(name);
+    return impl_->addImage({.name = name, .key = {name, 0, format, extent.width, extent.height, backing}});
+}
+
+History FrameGraph::history(const std::string& name, Format format, Extent extent, Backing backing) {
+    impl_->requireRecording();
+    const std::string previousName = name + " (previous)";
+    impl_->claimName(name);
+    impl_->claimName(previousName);
+    HistoryState& state = impl_->histories[name];
+    const bool valid =
+        state.valid && state.format == format && state.extent == extent && state.backing == backing;
+    const uint32_t half = state.currentHalf;
+    History result;
+    result.valid = valid;
+    result.previous = impl_->addImage({.name = previousName,
+                                       .key = {name, half, format, extent.width, extent.height, backing},
+                                       .role = RecordedImage::Role::Previous,
+                                       .clear = !valid});
+    result.current = impl_->addImage({.name = name,
+                                      .key = {name, half ^ 1, format, extent.width, extent.height, backing},
+                                      .role = RecordedImage::Role::Current,
+                                      .clear = !valid});
+    impl_->recordedHistories[name] = impl_->indexOf(result.current);
+    return result;
+}
+
+void FrameGraph::resetHistories() {
+    impl_->resetRequested = true;
+}
+
+Extent FrameGraph::extent(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].extent();
+}
+
+Format FrameGraph::format(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].key.format;
+}
+
+const std::string& FrameGraph::name(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].name;
+}
+
+void FrameGraph::dispatch(const Dispatch& dispatch) {
+    impl_->requireRecording();
+    DispatchRecorder(*impl_, dispatch).record();
+}
+
+void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data) {
+    impl_->requireRecording();
+    if (!buffer) throw Error("an upload needs a buffer");
+    const std::shared_ptr<const BufferStorage>& storage = buffer.impl()->storage;
+    if (offset % 4 != 0 || data.size() % 4 != 0 || offset > storage->size ||
+        data.size() > storage->size - offset) {
+        throw Error(fmt::format("an upload of {} bytes at {} does not fit buffer '{}' of {} bytes",
+                                data.size(), offset, storage->name, storage->size));
+    }
+    if (data.empty()) return;
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    impl_->frame.uploads.push_back(
+        {.buffer = storage, .offset = offset, .at = all.size(), .size = data.size()});
+    all.insert(all.end(), data.begin(), data.end());
+}
+
+void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
+    impl_->requireRecording();
+    const uint32_t index = impl_->indexOf(handle);
+    RecordedImage& image = impl_->frame.images[index];
+    if (image.role != RecordedImage::Role::Transient || image.written)
+        throw Error(fmt::format("image '{}' cannot be uploaded: it is a history, or written", image.name));
+    if (pixels.size() != image.bytes()) {
+        throw Error(fmt::format("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
+                                pixels.size()));
+    }
+    image.written = true;
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    all.resize(alignUp(all.size(), 16));  // copies to images start at whole texels
+    impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
+    all.insert(all.end(), pixels.begin(), pixels.end());
+}
+
+void FrameGraph::place(const AccelerationStructures& structures, uint32_t placement,
+                       const TreePlacement& where) {
+    impl_->requireRecording();
+    const auto& storage = structures.storage();
+    const auto record = storage->instanceRecord(placement, where);
+    const auto bytes = std::as_bytes(std::span(&record, 1));
+    std::vector<std::byte>& all = impl_->frame.uploadData;
+    impl_->frame.uploads.push_back({.buffer = storage->instances,
+                                    .offset = uint64_t{placement} * sizeof(record),
+                                    .at = all.size(),
+                                    .size = bytes.size()});
+    all.insert(all.end(), bytes.begin(), bytes.end());
+}
+
+void FrameGraph::rebuild(std::string_view pass, const AccelerationStructures& structures) {
+    impl_->requireRecording();
+    const std::shared_ptr<const AccelerationStorage>& storage = structures.storage();
+    RecordedPass recorded;
+    recorded.name = pass;
+    const std::array<Access, 2> accesses{
+        Access{.buffer = storage->triangles.get(), .name = storage->triangles->name, .reads = true},
+        Access{.buffer = storage->topBuffer.get(), .name = storage->topBuffer->name, .writes = true}};
+    impl_->noteAccesses(recorded, accesses);
+    RecordedDispatch dispatch;
+    dispatch.resources.push_back(
+        {.kind = BindingKind::AccelerationStructure, .buffer = storage->topBuffer, .structures = storage});
+    impl_->frame.passes.push_back(std::move(recorded));
+    impl_->frame.dispatches.push_back(std::move(dispatch));
+}
+
+void FrameGraph::host(HostPass pass) {
+    impl_->requireRecording();
+    RecordedPass recorded;
+    recorded.name = pass.pass;
+    RecordedDispatch dispatch;
+    std::vector<Access> accesses;
+    const auto add = [&](ImageHandle handle, bool writes) {
+        const uint32_t index = impl_->indexOf(handle);
+        const RecordedImage& image = impl_->frame.images[index];
+        if (image.key.backing != Backing::Buffer)
+            throw Error(fmt::format("pass '{}': the host cannot see image '{}', which is not in a buffer",
+                                    pass.pass, image.name));
+        if (!writes && !image.written && image.role != RecordedImage::Role::Previous)
+            throw Error(fmt::format("pass '{}': nothing has written image '{}'", pass.pass, image.name));
+        accesses.push_back({.image = index, .name = image.name, .reads = !writes, .writes = writes});
+        dispatch.hostImages.push_back(index);
+        recorded.imageBytes += image.bytes();
+    };
+    for (const ImageHandle handle : pass.reads) add(handle, false);
+    for (const ImageHandle handle : pass.writes) add(handle, true);
+    impl_->noteAccesses(recorded, accesses);
+    dispatch.host = std::move(pass.run);
+    impl_->frame.passes.push_back(std::move(recorded));
+    impl_->frame.dispatches.push_back(std::move(dispatch));
+}
+
+const std::vector<RecordedPass>& FrameGraph::passes() const {
+    return impl_->frame.passes;
+}
+
+uint64_t FrameGraph::bytesOfImagesWrittenFrom(size_t first) const {
+    std::set<std::string_view> written;
+    for (size_t i = first; i < impl_->frame.passes.size(); ++i)
+        written.insert(impl_->frame.passes[i].writes.begin(), impl_->frame.passes[i].writes.end());
+    uint64_t bytes = 0;
+    for (const RecordedImage& image : impl_->frame.images) {
+        if (!written.contains(image.name)) continue;
+        bytes += image.role == RecordedImage::Role::Current ? 2 * image.bytes() : image.bytes();
+    }
+    return bytes;
+}
+
+namespace {
+
+/// Images of the frame that one of the passes of this name touches; `names` says how.
+std::vector<ImageHandle> imagesTouched(const RecordedFrame& frame, std::string_view pass,
+                                       std::vector<std::string> RecordedPass::*names) {
+    std::vector<ImageHandle> images;
+    for (uint32_t i = 0; i < frame.images.size(); ++i) {
+        const bool touches = std::ranges::any_of(frame.passes, [&](const RecordedPass& p) {
+            return p.name == pass && std::ranges::find(p.*names, frame.images[i].name) != (p.*names).end();
+        });
+        if (touches) images.push_back({i | generation(frame.number) << indexBits});
+    }
+    return images;
+}
+
+}  // namespace
+
+std::vector<ImageHandle> FrameGraph::imagesWrittenBy(std::string_view pass) const {
+    return imagesTouched(impl_->frame, pass, &RecordedPass::writes);
+}
+
+std::vector<ImageHandle> FrameGraph::previousReadBy(std::string_view pass) const {
+    std::vector<ImageHandle> images = imagesTouched(impl_->frame, pass, &RecordedPass::reads);
+    std::erase_if(images, [&](ImageHandle image) {
+        return impl_->frame.images[impl_->indexOf(image)].role != RecordedImage::Role::Previous;
+    });
+    return images;
+}
+
+void FrameGraph::assumeExecuted() {
+    impl_->requireRecording();
+    impl_->frame.executed = true;
+}
+
+}  // namespace limpid::gpu

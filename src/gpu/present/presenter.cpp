@@ -1,0 +1,315 @@
+#include "gpu/present/presenter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "gpu/graph/frame_graph_impl.h"
+#include "gpu/present/overlay_drawer.h"
+#include "gpu/vulkan/check.h"
+#include "gpu/vulkan/device_impl.h"
+#include "gpu/vulkan/execute/frame_executor.h"
+
+namespace limpid::gpu {
+namespace {
+
+/// What one picture under way owns.
+struct Slot {
+    UniqueCommandPool pool;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    UniqueFence fence;
+    UniqueSemaphore acquired;
+    OverlayDrawer::Triangles triangles;
+    bool submitted = false;
+};
+
+UniqueSemaphore makeSemaphore(const Context& context) {
+    const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
+    VkSemaphore semaphore = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateSemaphore(context.device(), &info, nullptr, &semaphore));
+    return {context.device(), semaphore};
+}
+
+void imageBarrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+                  VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess, VkPipelineStageFlags2 toStage,
+                  VkAccessFlags2 toAccess) {
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = fromStage;
+    barrier.srcAccessMask = fromAccess;
+    barrier.dstStageMask = toStage;
+    barrier.dstAccessMask = toAccess;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = wholeImage();
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+/// A pane and its picture.
+struct DevicePane {
+    const Image* picture;
+    Rectangle source, target;
+    bool enlarge;
+};
+
+/// The corners of a share of an image, in its pixels: at least one.
+std::array<VkOffset3D, 2> corners(const Rectangle& share, Extent whole) {
+    const auto pixel = [](float at, uint32_t pixels) {
+        return static_cast<int32_t>(std::lround(std::clamp(at, 0.0f, 1.0f) * static_cast<float>(pixels)));
+    };
+    const auto width = static_cast<int32_t>(whole.width), height = static_cast<int32_t>(whole.height);
+    const int32_t left = std::min(pixel(share.left, whole.width), width - 1),
+                  top = std::min(pixel(share.top, whole.height), height - 1);
+    return {{{left, top, 0},
+             {std::max(pixel(share.right, whole.width), left + 1),
+              std::max(pixel(share.bottom, whole.height), top + 1), 1}}};
+}
+
+}  // namespace
+
+struct Presenter::Impl {
+    Impl(std::shared_ptr<const Context> from, const std::function<uint64_t(void*)>& makeSurface);
+    ~Impl();
+
+    bool present(std::span<const DevicePane> panes, Extent window, const Overlay& overlay);
+
+    VkSurfaceFormatKHR chooseFormat() const;
+    bool makeSwapchain(Extent window);
+    void dropSwapchain();
+    void record(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                const Overlay& overlay) const;
+    void blit(VkCommandBuffer commands, uint32_t index, const DevicePane& pane) const;
+    void submit(Slot& slot, uint32_t index) const;
+
+    std::shared_ptr<const Context> context;
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    VkSurfaceFormatKHR format{};
+    std::optional<OverlayDrawer> overlays;
+
+    UniqueSwapchain swapchain;
+    Extent extent;   ///< of the swapchain
+    Extent madeFor;  ///< the window's
+    std::vector<VkImage> images;
+    std::vector<UniqueImageView> views;
+    std::vector<UniqueSemaphore> rendered;  ///< by image
+    std::array<Slot, 2> slots;
+    uint64_t presented = 0;
+};
+
+Presenter::Impl::Impl(std::shared_ptr<const Context> from, const std::function<uint64_t(void*)>& makeSurface)
+    : context(std::move(from)) {
+    if (!context->presents())
+        throw Error(context->info().name + " cannot show pictures in windows; 'limpid render' writes files");
+    surface = reinterpret_cast<VkSurfaceKHR>(makeSurface(context->instance()));
+    VkBool32 supported = VK_FALSE;
+    LIMPID_VK(vkGetPhysicalDeviceSurfaceSupportKHR(context->physicalDevice(), context->queueFamily(), surface,
+                                                   &supported));
+    if (!supported)
+        throw Error(context->info().name +
+                    " cannot show pictures in this window; 'limpid render' writes files");
+    format = chooseFormat();
+    overlays.emplace(context, format.format);
+    for (Slot& slot : slots) {
+        slot.pool = makeCommandPool(*context, "presenter commands");
+        slot.commands = allocateCommandBuffer(*context, slot.pool.get(), "presenter commands");
+        slot.fence = makeFence(*context, "presenter fence");
+        slot.acquired = makeSemaphore(*context);
+    }
+}
+
+Presenter::Impl::~Impl() {
+    context->waitIdleNoThrow();
+    dropSwapchain();
+    if (surface != VK_NULL_HANDLE) vkDestroySurfaceKHR(context->instance(), surface, nullptr);
+}
+
+/// Pictures are encoded already: no format that encodes once more.
+VkSurfaceFormatKHR Presenter::Impl::chooseFormat() const {
+    uint32_t count = 0;
+    LIMPID_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface, &count, nullptr));
+    std::vector<VkSurfaceFormatKHR> formats(count);
+    LIMPID_VK(
+        vkGetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface, &count, formats.data()));
+    for (const VkFormat wanted :
+         {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32}) {
+        for (const VkSurfaceFormatKHR& candidate : formats) {
+            if (candidate.format == wanted && candidate.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
+                return candidate;
+        }
+    }
+    throw Error("this window takes no 8-bit sRGB pictures from " + context->info().name);
+}
+
+void Presenter::Impl::dropSwapchain() {
+    rendered.clear();
+    views.clear();
+    images.clear();
+    swapchain = {};
+}
+
+/// False if the window has no pixels.
+bool Presenter::Impl::makeSwapchain(Extent window) {
+    context->waitIdle();
+    VkSurfaceCapabilitiesKHR can{};
+    LIMPID_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context->physicalDevice(), surface, &can));
+    const bool free = can.currentExtent.width == UINT32_MAX;  // the swapchain decides
+    const Extent wanted = free ? window : Extent{can.currentExtent.width, can.currentExtent.height};
+    extent = {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
+              std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
+    madeFor = window;
+    if (wanted.width == 0 || wanted.height == 0 || extent.width == 0 || extent.height == 0) return false;
+    VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
+    info.surface = surface;
+    info.minImageCount = std::max(3u, can.minImageCount);
+    if (can.maxImageCount != 0) info.minImageCount = std::min(info.minImageCount, can.maxImageCount);
+    info.imageFormat = format.format;
+    info.imageColorSpace = format.colorSpace;
+    info.imageExtent = {extent.width, extent.height};
+    info.imageArrayLayers = 1;
+    info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    info.preTransform = can.currentTransform;
+    info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
+    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+    info.clipped = VK_TRUE;
+    info.oldSwapchain = swapchain.get();
+    VkSwapchainKHR raw = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateSwapchainKHR(context->device(), &info, nullptr, &raw));
+    dropSwapchain();
+    swapchain = UniqueSwapchain(context->device(), raw);
+    uint32_t count = 0;
+    LIMPID_VK(vkGetSwapchainImagesKHR(context->device(), raw, &count, nullptr));
+    images.resize(count);
+    LIMPID_VK(vkGetSwapchainImagesKHR(context->device(), raw, &count, images.data()));
+    for (const VkImage image : images) {
+        VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+        view.image = image;
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.format = format.format;
+        view.subresourceRange = wholeImage();
+        VkImageView made = VK_NULL_HANDLE;
+        LIMPID_VK(vkCreateImageView(context->device(), &view, nullptr, &made));
+        views.emplace_back(context->device(), made);
+        rendered.push_back(makeSemaphore(*context));
+    }
+    return true;
+}
+
+void Presenter::Impl::blit(VkCommandBuffer commands, uint32_t index, const DevicePane& pane) const {
+    const auto source = corners(pane.source, pane.picture->extent), target = corners(pane.target, extent);
+    const int32_t from = source[1].x - source[0].x, to = target[1].x - target[0].x;
+    VkImageBlit region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    std::copy(source.begin(), source.end(), region.srcOffsets);
+    std::copy(target.begin(), target.end(), region.dstOffsets);
+    const bool pixels = from == to || pane.enlarge;
+    vkCmdBlitImage(commands, pane.picture->image.get(), VK_IMAGE_LAYOUT_GENERAL, images[index],
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                   pixels ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+}
+
+void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                             const Overlay& overlay) const {
+    const VkCommandBuffer commands = slot.commands;
+    LIMPID_VK(vkResetCommandPool(context->device(), slot.pool.get(), 0));
+    beginCommands(commands);
+    // The frame that made the picture was submitted to the same queue.
+    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_PIPELINE_STAGE_2_BLIT_BIT,
+                 VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    for (const DevicePane& pane : panes) {
+        blit(commands, index, pane);
+        // The next one may lie over it.
+        memoryBarrier(commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    }
+    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT,
+                 VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                 VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    overlays->draw(commands, slot.triangles, overlay, views[index].get(), extent);
+    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                 VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, 0);
+    LIMPID_VK(vkEndCommandBuffer(commands));
+}
+
+void Presenter::Impl::submit(Slot& slot, uint32_t index) const {
+    VkSemaphoreSubmitInfo wait{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO},
+        signal{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
+    wait.semaphore = slot.acquired.get();
+    wait.stageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
+    signal.semaphore = rendered[index].get();
+    signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+    commands.commandBuffer = slot.commands;
+    VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    info.waitSemaphoreInfoCount = info.signalSemaphoreInfoCount = info.commandBufferInfoCount = 1;
+    info.pWaitSemaphoreInfos = &wait;
+    info.pSignalSemaphoreInfos = &signal;
+    info.pCommandBufferInfos = &commands;
+    LIMPID_VK(vkQueueSubmit2(context->queue(), 1, &info, slot.fence.get()));
+    slot.submitted = true;
+}
+
+bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, const Overlay& overlay) {
+    if ((!swapchain || madeFor != window) && !makeSwapchain(window)) {
+        dropSwapchain();
+        return false;
+    }
+    Slot& slot = slots[presented % slots.size()];
+    if (std::exchange(slot.submitted, false)) waitAndReset(*context, slot.fence.get());
+    uint32_t index = 0;
+    const VkResult acquired = vkAcquireNextImageKHR(context->device(), swapchain.get(), UINT64_MAX,
+                                                    slot.acquired.get(), VK_NULL_HANDLE, &index);
+    if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
+        madeFor = {};  // made anew next time
+        return false;
+    }
+    if (acquired != VK_SUBOPTIMAL_KHR) LIMPID_VK(acquired);
+    overlays->upload(slot.triangles, overlay);
+    record(slot, index, panes, overlay);
+    submit(slot, index);
+    ++presented;
+    const VkSwapchainKHR chain = swapchain.get();
+    const VkSemaphore wait = rendered[index].get();
+    VkPresentInfoKHR info{VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
+    info.waitSemaphoreCount = 1;
+    info.pWaitSemaphores = &wait;
+    info.swapchainCount = 1;
+    info.pSwapchains = &chain;
+    info.pImageIndices = &index;
+    const VkResult result = vkQueuePresentKHR(context->queue(), &info);
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
+        madeFor = {};
+    else
+        LIMPID_VK(result);
+    return true;
+}
+
+Presenter::Presenter(Device& device, const std::function<uint64_t(void*)>& makeSurface)
+    : impl_(std::make_unique<Impl>(device.impl().context, makeSurface)), device_(device) {}
+
+Presenter::~Presenter() = default;
+
+void Presenter::setTexture(Extent extent, std::span<const uint32_t> texels) {
+    impl_->overlays->setTexture(device_.impl().transfer, extent, texels);
+}
+
+bool Presenter::present(std::span<const Pane> panes, Extent window, const Overlay& overlay) {
+    std::vector<DevicePane> shown;
+    for (const Pane& pane : panes)
+        shown.push_back(
+            {&pane.graph->imageOnDevice(device_, pane.picture), pane.source, pane.target, pane.enlarge});
+    return impl_->present(shown, window, overlay);
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,150 @@
+#include "gpu/vulkan/context.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "base/error.h"
+#include "gpu/vulkan/check.h"
+
+namespace limpid::gpu {
+namespace {
+
+bool validationWanted(const DeviceOptions& options) {
+    const char* variable = std::getenv("LIMPID_VALIDATION");
+    return options.validation || (variable && std::string_view(variable) == "1");
+}
+
+}  // namespace
+
+Context::Context(const DeviceOptions& options)
+    : instance_(Instance::create(validationWanted(options), options.surfaceExtensions)) {
+    physical_ = choose(instance_ ? inspectAll(*instance_) : std::vector<PhysicalDevice>{}, options.select);
+    vkGetPhysicalDeviceMemoryProperties(physical_.handle, &memory_);
+    presents_ = instance_->hasSurfaces() && physical_.drawsAndPresents;
+    createDevice();
+}
+
+void Context::createDevice() {
+    FeatureChain features;
+    enableFeatures(physical_, features);
+    std::vector<const char*> extensions = wantedExtensions(physical_);
+    if (presents_) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+    queue.queueFamilyIndex = physical_.queueFamily;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+    info.pNext = &features.core;
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+    VkDevice device = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateDevice(physical_.handle, &info, nullptr, &device));
+    device_.reset(device);
+    vkGetDeviceQueue(device, physical_.queueFamily, 0, &queue_);
+    setName(device, "limpid device");
+    setName(queue_, "limpid queue");
+}
+
+uint64_t Context::maxBufferBytes() const {
+    return std::min(physical_.maxBufferSize, physical_.maxAllocation);
+}
+
+void Context::setName(VkObjectType type, uint64_t handle, const std::string& name) const {
+    if (!hasDebugUtils()) return;
+    VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+    info.objectType = type;
+    info.objectHandle = handle;
+    info.pObjectName = name.c_str();
+    LIMPID_VK(vkSetDebugUtilsObjectNameEXT(device(), &info));
+}
+
+void Context::submit(VkCommandBuffer commands, VkFence fence) const {
+    VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
+    buffer.commandBuffer = commands;
+    VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &buffer;
+    LIMPID_VK(vkQueueSubmit2(queue_, 1, &info, fence));
+}
+
+void Context::waitIdle() const {
+    LIMPID_VK(vkDeviceWaitIdle(device()));
+}
+
+void Context::waitIdleNoThrow() const noexcept {
+    logResult(vkDeviceWaitIdle(device()), "vkDeviceWaitIdle");
+}
+
+UniqueCommandPool makeCommandPool(const Context& context, const std::string& name) {
+    VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    info.queueFamilyIndex = context.queueFamily();
+    VkCommandPool pool = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateCommandPool(context.device(), &info, nullptr, &pool));
+    UniqueCommandPool owned(context.device(), pool);
+    context.setName(pool, name);
+    return owned;
+}
+
+VkCommandBuffer allocateCommandBuffer(const Context& context, VkCommandPool pool, const std::string& name) {
+    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    info.commandPool = pool;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 1;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    LIMPID_VK(vkAllocateCommandBuffers(context.device(), &info, &commands));
+    context.setName(commands, name);
+    return commands;
+}
+
+void beginCommands(VkCommandBuffer commands) {
+    VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    LIMPID_VK(vkBeginCommandBuffer(commands, &info));
+}
+
+UniqueFence makeFence(const Context& context, const std::string& name) {
+    const VkFenceCreateInfo info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    VkFence fence = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateFence(context.device(), &info, nullptr, &fence));
+    UniqueFence owned(context.device(), fence);
+    context.setName(fence, name);
+    return owned;
+}
+
+void waitAndReset(const Context& context, VkFence fence) {
+    LIMPID_VK(vkWaitForFences(context.device(), 1, &fence, VK_TRUE, UINT64_MAX));
+    LIMPID_VK(vkResetFences(context.device(), 1, &fence));
+}
+
+void passBarrier(const Context& context, VkCommandBuffer commands) {
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    VkAccessFlags2 writes = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    VkAccessFlags2 reads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    if (context.hasRayTracing()) {
+        stages |= VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
+                  VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+        writes |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
+        // Builds read vertices and instances as shaders read.
+        reads |= VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_SHADER_READ_BIT;
+    }
+    memoryBarrier(commands, stages, writes, stages, reads | writes);
+}
+
+void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 from,
+                   VkPipelineStageFlags2 toStage, VkAccessFlags2 to) {
+    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = fromStage;
+    barrier.srcAccessMask = from;
+    barrier.dstStageMask = toStage;
+    barrier.dstAccessMask = to;
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace limpid::gpu

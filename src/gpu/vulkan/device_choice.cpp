@@ -1,0 +1,73 @@
+// Which device a user means.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include "base/error.h"
+#include "gpu/vulkan/physical_device.h"
+
+namespace limpid::gpu {
+namespace {
+
+std::string describe(const std::vector<DeviceInfo>& infos) {
+    std::string text;
+    for (const DeviceInfo& info : infos) {
+        text += fmt::format("\n  {}: {} ({}){}", info.index, info.name, info.type,
+                            info.usable ? "" : ", unusable: it lacks " + info.whyNot);
+    }
+    return text;
+}
+
+std::string lowerCase(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return lower;
+}
+
+int rank(const DeviceInfo& info) {
+    constexpr std::string_view order[] = {"discrete", "integrated", "virtual", "other", "cpu"};
+    return static_cast<int>(std::ranges::find(order, info.type) - std::begin(order));
+}
+
+bool matches(const DeviceInfo& info, const std::string& select) {
+    if (select.empty()) return true;
+    if (lowerCase(select) == "cpu") return info.type == "cpu";
+    const bool number = std::ranges::all_of(select, [](unsigned char c) { return std::isdigit(c); });
+    if (number) return std::to_string(info.index) == select;
+    return lowerCase(info.name).find(lowerCase(select)) != std::string::npos;
+}
+
+}  // namespace
+
+size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select) {
+    if (infos.empty()) {
+        throw Error(
+            "there is no Vulkan device: no Vulkan loader or driver was found. For the CPU, install "
+            "libvulkan1 and mesa-vulkan-drivers (the Debian packages' names)");
+    }
+    std::optional<size_t> best;
+    bool anyMatch = false;
+    for (size_t i = 0; i < infos.size(); ++i) {
+        if (!matches(infos[i], select)) continue;
+        anyMatch = true;
+        if (infos[i].usable && (!best || (select.empty() && rank(infos[i]) < rank(infos[*best])))) best = i;
+    }
+    if (best) return *best;
+    const std::string list = describe(infos);
+    if (select.empty()) throw Error("no Vulkan device here is usable:" + list);
+    throw Error(fmt::format("{} '{}'; there are:{}",
+                            anyMatch ? "no usable Vulkan device is" : "no Vulkan device matches", select,
+                            list));
+}
+
+PhysicalDevice choose(std::vector<PhysicalDevice> devices, const std::string& select) {
+    std::vector<DeviceInfo> infos;
+    for (const PhysicalDevice& device : devices) infos.push_back(device.info);
+    return std::move(devices[chooseIndex(infos, select)]);
+}
+
+}  // namespace limpid::gpu

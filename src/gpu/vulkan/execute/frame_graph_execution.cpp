@@ -1,0 +1,123 @@
+// FrameGraph's calls that need a device.
+#include <fmt/format.h>
+
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "base/error.h"
+#include "gpu/graph/frame_graph.h"
+#include "gpu/graph/frame_graph_impl.h"
+#include "gpu/vulkan/device_impl.h"
+#include "gpu/vulkan/execute/frame_executor.h"
+
+namespace limpid::gpu {
+namespace {
+
+std::vector<std::byte> downloadPixels(FrameGraph::Impl& graph, Device& device, ImageHandle handle) {
+    const RecordedImage& recorded = graph.frame.images[graph.indexOf(handle)];
+    FrameExecutor& executor = graph.executed(device);
+    if (!recorded.written && recorded.role != RecordedImage::Role::Previous) {
+        throw Error(fmt::format("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
+    }
+    const Image& image = executor.image(recorded);
+    std::vector<std::byte> pixels(recorded.bytes());
+    device.waitIdle();
+    device.impl().transfer.download(image, pixels);
+    return pixels;
+}
+
+template <typename T>
+std::vector<T> reinterpretAs(const std::vector<std::byte>& bytes) {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+}
+
+template <typename T, typename Convert>
+std::vector<float> convertAll(const std::vector<std::byte>& bytes, Convert convert) {
+    const std::vector<T> values = reinterpretAs<T>(bytes);
+    std::vector<float> result;
+    result.reserve(values.size());
+    for (const T value : values) result.push_back(convert(value));
+    return result;
+}
+
+}  // namespace
+
+FrameExecutor& FrameGraph::Impl::executorFor(Device& device) {
+    const std::shared_ptr<const Context>& context = device.impl().context;
+    if (!executor) executor = std::make_unique<FrameExecutor>(context);
+    if (&executor->context() != context.get())
+        throw Error("a frame graph runs on one device only, and this is another");
+    return *executor;
+}
+
+FrameExecutor& FrameGraph::Impl::executed(Device& device) const {
+    if (!executor || !frame.executed) throw Error("the frame has not been executed");
+    if (&executor->context() != device.impl().context.get())
+        throw Error("the frame was executed on another device");
+    return *executor;
+}
+
+void FrameGraph::execute(Device& device) {
+    impl_->requireRecording();
+    FrameExecutor& executor = impl_->executorFor(device);
+    for (size_t i = 0; i < impl_->frame.dispatches.size(); ++i) {
+        for (const BoundResource& resource : impl_->frame.dispatches[i].resources) {
+            if (resource.buffer && resource.buffer->context.get() != &executor.context()) {
+                throw Error(fmt::format("pass '{}': buffer '{}' belongs to another device",
+                                        impl_->frame.passes[i].name, resource.buffer->name));
+            }
+        }
+    }
+    for (const RecordedUpload& upload : impl_->frame.uploads) {
+        if (upload.buffer && upload.buffer->context.get() != &executor.context())
+            throw Error(fmt::format("buffer '{}' belongs to another device", upload.buffer->name));
+    }
+    executor.execute(impl_->frame);
+    impl_->frame.executed = true;
+}
+
+const Image& FrameGraph::imageOnDevice(Device& device, ImageHandle image) {
+    const RecordedImage& recorded = impl_->frame.images[impl_->indexOf(image)];
+    return impl_->executed(device).image(recorded);
+}
+
+std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) {
+    switch (format(image)) {
+        case Format::R32Float:
+        case Format::RG32Float:
+        case Format::RGBA32Float:
+            return reinterpretAs<float>(downloadPixels(*impl_, device, image));
+        case Format::RGBA16Float:
+            return convertAll<uint16_t>(downloadPixels(*impl_, device, image), glm::unpackHalf1x16);
+        case Format::RGBA8Unorm:
+            return convertAll<uint8_t>(downloadPixels(*impl_, device, image),
+                                       [](uint8_t value) { return static_cast<float>(value) / 255.0f; });
+        default:
+            throw Error(
+                fmt::format("image '{}' is {}: use downloadUint", name(image), toString(format(image))));
+    }
+}
+
+std::vector<uint32_t> FrameGraph::downloadUint(Device& device, ImageHandle image) {
+    switch (format(image)) {
+        case Format::R32Uint:
+        case Format::RG32Uint:
+        case Format::RGBA32Uint:
+            return reinterpretAs<uint32_t>(downloadPixels(*impl_, device, image));
+        default:
+            throw Error(
+                fmt::format("image '{}' is {}: use downloadFloat", name(image), toString(format(image))));
+    }
+}
+
+std::vector<PassTime> FrameGraph::passTimes(Device& device) {
+    if (!impl_->executor) return {};
+    if (&impl_->executor->context() != device.impl().context.get()) {
+        throw Error("the frames were executed on another device");
+    }
+    return impl_->executor->passTimes();
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,188 @@
+#include "gpu/vulkan/execute/frame_slot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/vulkan/check.h"
+#include "gpu/vulkan/execute/pipeline_cache.h"
+
+namespace limpid::gpu {
+
+FrameSlot::FrameSlot(std::shared_ptr<const Context> context, uint32_t index)
+    : context_(std::move(context)),
+      index_(index),
+      commandPool_(makeCommandPool(*context_, name("commands"))),
+      commands_(allocateCommandBuffer(*context_, commandPool_.get(), name("commands"))),
+      fence_(makeFence(*context_, name("fence"))) {}
+
+std::string FrameSlot::name(const char* what) const {
+    return fmt::format("frame slot {} {}", index_, what);
+}
+
+void FrameSlot::wait() {
+    if (!submitted_) return;
+    const VkFence fence = fence_.get();
+    LIMPID_VK(vkWaitForFences(context_->device(), 1, &fence, VK_TRUE, UINT64_MAX));
+}
+
+void FrameSlot::begin(const RecordedFrame& frame) {
+    wait();
+    const VkFence fence = fence_.get();
+    if (std::exchange(submitted_, false)) LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
+    buffers_.clear();
+    structures_.clear();
+    passNames_.clear();
+    reserveDescriptors(frame);
+    reserveParams(frame);
+    reserveTimestamps(static_cast<uint32_t>(frame.passes.size()) + 1);
+    LIMPID_VK(vkResetCommandPool(context_->device(), commandPool_.get(), 0));
+    beginCommands(commands_);
+    vkCmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
+}
+
+void FrameSlot::submit(const RecordedFrame& frame) {
+    LIMPID_VK(vkEndCommandBuffer(commands_));
+    for (const RecordedDispatch& dispatch : frame.dispatches) {
+        for (const BoundResource& resource : dispatch.resources) {
+            if (resource.buffer) buffers_.push_back(resource.buffer);
+            if (resource.structures) structures_.push_back(resource.structures);
+        }
+    }
+    for (const RecordedUpload& upload : frame.uploads) {
+        if (upload.buffer) buffers_.push_back(upload.buffer);
+    }
+    context_->submit(commands_, fence_.get());
+    submitted_ = true;
+    for (const RecordedPass& pass : frame.passes) passNames_.push_back(pass.name);
+}
+
+void FrameSlot::flush() {
+    LIMPID_VK(vkEndCommandBuffer(commands_));
+    context_->submit(commands_, fence_.get());
+    submitted_ = true;
+    wait();
+    const VkFence fence = fence_.get();
+    LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
+    submitted_ = false;
+    LIMPID_VK(vkResetCommandPool(context_->device(), commandPool_.get(), 0));
+    beginCommands(commands_);
+}
+
+/// Resets the pool, or replaces it by one that is twice as large as the frame needs.
+void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
+    std::array<uint32_t, bindingKindCount> needed{};
+    const uint32_t sets = static_cast<uint32_t>(frame.dispatches.size());
+    for (const RecordedDispatch& dispatch : frame.dispatches) {
+        if (!dispatch.shader) continue;
+        for (const ShaderBinding& binding : dispatch.shader->reflection.bindings) {
+            ++needed[static_cast<size_t>(binding.kind)];
+        }
+    }
+    bool fits = descriptors_ && sets <= setCapacity_;
+    for (size_t i = 0; i < needed.size(); ++i) fits = fits && needed[i] <= descriptorCapacity_[i];
+    if (fits) {
+        LIMPID_VK(vkResetDescriptorPool(context_->device(), descriptors_.get(), 0));
+        return;
+    }
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (size_t i = 0; i < needed.size(); ++i) {
+        const auto kind = static_cast<BindingKind>(i);
+        if (kind == BindingKind::AccelerationStructure && !context_->hasRayTracing()) continue;
+        descriptorCapacity_[i] = std::max(16u, 2 * needed[i]);
+        sizes.push_back({descriptorType(kind), descriptorCapacity_[i]});
+    }
+    setCapacity_ = std::max(16u, 2 * sets);
+    VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+    info.maxSets = setCapacity_;
+    info.poolSizeCount = static_cast<uint32_t>(sizes.size());
+    info.pPoolSizes = sizes.data();
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateDescriptorPool(context_->device(), &info, nullptr, &pool));
+    descriptors_ = UniqueDescriptorPool(context_->device(), pool);
+    context_->setName(pool, name("descriptors"));
+}
+
+uint64_t FrameSlot::alignedSize(uint64_t bytes) const {
+    return alignUp(bytes, std::max<uint64_t>(16, context_->limits().minUniformBufferOffsetAlignment));
+}
+
+void FrameSlot::reserveParams(const RecordedFrame& frame) {
+    uint64_t needed = 0;
+    for (const RecordedDispatch& dispatch : frame.dispatches) needed += alignedSize(dispatch.paramsSize);
+    if (needed != 0 && (!params_ || params_->size < needed)) {
+        params_.reset();
+        params_ = makeBuffer(context_, name("parameters"), BufferUse::Uniform,
+                             std::max<uint64_t>(64 << 10, 2 * needed));
+    }
+    paramsUsed_ = 0;
+}
+
+VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) {
+    const uint64_t offset = paramsUsed_;
+    std::memcpy(params_->memory.mapped + offset, params.data(), params.size());
+    paramsUsed_ += alignedSize(params.size());
+    return {params_->buffer.get(), offset, params.size()};
+}
+
+VkBuffer FrameSlot::stage(std::span<const std::byte> data) {
+    if (!staging_ || staging_->size < data.size()) {
+        staging_.reset();
+        // Small uploads vary from frame to frame; pictures do not, and are too large to be generous.
+        const uint64_t bytes = data.size() < (1u << 20) ? 2 * data.size() : data.size();
+        staging_ =
+            makeBuffer(context_, name("uploads"), BufferUse::Staging, std::max<uint64_t>(64 << 10, bytes));
+    }
+    std::memcpy(staging_->memory.mapped, data.data(), data.size());
+    return staging_->buffer.get();
+}
+
+void FrameSlot::reserveTimestamps(uint32_t count) {
+    if (count <= timestampCapacity_) return;
+    timestampCapacity_ = std::max(64u, 2 * count);
+    VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = timestampCapacity_;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateQueryPool(context_->device(), &info, nullptr, &pool));
+    timestamps_ = UniqueQueryPool(context_->device(), pool);
+    context_->setName(pool, name("timestamps"));
+}
+
+VkDescriptorSet FrameSlot::allocateSet(VkDescriptorSetLayout layout, const std::string& setName) {
+    VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    info.descriptorPool = descriptors_.get();
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    LIMPID_VK(vkAllocateDescriptorSets(context_->device(), &info, &set));
+    context_->setName(set, setName);
+    return set;
+}
+
+void FrameSlot::writeTimestamp(uint32_t stamp) {
+    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps_.get(), stamp);
+}
+
+std::vector<PassTime> FrameSlot::passTimes() {
+    wait();
+    if (passNames_.empty()) return {};
+    std::vector<uint64_t> ticks(passNames_.size() + 1);
+    LIMPID_VK(vkGetQueryPoolResults(context_->device(), timestamps_.get(), 0,
+                                    static_cast<uint32_t>(ticks.size()), ticks.size() * sizeof(uint64_t),
+                                    ticks.data(), sizeof(uint64_t),
+                                    VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    const uint32_t bits = context_->timestampValidBits();
+    const uint64_t mask = bits >= 64 ? UINT64_MAX : (uint64_t{1} << bits) - 1;
+    std::vector<PassTime> times;
+    for (size_t i = 0; i < passNames_.size(); ++i) {
+        // The difference modulo the counter's width survives one wrap-around.
+        const uint64_t elapsed = (ticks[i + 1] - ticks[i]) & mask;
+        times.push_back(
+            {passNames_[i], static_cast<double>(elapsed) * context_->limits().timestampPeriod * 1e-6});
+    }
+    return times;
+}
+
+}  // namespace limpid::gpu

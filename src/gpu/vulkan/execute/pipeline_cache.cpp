@@ -1,0 +1,202 @@
+#include "gpu/vulkan/execute/pipeline_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "gpu/vulkan/check.h"
+
+namespace limpid::gpu {
+namespace {
+
+void checkLimit(const Context& context, const std::string& shader, std::string_view limit, uint64_t maximum,
+                uint64_t asked) {
+    if (asked <= maximum) return;
+    throw Error(fmt::format("shader '{}' needs {} = {} but {} has {}", shader, limit, asked,
+                            context.info().name, maximum));
+}
+
+void checkBindings(const Context& context, const Shader& shader) {
+    const VkPhysicalDeviceLimits& limits = context.limits();
+    uint32_t images = 0, buffers = 0, blockSize = 0;
+    for (const ShaderBinding& binding : shader.reflection.bindings) {
+        // Vulkan counts storage texel buffers as storage images.
+        if (binding.kind == BindingKind::StorageImage || binding.kind == BindingKind::StorageTexelBuffer)
+            ++images;
+        if (binding.kind == BindingKind::StorageBuffer) ++buffers;
+        if (binding.kind == BindingKind::UniformBuffer) blockSize = binding.blockSize;
+    }
+    checkLimit(context, shader.name, "maxPerStageDescriptorStorageImages",
+               limits.maxPerStageDescriptorStorageImages, images);
+    checkLimit(context, shader.name, "maxPerStageDescriptorStorageBuffers",
+               limits.maxPerStageDescriptorStorageBuffers, buffers);
+    checkLimit(context, shader.name, "maxPerStageResources", limits.maxPerStageResources,
+               shader.reflection.bindings.size());
+    checkLimit(context, shader.name, "maxUniformBufferRange", limits.maxUniformBufferRange, blockSize);
+}
+
+void checkWorkgroup(const Context& context, const RecordedDispatch& dispatch) {
+    constexpr char axes[] = "xyz";
+    const VkPhysicalDeviceLimits& limits = context.limits();
+    uint64_t invocations = 1;
+    for (size_t i = 0; i < 3; ++i) {
+        invocations *= dispatch.workgroupSize[i];
+        checkLimit(context, dispatch.shader->name, fmt::format("maxComputeWorkGroupSize.{}", axes[i]),
+                   limits.maxComputeWorkGroupSize[i], dispatch.workgroupSize[i]);
+    }
+    checkLimit(context, dispatch.shader->name, "maxComputeWorkGroupInvocations",
+               limits.maxComputeWorkGroupInvocations, invocations);
+}
+
+std::string pipelineName(const RecordedDispatch& dispatch) {
+    std::string name = dispatch.shader->name;
+    for (const auto& [id, value] : dispatch.constants) name += fmt::format(" [{}={}]", id, value);
+    return name;
+}
+
+}  // namespace
+
+VkDescriptorType descriptorType(BindingKind kind) {
+    switch (kind) {
+        case BindingKind::StorageImage:
+            return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        case BindingKind::StorageTexelBuffer:
+            return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+        case BindingKind::StorageBuffer:
+            return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        case BindingKind::UniformBuffer:
+            return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+        case BindingKind::AccelerationStructure:
+            return VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
+    }
+    return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+}
+
+VkShaderStageFlagBits stageFlag(ShaderStage stage) {
+    switch (stage) {
+        case ShaderStage::Compute:
+            return VK_SHADER_STAGE_COMPUTE_BIT;
+        case ShaderStage::RayGeneration:
+            return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
+        case ShaderStage::Miss:
+            return VK_SHADER_STAGE_MISS_BIT_KHR;
+        case ShaderStage::ClosestHit:
+            return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
+        case ShaderStage::AnyHit:
+            return VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
+    }
+    return VK_SHADER_STAGE_ALL;
+}
+
+PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
+    const Layouts& layouts = layoutsOf(dispatch.shader);
+    const auto key = std::make_pair(dispatch.shader, dispatch.constants);
+    auto found = pipelines_.find(key);
+    if (found == pipelines_.end()) found = pipelines_.emplace(key, makePipeline(dispatch, layouts)).first;
+    const Made& made = found->second;
+    return {made.pipeline.get(), layouts.pipeline.get(), layouts.set.get(),
+            made.table ? &*made.table : nullptr};
+}
+
+const PipelineCache::Layouts& PipelineCache::layoutsOf(const std::shared_ptr<const Shader>& shader) {
+    auto found = layouts_.find(shader);
+    if (found == layouts_.end()) found = layouts_.emplace(shader, makeLayouts(*shader)).first;
+    return found->second;
+}
+
+PipelineCache::Layouts PipelineCache::makeLayouts(const Shader& shader) const {
+    checkBindings(*context_, shader);
+    Layouts layouts;
+    layouts.set = makeSetLayout(shader);
+    layouts.pipeline = makePipelineLayout(shader, layouts.set.get());
+    for (const Shader::Stage& stage : shader.stages) layouts.modules.push_back(makeModule(shader, stage));
+    return layouts;
+}
+
+UniqueSetLayout PipelineCache::makeSetLayout(const Shader& shader) const {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    VkShaderStageFlags stages = 0;
+    for (const Shader::Stage& stage : shader.stages) stages |= stageFlag(stage.stage);
+    for (const ShaderBinding& binding : shader.reflection.bindings) {
+        bindings.push_back({binding.binding, descriptorType(binding.kind), 1, stages, nullptr});
+    }
+    VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+    info.bindingCount = static_cast<uint32_t>(bindings.size());
+    info.pBindings = bindings.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateDescriptorSetLayout(context_->device(), &info, nullptr, &layout));
+    UniqueSetLayout owned(context_->device(), layout);
+    context_->setName(layout, shader.name);
+    return owned;
+}
+
+UniquePipelineLayout PipelineCache::makePipelineLayout(const Shader& shader,
+                                                       VkDescriptorSetLayout set) const {
+    VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+    info.setLayoutCount = 1;
+    info.pSetLayouts = &set;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreatePipelineLayout(context_->device(), &info, nullptr, &layout));
+    UniquePipelineLayout owned(context_->device(), layout);
+    context_->setName(layout, shader.name);
+    return owned;
+}
+
+UniqueShaderModule PipelineCache::makeModule(const Shader& shader, const Shader::Stage& stage) const {
+    VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+    info.codeSize = stage.words.size() * sizeof(uint32_t);
+    info.pCode = stage.words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateShaderModule(context_->device(), &info, nullptr, &module));
+    UniqueShaderModule owned(context_->device(), module);
+    context_->setName(module, shader.name);
+    return owned;
+}
+
+UniquePipeline PipelineCache::makeComputePipeline(const VkPipelineShaderStageCreateInfo& stage,
+                                                  VkPipelineLayout layout) const {
+    VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    info.stage = stage;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    LIMPID_VK(vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+    return {context_->device(), pipeline};
+}
+
+PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch,
+                                                const Layouts& layouts) const {
+    const Shader& shader = *dispatch.shader;
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<uint32_t> values;
+    for (const auto& [id, value] : dispatch.constants) {
+        entries.push_back({id, static_cast<uint32_t>(values.size() * sizeof(uint32_t)), sizeof(uint32_t)});
+        values.push_back(value);
+    }
+    VkSpecializationInfo specialisation{};
+    specialisation.mapEntryCount = static_cast<uint32_t>(entries.size());
+    specialisation.pMapEntries = entries.data();
+    specialisation.dataSize = values.size() * sizeof(uint32_t);
+    specialisation.pData = values.data();
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    for (size_t i = 0; i < shader.stages.size(); ++i) {
+        VkPipelineShaderStageCreateInfo& stage = stages.emplace_back();
+        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stage.stage = stageFlag(shader.stages[i].stage);
+        stage.module = layouts.modules[i].get();
+        stage.pName = "main";
+        stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;
+    }
+    Made made;
+    if (shader.tracesRays()) {
+        made.pipeline = makeRayPipeline(*context_, stages, layouts.pipeline.get());
+        made.table.emplace(makeShaderTable(context_, made.pipeline.get(), shader.name));
+    } else {
+        checkWorkgroup(*context_, dispatch);
+        made.pipeline = makeComputePipeline(stages.front(), layouts.pipeline.get());
+    }
+    context_->setName(made.pipeline.get(), pipelineName(dispatch));
+    return made;
+}
+
+}  // namespace limpid::gpu

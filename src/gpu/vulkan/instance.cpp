@@ -1,0 +1,139 @@
+#include "gpu/vulkan/instance.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "gpu/vulkan/check.h"
+
+namespace limpid::gpu {
+namespace {
+
+constexpr const char* validationLayer = "VK_LAYER_KHRONOS_validation";
+
+bool layerInstalled() {
+    uint32_t count = 0;
+    LIMPID_VK(vkEnumerateInstanceLayerProperties(&count, nullptr));
+    std::vector<VkLayerProperties> layers(count);
+    LIMPID_VK(vkEnumerateInstanceLayerProperties(&count, layers.data()));
+    return std::ranges::any_of(
+        layers, [](const VkLayerProperties& l) { return std::string_view(l.layerName) == validationLayer; });
+}
+
+bool hasExtension(const char* layer, std::string_view name) {
+    uint32_t count = 0;
+    LIMPID_VK(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr));
+    std::vector<VkExtensionProperties> extensions(count);
+    LIMPID_VK(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
+    return std::ranges::any_of(extensions,
+                               [&](const VkExtensionProperties& e) { return name == e.extensionName; });
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                         VkDebugUtilsMessageTypeFlagsEXT type,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
+    // Performance advice contradicts a decision of ours (images stay in GENERAL layout), and the loader
+    // reports through the same channel (a broken driver file, say): neither is a fault, so neither counts.
+    if (!(type & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT)) {
+        log::debug("Vulkan: {}", data->pMessage);
+        return VK_FALSE;
+    }
+    ++*static_cast<std::atomic<uint64_t>*>(counter);
+    const bool error = severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    log::write(error ? log::Level::Error : log::Level::Warning,
+               std::string("Vulkan validation: ") + data->pMessage);
+    return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::atomic<uint64_t>* counter) {
+    VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    info.pfnUserCallback = onMessage;
+    info.pUserData = counter;
+    return info;
+}
+
+}  // namespace
+
+std::unique_ptr<Instance> Instance::create(bool validation,
+                                           const std::vector<std::string>& surfaceExtensions) {
+    if (volkInitialize() != VK_SUCCESS || volkGetInstanceVersion() < VK_API_VERSION_1_1) return nullptr;
+    if (validation && !layerInstalled()) {
+        throw Error(
+            "Vulkan validation is asked for, but the Khronos validation layer is not installed "
+            "(Debian package vulkan-validationlayers)");
+    }
+    std::unique_ptr<Instance> self(new Instance);
+    self->debugUtils_ = hasExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
+                        (validation && hasExtension(validationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
+
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(self->messages_.get());
+    const VkValidationFeatureEnableEXT enabled[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = enabled;
+    std::vector<const char*> extensions;
+    if (self->debugUtils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (validation) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+
+    self->surfaces_ =
+        !surfaceExtensions.empty() && std::ranges::all_of(surfaceExtensions, [](const std::string& name) {
+            return hasExtension(nullptr, name);
+        });
+    if (self->surfaces_) {
+        for (const std::string& name : surfaceExtensions) extensions.push_back(name.c_str());
+    }
+
+    VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+    application.pApplicationName = "limpid";
+    application.apiVersion = VK_API_VERSION_1_3;
+    VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    info.pApplicationInfo = &application;
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+    info.enabledLayerCount = validation ? 1 : 0;
+    info.ppEnabledLayerNames = &validationLayer;
+    if (validation) {
+        features.pNext = &messenger;  // messages while the instance itself is created and destroyed count too
+        info.pNext = &features;
+    }
+    VkInstance instance = VK_NULL_HANDLE;
+    const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return nullptr;
+    LIMPID_VK(result);
+    // Functions are loaded through the instance, not the device: the loader then dispatches by handle, so
+    // several devices may exist at once.
+    volkLoadInstance(instance);
+    self->instance_.reset(instance);
+    if (validation) self->createMessenger();
+    return self;
+}
+
+void Instance::createMessenger() {
+    const VkDebugUtilsMessengerCreateInfoEXT info = messengerInfo(messages_.get());
+    LIMPID_VK(vkCreateDebugUtilsMessengerEXT(instance_.get(), &info, nullptr, &messenger_));
+}
+
+Instance::~Instance() {
+    if (messenger_ != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance_.get(), messenger_, nullptr);
+}
+
+std::vector<VkPhysicalDevice> Instance::physicalDevices() const {
+    uint32_t count = 0;
+    const VkResult result = vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr);
+    // What some loaders answer where every driver failed to load.
+    if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
+    LIMPID_VK(result);
+    std::vector<VkPhysicalDevice> devices(count);
+    LIMPID_VK(vkEnumeratePhysicalDevices(instance_.get(), &count, devices.data()));
+    devices.resize(count);
+    return devices;
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,43 @@
+// The Vulkan instance: the loader, the validation layer and its messages.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/vulkan/unique_handle.h"
+
+namespace limpid::gpu {
+
+class Instance {
+  public:
+    /// Null if this machine has no Vulkan loader, or the loader no driver. Throws Error if `validation` is
+    /// asked for and the layer is not installed.
+    /// `surfaceExtensions`: DeviceOptions.
+    static std::unique_ptr<Instance> create(bool validation,
+                                            const std::vector<std::string>& surfaceExtensions = {});
+    ~Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    std::vector<VkPhysicalDevice> physicalDevices() const;
+    /// VK_EXT_debug_utils is there: objects and passes get names.
+    bool hasDebugUtils() const { return debugUtils_; }
+    /// All surface extensions that were asked for are there.
+    bool hasSurfaces() const { return surfaces_; }
+    VkInstance handle() const { return instance_.get(); }
+    uint64_t validationMessages() const { return *messages_; }
+
+  private:
+    Instance() = default;
+    void createMessenger();
+
+    /// Outlives the instance: destroying it may still produce messages.
+    std::unique_ptr<std::atomic<uint64_t>> messages_ = std::make_unique<std::atomic<uint64_t>>(0);
+    UniqueInstance instance_;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    bool debugUtils_ = false, surfaces_ = false;
+};
+
+}  // namespace limpid::gpu

@@ -1,0 +1,27 @@
+// Images on the device: storage images of one layer and one level, in GENERAL layout for all their life; or
+// texels in a buffer.
+#pragma once
+
+#include "gpu/graph/frame_graph.h"
+#include "gpu/vulkan/memory/buffer.h"
+#include "gpu/vulkan/memory/memory.h"
+
+namespace limpid::gpu {
+
+struct Image {
+    std::shared_ptr<const Context> context;
+    Memory memory;
+    UniqueImage image;
+    UniqueImageView view;
+    std::shared_ptr<BufferStorage> buffer;  ///< with Backing::Buffer, instead of the three
+    Format format{};
+    Extent extent;
+};
+
+/// In UNDEFINED layout at first. Throws Error naming the limit that the extent exceeds.
+Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
+                Backing backing = Backing::Image);
+
+VkImageSubresourceRange wholeImage();
+
+}  // namespace limpid::gpu

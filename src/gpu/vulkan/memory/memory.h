@@ -1,0 +1,33 @@
+// Device memory, one allocation per resource: there are tens of them, far below any maxMemoryAllocationCount.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "gpu/vulkan/context.h"
+
+namespace limpid::gpu {
+
+struct Memory {
+    UniqueMemory handle;
+    std::byte* mapped = nullptr;                    ///< set if the host can see it (coherent): always mapped
+    std::shared_ptr<const void> counted = nullptr;  ///< its bytes, in Context::allocated()
+};
+
+enum class MemoryUse {
+    Device,    ///< device-local; mapped where that memory is host-visible anyway (lavapipe, integrated GPUs)
+    Upload,    ///< written by the host
+    Download,  ///< read by the host: cached if possible
+};
+
+/// `addressed`: shaders or builds may use its address. Throws Error naming `name` and the size if it exceeds
+/// the device's limit or memory runs out.
+Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
+                const std::string& name, bool addressed = false);
+
+/// The next multiple of `alignment`, which is not 0.
+constexpr uint64_t alignUp(uint64_t value, uint64_t alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,118 @@
+#include "gpu/vulkan/memory/transfer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.h"
+#include "gpu/vulkan/check.h"
+
+namespace limpid::gpu {
+namespace {
+
+/// Staging memory never grows beyond this: a scene of gigabytes must not need a second copy of itself.
+constexpr uint64_t chunkBytes = uint64_t{64} << 20;
+
+/// What frames wrote before becomes visible to the copy.
+void beforeCopy(VkCommandBuffer commands) {
+    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                  VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+}
+
+/// What the copy wrote becomes visible to the host. Frames begin with a barrier of their own.
+void afterCopy(VkCommandBuffer commands) {
+    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
+}  // namespace
+
+Transfer::Transfer(std::shared_ptr<const Context> context)
+    : context_(std::move(context)),
+      pool_(makeCommandPool(*context_, "transfer")),
+      commands_(allocateCommandBuffer(*context_, pool_.get(), "transfer")),
+      fence_(makeFence(*context_, "transfer")) {}
+
+void Transfer::run(const std::function<void(VkCommandBuffer)>& record) {
+    LIMPID_VK(vkResetCommandPool(context_->device(), pool_.get(), 0));
+    beginCommands(commands_);
+    beforeCopy(commands_);
+    record(commands_);
+    afterCopy(commands_);
+    LIMPID_VK(vkEndCommandBuffer(commands_));
+    context_->submit(commands_, fence_.get());
+    waitAndReset(*context_, fence_.get());
+}
+
+const BufferStorage& Transfer::staging(BufferUse use, uint64_t bytes) {
+    std::shared_ptr<BufferStorage>& buffer = use == BufferUse::Staging ? upload_ : download_;
+    if (!buffer || buffer->size < bytes) {
+        buffer.reset();
+        const char* name = use == BufferUse::Staging ? "upload staging" : "download staging";
+        buffer = makeBuffer(context_, name, use, bytes);
+    }
+    return *buffer;
+}
+
+void Transfer::upload(const BufferStorage& buffer, std::span<const std::byte> data) {
+    if (data.empty()) return;
+    if (buffer.memory.mapped) {
+        std::memcpy(buffer.memory.mapped, data.data(), data.size());
+        return;
+    }
+    const BufferStorage& stage = staging(BufferUse::Staging, std::min<uint64_t>(data.size(), chunkBytes));
+    for (uint64_t offset = 0; offset < data.size(); offset += chunkBytes) {
+        const uint64_t bytes = std::min<uint64_t>(chunkBytes, data.size() - offset);
+        std::memcpy(stage.memory.mapped, data.data() + offset, bytes);
+        run([&](VkCommandBuffer commands) {
+            const VkBufferCopy region{0, offset, bytes};
+            vkCmdCopyBuffer(commands, stage.buffer.get(), buffer.buffer.get(), 1, &region);
+        });
+    }
+}
+
+void Transfer::zero(const BufferStorage& buffer) {
+    if (buffer.memory.mapped) {
+        std::memset(buffer.memory.mapped, 0, buffer.allocated);
+        return;
+    }
+    run([&](VkCommandBuffer commands) {
+        vkCmdFillBuffer(commands, buffer.buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    });
+}
+
+void Transfer::download(const BufferStorage& buffer, std::span<std::byte> data) {
+    if (data.empty()) return;
+    const BufferStorage& stage = staging(BufferUse::Readback, std::min<uint64_t>(data.size(), chunkBytes));
+    for (uint64_t offset = 0; offset < data.size(); offset += chunkBytes) {
+        const uint64_t bytes = std::min<uint64_t>(chunkBytes, data.size() - offset);
+        run([&](VkCommandBuffer commands) {
+            const VkBufferCopy region{offset, 0, bytes};
+            vkCmdCopyBuffer(commands, buffer.buffer.get(), stage.buffer.get(), 1, &region);
+        });
+        std::memcpy(data.data() + offset, stage.memory.mapped, bytes);
+    }
+}
+
+void Transfer::download(const Image& image, std::span<std::byte> data) {
+    if (image.buffer) return download(*image.buffer, data);
+    const uint32_t width = image.extent.width, height = image.extent.height;
+    const uint64_t rowBytes = uint64_t{width} * bytesPerTexel(image.format);
+    const uint32_t rowsPerChunk =
+        static_cast<uint32_t>(std::clamp<uint64_t>(chunkBytes / rowBytes, 1, height));
+    const BufferStorage& stage = staging(BufferUse::Readback, rowBytes * rowsPerChunk);
+    for (uint32_t row = 0; row < height; row += rowsPerChunk) {
+        const uint32_t rows = std::min(rowsPerChunk, height - row);
+        run([&](VkCommandBuffer commands) {
+            VkBufferImageCopy region{};
+            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            region.imageOffset = {0, static_cast<int32_t>(row), 0};
+            region.imageExtent = {width, rows, 1};
+            vkCmdCopyImageToBuffer(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, stage.buffer.get(),
+                                   1, &region);
+        });
+        std::memcpy(data.data() + row * rowBytes, stage.memory.mapped, rows * rowBytes);
+    }
+}
+
+}  // namespace limpid::gpu

@@ -1,0 +1,36 @@
+// Copies between host and device, in bounded chunks; each call waits until its copies are done.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "gpu/vulkan/memory/buffer.h"
+#include "gpu/vulkan/memory/image.h"
+
+namespace limpid::gpu {
+
+class Transfer {
+  public:
+    explicit Transfer(std::shared_ptr<const Context> context);
+
+    void upload(const BufferStorage& buffer, std::span<const std::byte> data);
+    void zero(const BufferStorage& buffer);
+    void download(const BufferStorage& buffer, std::span<std::byte> data);
+    /// Tightly packed rows, row 0 first.
+    void download(const Image& image, std::span<std::byte> data);
+
+    /// Records commands by `record`, submits them and waits.
+    void run(const std::function<void(VkCommandBuffer)>& record);
+
+  private:
+    /// A staging buffer of at least `bytes`, which is at most one chunk; kept until a larger one is needed.
+    const BufferStorage& staging(BufferUse use, uint64_t bytes);
+
+    std::shared_ptr<const Context> context_;
+    UniqueCommandPool pool_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    UniqueFence fence_;
+    std::shared_ptr<BufferStorage> upload_, download_;
+};
+
+}  // namespace limpid::gpu

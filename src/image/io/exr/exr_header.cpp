@@ -1,0 +1,235 @@
+#include "image/io/exr/exr_header.h"
+
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
+#include <ImfPartType.h>
+#include <ImfThreading.h>
+#include <ImfTileDescription.h>
+#include <ImfVersion.h>
+#include <ImfXdr.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "base/error.h"
+#include "base/files/file_kind.h"
+#include "image/io/limits.h"
+
+namespace limpid::image {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A row of chunks is decoded into one buffer; this much at most.
+constexpr uint64_t maxChunkBytes = uint64_t{1} << 30;
+/// OpenEXR allocates several tiles at once, whole even where the picture ends. Beyond this size they may be
+/// at most as large as the picture, whose size the file's limits.
+constexpr uint64_t maxTileBytes = uint64_t{1} << 26;
+
+/// Walks the raw attribute lists: an attribute that claims more bytes than the file has would make the
+/// library allocate them before it notices.
+class AttributeWalk {
+  public:
+    AttributeWalk(std::span<const std::byte> bytes, const fs::path& name, size_t position)
+        : bytes_(bytes), name_(name), position_(position) {}
+
+    /// Steps over one header. Returns false if it was empty, which ends a multi-part file's list.
+    bool header() {
+        bool any = false;
+        while (!text().empty()) {
+            text();  // the attribute's type
+            const uint32_t size = number();
+            if (size > bytes_.size() - position_) fail();
+            position_ += size;
+            any = true;
+        }
+        return any;
+    }
+
+  private:
+    [[noreturn]] void fail() const {
+        throw InputError(name_, "is no valid EXR file: its header is cut off or damaged");
+    }
+
+    std::string text() {
+        std::string value;
+        while (position_ < bytes_.size() && value.size() < 256) {
+            const auto c = static_cast<char>(bytes_[position_++]);
+            if (c == '\0') return value;
+            value += c;
+        }
+        fail();
+    }
+
+    uint32_t number() {
+        if (bytes_.size() - position_ < 4) fail();
+        uint32_t value = 0;
+        for (unsigned i = 0; i < 4; ++i) value |= std::to_integer<uint32_t>(bytes_[position_++]) << (8 * i);
+        return value;
+    }
+
+    std::span<const std::byte> bytes_;
+    const fs::path& name_;
+    size_t position_;
+};
+
+int rowsPerChunk(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::ZIP_COMPRESSION:
+        case Imf::PXR24_COMPRESSION:
+            return 16;
+        case Imf::PIZ_COMPRESSION:
+        case Imf::B44_COMPRESSION:
+        case Imf::B44A_COMPRESSION:
+        case Imf::DWAA_COMPRESSION:
+            return 32;
+        case Imf::DWAB_COMPRESSION:
+            return 256;
+        default:
+            return 1;
+    }
+}
+
+/// Above the best that each method can do on a constant picture (DWA: 37,000 on rows of 131,072 pixels).
+uint64_t largestRatio(Imf::Compression compression) {
+    if (compression == Imf::NO_COMPRESSION) return 1;
+    const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+    return dwa ? uint64_t{1} << 16 : 2048;
+}
+
+/// Width and height of a window whose coordinates are too small to overflow anything.
+struct Size {
+    uint64_t width, height;
+};
+Size sizeOf(const Imath::Box2i& box, const fs::path& name) {
+    constexpr int far = 1 << 28;
+    for (const int v : {box.min.x, box.min.y, box.max.x, box.max.y}) {
+        if (v < -far || v > far) throw InputError(name, "has a picture window that lies absurdly far away");
+    }
+    if (box.min.x > box.max.x || box.min.y > box.max.y) throw InputError(name, "has an empty picture window");
+    return {static_cast<uint64_t>(box.max.x - box.min.x) + 1,
+            static_cast<uint64_t>(box.max.y - box.min.y) + 1};
+}
+
+uint64_t checkChannels(const Imf::Header& header, const fs::path& name) {
+    uint64_t bytesPerPixel = 0;
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+        const Imf::Channel& channel = it.channel();
+        if (channel.xSampling != 1 || channel.ySampling != 1) {
+            throw InputError(
+                name, fmt::format("has the subsampled channel '{}', which is not supported", it.name()));
+        }
+        if (channel.type != Imf::HALF && channel.type != Imf::FLOAT && channel.type != Imf::UINT) {
+            throw InputError(name, fmt::format("has the channel '{}' of an unknown type", it.name()));
+        }
+        bytesPerPixel += channel.type == Imf::HALF ? 2 : 4;
+    }
+    if (bytesPerPixel == 0) throw InputError(name, "has no channels");
+    return bytesPerPixel;
+}
+
+/// Checks that the file is long enough for its chunks, and that no chunk is absurd. Returns rows per chunk.
+int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bool tiled, size_t fileBytes,
+                const fs::path& name) {
+    uint64_t rows = static_cast<uint64_t>(rowsPerChunk(header.compression()));
+    uint64_t columns = data.width;
+    if (tiled) {
+        if (!header.hasTileDescription()) throw InputError(name, "is tiled but says not how");
+        rows = header.tileDescription().ySize;
+        columns = header.tileDescription().xSize;
+        if (rows == 0 || columns == 0 || rows > maxPixels || columns > maxPixels) {
+            throw InputError(name, fmt::format("has tiles of {}x{} pixels", columns, rows));
+        }
+        const uint64_t tile = rows * columns;
+        if (tile > maxTileBytes / bytesPerPixel && tile > data.width * data.height) {
+            throw InputError(name, fmt::format("has tiles of {}x{} pixels in a picture of {}x{}", columns,
+                                               rows, data.width, data.height));
+        }
+    }
+    // Rows of tiles are cached whole, so the widest extent counts.
+    if (rows > maxChunkBytes / (std::max(columns, data.width) * bytesPerPixel)) {
+        throw InputError(name, fmt::format("has blocks of {}x{} pixels, which is too much", columns, rows));
+    }
+    const uint64_t chunks = ((data.height + rows - 1) / rows) * ((data.width + columns - 1) / columns);
+    // Each chunk has 8 bytes in the table and at least 8 of its own.
+    if (chunks > fileBytes / 16) {
+        throw InputError(
+            name, fmt::format("claims {} blocks of pixels, which {} bytes cannot hold", chunks, fileBytes));
+    }
+    return static_cast<int>(rows);
+}
+
+ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes, const fs::path& name) {
+    const bool deepType = header.hasType() && Imf::isDeepData(header.type());
+    if (Imf::isNonImage(version) || deepType)
+        throw InputError(name, "is a deep EXR file, which is not supported");
+    const bool tiled = header.hasType() ? Imf::isTiled(header.type()) : Imf::isTiled(version);
+
+    ExrFrame frame{header.dataWindow(), header.displayWindow()};
+    const Size data = sizeOf(frame.data, name);
+    const Size display = sizeOf(frame.display, name);
+    const uint64_t bytesPerPixel = checkChannels(header, name);
+    frame.bytesPerPixel = bytesPerPixel;
+    const uint64_t ratio = largestRatio(header.compression());
+    checkDimensions(name, data.width, data.height, fileBytes, maxPixels);
+    if (data.width * data.height > ratio * fileBytes / bytesPerPixel + 1) {
+        throw InputError(name, fmt::format("claims {}x{} pixels, which {} bytes cannot hold", data.width,
+                                           data.height, fileBytes));
+    }
+    frame.rowsPerChunk = checkChunks(header, data, bytesPerPixel, tiled, fileBytes, name);
+
+    // The frame may be far larger than a cropped render inside it, but not without limit: it is allocated.
+    checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
+    const uint64_t pixels = display.width * display.height;
+    const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 26);
+    if (large && pixels / 64 > data.width * data.height) {
+        throw InputError(name, fmt::format("has a frame of {}x{} pixels around {}x{} stored ones",
+                                           display.width, display.height, data.width, data.height));
+    }
+    return frame;
+}
+
+}  // namespace
+
+void useExrThreads() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        if (Imf::globalThreadCount() == 0) {
+            Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+        }
+    });
+}
+
+bool ExrMemoryStream::read(char target[], int count) {
+    const auto wanted = static_cast<uint64_t>(std::max(count, 0));
+    if (position_ > bytes_.size() || wanted > bytes_.size() - position_) {
+        throw std::runtime_error("it ends too early");
+    }
+    if (wanted > 0) std::memcpy(target, bytes_.data() + position_, wanted);
+    position_ += wanted;
+    return position_ < bytes_.size();
+}
+
+ExrFrame checkExrHeaders(std::span<const std::byte> bytes, const fs::path& name) {
+    ExrMemoryStream stream(bytes, name.string());
+    int magic = 0, version = 0;
+    if (bytes.size() < 8) throw InputError(name, "is no EXR file: it is too short");
+    Imf::Xdr::read<Imf::StreamIO>(stream, magic);
+    Imf::Xdr::read<Imf::StreamIO>(stream, version);
+    if (magic != Imf::MAGIC) throw InputError(name, "is no EXR file: " + describeBeginning(bytes));
+    if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version))) {
+        throw InputError(name, "is an EXR file of an unknown version");
+    }
+    AttributeWalk walk(bytes, name, 8);
+    if (!walk.header()) throw InputError(name, "is an EXR file without a header");
+    while (Imf::isMultiPart(version) && walk.header()) {
+    }
+    Imf::Header header;
+    header.readFrom(stream, version);
+    return checkFirstPart(header, version, bytes.size(), name);
+}
+
+}  // namespace limpid::image

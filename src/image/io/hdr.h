@@ -1,0 +1,28 @@
+// Radiance pictures (.hdr, .pic).
+// Format: Greg Ward, "Real Pixels", Graphics Gems II, 1991, and the Radiance file format notes.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include "image/image.h"
+#include "image/io/row_sink.h"
+
+namespace limpid::image {
+
+/// Decodes RGBE with any of its three encodings (flat, old runs, per-component runs) into 3 linear
+/// components. mantissa m and exponent e stand for m * 2^(e-136), as in Walter's rgbe.c and stb_image (not
+/// Ward's m + 0.5). EXPOSURE lines of the header are divided out, as the format asks. Both vertical orders
+/// are read; rotated and mirrored pictures and XYZE are refused. Throws InputError if the bytes are
+/// malformed, truncated or too large.
+Image decodeHdr(std::span<const std::byte> bytes, const std::filesystem::path& name);
+
+/// decodeHdr for a file.
+Image readHdr(const std::filesystem::path& path);
+
+/// decodeHdr row by row, in the file's order. At most `most` pixels.
+void decodeHdrRows(std::span<const std::byte> bytes, const std::filesystem::path& name, const RowSink& sink,
+                   uint64_t most);
+
+}  // namespace limpid::image

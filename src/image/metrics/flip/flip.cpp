@@ -1,0 +1,252 @@
+// FLIP for images of low dynamic range. Equation numbers are those of the paper that image/metrics/metrics.h
+// names; what the paper leaves open (repeated borders, filter radii, the colour matrix) is as in NVIDIA's
+// reference program. Its loops are in image/flip_rows.h.
+#include "image/metrics/flip/flip.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "image/color.h"
+#include "image/metrics/flip/flip_rows.h"
+#include "image/metrics/metrics.h"
+#include "image/metrics/metrics_check.h"
+
+namespace limpid::image {
+namespace {
+
+constexpr double featureWidth = 0.082;  // w: width of a feature, degrees
+constexpr double pi2 = std::numbers::pi * std::numbers::pi;
+
+/// Contrast sensitivity as a sum of two Gaussians of frequency, a * sqrt(pi/b) * exp(-pi^2 x^2 / b) in
+/// degrees.
+struct Sensitivity {
+    double a1, b1, a2, b2;
+};
+constexpr Sensitivity achromatic{1.0, 0.0047, 0.0, 1e-5};
+constexpr Sensitivity redGreen{1.0, 0.0053, 0.0, 1e-5};
+constexpr Sensitivity blueYellow{34.1, 0.04, 13.5, 0.025};
+constexpr double widestB = 0.04;
+
+Image decode(const Image& encoded) {
+    Image linear(encoded.width, encoded.height, encoded.components);
+    const size_t rowValues = size_t{encoded.width} * encoded.components;
+    tbb::parallel_for(size_t{0}, size_t{encoded.height}, [&](size_t y) {
+        for (size_t i = y * rowValues; i < (y + 1) * rowValues; ++i)
+            linear.pixels[i] = srgbDecode(encoded.pixels[i]);
+    });
+    return linear;
+}
+
+/// Values of `function` at 1 .. radius, divided by `sum`. What a float cannot add to the middle is left out.
+template <typename Function>
+std::vector<float> weightsOf(int radius, double sum, const Function& function) {
+    std::vector<float> weights;
+    for (int x = 1; x <= radius; ++x) weights.push_back(static_cast<float>(function(x) / sum));
+    while (!weights.empty() && std::abs(weights.back()) < 1e-8f) weights.pop_back();
+    return weights;
+}
+
+std::vector<float> gaussianWeights(int radius, double sigma) {
+    const auto gaussian = [&](int x) { return std::exp(-x * x / (2.0 * sigma * sigma)); };
+    double sum = 1.0;
+    for (int x = 1; x <= radius; ++x) sum += 2.0 * gaussian(x);
+    return weightsOf(radius, sum, gaussian);
+}
+
+/// The share of the first Gaussian in the sum of all weights of the square window.
+float firstShare(const Sensitivity& s, int radius, double pixelsPerDegree) {
+    const auto volume = [&](double a, double b) {
+        double sum = 0.0;
+        for (int x = -radius; x <= radius; ++x)
+            sum += std::exp(-pi2 * x * x / (pixelsPerDegree * pixelsPerDegree * b));
+        return a * std::sqrt(std::numbers::pi / b) * sum * sum;
+    };
+    const double first = volume(s.a1, s.b1);
+    return static_cast<float>(first / (first + volume(s.a2, s.b2)));
+}
+
+/// The distance of green to blue, as the loops compute it.
+float largestColorDistance() {
+    const std::array<float, 3> green{0, 1, 0}, blue{0, 0, 1};
+    std::array<std::array<float, flipGroup>, 6> rows{};
+    std::array<float, 3 * flipGroup> colors{};
+    for (size_t picture = 0; picture < 2; ++picture) {
+        for (size_t i = 0; i < colors.size(); ++i) colors[i] = (picture == 0 ? green : blue)[i % 3];
+        flipRows().toYcxcz(colors.data(), flipGroup, rows[3 * picture].data(), rows[3 * picture + 1].data(),
+                           rows[3 * picture + 2].data());
+    }
+    const FlipRow a{.y = rows[0].data(), .cx = rows[1].data(), .cz = rows[2].data()};
+    const FlipRow b{.y = rows[3].data(), .cx = rows[4].data(), .cz = rows[5].data()};
+    std::array<float, flipGroup> distance{};
+    flipRows().distances(a, b, flipGroup, distance.data());
+    return distance[0];
+}
+
+/// Beyond every filter's reach.
+constexpr size_t radiusOf(double pixelsPerDegree) {
+    return static_cast<size_t>(3.0 * std::max(0.0450160, 0.5 * featureWidth) * pixelsPerDegree) + 2;
+}
+
+}  // namespace
+
+/// One row of one picture, filtered both ways.
+struct LinearFlip::RowBuffers {
+    explicit RowBuffers(size_t width) : values(8 * flipPadded(width)) {
+        const auto at = [&](size_t i) { return &values[i * flipPadded(width)]; };
+        row = {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
+        second = at(7);
+    }
+    std::vector<float> values;
+    FlipRow row{};
+    float* second;
+};
+
+LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
+    : width_(width), height_(height), stride_(flipPadded(width)), margin_(radiusOf(pixelsPerDegree)) {
+    const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widestB / (2.0 * pi2)) * pixelsPerDegree));
+    const auto gaussian = [&](double b) {
+        return zeroPadded(gaussianWeights(radius, std::sqrt(b / (2.0 * pi2)) * pixelsPerDegree));
+    };
+    luma_ = gaussian(achromatic.b1);
+    redGreen_ = gaussian(redGreen.b1);
+    blueYellow_ = gaussian(blueYellow.b1);
+    blueYellowSecond_ = gaussian(blueYellow.b2);
+    blueYellowShare_ = firstShare(blueYellow, radius, pixelsPerDegree);
+
+    // First and second derivatives of a Gaussian; positive weights have the sum 1, negative ones -1.
+    const double sigma = 0.5 * featureWidth * pixelsPerDegree;
+    const int featureRadius = static_cast<int>(std::ceil(3.0 * sigma));
+    const auto slope = [&](int x) { return x * std::exp(-x * x / (2.0 * sigma * sigma)); };
+    const auto curve = [&](int x) {
+        return (x * x / (sigma * sigma) - 1.0) * std::exp(-x * x / (2.0 * sigma * sigma));
+    };
+    double slopes = 0.0, positive = 0.0, negative = curve(0);
+    for (int x = 1; x <= featureRadius; ++x) {
+        slopes += slope(x);
+        (curve(x) > 0.0 ? positive : negative) += 2.0 * curve(x);
+    }
+    smooth_ = zeroPadded(gaussianWeights(featureRadius, sigma));
+    edge_ = zeroPadded(weightsOf(featureRadius, slopes, slope));
+    point_ = zeroPadded(weightsOf(featureRadius, 1.0,
+                                  [&](int x) { return curve(x) / (curve(x) > 0.0 ? positive : -negative); }));
+    largest_ = largestColorDistance();
+    for (Planes* planes : {&test_, &reference_})
+        planes->resize(PlaneCount * stride_ * (height_ + 2 * margin_));
+}
+
+float* LinearFlip::row(Planes& planes, int plane, int64_t y) const {
+    const size_t line = static_cast<size_t>(y + static_cast<int64_t>(margin_));
+    return &planes[(static_cast<size_t>(plane) * (height_ + 2 * margin_) + line) * stride_];
+}
+
+const float* LinearFlip::row(const Planes& planes, int plane, int64_t y) const {
+    return row(const_cast<Planes&>(planes), plane, y);
+}
+
+void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, Planes& planes, int64_t y) const {
+    const FlipRows& loops = flipRows();
+    // Each of Y, Cx and Cz with its ends repeated, as far as filters look.
+    const size_t length = stride_ + 2 * margin_;
+    std::array<float*, 3> values{};
+    for (size_t c = 0; c < 3; ++c) values[c] = &padded[c * length + margin_];
+    loops.toYcxcz(rgb, width_, values[0], values[1], values[2]);
+    for (float* v : values) {
+        std::fill_n(v - margin_, margin_, v[0]);
+        std::fill_n(v + width_, stride_ - width_ + margin_, v[width_ - 1]);
+    }
+    const auto even = [&](const Weights& weights, int plane, float middle = 1.0f) {
+        return FlipEven{weights.values.data(), middle, row(planes, plane, y)};
+    };
+    const size_t features = std::max({smooth_.reach, edge_.reach, point_.reach, luma_.reach});
+    loops.filter(values[0], 1,
+                 {features,
+                  3,
+                  {even(smooth_, Smooth), even(point_, Point, 0.0f), even(luma_, Luma)},
+                  {edge_.values.data(), row(planes, Edge, y)}},
+                 stride_);
+    loops.filter(values[1], 1, {redGreen_.reach, 1, {even(redGreen_, RedGreen)}, {}}, stride_);
+    loops.filter(values[2], 1,
+                 {std::max(blueYellow_.reach, blueYellowSecond_.reach),
+                  2,
+                  {even(blueYellow_, BlueYellow), even(blueYellowSecond_, BlueYellowSecond)},
+                  {}},
+                 stride_);
+}
+
+LinearFlip::Weights LinearFlip::zeroPadded(std::vector<float> values) const {
+    const size_t reach = values.size();
+    values.resize(margin_, 0.0f);
+    return {std::move(values), reach};
+}
+
+void LinearFlip::filterRows(const Image& picture, Planes& planes) const {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, height_, 16), [&](const auto& rows) {
+        std::vector<float> padded(3 * (stride_ + 2 * margin_));
+        for (size_t y = rows.begin(); y != rows.end(); ++y)
+            filterRow(&picture.pixels[3 * width_ * y], padded, planes, static_cast<int64_t>(y));
+    });
+    const auto last = static_cast<int64_t>(height_) - 1;
+    for (int plane = 0; plane < PlaneCount; ++plane) {
+        for (int64_t i = 1; i <= static_cast<int64_t>(margin_); ++i) {
+            std::copy_n(row(planes, plane, 0), stride_, row(planes, plane, -i));
+            std::copy_n(row(planes, plane, last), stride_, row(planes, plane, last + i));
+        }
+    }
+}
+
+void LinearFlip::smoothColumn(const Planes& planes, int plane, const Weights& weights, int64_t y,
+                              float* result) const {
+    flipRows().filter(row(planes, plane, y), static_cast<ptrdiff_t>(stride_),
+                      {weights.reach, 1, {{weights.values.data(), 1.0f, result}}, {}}, stride_);
+}
+
+void LinearFlip::filterColumns(const Planes& planes, int64_t y, RowBuffers& buffers) const {
+    const FlipRow& out = buffers.row;
+    smoothColumn(planes, Edge, smooth_, y, out.edgeX);
+    smoothColumn(planes, Point, smooth_, y, out.pointX);
+    flipRows().filter(row(planes, Smooth, y), static_cast<ptrdiff_t>(stride_),
+                      {std::max(edge_.reach, point_.reach),
+                       1,
+                       {{point_.values.data(), 0.0f, out.pointY}},
+                       {edge_.values.data(), out.edgeY}},
+                      stride_);
+    smoothColumn(planes, Luma, luma_, y, out.y);
+    smoothColumn(planes, RedGreen, redGreen_, y, out.cx);
+    // A sum of two Gaussians; each of them is separable, their sum is not.
+    smoothColumn(planes, BlueYellow, blueYellow_, y, out.cz);
+    smoothColumn(planes, BlueYellowSecond, blueYellowSecond_, y, buffers.second);
+    for (size_t x = 0; x < stride_; ++x)
+        out.cz[x] = buffers.second[x] + blueYellowShare_ * (out.cz[x] - buffers.second[x]);
+}
+
+void LinearFlip::compare(const Image& test, const Image& reference, Image& map) {
+    checkComparable(test, reference);
+    filterRows(test, test_);
+    filterRows(reference, reference_);
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, height_, 16), [&](const auto& rows) {
+        RowBuffers a(width_), b(width_);
+        std::vector<float> errors(stride_);
+        for (size_t y = rows.begin(); y != rows.end(); ++y) {
+            filterColumns(test_, static_cast<int64_t>(y), a);
+            filterColumns(reference_, static_cast<int64_t>(y), b);
+            flipRows().errors(a.row, b.row, largest_, stride_, errors.data());
+            std::copy_n(errors.begin(), width_, &map.pixels[y * width_]);
+        }
+    });
+}
+
+Image flip(const Image& test, const Image& reference, double pixelsPerDegree) {
+    checkComparable(test, reference);
+    Image map(test.width, test.height, 1);
+    LinearFlip(test.width, test.height, pixelsPerDegree).compare(decode(test), decode(reference), map);
+    return map;
+}
+
+}  // namespace limpid::image

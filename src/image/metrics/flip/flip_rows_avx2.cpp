@@ -1,0 +1,22 @@
+// As flip_rows.cpp, compiled for AVX2.
+#include <math.h>  // NOLINT: the names that the compiler has vector versions of
+
+#include <numbers>
+
+#include "image/metrics/flip/flip_rows.h"
+
+namespace limpid::image {
+namespace {
+
+#include "image/metrics/flip/flip_rows_impl.h"
+
+constexpr FlipRows table = tableWith(flipFilterAvx2);
+
+}  // namespace
+
+const FlipRows& flipRowsAvx2();
+const FlipRows& flipRowsAvx2() {
+    return table;
+}
+
+}  // namespace limpid::image

@@ -1,0 +1,219 @@
+#include "renderer/frame/frame.h"
+
+#include <algorithm>
+#include <array>
+
+#include "passes/accumulate/accumulate.h"
+#include "passes/deform/deform.h"
+#include "passes/preview/preview.h"
+
+namespace limpid {
+namespace {
+
+using gpu::FrameGraph;
+using gpu::ImageHandle;
+
+CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& input) {
+    return {.extent = settings.extent,
+            .camera = input.camera,
+            .previousCamera = input.previousCamera,
+            .hasPrevious = input.hasPrevious,
+            .firstSample = input.firstSample,
+            .stream = static_cast<uint32_t>(input.stream),
+            .seed = settings.seed,
+            .jitter = settings.jitter,
+            .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0,
+            .samplerTea = settings.pathtrace.samplerTea};
+}
+
+/// The layers that are means over samples, and what their variances are of.
+struct MeanLayer {
+    ImageHandle PathtraceLayers::*image;
+    const char* name;
+    VarianceOf varianceOf;
+};
+constexpr std::array<MeanLayer, 10> meanLayers{{
+    {&PathtraceLayers::diffuse, "diffuse", VarianceOf::Luminance},
+    {&PathtraceLayers::specular, "specular", VarianceOf::Luminance},
+    {&PathtraceLayers::emission, "emission", VarianceOf::Luminance},
+    {&PathtraceLayers::albedo, "albedo", VarianceOf::Luminance},
+    {&PathtraceLayers::albedoSpecular, "albedoSpecular", VarianceOf::Luminance},
+    {&PathtraceLayers::normal, "normal", VarianceOf::MeanOfComponents},
+    {&PathtraceLayers::previousNormal, "previousNormal", VarianceOf::Nothing},
+    {&PathtraceLayers::depth, "depth", VarianceOf::FirstComponent},
+    {&PathtraceLayers::motion, "motion", VarianceOf::Nothing},
+    {&PathtraceLayers::reflectionMotion, "reflectionMotion", VarianceOf::Nothing},
+}};
+
+/// The path tracer alone: running means over frames.
+FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                       const FrameInput& input) {
+    const PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
+    const auto mean = [&](const char* name, ImageHandle added, VarianceOf varianceOf) {
+        return accumulate(graph, name, added, input.samplesBefore, input.samples, varianceOf);
+    };
+    FrameImages out;
+    if (!settings.layers) {
+        const PathtraceBeauty traced = pathtraceBeauty(graph, scene, settings.pathtrace, launch);
+        out.beauty = mean("beauty", traced.beauty, VarianceOf::Nothing);
+        out.counters = traced.counters;
+        return out;
+    }
+    static_cast<PathtraceLayers&>(out) = pathtraceLayers(graph, scene, settings.pathtrace, launch);
+    for (const MeanLayer& layer : meanLayers)
+        out.*layer.image = mean(layer.name, out.*layer.image, layer.varianceOf);
+    return out;
+}
+
+/// What the camera sees, lit directly if `light` is set. Layers, where they are asked for, are running means.
+GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                            const FrameInput& input, bool light, FrameImages& out) {
+    GBufferSettings used = settings.gbuffer;
+    used.light = used.light && light;
+    const GBufferImages seen = gbuffer(graph, scene, used, cameraLaunch(settings, input));
+    out.counters = seen.counters;
+    if (light) {
+        out.diffuse = seen.light;
+        out.emission = seen.emission;
+        out.depth = seen.depth;
+    }
+    if (settings.layers) {
+        out.albedo = seen.albedo;
+        out.albedoSpecular = seen.albedoSpecular;
+        out.normal = seen.normal;
+        out.previousNormal = seen.previousNormal;
+        out.depth = seen.depth;
+        out.motion = seen.motion;
+        out.ids = seen.ids;
+    }
+    for (const MeanLayer& layer : meanLayers) {
+        ImageHandle& image = out.*layer.image;
+        if (image)
+            image =
+                accumulate(graph, layer.name, image, input.samplesBefore, input.samples, layer.varianceOf);
+    }
+    return seen;
+}
+
+/// `diffuse` is all scattered light.
+FrameImages recordLit(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                      const FrameInput& input) {
+    FrameImages out;
+    recordGBuffer(graph, scene, settings, input, true, out);
+    return out;
+}
+
+FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& scene,
+                                   const RenderSettings& settings, const FrameInput& input) {
+    FrameImages out;
+    const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
+    const ImageHandle open = ambientOcclusion(
+        graph, scene, settings.ambientOcclusion,
+        {static_cast<uint32_t>(input.stream), settings.seed, settings.pathtrace.samplerTea}, seen);
+    out.beauty =
+        accumulate(graph, "ambient_occlusion", open, input.samplesBefore, input.samples, VarianceOf::Nothing);
+    return out;
+}
+
+FrameImages recordPreview(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                          const FrameInput& input) {
+    FrameImages out;
+    const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
+    out.beauty = accumulate(graph, "preview", preview(graph, seen, input.camera), input.samplesBefore,
+                            input.samples, VarianceOf::Nothing);
+    return out;
+}
+
+/// A frame's samples in as many launches as the device needs, averaged.
+PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                             const FrameInput& input) {
+    PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
+    if (input.samples <= input.launchSamples)
+        return pathtraceLayers(graph, scene, settings.pathtrace, launch);
+    const gpu::Extent extent = settings.extent;
+    const gpu::History counters = graph.history("pathtrace/counters", gpu::Format::RG32Uint, extent);
+    std::array<PathtraceLayers, 2> means{makePathtraceLayers(graph, "mean/", extent),
+                                         makePathtraceLayers(graph, "other mean/", extent)};
+    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent);
+    for (PathtraceLayers* layers : {&means[0], &means[1], &traced})
+        layers->counters =
+            graph.transient(graph.name(layers->ids) + " counters", gpu::Format::RG32Uint, extent);
+    ImageHandle countersBefore = counters.previous;
+    const ImageHandle ids = means[0].ids;  // of the first launch
+    for (uint32_t done = 0, number = 0; done < input.samples; ++number) {
+        launch.samples = std::min(input.launchSamples, input.samples - done);
+        launch.stream = static_cast<uint32_t>(input.stream + number);
+        launch.firstSample = input.firstSample + done;
+        launch.samplesBefore = done;
+        PathtraceLayers& mean = means[number % 2];
+        PathtraceLayers& into = number == 0 ? mean : traced;
+        into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;
+        pathtraceLayers(graph, scene, settings.pathtrace, launch, countersBefore, into);
+        countersBefore = into.counters;
+        for (const MeanLayer& layer : meanLayers) {
+            if (number == 0) break;
+            accumulateStep(graph, layer.name,
+                           {.before = means[1 - number % 2].*layer.image,
+                            .added = traced.*layer.image,
+                            .after = mean.*layer.image,
+                            .countBefore = static_cast<float>(done),
+                            .countAdded = static_cast<float>(launch.samples),
+                            .varianceOf = layer.varianceOf});
+        }
+        done += launch.samples;
+        if (done < input.samples) continue;
+        mean.ids = ids;
+        mean.counters = counters.current;
+        return mean;
+    }
+    return means[0];
+}
+
+/// The path tracer, and a denoiser that keeps its histories from frame to frame.
+FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                           const FrameInput& input) {
+    FrameImages out;
+    static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
+    const denoise::DenoiserInput frame{.diffuse = out.diffuse,
+                                       .specular = out.specular,
+                                       .emission = out.emission,
+                                       .albedo = out.albedo,
+                                       .albedoSpecular = out.albedoSpecular,
+                                       .normal = out.normal,
+                                       .depth = out.depth,
+                                       .motion = out.motion,
+                                       .reflectionMotion = out.reflectionMotion,
+                                       .previousNormal = out.previousNormal,
+                                       .ids = out.ids,
+                                       .camera = input.camera,
+                                       .samples = input.samples,
+                                       .filters = input.filters};
+    out.firstDenoisingPass = graph.passes().size();
+    const denoise::DenoiserOutput denoised =
+        settings.pipeline.denoiser->record(graph, frame, settings.denoisers);
+    out.beauty = denoised.beauty;
+    out.cases = denoised.cases;
+    return out;
+}
+
+}  // namespace
+
+FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
+                        const FrameInput& input) {
+    if (input.moved) deform(graph, scene, *input.moved);
+    switch (settings.pipeline.kind) {
+        case Pipeline::Kind::Path:
+            return recordPath(graph, scene, settings, input);
+        case Pipeline::Kind::GBuffer:
+            return recordLit(graph, scene, settings, input);
+        case Pipeline::Kind::AmbientOcclusion:
+            return recordAmbientOcclusion(graph, scene, settings, input);
+        case Pipeline::Kind::Preview:
+            return recordPreview(graph, scene, settings, input);
+        case Pipeline::Kind::Denoised:
+            break;
+    }
+    return recordDenoised(graph, scene, settings, input);
+}
+
+}  // namespace limpid

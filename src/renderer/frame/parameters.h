@@ -1,0 +1,31 @@
+// Every technique's parameters in one place: for --set, `limpid info` and the viewer.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/params.h"
+#include "renderer/frame/settings.h"
+
+namespace limpid {
+
+/// A technique's ParamTable, applied to where its settings lie in RenderSettings.
+struct ParamGroup {
+    std::string name;
+    std::vector<ParamInfo> infos;
+    /// As ParamTable::set() and get().
+    std::function<bool(RenderSettings&, std::string_view name, std::string_view text)> set;
+    std::function<ParamValue(const RenderSettings&, size_t index)> get;
+};
+
+const std::vector<ParamGroup>& paramGroups();
+
+/// "group.name=value". Throws UsageError if there is no such parameter, or on a bad value.
+void assign(RenderSettings& settings, std::string_view assignment);
+
+/// What assign() must be given to come from the defaults to these settings.
+std::vector<std::string> assignmentsOf(const RenderSettings& settings);
+
+}  // namespace limpid

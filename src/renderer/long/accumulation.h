@@ -1,0 +1,91 @@
+// Exact sums of a frame's samples, block by block, whoever renders the blocks and in whatever order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "passes/accumulate/accumulate.h"
+#include "renderer/frame/frame.h"
+#include "renderer/layers/layers.h"
+#include "renderer/long/block_plan.h"
+#include "renderer/long/fixed_point.h"
+
+namespace limpid {
+
+/// Means are summed as count * mean in units of 2^-62: exact for every float32 mean that is 0 or of magnitude
+/// 2^-38 to 2^40 (1e12), rounded below, clamped above. 2^24 samples of the largest cannot overflow.
+inline constexpr int meanFraction = 62;
+inline constexpr double meanLimit = 0x1p40;
+/// Squares (of luminance, distance or normals) in units of 2^-38, each clamped at 2^63 (9e18).
+inline constexpr int squareFraction = 38;
+inline constexpr double squareLimit = 0x1p63;
+
+/// An image of recordFrame() that can be summed.
+struct LayerKind {
+    const char* name;  ///< as in layerNames(); "beauty" where layers are not computed
+    uint32_t components;
+    VarianceOf varianceOf;  ///< Nothing: the fourth component, if counted, is a mean like the others
+    gpu::ImageHandle FrameImages::*image;
+    std::vector<float> RenderedLayers::*means;
+};
+
+/// The sums of one layer.
+struct LayerSums {
+    const LayerKind* kind = nullptr;
+    bool squares = false;        ///< summed too, for the variance
+    std::vector<Int128> values;  ///< by pixel: the components, then the square if there is one; empty: all 0
+
+    uint32_t planes() const { return kind->components + (squares ? 1u : 0u); }
+};
+
+/// Gives the means of a layer, four floats a pixel (passes/pathtrace/pathtrace.h says which).
+using MeansOf = std::function<std::vector<float>(const LayerKind&)>;
+
+/// What a block's samples cost and lost.
+struct SampleCounts {
+    uint64_t rays = 0;      ///< closest-hit and shadow rays
+    uint64_t rejected = 0;  ///< samples dropped because they were NaN or infinite
+    uint64_t clamped = 0;   ///< means of blocks that were beyond the limits above, or no numbers
+
+    SampleCounts& operator+=(const SampleCounts& other);
+};
+
+/// The sums of one frame, and which blocks are in them.
+struct FrameSums {
+    gpu::Extent extent;
+    BlockPlan plan;
+    std::vector<LayerSums> layers;
+    std::vector<bool> blocks;  ///< by number: whether it is in the sums
+    uint64_t partSamples = 0;  ///< of a block that was not finished: for a picture, not for a file
+    bool wantsIds = false;
+    std::vector<uint32_t> ids;  ///< instance and material, two a pixel; empty until block 0 is in
+    SampleCounts counts;
+
+    /// Sums that are zero and take no memory yet, of what the layers named (layers.h; none: beauty alone) are
+    /// made of.
+    FrameSums(gpu::Extent extent, const BlockPlan& plan, const std::vector<std::string>& layerNames);
+
+    uint64_t samples() const;  ///< per pixel, in the sums
+    uint32_t blockCount() const;
+    bool complete() const { return blockCount() == blocks.size(); }
+    uint64_t pixels() const { return uint64_t{extent.width} * extent.height; }
+
+    /// Adds the means of a block's samples. Throws Error if the block is in already, or a part of one is.
+    void addBlock(uint32_t block, const MeansOf& meansOf);
+    /// Adds `samples` of a block that is not finished. No block can be added any more.
+    void addPart(uint32_t samples, const MeansOf& meansOf);
+    /// Adds the other's blocks. Both are of the same frame and layers; throws Error if a block is in both.
+    void merge(const FrameSums& other);
+
+    /// The means, as the layers of a picture. Without block 0 there is nothing at any pixel, by `ids`. Throws
+    /// Error if there are no samples.
+    RenderedLayers means() const;
+
+  private:
+    void add(uint32_t samples, const MeansOf& meansOf);
+};
+
+}  // namespace limpid

@@ -1,0 +1,47 @@
+#include "renderer/long/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/files/file.h"
+
+namespace limpid {
+
+namespace fs = std::filesystem;
+
+Checkpoint::Checkpoint(fs::path path) : path_(std::move(path)) {
+    checkWritable(path_);
+}
+
+bool Checkpoint::exists() const {
+    std::error_code status;
+    return fs::exists(path_, status);
+}
+
+Accumulation Checkpoint::load(const AccumulationHeader& ours) const {
+    Accumulation loaded = readAccumulation(path_);
+    if (const auto difference = firstDifference(loaded.header, ours))
+        throw InputError(path_, "is the checkpoint of another render: " + *difference);
+    const Shard theirs = loaded.header.shard;
+    if (theirs != ours.shard) {
+        throw InputError(path_, fmt::format("is the checkpoint of shard {}/{}, not {}/{}", theirs.index,
+                                            theirs.count, ours.shard.index, ours.shard.count));
+    }
+    warnOfOtherDevice(path_, loaded.header, ours);
+    return loaded;
+}
+
+void Checkpoint::save(const AccumulationHeader& header, const FrameSums& sums) {
+    const Clock::time_point start = Clock::now();
+    // What a process left that was killed in the act would otherwise stay for ever.
+    removeStaleTemporaries(path_);
+    writeAccumulation(path_, header, sums);
+    saved_ = Clock::now();
+    cost_ = saved_ - start;
+}
+
+void Checkpoint::saveIfDue(const AccumulationHeader& header, const FrameSums& sums) {
+    if (Clock::now() - saved_ >= 20 * cost_) save(header, sums);
+}
+
+}  // namespace limpid

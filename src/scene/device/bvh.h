@@ -1,0 +1,92 @@
+// Bounding volume hierarchies: a binned SAH build on all cores, collapsed to four children a node and
+// quantised.
+//
+// Build: I. Wald, "On fast construction of SAH-based bounding volume hierarchies", IEEE RT 2007.
+// Quantised wide nodes: H. Ylitie, T. Karras, S. Laine, "Efficient incoherent ray traversal on GPUs through
+// compressed wide BVHs", HPG 2017 (theirs are 8-wide; four fit the 64 bytes of a cache line without their
+// packing).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/math.h"
+
+namespace limpid::scene {
+
+struct Aabb {
+    vec3 lower{std::numeric_limits<float>::max()};
+    vec3 upper{std::numeric_limits<float>::lowest()};
+
+    void grow(const vec3& point) {
+        lower = glm::min(lower, point);
+        upper = glm::max(upper, point);
+    }
+    void grow(const Aabb& other) {
+        lower = glm::min(lower, other.lower);
+        upper = glm::max(upper, other.upper);
+    }
+    bool empty() const { return lower.x > upper.x; }
+    vec3 center() const { return 0.5f * lower + 0.5f * upper; }
+    vec3 size() const { return upper - lower; }
+    float halfArea() const;  ///< 0 if empty
+};
+
+/// A reference to a node or to a run of primitives, as the shader reads it
+/// (shaders/trace/trace_compute.glsl).
+struct BvhRef {
+    static constexpr uint32_t leafBit = 1u << 31;
+    static constexpr uint32_t countShift = 28;
+    static constexpr uint32_t maxLeafSize = 8;
+    static constexpr uint32_t maxIndex = (1u << countShift) - 1;
+
+    static uint32_t node(uint32_t index) { return index; }
+    static uint32_t leaf(uint32_t first, uint32_t count) {
+        return leafBit | (count - 1) << countShift | first;
+    }
+    static bool isLeaf(uint32_t ref) { return (ref & leafBit) != 0; }
+    static uint32_t first(uint32_t ref) { return ref & maxIndex; }
+    static uint32_t count(uint32_t ref) { return (ref >> countShift & 7) + 1; }
+};
+
+/// Four children; their boxes are bytes on a grid that starts at `origin` with cells of 2^(exponent - 127).
+/// A child that does not exist has lower 255 and upper 0, which no ray meets.
+struct BvhNode {
+    vec3 origin{0.0f};
+    std::array<uint8_t, 4> exponents{};                      ///< x, y, z, unused
+    std::array<std::array<uint8_t, 4>, 3> lower{}, upper{};  ///< [axis][child]
+    std::array<uint32_t, 2> unused{};
+    std::array<uint32_t, 4> children{};  ///< BvhRef
+
+    Aabb childBounds(uint32_t child) const;
+    bool hasChild(uint32_t child) const { return lower[0][child] <= upper[0][child]; }
+};
+static_assert(sizeof(BvhNode) == 64);
+
+struct Bvh {
+    std::vector<BvhNode> nodes;   ///< the root is nodes[0]
+    std::vector<uint32_t> order;  ///< leaves index this; it holds the primitives' original indices
+    Aabb bounds;
+    uint32_t stackSize = 0;  ///< entries that a depth-first traversal needs at most, in any order of children
+};
+
+/// Below this depth splits halve the primitives, so that no input makes a tree deeper than 48 + log2(count).
+inline constexpr uint32_t maxSahDepth = 48;
+
+/// Builds over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
+/// shallowest tree. Throws Error if there are more primitives than a BvhRef can name. No primitives: one node
+/// that no ray meets.
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
+
+/// A child of a node to be.
+struct BvhChild {
+    uint32_t ref = 0;
+    Aabb bounds;
+};
+/// A node over one to four children.
+BvhNode makeBvhNode(std::span<const BvhChild> children);
+
+}  // namespace limpid::scene

@@ -1,0 +1,57 @@
+// A scene on the device: the buffers that shaders/common/scene_data.glsl declares.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "gpu/graph/frame_graph.h"
+#include "gpu/vulkan/device.h"
+#include "scene/device/scene_data.h"
+#include "scene/device/tracer.h"
+
+namespace limpid::scene {
+
+class GpuScene {
+  public:
+    /// Uploads. Throws Error naming the limit if a buffer exceeds what the device allows, or if the device
+    /// lacks the tracer.
+    GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options = {});
+
+    Tracer tracer() const { return structures_ ? Tracer::Pipeline : Tracer::Compute; }
+
+    /// What every pass that includes scene_data.glsl binds.
+    std::vector<gpu::Binding> bindings() const;
+    std::vector<gpu::ConstantValue> constants() const;
+    const layout::SceneParams& params() const { return params_; }
+    /// Of the frame from now on (scene/motion/scene_animator.h).
+    void setParams(const layout::SceneParams& params) { params_ = params; }
+    /// One of the buffers of scene_data.glsl, or of passes/deform. "quantisedNodes" are bvhNodes, or what
+    /// they are expanded from. Throws Error if there is none of that name.
+    const gpu::Buffer& buffer(std::string_view name) const;
+    /// bvhNodes are expanded: what changes in "quantisedNodes" must follow there.
+    bool expandsNodes() const { return gpuTraversal_; }
+    /// Of the `pipeline` tracer; null with the other.
+    const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
+    uint64_t byteCount() const;
+
+  private:
+    struct NamedBuffer {
+        const char* name;
+        gpu::Buffer buffer;
+    };
+    void addNodes(gpu::Device& device, const SceneData& data);
+    void addDeformBuffers(gpu::Device& device, const SceneData& data);
+
+    std::vector<NamedBuffer> buffers_;
+    std::vector<NamedBuffer> deformBuffers_;  ///< of passes/deform alone
+    std::optional<gpu::AccelerationStructures> structures_;
+    SceneFeatures features_;
+    layout::SceneParams params_;
+    uint32_t stackSize_;
+    uint32_t texelBufferCount_ = 1;
+    bool gpuTraversal_;
+};
+
+}  // namespace limpid::scene

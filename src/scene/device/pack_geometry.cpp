@@ -1,0 +1,370 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <optional>
+
+#include "base/error.h"
+#include "scene/device/pack.h"
+#include "scene/device/top_tree.h"
+
+namespace limpid::scene {
+namespace {
+
+/// Triangles per leaf: larger leaves cost more tests but fewer nodes (measured in docs/benchmarks.md).
+constexpr uint32_t maxTrianglesPerLeaf = 4;
+/// A mesh whose copies together have at most this many triangles is copied into the static tree instead of
+/// instanced: one tree is walked faster than a tree over trees.
+constexpr size_t mergeLimit = 4096;
+
+/// A direction that stays usable when the transform or the input degenerates.
+vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
+    const float length = glm::length(v);
+    return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
+}
+
+struct Transform {
+    mat4 matrix;
+    mat3 normalMatrix;
+    bool mirrored;
+
+    explicit Transform(const mat4& m)
+        : matrix(m), normalMatrix(cofactor(mat3(m))), mirrored(glm::determinant(mat3(m)) < 0.0f) {
+        if (mirrored) normalMatrix = -normalMatrix;
+    }
+    vec3 point(const vec3& p) const { return vec3(matrix * vec4(p, 1.0f)); }
+    vec3 normal(const vec3& n) const { return safeNormalize(normalMatrix * n, vec3(0, 0, 1)); }
+    vec3 direction(const vec3& d) const { return safeNormalize(mat3(matrix) * d, vec3(1, 0, 0)); }
+
+    /// The inverse transpose times the determinant: right for normals even where the inverse does not exist.
+    static mat3 cofactor(const mat3& m) {
+        return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+    }
+};
+
+class GeometryPacker {
+  public:
+    GeometryPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {}
+
+    void pack() {
+        findInstancedMeshes();
+        data_.instances.resize(scene_.instances.size() * layout::INSTANCE_TEXELS);
+        meshFirstTriangle_.assign(scene_.meshes.size(), layout::NONE);
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            if (scene_.instances[i].movement == Movement::Deforming) packInstance(i);
+        }
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            if (scene_.instances[i].movement != Movement::Deforming) packInstance(i);
+        }
+        if (isTwoLevel()) {
+            data_.features.twoLevel = true;
+            packTwoLevels();
+        } else {
+            const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+            data_.placements.push_back(placementOf(tree.number, mat4(1.0f)));
+            data_.params.rootNode = tree.root;
+            data_.stackSize = tree.stackSize + 1;
+            bounds_ = tree.bounds;
+        }
+        data_.params.sceneCenter = bounds_.empty() ? vec3(0.0f) : bounds_.center();
+        data_.params.sceneRadius =
+            bounds_.empty() ? 1.0f : std::max(0.5f * glm::length(bounds_.size()), 1e-20f);
+    }
+
+  private:
+    struct LeafTriangle {
+        vec3 v[3];
+        uint32_t primitive, instance, shadingTriangle;
+    };
+    struct Tree {
+        uint32_t root, stackSize;
+        Aabb bounds;
+        uint32_t number;  ///< in SceneData::trees
+    };
+
+    void findInstancedMeshes() {
+        std::vector<size_t> uses(scene_.meshes.size(), 0);
+        instanced_.resize(scene_.meshes.size());
+        for (const Instance& instance : scene_.instances) {
+            const auto mesh = static_cast<size_t>(instance.mesh);
+            if (instance.movement == Movement::Rigid) instanced_[mesh] = true;
+            if (instance.movement != Movement::Deforming) ++uses[mesh];
+            data_.motion.moving |= instance.movement != Movement::Still;
+        }
+        data_.features.motion = data_.motion.moving;
+        for (size_t i = 0; i < uses.size(); ++i) {
+            if (uses[i] > 1 && uses[i] * scene_.meshes[i].triangleCount() > mergeLimit) instanced_[i] = true;
+        }
+    }
+
+    bool isTwoLevel() const {
+        return data_.motion.moving ||
+               std::find(instanced_.begin(), instanced_.end(), true) != instanced_.end();
+    }
+
+    uint32_t alphaFlag(const Mesh& mesh, const Instance& instance, size_t triangle) const {
+        const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[triangle];
+        const Material& material = scene_.materials[static_cast<size_t>(instance.material) + slot];
+        return material.alphaMode == AlphaMode::Opaque ? 0 : layout::BVH_TRIANGLE_ALPHA;
+    }
+
+    void packInstance(uint32_t index) {
+        const Instance& instance = scene_.instances[index];
+        const auto meshIndex = static_cast<size_t>(instance.mesh);
+        const Mesh& mesh = scene_.meshes[meshIndex];
+        const Transform transform(instance.transform);
+        // What moves may turn inside out on its way.
+        data_.features.mirrored |= transform.mirrored || instance.movement == Movement::Rigid;
+        uint32_t firstTriangle = meshFirstTriangle_[meshIndex];
+        uint32_t flags = transform.mirrored ? layout::INSTANCE_MIRRORED : 0u;
+        if (instance.movement == Movement::Deforming) {
+            firstTriangle = packDeforming(index, mesh);
+            flags |= layout::INSTANCE_DEFORMING;
+        } else if (!instanced_[meshIndex]) {
+            firstTriangle = packShading(mesh, transform, static_cast<uint32_t>(instance.material));
+            for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+                addTriangle(mesh, t, transform, static_cast<uint32_t>(t) | alphaFlag(mesh, instance, t),
+                            index, firstTriangle + static_cast<uint32_t>(t), staticBoxes_, staticTriangles_);
+            }
+        } else if (firstTriangle == layout::NONE) {
+            firstTriangle = meshFirstTriangle_[meshIndex] = packShading(mesh, Transform(mat4(1.0f)), 0);
+        }
+        uvec4* record = &data_.instances[size_t{index} * layout::INSTANCE_TEXELS];
+        packRows(record, instance.transform);
+        record[3] = {static_cast<uint32_t>(instance.material), layout::NONE, firstTriangle, flags};
+    }
+
+    /// Vertices and triangles of its own, and what poses them.
+    uint32_t packDeforming(uint32_t index, const Mesh& mesh) {
+        const uint32_t firstVertex = vertexCount_;
+        const uint32_t firstTriangle = packShading(mesh, Transform(mat4(1.0f)), 0);
+        data_.motion.deforming.push_back(packDeformation(scene_, index, firstVertex, data_.motion));
+        return firstTriangle;
+    }
+
+    void addTriangle(const Mesh& mesh, size_t triangle, const Transform& transform, uint32_t primitive,
+                     uint32_t instance, uint32_t shadingTriangle, std::vector<Aabb>& boxes,
+                     std::vector<LeafTriangle>& triangles) {
+        LeafTriangle leaf{{}, primitive, instance, shadingTriangle};
+        Aabb box;
+        for (size_t corner = 0; corner < 3; ++corner) {
+            leaf.v[corner] = transform.point(mesh.positions[mesh.indices[3 * triangle + corner]]);
+            box.grow(leaf.v[corner]);
+        }
+        boxes.push_back(box);
+        triangles.push_back(leaf);
+    }
+
+    /// Appends vertices and shading triangles, transformed; returns the first triangle's index.
+    uint32_t packShading(const Mesh& mesh, const Transform& transform, uint32_t material) {
+        const uint32_t firstVertex = vertexCount_;
+        vertexCount_ += static_cast<uint32_t>(mesh.positions.size());
+        const auto firstTriangle = static_cast<uint32_t>(data_.triangles.size());
+        if (data_.features.vertexData) {
+            for (size_t v = 0; v < mesh.positions.size(); ++v) packVertex(mesh, v, transform);
+        }
+        const uint32_t flags = mesh.normals.empty() ? 0 : layout::TRIANGLE_SMOOTH;
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+            const uint32_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
+            data_.triangles.emplace_back(firstVertex + mesh.indices[3 * t],
+                                         firstVertex + mesh.indices[3 * t + 1],
+                                         firstVertex + mesh.indices[3 * t + 2], (material + slot) | flags);
+        }
+        return firstTriangle;
+    }
+
+    void packVertex(const Mesh& mesh, size_t v, const Transform& transform) {
+        const vec3 normal = mesh.normals.empty() ? vec3(0, 0, 1) : transform.normal(mesh.normals[v]);
+        const vec4 tangent = mesh.tangents.empty() ? vec4(1, 0, 0, 1) : mesh.tangents[v];
+        uint32_t tangentBits = packDirection(transform.direction(vec3(tangent))) & ~1u;
+        // A mirroring transform turns the handedness of the tangent frame.
+        if ((tangent.w < 0.0f) != transform.mirrored) tangentBits |= 1u;
+        const vec2 uv0 = mesh.uv0.empty() ? vec2(0.0f) : mesh.uv0[v];
+        const vec2 uv1 = mesh.uv1.empty() ? vec2(0.0f) : mesh.uv1[v];
+        const vec4 color = mesh.colors.empty() ? vec4(1.0f) : glm::clamp(mesh.colors[v], 0.0f, 1.0f);
+        data_.vertices.emplace_back(packDirection(normal), tangentBits, bits(uv0.x), bits(uv0.y));
+        data_.vertices.emplace_back(bits(uv1.x), bits(uv1.y), glm::packUnorm2x16({color.r, color.g}),
+                                    glm::packUnorm2x16({color.b, color.a}));
+    }
+
+    /// Builds a tree and appends it to the node and triangle buffers.
+    Tree appendTree(const std::vector<Aabb>& boxes, const std::vector<LeafTriangle>& triangles,
+                    bool moves = false) {
+        const Bvh bvh = buildBvh(boxes, maxTrianglesPerLeaf);
+        const auto firstTriangle =
+            static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS);
+        if (firstTriangle + triangles.size() > BvhRef::maxIndex) {
+            throw Error(fmt::format("the scene has more than {} triangles", BvhRef::maxIndex));
+        }
+        const uint32_t root = appendNodes(bvh.nodes, [&](uint32_t child, uint32_t firstNode) {
+            return child + (BvhRef::isLeaf(child) ? firstTriangle : firstNode);
+        });
+        data_.bvhTriangles.reserve(data_.bvhTriangles.size() +
+                                   triangles.size() * layout::BVH_TRIANGLE_TEXELS);
+        for (const uint32_t index : bvh.order) {
+            const LeafTriangle& t = triangles[index];
+            data_.bvhTriangles.emplace_back(t.v[0], std::bit_cast<float>(t.primitive));
+            data_.bvhTriangles.emplace_back(t.v[1], std::bit_cast<float>(t.instance));
+            data_.bvhTriangles.emplace_back(t.v[2], std::bit_cast<float>(t.shadingTriangle));
+        }
+        const bool opaque = std::none_of(triangles.begin(), triangles.end(), [](const LeafTriangle& t) {
+            return (t.primitive & layout::BVH_TRIANGLE_ALPHA) != 0;
+        });
+        data_.trees.push_back({firstTriangle, static_cast<uint32_t>(triangles.size()), opaque, moves});
+        return {root, bvh.stackSize, bvh.bounds, static_cast<uint32_t>(data_.trees.size() - 1)};
+    }
+
+    template <typename Rebase>
+    uint32_t appendNodes(const std::vector<BvhNode>& nodes, const Rebase& rebase) {
+        const uint32_t root = nodeCount();
+        data_.bvhNodes.reserve(data_.bvhNodes.size() + nodes.size() * layout::BVH_NODE_TEXELS);
+        for (BvhNode node : nodes) {
+            for (uint32_t& child : node.children) child = rebase(child, root);
+            const auto texels = std::bit_cast<std::array<uvec4, layout::BVH_NODE_TEXELS>>(node);
+            data_.bvhNodes.insert(data_.bvhNodes.end(), texels.begin(), texels.end());
+        }
+        return root;
+    }
+
+    uint32_t nodeCount() const {
+        return static_cast<uint32_t>(data_.bvhNodes.size() / layout::BVH_NODE_TEXELS);
+    }
+
+    /// Trees over the static tree and over every instance of the instanced meshes.
+    void packTwoLevels() {
+        packPreviousInstances();
+        if (!staticBoxes_.empty()) {
+            const Tree tree = appendTree(staticBoxes_, staticTriangles_);
+            still_.push_back({addRecord(tree, mat4(1.0f), layout::NONE), tree.bounds});
+        }
+        packMeshInstances();
+        packDeformingTrees();
+        const TopTree top = buildTopTree(still_, nodeCount());
+        const auto keep = [](uint32_t child, uint32_t) { return child; };
+        data_.motion.stillRoot = data_.params.rootNode = appendNodes(top.nodes, keep);
+        data_.motion.stillBounds = bounds_ = top.bounds;
+        data_.stackSize = top.stackSize + deepest_ + 3;
+        if (data_.motion.moving) reserveMovingTree(top.stackSize);
+    }
+
+    uint32_t addRecord(const Tree& tree, const mat4& toWorld, uint32_t instance) {
+        const size_t at = data_.bvhInstances.size();
+        data_.bvhInstances.resize(at + layout::BVH_INSTANCE_TEXELS);
+        packRows(&data_.bvhInstances[at], isInvertible(toWorld) ? glm::inverse(toWorld) : mat4(1.0f));
+        data_.bvhInstances[at + 3] = {tree.root, instance, data_.trees[tree.number].first, 0};
+        data_.placements.push_back(placementOf(tree.number, toWorld));
+        deepest_ = std::max(deepest_, tree.stackSize);
+        return static_cast<uint32_t>(at / layout::BVH_INSTANCE_TEXELS);
+    }
+
+    void packMeshInstances() {
+        std::vector<std::optional<Tree>> trees(scene_.meshes.size());
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            const Instance& instance = scene_.instances[i];
+            const auto mesh = static_cast<size_t>(instance.mesh);
+            if (instance.movement == Movement::Deforming || !instanced_[mesh]) continue;
+            const bool moves = instance.movement == Movement::Rigid;
+            if (!moves && !isInvertible(instance.transform)) continue;
+            if (!trees[mesh]) trees[mesh] = appendMeshTree(mesh);
+            const uint32_t record = addRecord(*trees[mesh], instance.transform, i);
+            if (moves) {
+                data_.motion.leaves.push_back(
+                    {i, record, trees[mesh]->root, trees[mesh]->number, trees[mesh]->bounds});
+            } else {
+                still_.push_back({record, transformed(trees[mesh]->bounds, instance.transform)});
+            }
+        }
+    }
+
+    void packDeformingTrees() {
+        MotionData& motion = data_.motion;
+        motion.firstRefitNode = nodeCount();
+        for (DeformingInstance& deforming : motion.deforming) {
+            const Instance& instance = scene_.instances[deforming.instance];
+            const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+            const uint32_t firstTriangle =
+                data_.instances[size_t{deforming.instance} * layout::INSTANCE_TEXELS + 3].z;
+            std::vector<Aabb> boxes;
+            std::vector<LeafTriangle> triangles;
+            for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+                addTriangle(mesh, t, Transform(mat4(1.0f)), t | alphaFlag(mesh, instance, t), layout::NONE,
+                            firstTriangle + t, boxes, triangles);
+            }
+            const Tree tree = appendTree(boxes, triangles, true);
+            deforming.leaf = static_cast<uint32_t>(motion.leaves.size());
+            const uint32_t record = addRecord(tree, instance.transform, deforming.instance);
+            motion.leaves.push_back({deforming.instance, record, tree.root, tree.number, tree.bounds});
+        }
+        motion.refitNodeCount = nodeCount() - motion.firstRefitNode;
+        findRefitLevels(data_);
+    }
+
+    /// Room for the nodes that every frame writes.
+    void reserveMovingTree(uint32_t stillStack) {
+        MotionData& motion = data_.motion;
+        motion.firstTopNode = data_.params.rootNode = nodeCount();
+        motion.topStack = topStackLimit(motion.leaves.size());
+        const size_t nodes = 1 + std::max<size_t>(motion.leaves.size(), 1);
+        data_.bvhNodes.resize(data_.bvhNodes.size() + nodes * layout::BVH_NODE_TEXELS);
+        data_.stackSize = std::max(stillStack, motion.topStack) + deepest_ + 6;
+        for (const MovingLeaf& leaf : motion.leaves)
+            bounds_.grow(transformed(leaf.bounds, scene_.instances[leaf.instance].transform));
+    }
+
+    void packPreviousInstances() {
+        if (!data_.motion.moving) return;
+        const size_t count = scene_.instances.size();
+        data_.previousGeometry.resize(count * layout::PREVIOUS_INSTANCE_TEXELS);
+        for (size_t i = 0; i < count; ++i) {
+            packRows(&data_.previousGeometry[i * layout::PREVIOUS_INSTANCE_TEXELS],
+                     scene_.instances[i].transform);
+        }
+        data_.params.previousVertexBase = static_cast<uint32_t>(data_.previousGeometry.size());
+        for (const DeformingInstance& deforming : data_.motion.deforming)
+            data_.previousGeometry.resize(data_.previousGeometry.size() + deforming.vertexCount);
+    }
+
+    Tree appendMeshTree(size_t meshIndex) {
+        const Mesh& mesh = scene_.meshes[meshIndex];
+        std::vector<Aabb> boxes;
+        std::vector<LeafTriangle> triangles;
+        for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+            uint32_t flag = 0;
+            for (const Instance& instance : scene_.instances) {
+                if (static_cast<size_t>(instance.mesh) == meshIndex) flag |= alphaFlag(mesh, instance, t);
+            }
+            addTriangle(mesh, t, Transform(mat4(1.0f)), t | flag, layout::NONE,
+                        meshFirstTriangle_[meshIndex] + t, boxes, triangles);
+        }
+        return appendTree(boxes, triangles);
+    }
+
+    const Scene& scene_;
+    SceneData& data_;
+    std::vector<bool> instanced_;  ///< meshes
+    std::vector<TopLeaf> still_;
+    uint32_t vertexCount_ = 0;
+    uint32_t deepest_ = 0;  ///< stack entries of the deepest tree below the top
+    std::vector<uint32_t> meshFirstTriangle_;
+    std::vector<Aabb> staticBoxes_;
+    std::vector<LeafTriangle> staticTriangles_;
+    Aabb bounds_;
+};
+
+}  // namespace
+
+gpu::TreePlacement placementOf(uint32_t tree, const mat4& toWorld) {
+    gpu::TreePlacement placement{.tree = tree, .visible = isInvertible(toWorld)};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column)
+            placement.toWorld[static_cast<size_t>(4 * row + column)] = toWorld[column][row];
+    }
+    return placement;
+}
+
+void packGeometry(const Scene& scene, SceneData& data) {
+    GeometryPacker(scene, data).pack();
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,281 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "scene/device/mip_levels.h"
+#include "scene/device/pack.h"
+#include "scene/device/tables/alias_table.h"
+
+namespace limpid::scene {
+namespace {
+
+/// How often next-event estimation asks the environment where there are other lights too.
+constexpr float environmentShare = 0.5f;
+/// ... and how often at least triangles and punctual lights of what is left, where there are both.
+constexpr double leastTriangleShare = 0.2, leastPunctualShare = 0.35;
+/// Of the triangles' samples: shared equally by all lamps, the rest by power.
+constexpr double uniformShare = 0.25;
+
+double luminance(const vec3& c) {
+    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+}
+
+vec2 transformed(const TextureRef& ref, const vec2& uv) {
+    const vec3 p(uv, 1.0f);
+    return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
+}
+
+/// Mean luminance of the emission texture over a triangle, from points as dense as its texels (16 to 1,024 of
+/// them).
+double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
+                            vec2 c) {
+    a = transformed(ref, a);
+    b = transformed(ref, b);
+    c = transformed(ref, c);
+    const vec2 e1 = (b - a) * vec2(texture.width, texture.height),
+               e2 = (c - a) * vec2(texture.width, texture.height);
+    const double texels = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
+    const int side =
+        static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
+    double sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < side; ++i) {
+        for (int j = 0; i + j < side; ++j) {
+            const float u = (static_cast<float>(i) + 1.0f / 3.0f) / static_cast<float>(side);
+            const float v = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(side);
+            sum += luminance(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+class LightPacker {
+  public:
+    LightPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {}
+
+    void pack() {
+        for (size_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
+        data_.features.triangleLights = !weights_.empty();
+        packPunctuals();
+        const AliasTable table = buildAliasTable(triangleWeights());
+        data_.lightAlias.insert(data_.lightAlias.begin(), table.entries.begin(), table.entries.end());
+        setProbabilities(0, table);
+        for (MovingLights& moving : data_.motion.lights) {
+            for (size_t i = 0; i < moving.triangles.size(); ++i)
+                moving.probabilities.push_back(table.probabilities[moving.firstLight + i]);
+        }
+        data_.lightDensity.resize(lightOfPrimitive_.size(), 0.0f);
+        for (size_t i = 0; i < lightOfPrimitive_.size(); ++i) {
+            const uint32_t light = lightOfPrimitive_[i];
+            if (light != layout::NONE && areas_[light] > 0.0f) {
+                data_.lightDensity[i] = table.probabilities[light] / areas_[light];
+            }
+        }
+        data_.params.triangleLightCount = static_cast<uint32_t>(weights_.size());
+    }
+
+  private:
+    void setProbabilities(size_t first, const AliasTable& table) {
+        for (size_t i = 0; i < table.probabilities.size(); ++i)
+            data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
+    }
+
+    /// By power, and in part the same for every lamp: how much of a lamp's power reaches a surface is not
+    /// known here.
+    std::vector<double> triangleWeights() const {
+        const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+        std::vector<double> ofLamp;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            ofLamp.resize(std::max(ofLamp.size(), lamps_[i] + 1));
+            ofLamp[lamps_[i]] += weights_[i];
+        }
+        const auto lamps =
+            std::count_if(ofLamp.begin(), ofLamp.end(), [](double power) { return power > 0.0; });
+        if (lamps < 2) return weights_;
+        std::vector<double> result;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            const double power = weights_[i], whole = std::max(ofLamp[lamps_[i]], 1e-300);
+            result.push_back((1.0 - uniformShare) * power / sum +
+                             uniformShare * power / whole / static_cast<double>(lamps));
+        }
+        return result;
+    }
+
+    void packPunctuals() {
+        const double triangles = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+        std::vector<double> powers;
+        for (const PunctualLight& light : scene_.lights) powers.push_back(packPunctual(light));
+        const AliasTable table = buildAliasTable(powers);
+        data_.lightAlias = table.entries;
+        setProbabilities(weights_.size(), table);
+        data_.features.punctualLights = !scene_.lights.empty();
+        data_.params.punctualCount = static_cast<uint32_t>(scene_.lights.size());
+        const double sum = std::accumulate(powers.begin(), powers.end(), triangles);
+        const double share = sum > 0.0 ? triangles / sum : 0.5;
+        data_.params.triangleLightProbability =
+            weights_.empty()
+                ? 0.0f
+                : static_cast<float>(std::clamp(share, leastTriangleShare, 1.0 - leastPunctualShare));
+    }
+
+    void packInstance(size_t index) {
+        const Instance& instance = scene_.instances[index];
+        const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+        const size_t tableStart = lightOfPrimitive_.size();
+        MovingLights moving{static_cast<uint32_t>(index),
+                            static_cast<uint32_t>(weights_.size()),
+                            static_cast<uint32_t>(tableStart),
+                            {},
+                            {}};
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+            const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
+            const auto material = static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
+            uint32_t light = layout::NONE;
+            if (isEmitter(scene_.materials[material])) {
+                light = packTriangle(index, instance, mesh, t, material);
+                moving.triangles.push_back(static_cast<uint32_t>(t));
+            }
+            lightOfPrimitive_.push_back(light);
+        }
+        if (!moving.triangles.empty()) {
+            data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
+        } else {
+            lightOfPrimitive_.resize(tableStart);
+            return;
+        }
+        if (instance.movement != Movement::Still) data_.motion.lights.push_back(std::move(moving));
+    }
+
+    uint32_t packTriangle(size_t instanceIndex, const Instance& instance, const Mesh& mesh, size_t t,
+                          uint32_t materialIndex) {
+        const Material& material = scene_.materials[materialIndex];
+        const uint32_t* index = &mesh.indices[3 * t];
+        vec3 v[3];
+        for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
+        if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
+        double radiance = luminance(material.emission);
+        const TextureRef& ref = material.emissionTexture;
+        if (ref) {
+            const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
+            const vec2 zero(0.0f);
+            radiance =
+                meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref,
+                                     material.emission, uv.empty() ? zero : uv[index[0]],
+                                     uv.empty() ? zero : uv[index[1]], uv.empty() ? zero : uv[index[2]]);
+        }
+        const double area = 0.5 * glm::length(glm::cross(v[1] - v[0], v[2] - v[0]));
+        const double sides = material.doubleSided ? 2.0 : 1.0;
+        const uint32_t kind =
+            material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE;
+        const uint32_t firstTriangle = data_.instances[instanceIndex * layout::INSTANCE_TEXELS + 3].z;
+        const bool mirrored = glm::determinant(mat3(instance.transform)) < 0.0f;
+        data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
+        data_.lights.push_back(bits(v[1], 0u));
+        data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
+        const bool changes = ref || material.clearcoat > 0.0f;  // from point to point, or with direction
+        data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
+        areas_.push_back(static_cast<float>(area));
+        const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
+        return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
+    }
+
+    /// Returns its power; a spot's as if it shone all around: where its cone ends, other lights count, but
+    /// within it, it is as bright as that.
+    double packPunctual(const PunctualLight& light) {
+        const double strength = luminance(light.intensity);
+        uint32_t kind = light.kind == PunctualLight::Kind::Spot ? layout::LIGHT_SPOT : layout::LIGHT_POINT;
+        double power = 4.0 * std::numbers::pi * strength;
+        if (light.kind == PunctualLight::Kind::Directional) {
+            kind = layout::LIGHT_DIRECTIONAL;
+            power = std::numbers::pi * double{data_.params.sceneRadius} * data_.params.sceneRadius * strength;
+        }
+        data_.lights.push_back(bits(light.position, kind));
+        data_.lights.push_back(bits(light.direction, 0u));
+        data_.lights.push_back(
+            bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
+        data_.lights.push_back(bits(light.intensity, 0u));
+        return finite(power);
+    }
+
+    static double finite(double weight) { return std::isfinite(weight) ? std::max(weight, 0.0) : 0.0; }
+
+    uint32_t addWeight(double weight, size_t lamp) {
+        weights_.push_back(finite(weight));
+        lamps_.push_back(lamp);
+        return static_cast<uint32_t>(weights_.size() - 1);
+    }
+
+    const Scene& scene_;
+    SceneData& data_;
+    std::vector<double> weights_;  ///< powers of the triangle lights, which come first
+    std::vector<size_t> lamps_;    ///< which lamp each is part of: one material of one instance
+    std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
+    std::vector<float> areas_;                ///< of the triangle lights
+    std::vector<uint32_t> lightOfPrimitive_;  ///< of every primitive of an emissive instance, or NONE
+};
+
+/// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's
+/// solid angle.
+std::vector<double> environmentWeights(const Environment& env) {
+    const auto width = static_cast<int>(env.width), height = static_cast<int>(env.height);
+    std::vector<double> weights(size_t{env.width} * env.height);
+    tbb::parallel_for(0, height, [&](int y) {
+        const double sine = std::sin(std::numbers::pi * (y + 0.5) / height);
+        for (int x = 0; x < width; ++x) {
+            double sum = 0.0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int row = std::clamp(y + dy, 0, height - 1);
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int column = (x + dx + width) % width;
+                    sum +=
+                        (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
+                        luminance(
+                            env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
+                }
+            }
+            weights[static_cast<size_t>(y) * env.width + static_cast<size_t>(x)] = std::max(sum, 0.0) * sine;
+        }
+    });
+    return weights;
+}
+
+void packEnvironment(const Environment& env, SceneData& data) {
+    data.features.environment = true;
+    // Nothing is held longer than needed: an environment of 8,192 by 4,096 pixels has 400 MB of weights.
+    AliasTable table = buildAliasTable(environmentWeights(env));
+    data.environmentAlias = std::move(table.entries);
+    data.environment.reserve(env.radiance.size());
+    for (size_t i = 0; i < env.radiance.size(); ++i) {
+        data.environment.emplace_back(env.radiance[i], table.probabilities[i]);
+    }
+    setEnvironmentParams(env, data.params);
+    data.params.environmentWidth = env.width;
+    data.params.environmentHeight = env.height;
+}
+
+}  // namespace
+
+void packLamps(const Scene& scene, SceneData& data) {
+    LightPacker(scene, data).pack();
+}
+
+void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
+    params.environmentScale = env.scale;
+    params.environmentTurn = env.turn;
+    // Nobody asks what sends nothing, if there is something else to ask.
+    const float share = env.scale == vec3(0.0f) ? 0.0f : environmentShare;
+    params.environmentProbability = params.triangleLightCount + params.punctualCount > 0 ? share : 1.0f;
+}
+
+void packLights(const Scene& scene, SceneData& data) {
+    packLamps(scene, data);
+    if (!scene.environment.empty()) packEnvironment(scene.environment, data);
+}
+
+}  // namespace limpid::scene

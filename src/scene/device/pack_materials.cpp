@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/error.h"
+#include "scene/device/mip_levels.h"
+#include "scene/device/pack.h"
+
+namespace limpid::scene {
+namespace {
+
+constexpr uint64_t texelsPerBuffer = uint64_t{1} << layout::TEXEL_BUFFER_SHIFT;
+
+struct PlacedTexture {
+    uint32_t firstTexel = 0;
+    uint32_t levels = 1;
+};
+
+/// Puts the texture with its mip levels into the first texel buffer that has room. `allTexels`, of all
+/// textures, is reserved: a buffer that grows would be there twice.
+PlacedTexture placeTexture(const Texture& texture, uint64_t allTexels, SceneData& data) {
+    const uint64_t texels = mipTexelCount(texture);
+    for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {
+        auto& buffer = data.texels[index];
+        if (buffer.size() + texels > texelsPerBuffer) continue;
+        const auto first = static_cast<uint32_t>(buffer.size());
+        buffer.reserve(std::min(allTexels, texelsPerBuffer));
+        appendMipLevels(texture, buffer);
+        return {index << layout::TEXEL_BUFFER_SHIFT | first, mipLevelCount(texture)};
+    }
+    throw Error(
+        fmt::format("texture '{}' does not fit: all textures together exceed the limit of {} x 2^27 texels",
+                    texture.name, layout::TEXEL_BUFFERS));
+}
+
+uint32_t samplerBits(const Texture& texture, const TextureRef& ref) {
+    const Sampler& s = texture.sampler;
+    uint32_t result = static_cast<uint32_t>(s.wrapU) << layout::TEXTURE_WRAP_U_SHIFT |
+                      static_cast<uint32_t>(s.wrapV) << layout::TEXTURE_WRAP_V_SHIFT |
+                      static_cast<uint32_t>(s.mip) << layout::TEXTURE_MIP_SHIFT;
+    if (s.magLinear) result |= layout::TEXTURE_MAG_LINEAR;
+    if (s.minLinear) result |= layout::TEXTURE_MIN_LINEAR;
+    if (texture.srgb) result |= layout::TEXTURE_SRGB;
+    if (ref.uvSet == 1) result |= layout::TEXTURE_UV1;
+    return result;
+}
+
+class MaterialPacker {
+  public:
+    MaterialPacker(const Scene& scene, SceneData& data)
+        : scene_(scene), data_(data), placed_(scene.textures.size()) {
+        for (const Texture& texture : scene.textures) allTexels_ += mipTexelCount(texture);
+    }
+
+    void pack() {
+        for (const Material& material : scene_.materials) packMaterial(material);
+    }
+
+  private:
+    uint32_t packRef(const TextureRef& ref) {
+        if (!ref) return layout::NONE;
+        data_.features.textures = true;
+        const auto index = static_cast<size_t>(ref.texture);
+        const Texture& texture = scene_.textures[index];
+        if (!placed_[index]) placed_[index] = placeTexture(texture, allTexels_, data_);
+        const auto result = static_cast<uint32_t>(data_.textureRefs.size() / layout::TEXTURE_REF_TEXELS);
+        data_.textureRefs.push_back(bits(ref.rowU, placed_[index]->firstTexel));
+        data_.textureRefs.push_back(bits(ref.rowV, samplerBits(texture, ref)));
+        data_.textureRefs.emplace_back(texture.width, texture.height, placed_[index]->levels, 0);
+        return result;
+    }
+
+    static uint32_t flagBits(const Material& m) {
+        uint32_t flags = 0;
+        if (m.alphaMode == AlphaMode::Mask) flags |= layout::MATERIAL_MASK;
+        if (m.alphaMode == AlphaMode::Blend) flags |= layout::MATERIAL_BLEND;
+        if (m.doubleSided) flags |= layout::MATERIAL_DOUBLE_SIDED;
+        if (m.unlit) flags |= layout::MATERIAL_UNLIT;
+        if (m.thin) flags |= layout::MATERIAL_THIN;
+        if (isEmitter(m)) flags |= layout::MATERIAL_EMISSIVE;
+        return flags;
+    }
+
+    void packMaterial(const Material& m) {
+        SceneFeatures& features = data_.features;
+        const float clearcoat = m.unlit ? 0.0f : m.clearcoat;
+        const bool lambertian =
+            m.metallic == 0.0f && m.specular == 0.0f && m.transmission == 0.0f && clearcoat == 0.0f;
+        features.specular |= !lambertian && !m.unlit;
+        features.transmission |= m.transmission > 0.0f && !m.unlit;
+        features.roughGlass |=
+            m.transmission > 0.0f && !m.unlit && !m.thin && m.roughness >= layout::SMOOTH_ROUGHNESS;
+        features.clearcoat |= clearcoat > 0.0f;
+        features.volume |= m.transmission > 0.0f && !m.thin && m.absorption != vec3(0.0f);
+        features.specularTextures |= m.specularTexture || m.specularColorTexture;
+        features.alpha |= m.alphaMode != AlphaMode::Opaque;
+        auto& out = data_.materials;
+        out.push_back(bits(vec3(m.baseColor), flagBits(m)));
+        out.push_back(bits(m.emission, m.roughness));
+        out.emplace_back(bits(m.metallic), bits(m.specular), bits(m.ior), bits(m.transmission));
+        out.emplace_back(bits(m.baseColor.a), bits(m.alphaCutoff), bits(m.normalScale), 0);
+        const uint32_t base = packRef(m.baseColorTexture), rough = packRef(m.metallicRoughnessTexture);
+        const uint32_t normal = packRef(m.normalTexture), emission = packRef(m.emissionTexture);
+        out.emplace_back(base, rough, normal, emission);
+        out.emplace_back(packRef(m.transmissionTexture), bits(m.specularColor.r), bits(m.specularColor.g),
+                         bits(m.specularColor.b));
+        const uint32_t specular = packRef(m.specularTexture), color = packRef(m.specularColorTexture);
+        const uint32_t coat = packRef(m.clearcoatTexture), coatRough = packRef(m.clearcoatRoughnessTexture);
+        out.emplace_back(specular, color, coat, coatRough);
+        out.emplace_back(packRef(m.clearcoatNormalTexture), bits(clearcoat), bits(m.clearcoatRoughness),
+                         bits(m.clearcoatNormalScale));
+        out.push_back(bits(m.absorption, 0u));
+    }
+
+    const Scene& scene_;
+    SceneData& data_;
+    std::vector<std::optional<PlacedTexture>> placed_;
+    uint64_t allTexels_ = 0;
+};
+
+}  // namespace
+
+void packMaterials(const Scene& scene, SceneData& data) {
+    MaterialPacker(scene, data).pack();
+}
+
+}  // namespace limpid::scene

@@ -1,0 +1,53 @@
+#include "scene/device/scene_data.h"
+
+#include <algorithm>
+
+#include "scene/device/pack.h"
+
+namespace limpid::scene {
+namespace {
+
+bool hasVertexData(const Scene& scene) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& mesh) {
+        return !mesh.normals.empty() || !mesh.uv0.empty() || !mesh.uv1.empty() || !mesh.colors.empty();
+    });
+}
+
+template <typename T>
+uint64_t bytesIn(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+}  // namespace
+
+size_t Scene::triangleCount() const {
+    size_t count = 0;
+    for (const Instance& instance : instances)
+        count += meshes[static_cast<size_t>(instance.mesh)].triangleCount();
+    return count;
+}
+
+uint64_t SceneData::byteCount() const {
+    uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightAlias) +
+                   bytesIn(environmentAlias) + bytesIn(motion.morphDeltas) + bytesIn(lightDensity) +
+                   bytesIn(dielectricTable);
+    for (const auto* records : {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances,
+                                &previousGeometry, &materials, &textureRefs, &lights, &motion.restVertices}) {
+        sum += bytesIn(*records);
+    }
+    for (const auto& buffer : texels) sum += bytesIn(buffer);
+    return sum;
+}
+
+SceneData buildSceneData(const Scene& scene) {
+    SceneData data;
+    data.features.vertexData = hasVertexData(scene);
+    packMaterials(scene, data);
+    packGeometry(scene, data);
+    packLights(scene, data);
+    if (data.features.specular) fillGgxTable(data.ggxTable);
+    if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
+    return data;
+}
+
+}  // namespace limpid::scene

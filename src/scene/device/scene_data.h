@@ -1,0 +1,52 @@
+// A scene in the form that shaders read (shaders/common/scene_layout.h), still on the CPU and testable there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "gpu/vulkan/execute/acceleration_structures.h"
+#include "scene/model/scene.h"
+#include "scene/motion/motion_data.h"
+#include "shaders/common/scene_layout.h"
+
+namespace limpid::scene {
+
+/// Which parts of the shaders a scene needs; each member is a specialisation constant in scene_data.glsl.
+struct SceneFeatures {
+    bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
+         transmission = false, triangleLights = false, punctualLights = false, environment = false,
+         mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
+         roughGlass = false;
+    bool operator==(const SceneFeatures&) const = default;
+};
+
+/// Walker's alias table: entry i is kept with `keep`, otherwise replaced by `other`.
+struct AliasEntry {
+    float keep = 1.0f;
+    uint32_t other = 0;
+};
+
+struct SceneData {
+    std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
+        textureRefs, lights;
+    std::vector<vec4> bvhTriangles, environment, ggxTable, dielectricTable;
+    std::vector<AliasEntry> lightAlias, environmentAlias;
+    std::vector<float> lightDensity;
+    std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
+    SceneFeatures features;
+    layout::SceneParams params{};
+    uint32_t stackSize = 0;
+    MotionData motion;
+    /// For the `pipeline` tracer: the trees as runs of bvhTriangles, and a placement for each record of
+    /// bvhInstances; in a scene of one tree, one placement.
+    std::vector<gpu::TriangleTree> trees;
+    std::vector<gpu::TreePlacement> placements;
+
+    uint64_t byteCount() const;
+};
+
+/// Builds trees, light tables and mip levels. Throws Error if the textures exceed 4 x 2^27 texels.
+SceneData buildSceneData(const Scene& scene);
+
+}  // namespace limpid::scene

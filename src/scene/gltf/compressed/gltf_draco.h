@@ -1,0 +1,48 @@
+// Primitives whose vertices and triangles are stored as Draco streams.
+//
+// Specification: KHR_draco_mesh_compression,
+// https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_draco_mesh_compression; Draco
+// bitstream 2.2, https://google.github.io/draco/spec/
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/gltf_json.h"
+
+namespace limpid::scene::gltf {
+
+inline constexpr const char* dracoExtension = "KHR_draco_mesh_compression";
+
+/// Whether this build has Draco. Without it the extension is as unknown as any other.
+bool canDecodeDraco();
+
+/// One attribute of the stream: all points' values one after the other.
+struct DracoAttribute {
+    uint64_t componentType = 0;  ///< glTF's number of the stream's own type
+    size_t components = 0;
+    std::vector<std::byte> values;
+};
+
+struct DracoMesh {
+    std::vector<uint32_t> indices;           ///< three a triangle, below the number of points
+    std::vector<DracoAttribute> attributes;  ///< in the order of the numbers asked for
+};
+
+/// What the document says of a stream. The decoder refuses more before it allocates anything for it.
+struct DracoLimits {
+    uint64_t points = 0;     ///< exactly
+    uint64_t triangles = 0;  ///< at most
+    uint64_t bytes = 0;      ///< of all attributes together, at most
+};
+
+/// Decodes `stream`; `wanted` are unique numbers of attributes in it. Throws InputError, blaming `extension`,
+/// if the stream is damaged, is not a mesh of bitstream 2.2, has other counts than `limits` allow, expands
+/// beyond what a stream of its length plausibly can (gltf_draco.cpp), or lacks a wanted attribute.
+DracoMesh decodeDraco(const Object& extension, std::span<const std::byte> stream,
+                      std::span<const uint64_t> wanted, const DracoLimits& limits);
+
+}  // namespace limpid::scene::gltf

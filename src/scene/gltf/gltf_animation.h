@@ -1,0 +1,19 @@
+// glTF animations to clips.
+//
+// Specification: glTF 2.0, section 3.11 (animations),
+// https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#animations
+#pragma once
+
+#include <vector>
+
+#include "scene/gltf/gltf_document.h"
+
+namespace limpid::scene::gltf {
+
+/// All animations of the document. `nodes` are its nodes, by index. Throws InputError if times are not
+/// finite, negative or not strictly increasing, if there is another number of values than the times need, or
+/// an index is out of range. Channels of extensions, without a target, or of nodes placed by a matrix are
+/// ignored with a warning.
+std::vector<Clip> readAnimations(Document& document, const std::vector<Node>& nodes);
+
+}  // namespace limpid::scene::gltf

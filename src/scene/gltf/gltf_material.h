@@ -1,0 +1,18 @@
+// glTF materials to scene::Material.
+//
+// Specification: glTF 2.0, section 3.9 (materials),
+// https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#materials; KHR_materials_clearcoat,
+// _emissive_strength, _ior, _specular, _transmission, _unlit, _volume,
+// https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos
+#pragma once
+
+#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/gltf_texture.h"
+
+namespace limpid::scene::gltf {
+
+/// Throws InputError if a value has the wrong type or an index is out of range. Factors outside their range
+/// are clamped, with a warning; an emissive factor above 1 is kept.
+Material readMaterial(Document& document, const Object& source, TextureLibrary& textures);
+
+}  // namespace limpid::scene::gltf

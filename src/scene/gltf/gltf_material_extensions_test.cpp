@@ -1,0 +1,114 @@
+// KHR_materials_clearcoat, _specular and _volume as the loader reads them.
+#include <cmath>
+#include <limits>
+
+#include "base/log.h"
+#include "image/io/png/png.h"
+#include "scene/model/loader_test_files.h"
+#include "scene/model/prepare.h"
+
+namespace limpid::scene::test {
+namespace {
+
+class MaterialExtensionsTest : public FolderTest {
+  protected:
+    MaterialExtensionsTest() {
+        image::writePng(folder / "a.png", {1, 1, 4, {1, 2, 3, 4}});
+        file.add("images", {{"uri", "a.png"}});
+        file.add("textures", {{"source", 0}});
+        file.document["extensionsUsed"] =
+            file.document["extensionsRequired"] = {"KHR_materials_clearcoat", "KHR_materials_specular",
+                                                   "KHR_materials_volume", "KHR_materials_transmission"};
+    }
+
+    Material load(const std::string& extensions) {
+        file.document["materials"] = json::array({{{"extensions", json::parse(extensions)}}});
+        file.primitive()["material"] = 0;
+        scene = loadScene(file.save(folder));
+        return scene.materials.at(0);
+    }
+
+    const Texture& texture(const TextureRef& ref) const {
+        return scene.textures.at(static_cast<size_t>(ref.texture));
+    }
+
+    GltfFile file = square();
+    Scene scene;
+};
+
+TEST_F(MaterialExtensionsTest, Clearcoat) {
+    const Material m =
+        load(R"({"KHR_materials_clearcoat": {"clearcoatFactor": 0.75, "clearcoatRoughnessFactor": 0.5,
+        "clearcoatTexture": {"index": 0}, "clearcoatRoughnessTexture": {"index": 0},
+        "clearcoatNormalTexture": {"index": 0, "scale": 0.5}}})");
+    EXPECT_EQ(m.clearcoat, 0.75f);
+    EXPECT_EQ(m.clearcoatRoughness, 0.5f);
+    EXPECT_EQ(m.clearcoatNormalScale, 0.5f);
+    ASSERT_TRUE(m.clearcoatTexture && m.clearcoatRoughnessTexture && m.clearcoatNormalTexture);
+    EXPECT_FALSE(texture(m.clearcoatTexture).srgb);
+    EXPECT_FALSE(m.normalTexture);
+    log::setLevel(log::Level::Error);
+    prepare(scene);
+    log::setLevel(log::Level::Info);
+    EXPECT_EQ(scene.meshes[0].tangents.size(), scene.meshes[0].positions.size())
+        << "the coat's normal map needs them";
+}
+
+TEST_F(MaterialExtensionsTest, DefaultsSwitchThemOff) {
+    const Material m = load(R"({"KHR_materials_clearcoat": {"clearcoatTexture": {"index": 0}},
+        "KHR_materials_specular": {"specularFactor": 0, "specularTexture": {"index": 0}},
+        "KHR_materials_volume": {"attenuationColor": [0.5, 0.5, 0.5]}})");
+    EXPECT_EQ(m.clearcoat, 0.0f);
+    EXPECT_EQ(m.clearcoatRoughness, 0.0f);
+    EXPECT_EQ(m.absorption, vec3(0.0f)) << "the distance is infinite";
+    EXPECT_TRUE(m.thin) << "the thickness is 0";
+    EXPECT_TRUE(scene.textures.empty()) << "what nothing needs is not loaded";
+}
+
+TEST_F(MaterialExtensionsTest, SpecularTextures) {
+    const Material m = load(R"({"KHR_materials_specular": {"specularTexture": {"index": 0},
+        "specularColorTexture": {"index": 0}, "specularColorFactor": [0.5, 1, 2]}})");
+    EXPECT_EQ(m.specularColor, vec3(0.5f, 1, 2));
+    ASSERT_TRUE(m.specularTexture && m.specularColorTexture);
+    EXPECT_FALSE(texture(m.specularTexture).srgb);
+    EXPECT_TRUE(texture(m.specularColorTexture).srgb);
+}
+
+TEST_F(MaterialExtensionsTest, Volume) {
+    const Material m =
+        load(R"({"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume":
+        {"thicknessFactor": 0.25, "attenuationDistance": 0.5, "attenuationColor": [0.25, 1, 0]}})");
+    EXPECT_FALSE(m.thin);
+    // c after the distance d: sigma = -log(c) / d.
+    EXPECT_NEAR(std::exp(-0.5f * m.absorption.r), 0.25f, 1e-6f);
+    EXPECT_EQ(m.absorption.g, 0.0f);
+    EXPECT_TRUE(std::isfinite(m.absorption.b));
+    EXPECT_LT(std::exp(-0.5f * m.absorption.b), 1e-20f);
+}
+
+TEST_F(MaterialExtensionsTest, ValuesOutOfRange) {
+    log::setLevel(log::Level::Error);
+    const Material m =
+        load(R"({"KHR_materials_clearcoat": {"clearcoatFactor": 3, "clearcoatRoughnessFactor": -1},
+        "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1e-40, "attenuationColor": [2, -1, 0.5]}})");
+    EXPECT_EQ(m.clearcoat, 1.0f);
+    EXPECT_EQ(m.clearcoatRoughness, 0.0f);
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(m.absorption[c] >= 0.0f && std::isfinite(m.absorption[c]));
+    for (const char* distance : {"0", "-1"}) {
+        const Material volume = load(std::string(R"({"KHR_materials_volume": {"thicknessFactor": 1,
+            "attenuationColor": [0.1, 0.1, 0.1], "attenuationDistance": )") +
+                                     distance + "}}");
+        EXPECT_EQ(volume.absorption, vec3(0.0f));
+    }
+    for (const char* bad :
+         {R"({"KHR_materials_clearcoat": {"clearcoatFactor": "x"}})", R"({"KHR_materials_clearcoat": 1})",
+          R"({"KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 7}}})",
+          R"({"KHR_materials_volume": {"attenuationColor": [1, 1]}})",
+          R"({"KHR_materials_specular": {"specularColorTexture": {}}})"}) {
+        EXPECT_THROW(load(bad), InputError) << bad;
+    }
+    log::setLevel(log::Level::Info);
+}
+
+}  // namespace
+}  // namespace limpid::scene::test

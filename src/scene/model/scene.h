@@ -1,0 +1,169 @@
+// A scene on the CPU, as loaders and built-ins make it: meshes, instances, materials, textures, lights,
+// cameras. World: right-handed, +Y up, metres; cameras look along -Z (glTF). Colours: linear, Rec. 709.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "scene/motion/animation.h"
+#include "scene/motion/deformation.h"
+
+namespace limpid::scene {
+
+inline constexpr int none = -1;
+
+/// Triangles in object space. Optional attribute arrays are empty or as long as `positions`.
+struct Mesh {
+    std::string name;
+    std::vector<vec3> positions;
+    std::vector<vec3> normals;  ///< unit; empty: flat shading
+    std::vector<vec4>
+        tangents;  ///< xyz unit, w = +-1 (bitangent = w cross(n, t)); empty if no normal map needs it
+    std::vector<vec2> uv0, uv1;
+    std::vector<vec4> colors;       ///< linear RGBA
+    std::vector<uint32_t> indices;  ///< three per triangle, all below positions.size()
+    std::vector<uint16_t>
+        materialSlots;  ///< one per triangle, added to the instance's material; empty: all 0
+    /// Set if a clip may move the vertices; positions, normals and tangents above are then those at rest.
+    std::shared_ptr<const Deformation> deformation;
+
+    size_t triangleCount() const { return indices.size() / 3; }
+};
+
+enum class Wrap : uint8_t { Repeat, ClampToEdge, MirroredRepeat };
+enum class MipFilter : uint8_t { None, Nearest, Linear };
+
+struct Sampler {
+    Wrap wrapU = Wrap::Repeat;
+    Wrap wrapV = Wrap::Repeat;
+    bool magLinear = true;
+    bool minLinear = true;
+    MipFilter mip = MipFilter::Linear;
+    bool operator==(const Sampler&) const = default;
+};
+
+/// 8-bit RGBA texels, row 0 at the top (v = 0). `srgb`: RGB hold sRGB-encoded values.
+struct Texture {
+    std::string name;
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<uint8_t> rgba;
+    bool srgb = false;
+    Sampler sampler;
+};
+
+/// A use of a texture: which, by which coordinates, and KHR_texture_transform as a 2x3 matrix on (u, v, 1).
+struct TextureRef {
+    int texture = none;
+    int uvSet = 0;  ///< 0 or 1
+    vec3 rowU{1, 0, 0};
+    vec3 rowV{0, 1, 0};
+    explicit operator bool() const { return texture != none; }
+};
+
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+
+/// glTF metallic-roughness. Defaults are glTF's.
+struct Material {
+    std::string name;
+    vec4 baseColor{1.0f};
+    float metallic = 1.0f;
+    float roughness = 1.0f;    ///< perceptual; GGX alpha = roughness^2
+    float specular = 1.0f;     ///< weight of the dielectric's specular lobe; 0: Lambertian
+    vec3 specularColor{1.0f};  ///< factor of its reflectance at normal incidence
+    float ior = 1.5f;
+    float transmission = 0.0f;
+    bool thin = true;  ///< transmission without refraction (no volume); false: a closed body that refracts
+    vec3 absorption{0.0f};   ///< of a closed body's inside, per metre of the world (Beer's law)
+    float clearcoat = 0.0f;  ///< weight of a dielectric of index 1.5 over everything else, emission too
+    float clearcoatRoughness = 0.0f;  ///< perceptual
+    float clearcoatNormalScale = 1.0f;
+    vec3 emission{0.0f};        ///< radiance, strength included
+    bool staysEmitter = false;  ///< its triangles are among the lights even while it emits nothing
+    float normalScale = 1.0f;
+    float occlusionStrength =
+        1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    float alphaCutoff = 0.5f;
+    bool doubleSided = false;
+    bool unlit = false;  ///< baseColor is emitted as it is, nothing is reflected
+    TextureRef baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture, emissionTexture,
+        transmissionTexture;
+    TextureRef specularTexture;       ///< alpha: factor of `specular`
+    TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
+    TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
+};
+
+/// Its triangles are lights.
+inline bool isEmitter(const Material& material) {
+    return material.staysEmitter || material.emission != vec3(0.0f);
+}
+
+/// How an instance may differ from frame to frame. Follows from the chosen clip (scene/motion/movement.h).
+enum class Movement : uint8_t { Still, Rigid, Deforming };
+
+/// A mesh placed in the world. Meshes that share geometry are one Mesh with several instances.
+struct Instance {
+    int mesh = 0;
+    int material = 0;      ///< of slot 0
+    mat4 transform{1.0f};  ///< at rest; of a skinned mesh, whose vertices are in world space, the identity
+    std::string name;
+    int node = none;  ///< of the rig: what moves it, and where its morph weights are
+    int skin = none;  ///< of the rig
+    Movement movement = Movement::Still;
+};
+
+/// KHR_lights_punctual: point and spot intensity in candela, directional in lux (radiance unit: cd/m^2).
+struct PunctualLight {
+    enum class Kind { Point, Spot, Directional } kind = Kind::Point;
+    vec3 position{0.0f};
+    vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit; the way the light travels
+    vec3 intensity{1.0f};               ///< colour times intensity
+    float range = 0.0f;                 ///< metres; 0: unlimited
+    float innerCone = 0.0f;             ///< radians, half angles
+    float outerCone = pi / 4;
+    std::string name;
+    int node = none;  ///< of the rig
+};
+
+/// A lat-long picture around the scene: row 0 is +Y, the centre column looks along -Z... (see
+/// scene/model/environment.h).
+struct Environment {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<vec3> radiance;
+    vec3 scale{1.0f};   ///< multiplies the radiance
+    float turn = 0.0f;  ///< about +Y, of a full circle: what stood in the direction u stands in u + turn
+    bool empty() const { return radiance.empty(); }
+};
+
+struct Camera {
+    std::string name;
+    mat4 toWorld{1.0f};  ///< rigid: no scale
+    bool orthographic = false;
+    float verticalFov = 0.8f;  ///< radians, perspective
+    float halfHeight = 1.0f;   ///< world units, orthographic
+    float aspect = 0.0f;       ///< width / height the author meant; 0: the image's
+    int node = none;           ///< of the rig
+};
+
+struct Scene {
+    std::string name;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Material> materials;  ///< never empty
+    std::vector<Texture> textures;
+    std::vector<PunctualLight> lights;
+    std::vector<Camera> cameras;  ///< never empty once prepared (see scene/model/prepare.h)
+    Environment environment;
+    Rig rig;
+    int clip = none;  ///< of rig.clips: the one that plays
+
+    size_t triangleCount() const;  ///< with every instance counted
+};
+
+}  // namespace limpid::scene

@@ -1,0 +1,313 @@
+#include "scene/motion/scene_animator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "scene/device/pack.h"
+#include "scene/device/top_tree.h"
+#include "scene/model/camera.h"
+#include "scene/model/mesh_repair.h"
+
+namespace limpid::scene {
+
+/// The scene's pose at one time, as far as it moves.
+struct SceneAnimator::Moment {
+    RigPose pose;
+    std::vector<mat4> transforms;            ///< of the moving leaves
+    std::map<int, std::vector<mat4>> skins;  ///< joint matrices of the skins in use
+};
+
+namespace {
+
+template <typename T>
+void addUpload(SceneFrame& frame, std::string_view buffer, uint64_t offset, std::span<const T> values) {
+    if (values.empty()) return;
+    const auto bytes = std::as_bytes(values);
+    frame.uploads.push_back({buffer, offset, {bytes.begin(), bytes.end()}});
+}
+
+template <typename T>
+void addUpload(SceneFrame& frame, std::string_view buffer, uint64_t offset, const std::vector<T>& values) {
+    addUpload(frame, buffer, offset, std::span<const T>(values));
+}
+
+bool isFinite(const mat4& m) {
+    return scene::isFinite(m[0]) && scene::isFinite(m[1]) && scene::isFinite(m[2]) && scene::isFinite(m[3]);
+}
+
+bool isMirrored(const mat4& m) {
+    return glm::determinant(mat3(m)) < 0.0f;
+}
+
+/// Far enough from overflow for squared lengths and areas: the limit of findFault() for scenes at rest. The
+/// empty box of what has become NaN is not in it.
+bool isInRange(const Aabb& box) {
+    const auto small = [](const vec3& v) {
+        return std::abs(v.x) < 1e18f && std::abs(v.y) < 1e18f && std::abs(v.z) < 1e18f;
+    };
+    return !box.empty() && small(box.lower) && small(box.upper);
+}
+
+[[noreturn]] void failOutOfRange(const Instance& instance) {
+    throw Error(fmt::format("instance '{}' leaves the range of numbers", instance.name));
+}
+
+/// `box` with each corner moved by weight * something in `delta`.
+Aabb widened(Aabb box, const Aabb& delta, float weight) {
+    const vec3 a = weight * delta.lower, b = weight * delta.upper;
+    box.lower += glm::min(a, b);
+    box.upper += glm::max(a, b);
+    return box;
+}
+
+}  // namespace
+
+SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
+    : scene_(scene), motion_(data.motion), params_(data.params), hasVertexData_(data.features.vertexData) {
+    if (scene.clip == none) throw Error("no clip is chosen");
+    for (const MovingLeaf& leaf : motion_.leaves)
+        records_.push_back(data.instances[size_t{leaf.instance} * layout::INSTANCE_TEXELS + 3]);
+    for (const gpu::TriangleTree& tree : data.trees) firstTriangles_.push_back(tree.first);
+    setLights(data);
+    // On the device already, and the largest part.
+    motion_.restVertices.clear();
+    motion_.morphDeltas.clear();
+}
+
+void SceneAnimator::setLights(const SceneData& data) {
+    firstPunctual_ = data.lights.size() - scene_.lights.size() * layout::LIGHT_TEXELS;
+    punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
+    motion_.lights = data.motion.lights;
+}
+
+SceneAnimator::Moment SceneAnimator::momentAt(double time) const {
+    Moment moment;
+    moment.pose = evaluate(scene_.rig, &scene_.rig.clips[static_cast<size_t>(scene_.clip)], time);
+    for (size_t node = 0; node < moment.pose.toWorld.size(); ++node) {
+        if (!isFinite(moment.pose.toWorld[node]))
+            throw Error(
+                fmt::format("node {} '{}' leaves the range of numbers", node, scene_.rig.nodes[node].name));
+    }
+    for (const MovingLeaf& leaf : motion_.leaves) {
+        const Instance& instance = scene_.instances[leaf.instance];
+        const bool skinned = instance.skin != none;
+        moment.transforms.push_back(skinned ? mat4(1.0f)
+                                            : moment.pose.toWorld[static_cast<size_t>(instance.node)]);
+        if (skinned && !moment.skins.contains(instance.skin)) {
+            const Skin& skin = scene_.rig.skins[static_cast<size_t>(instance.skin)];
+            moment.skins[instance.skin] = jointMatrices(skin, moment.pose);
+        }
+    }
+    for (const auto& [skin, joints] : moment.skins) {
+        for (const mat4& joint : joints) {
+            if (!isFinite(joint)) throw Error(fmt::format("skin {} leaves the range of numbers", skin));
+        }
+    }
+    return moment;
+}
+
+SceneFrame SceneAnimator::frame(double time, double previousTime) const {
+    const Moment now = momentAt(time), before = momentAt(previousTime);
+    SceneFrame frame;
+    frame.params = params_;
+    frame.refitLevels = motion_.refitLevels;
+    frame.firstRefitNode = motion_.firstRefitNode;
+    addPoses(now, before, frame);
+    addInstances(now, before, frame);
+    addMovingTree(now, frame);
+    addTriangleLights(now, frame);
+    addPunctualLights(now, frame);
+    return frame;
+}
+
+void SceneAnimator::addPoses(const Moment& now, const Moment& before, SceneFrame& frame) const {
+    std::vector<vec4> texels;
+    const auto matrices = [&](const Moment& moment, int skin) {
+        if (skin == none) return layout::NONE;
+        const auto first = static_cast<uint32_t>(texels.size());
+        for (const mat4& m : moment.skins.at(skin)) {
+            for (int row = 0; row < 3; ++row) texels.emplace_back(m[0][row], m[1][row], m[2][row], m[3][row]);
+        }
+        return first;
+    };
+    const auto weights = [&](const Moment& moment, int node, uint32_t count) {
+        if (count == 0) return layout::NONE;
+        const auto first = static_cast<uint32_t>(texels.size());
+        const std::vector<float>& values = moment.pose.weights[static_cast<size_t>(node)];
+        texels.resize(texels.size() + (count + 3) / 4, vec4(0.0f));
+        for (uint32_t i = 0; i < count && i < values.size(); ++i)
+            texels[first + i / 4][static_cast<int>(i % 4)] = values[i];
+        return first;
+    };
+    for (const DeformingInstance& d : motion_.deforming) {
+        const Instance& instance = scene_.instances[d.instance];
+        layout::PoseParams pose{};
+        pose.firstVertex = d.firstVertex;
+        pose.vertexCount = d.vertexCount;
+        pose.morphFirst = d.morphFirstTexel;
+        pose.targetCount = d.targetCount;
+        pose.matricesNow = matrices(now, instance.skin);
+        pose.matricesBefore = matrices(before, instance.skin);
+        pose.weightsNow = weights(now, instance.node, d.targetCount);
+        pose.weightsBefore = weights(before, instance.node, d.targetCount);
+        pose.previousBase = params_.previousVertexBase;
+        pose.hasVertexData = hasVertexData_ ? 1u : 0u;
+        frame.poses.push_back(pose);
+    }
+    addUpload(frame, "poseMatrices", 0, texels);
+}
+
+void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneFrame& frame) const {
+    for (size_t i = 0; i < motion_.leaves.size(); ++i) {
+        const MovingLeaf& leaf = motion_.leaves[i];
+        const mat4& transform = now.transforms[i];
+        std::array<uvec4, layout::INSTANCE_TEXELS> record{};
+        packRows(record.data(), transform);
+        record[3] = records_[i];
+        record[3].w = (record[3].w & ~layout::INSTANCE_MIRRORED) |
+                      (isMirrored(transform) ? layout::INSTANCE_MIRRORED : 0u);
+        addUpload<uvec4>(frame, "instances", uint64_t{leaf.instance} * sizeof(record), record);
+
+        std::array<uvec4, layout::PREVIOUS_INSTANCE_TEXELS> previous{};
+        packRows(previous.data(), before.transforms[i]);
+        addUpload<uvec4>(frame, "previousGeometry", uint64_t{leaf.instance} * sizeof(previous), previous);
+
+        std::array<uvec4, layout::BVH_INSTANCE_TEXELS> bvh{};
+        packRows(bvh.data(), isInvertible(transform) ? glm::inverse(transform) : mat4(1.0f));
+        bvh[3] = {leaf.root, leaf.instance, firstTriangles_[leaf.tree], 0};
+        addUpload<uvec4>(frame, "bvhInstances", uint64_t{leaf.record} * sizeof(bvh), bvh);
+        frame.placements.emplace_back(leaf.record, placementOf(leaf.tree, transform));
+    }
+}
+
+/// Skinned positions lie between where the joints alone would take them (weights are not negative), so joint
+/// by joint boxes hold them all.
+Aabb SceneAnimator::boundsOf(const DeformingInstance& deforming, const Moment& moment) const {
+    const Instance& instance = scene_.instances[deforming.instance];
+    const std::vector<float>& weights = moment.pose.weights[static_cast<size_t>(instance.node)];
+    Aabb result;
+    for (const auto& [joint, rest] : deforming.jointBounds) {
+        Aabb box = rest;
+        for (size_t t = 0; t < deforming.targetBounds.size() && t < weights.size(); ++t)
+            box = widened(box, deforming.targetBounds[t], weights[t]);
+        const bool moved = instance.skin != none && joint != layout::NONE;
+        if (moved && isInRange(box)) box = transformed(box, moment.skins.at(instance.skin)[joint]);
+        if (!isInRange(box)) failOutOfRange(instance);
+        result.grow(box);
+    }
+    return result;
+}
+
+void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
+    std::vector<TopLeaf> leaves;
+    std::vector<Aabb> bounds;
+    for (const MovingLeaf& leaf : motion_.leaves) bounds.push_back(leaf.bounds);
+    for (const DeformingInstance& d : motion_.deforming) bounds[d.leaf] = boundsOf(d, now);
+    for (size_t i = 0; i < motion_.leaves.size(); ++i) {
+        const mat4& transform = now.transforms[i];
+        Aabb box;
+        if (isInvertible(transform)) {
+            box = transformed(bounds[i], transform);
+            if (!isInRange(box)) failOutOfRange(scene_.instances[motion_.leaves[i].instance]);
+        }
+        leaves.push_back({motion_.leaves[i].record, box});
+    }
+    const uint32_t firstMoving = motion_.firstTopNode + 1;
+    TopTree moving = buildTopTree(leaves, firstMoving, motion_.topStack);
+    std::vector<BvhChild> children;
+    Aabb all = motion_.stillBounds;
+    all.grow(moving.bounds);
+    if (!moving.bounds.empty()) children.push_back({BvhRef::node(firstMoving), moving.bounds});
+    // Always there, or a scene where everything moves and nothing is in sight would have no node.
+    Aabb still = motion_.stillBounds;
+    if (still.empty()) still.grow(all.empty() ? vec3(0.0f) : all.center());
+    children.push_back({BvhRef::node(motion_.stillRoot), still});
+    std::vector<BvhNode> nodes{makeBvhNode(children)};
+    nodes.insert(nodes.end(), moving.nodes.begin(), moving.nodes.end());
+    addUpload(frame, "quantisedNodes", uint64_t{motion_.firstTopNode} * sizeof(BvhNode), nodes);
+    frame.changedNodes.push_back({motion_.firstTopNode, static_cast<uint32_t>(nodes.size())});
+    if (motion_.refitNodeCount > 0)
+        frame.changedNodes.push_back({motion_.firstRefitNode, motion_.refitNodeCount});
+    if (all.empty()) return;
+    frame.params.sceneCenter = all.center();
+    frame.params.sceneRadius = std::max(0.5f * glm::length(all.size()), 1e-20f);
+}
+
+std::vector<vec3> SceneAnimator::worldPositions(uint32_t index, const Moment& moment) const {
+    const Instance& instance = scene_.instances[index];
+    const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+    std::vector<vec3> positions = mesh.positions;
+    mat4 toWorld = moment.pose.toWorld[static_cast<size_t>(instance.node)];
+    if (instance.movement == Movement::Deforming) {
+        std::span<const mat4> joints;
+        if (instance.skin != none) {
+            joints = moment.skins.at(instance.skin);
+            toWorld = mat4(1.0f);
+        }
+        positions = deform(*mesh.deformation, moment.pose.weights[static_cast<size_t>(instance.node)], joints)
+                        .positions;
+    }
+    for (vec3& p : positions) p = vec3(toWorld * vec4(p, 1.0f));
+    return positions;
+}
+
+void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame) const {
+    for (const MovingLights& lights : motion_.lights) {
+        const Instance& instance = scene_.instances[lights.instance];
+        const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+        const std::vector<vec3> positions = worldPositions(lights.instance, now);
+        const bool mirrored =
+            instance.skin == none && isMirrored(now.pose.toWorld[static_cast<size_t>(instance.node)]);
+        const uint64_t stride = layout::LIGHT_TEXELS * sizeof(uvec4);
+        for (size_t i = 0; i < lights.triangles.size(); ++i) {
+            const uint32_t* index = &mesh.indices[size_t{3} * lights.triangles[i]];
+            const vec3 v0 = positions[index[0]];
+            const vec3 v1 = positions[index[mirrored ? 2 : 1]], v2 = positions[index[mirrored ? 1 : 2]];
+            const uint64_t at = (lights.firstLight + i) * stride;
+            // The fourth word of each texel stays as it is, but for the kind's mirror bit.
+            const auto addCorner = [&](uint64_t texel, const vec3& v) {
+                addUpload<vec3>(frame, "lights", at + texel * sizeof(uvec4), std::span(&v, 1));
+            };
+            addCorner(0, v0);
+            addCorner(1, v1);
+            addCorner(2, v2);
+            const uint32_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[lights.triangles[i]];
+            const Material& material = scene_.materials[static_cast<size_t>(instance.material) + slot];
+            const uint32_t kind =
+                (material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE) |
+                (mirrored ? layout::LIGHT_MIRRORED : 0u);
+            addUpload<uint32_t>(frame, "lights", at + 3 * sizeof(uint32_t), std::span(&kind, 1));
+            const float area = 0.5f * glm::length(glm::cross(v1 - v0, v2 - v0));
+            const float density = area > 0.0f ? lights.probabilities[i] / area : 0.0f;
+            addUpload<float>(frame, "lightDensity",
+                             (uint64_t{lights.firstDensity} + lights.triangles[i]) * sizeof(float),
+                             std::span(&density, 1));
+        }
+    }
+}
+
+void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame) const {
+    for (size_t i = 0; i < scene_.lights.size(); ++i) {
+        const PunctualLight& light = scene_.lights[i];
+        if (light.node == none) continue;
+        const mat4& toWorld = now.pose.toWorld[static_cast<size_t>(light.node)];
+        const uvec4* packed = &punctual_[i * layout::LIGHT_TEXELS];
+        const std::array<uvec4, 2> texels{bits(vec3(toWorld[3]), packed[0].w),
+                                          bits(-vec3(withoutScale(toWorld)[2]), packed[1].w)};
+        addUpload<uvec4>(frame, "lights", (firstPunctual_ + i * layout::LIGHT_TEXELS) * sizeof(uvec4),
+                         texels);
+    }
+}
+
+Camera cameraAt(const Scene& scene, const Camera& camera, double time) {
+    if (camera.node == none || scene.clip == none) return camera;
+    const RigPose pose = evaluate(scene.rig, &scene.rig.clips[static_cast<size_t>(scene.clip)], time);
+    Camera result = camera;
+    result.toWorld = withoutScale(pose.toWorld[static_cast<size_t>(camera.node)]);
+    return result;
+}
+
+}  // namespace limpid::scene

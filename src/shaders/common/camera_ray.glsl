@@ -1,0 +1,75 @@
+// Between the picture and the world: the ray through a point of the picture, and the point that sees a place.
+#ifndef LIMPID_CAMERA_RAY_GLSL
+#define LIMPID_CAMERA_RAY_GLSL
+
+#include "shaders/common/camera.h"
+#include "shaders/common/rng.glsl"
+#include "shaders/trace/trace.glsl"
+
+/// Point `index` of the Halton sequence in the bases 2 and 3, in [0, 1)^2.
+vec2 halton(uint index) {
+    vec2 point = vec2(float(bitfieldReverse(index) >> 8) / float(0x01000000), 0.0);
+    for (float digit = 1.0 / 3.0; index > 0u; index /= 3u) {
+        point.y += digit * float(index % 3u);
+        digit /= 3.0;
+    }
+    return point;
+}
+
+/// The point in the pixel; draws two numbers in every mode, so that all that follow are the same.
+vec2 subpixel(ViewParams view, uint sampleOfLaunch, inout uint rng) {
+    const vec2 u = random2(rng);
+    const uint index = view.firstSample + sampleOfLaunch;
+    if (view.jitter == JITTER_OFF || index == 0u) return vec2(0.5);
+    return view.jitter == JITTER_PIXEL ? u : halton(index);
+}
+
+Ray cameraRay(CameraParams camera, vec2 size, vec2 pixel) {
+    const vec2 p = vec2(2.0, -2.0) * pixel / size + vec2(-1.0, 1.0);
+    const vec3 offset = p.x * camera.right + p.y * camera.up;
+    if (camera.orthographic != 0u) return Ray(camera.origin + offset, camera.forward, INFINITE_DISTANCE);
+    return Ray(camera.origin, normalize(camera.forward + offset), INFINITE_DISTANCE);
+}
+
+Ray cameraRay(ViewParams view, vec2 pixel) {
+    return cameraRay(view.camera, vec2(view.width, view.height), pixel);
+}
+
+/// How wide a ray is, for textures: at the eye, and what that grows by with distance (T. Akenine-Moeller et al.,
+/// "Texture level of detail strategies for real-time ray tracing", Ray Tracing Gems, 2019).
+struct Cone {
+    float width, spread;
+};
+
+/// The width of the n-th ray, from 1, that looks at the same: 1 / sqrt(n), as if n rays shared it evenly. The mean tends
+/// to what no filter has blurred, and few rays are still smooth (likewise kernels shrink in C. Knaus, M. Zwicker,
+/// "Progressive photon mapping: a probabilistic approach", ACM TOG 2011).
+float shareOfRay(float n) {
+    return inversesqrt(n);
+}
+
+/// Which of its pixel's rays this is, from 1, over all launches of a mean.
+float rayNumber(ViewParams view, uint sampleIndex) {
+    return view.samplesBefore + float(sampleIndex) + 1.0;
+}
+
+/// A camera ray's share of its pixel; all of it where every ray goes through the centre.
+Cone pixelCone(ViewParams view, uint sampleIndex) {
+    const float n = view.jitter != JITTER_OFF ? rayNumber(view, sampleIndex) : 1.0;
+    const float width = view.camera.spread * shareOfRay(n);
+    return view.camera.orthographic != 0u ? Cone(width, 0.0) : Cone(0.0, width);
+}
+
+/// Pixel that sees the point (of a miss: the direction) in xy; distance in z; valid in w.
+vec4 project(CameraParams camera, vec2 size, vec3 point, bool isDirection) {
+    const vec3 d = isDirection ? point : point - camera.origin;
+    const vec2 along = vec2(dot(d, camera.right) / dot(camera.right, camera.right),
+                            dot(d, camera.up) / dot(camera.up, camera.up));
+    const float w = dot(d, camera.forward);
+    const bool orthographic = camera.orthographic != 0u;
+    const vec2 ndc = orthographic ? along : along / max(w, 1e-20);
+    const vec2 pixel = (ndc * vec2(0.5, -0.5) + 0.5) * size;
+    return vec4(pixel, orthographic ? w : length(d), w > 0.0 && !(orthographic && isDirection) ? 1.0 : 0.0);
+}
+
+#endif

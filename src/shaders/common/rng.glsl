@@ -1,0 +1,55 @@
+// Random numbers: one stream per pixel and frame.
+//
+// Seed: 16 rounds of the Tiny Encryption Algorithm; F. Zafar, M. Olano, A. Curtis, "GPU random numbers via the Tiny
+// Encryption Algorithm", HPG 2010. Streams: `tea` continues with the low 24 bits of Numerical Recipes' linear
+// congruential generator (as in many Vulkan tutorials; its low bits are poor, it is kept for comparison); `pcg` with the
+// RXS-M-XS output of M. E. O'Neill, "PCG: a family of simple fast space-efficient statistically good algorithms for
+// random number generation", 2014. C++ copy for tests: tests/reference/rng_copy.h.
+#ifndef LIMPID_RNG_GLSL
+#define LIMPID_RNG_GLSL
+
+layout(constant_id = 20) const bool SAMPLER_TEA = false;
+
+uint tea(uint v0, uint v1) {
+    uint sum = 0u;
+    for (uint round = 0u; round < 16u; ++round) {
+        sum += 0x9e3779b9u;
+        v0 += ((v1 << 4) + 0xa341316cu) ^ (v1 + sum) ^ ((v1 >> 5) + 0xc8013ea4u);
+        v1 += ((v0 << 4) + 0xad90777du) ^ (v0 + sum) ^ ((v0 >> 5) + 0x7e95761eu);
+    }
+    return v0;
+}
+
+/// The stream of a pixel in a frame; `seed` 0 gives the document's.
+uint startStream(uint pixel, uint frame, uint seed) {
+    return tea(pixel, frame ^ (seed * 0x9e3779b9u));
+}
+
+uint pcgOutput(uint state) {
+    const uint word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
+/// Uniform in [0, 1), a multiple of 2^-24.
+float random(inout uint state) {
+    if (SAMPLER_TEA) {
+        state = 1664525u * state + 1013904223u;
+        return float(state & 0x00ffffffu) / float(0x01000000);
+    }
+    const uint result = pcgOutput(state);
+    state = state * 747796405u + 2891336453u;
+    return float(result >> 8) / float(0x01000000);
+}
+
+/// A number that follows from the state and two more, and leaves the state as it is.
+float randomOf(uint state, uint a, uint b) {
+    const uint mixed = pcgOutput(state ^ pcgOutput(a * 747796405u + 2891336453u) ^ (b * 277803737u));
+    return float(pcgOutput(mixed * 747796405u + 2891336453u) >> 8) / float(0x01000000);
+}
+
+vec2 random2(inout uint state) {
+    const float x = random(state);
+    return vec2(x, random(state));
+}
+
+#endif

@@ -1,0 +1,50 @@
+// The scene's buffers (layout: scene_layout.h) and the specialisation constants that remove what a scene has not.
+// lavapipe runs both sides of every `if`, so what is removed here is the difference between 1x and several x.
+#ifndef LIMPID_SCENE_DATA_GLSL
+#define LIMPID_SCENE_DATA_GLSL
+
+#include "shaders/common/scene_layout.h"
+
+layout(constant_id = 0) const bool TWO_LEVEL = true;         // instances above the static tree
+layout(constant_id = 1) const bool HAS_VERTEX_DATA = true;   // normals, coordinates, tangents or colours
+layout(constant_id = 2) const bool HAS_TEXTURES = true;
+layout(constant_id = 3) const bool HAS_ALPHA = true;         // masked or blended materials
+layout(constant_id = 4) const bool HAS_SPECULAR = true;      // anything not Lambertian
+layout(constant_id = 5) const bool HAS_TRANSMISSION = true;
+layout(constant_id = 6) const bool HAS_TRIANGLE_LIGHTS = true;
+layout(constant_id = 7) const bool HAS_PUNCTUAL_LIGHTS = true;
+layout(constant_id = 8) const bool HAS_ENVIRONMENT = true;
+layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack entries
+layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
+layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
+layout(constant_id = 12) const bool CPU_LOOPS = false;          // for CPUs, where no branch skips its body
+layout(constant_id = 17) const bool EXPANDED_NODES = false;     // the format of bvhNodes
+layout(constant_id = 13) const bool HAS_MOTION = false;         // something moves from frame to frame
+layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
+layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
+layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
+layout(constant_id = 18) const bool HAS_ROUGH_GLASS = true;   // rough boundaries that refract
+
+layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
+layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;
+layout(set = 0, binding = 2, rgba32ui) uniform readonly uimageBuffer bvhInstances;
+layout(set = 0, binding = 3, rgba32ui) uniform readonly uimageBuffer triangles;
+layout(set = 0, binding = 4, rgba32ui) uniform readonly uimageBuffer vertices;
+layout(set = 0, binding = 5, rgba32ui) uniform readonly uimageBuffer instances;
+layout(set = 0, binding = 6, rgba32ui) uniform readonly uimageBuffer materials;
+layout(set = 0, binding = 7, rgba32ui) uniform readonly uimageBuffer textureRefs;
+layout(set = 0, binding = 8, rgba32ui) uniform readonly uimageBuffer lights;
+layout(set = 0, binding = 9, rg32ui) uniform readonly uimageBuffer lightAlias;
+layout(set = 0, binding = 10, r32f) uniform readonly imageBuffer lightDensity;
+layout(set = 0, binding = 11, rgba32f) uniform readonly imageBuffer environment;
+layout(set = 0, binding = 12, rg32ui) uniform readonly uimageBuffer environmentAlias;
+layout(set = 0, binding = 13, rgba32f) uniform readonly imageBuffer ggxTable;
+layout(set = 0, binding = 14, rgba32f) uniform readonly imageBuffer dielectricTable;
+layout(set = 0, binding = 15, r32ui) uniform readonly uimageBuffer texels0;
+layout(set = 0, binding = 16, r32ui) uniform readonly uimageBuffer texels1;
+layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;
+layout(set = 0, binding = 18, r32ui) uniform readonly uimageBuffer texels3;
+layout(set = 0, binding = 19, rgba32ui) uniform readonly uimageBuffer previousGeometry;
+// Binding 20 and up belong to the pass that includes this file.
+
+#endif

@@ -1,0 +1,161 @@
+// How the scene lies in storage texel buffers: included by C++ (scene/scene_data.*) and by GLSL
+// (scene_data.glsl). A texel is 16 bytes unless said otherwise; floats are stored by their bits.
+#ifndef LIMPID_SHADERS_SCENE_LAYOUT_H
+#define LIMPID_SHADERS_SCENE_LAYOUT_H
+
+#ifdef __cplusplus
+#include "base/math.h"
+namespace limpid::layout {
+#define LIMPID_CONST inline constexpr
+#else
+#define LIMPID_CONST const
+#endif
+
+LIMPID_CONST uint NONE = 0xFFFFFFFFu;
+
+// bvhNodes, quantised (on CPUs): scene/device/bvh.h's BvhNode.
+LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
+// bvhNodes, expanded (on GPUs): x, y, z of the lower corners of the four children, then of the upper;
+// children. A child that does not exist has its lower corner above its upper.
+LIMPID_CONST uint EXPANDED_NODE_TEXELS = 7u;
+
+// bvhTriangles, in leaf order: v0 | primitive; v1 | instance or NONE (then the one being traversed); v2 |
+// shading triangle. Positions are in world space in the static tree, in object space in an instanced one.
+LIMPID_CONST uint BVH_TRIANGLE_TEXELS = 3u;
+LIMPID_CONST uint BVH_TRIANGLE_ALPHA = 0x80000000u;  // in the first texel's w: candidates need the alpha test
+
+// bvhInstances, leaves of the top tree: three rows of world-to-object; root node | instance | the tree's
+// first triangle in bvhTriangles | 0.
+LIMPID_CONST uint BVH_INSTANCE_TEXELS = 4u;
+
+// triangles (shading): vertex 0, 1, 2 | material slot and flags.
+LIMPID_CONST uint TRIANGLE_MATERIAL_MASK = 0x00FFFFFFu;
+LIMPID_CONST uint TRIANGLE_SMOOTH = 0x80000000u;  // has vertex normals
+
+// vertices: normal (octahedral 2 x snorm16) | tangent (octahedral, lowest bit: sign) | uv0; uv1 | colour (4 x
+// unorm16).
+LIMPID_CONST uint VERTEX_TEXELS = 2u;
+
+// instances: three rows of object-to-world; material | first entry in lightDensity or NONE | first shading
+// triangle | flags. lightDensity: one float for each primitive of an emissive instance, the probability that
+// next-event estimation chooses it over its area.
+LIMPID_CONST uint INSTANCE_TEXELS = 4u;
+LIMPID_CONST uint INSTANCE_MIRRORED = 1u;   // negative determinant: front faces turn clockwise
+LIMPID_CONST uint INSTANCE_DEFORMING = 2u;  // its vertices have previous positions of their own
+
+// previousGeometry, of scenes that move: for each instance three rows of object-to-world in the previous
+// frame; then for each vertex of deforming instances its position in that instance's space | normal
+// (octahedral).
+LIMPID_CONST uint PREVIOUS_INSTANCE_TEXELS = 3u;
+
+// restVertices, before morphing and skinning: position | normal (octahedral); tangent (octahedral, lowest
+// bit: sign) | joints 0, 1 | joints 2, 3 | 0; weights.
+LIMPID_CONST uint REST_VERTEX_TEXELS = 3u;
+// morphDeltas: of position, normal, tangent; all vertices of a target, then the next target.
+LIMPID_CONST uint MORPH_DELTA_TEXELS = 3u;
+// poseMatrices: three rows per joint; then morph weights, four per texel.
+LIMPID_CONST uint POSE_MATRIX_TEXELS = 3u;
+// nodeBounds of deforming trees: lower corner; upper corner.
+LIMPID_CONST uint NODE_BOUNDS_TEXELS = 2u;
+
+// materials: baseColor rgb | flags; emission | roughness; metallic | specular | ior | transmission;
+// alpha | cutoff | normal scale | 0; texture references (base, metallic-roughness, normal, emission);
+// reference of transmission | specular colour; references (specular, specular colour, clear coat, its
+// roughness); reference of its normal | clear coat | its roughness | its normal scale; absorption | 0.
+LIMPID_CONST uint MATERIAL_TEXELS = 9u;
+LIMPID_CONST uint MATERIAL_MASK = 1u;
+LIMPID_CONST uint MATERIAL_BLEND = 2u;
+LIMPID_CONST uint MATERIAL_DOUBLE_SIDED = 4u;
+LIMPID_CONST uint MATERIAL_UNLIT = 8u;
+LIMPID_CONST uint MATERIAL_THIN = 16u;
+LIMPID_CONST uint MATERIAL_EMISSIVE = 32u;
+
+// textureRefs: rowU | texture's first texel (bits 27.. choose the texel buffer); rowV | sampler and flags;
+// width | height | levels | 0.
+LIMPID_CONST uint TEXTURE_REF_TEXELS = 3u;
+LIMPID_CONST uint TEXEL_BUFFER_SHIFT = 27u;
+LIMPID_CONST uint TEXEL_BUFFERS = 4u;
+LIMPID_CONST uint TEXTURE_WRAP_U_SHIFT = 0u;  // 2 bits: scene::Wrap
+LIMPID_CONST uint TEXTURE_WRAP_V_SHIFT = 2u;
+LIMPID_CONST uint TEXTURE_MIP_SHIFT = 4u;  // 2 bits: scene::MipFilter
+LIMPID_CONST uint TEXTURE_MAG_LINEAR = 64u;
+LIMPID_CONST uint TEXTURE_MIN_LINEAR = 128u;
+LIMPID_CONST uint TEXTURE_SRGB = 256u;
+LIMPID_CONST uint TEXTURE_UV1 = 512u;
+
+// lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
+// triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
+// | kind; direction | probability if drawn by power; cos inner | cos outer | range | 0; intensity | 0.
+LIMPID_CONST uint LIGHT_TEXELS = 4u;
+LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
+LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
+LIMPID_CONST uint LIGHT_POINT = 2u;
+LIMPID_CONST uint LIGHT_SPOT = 3u;
+LIMPID_CONST uint LIGHT_DIRECTIONAL = 4u;
+LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
+LIMPID_CONST uint LIGHT_MIRRORED =
+    8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
+
+// lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
+// entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
+// environment: radiance | probability of choosing this texel.
+
+// ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + F90
+// B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted
+// averages of A and B, the share of multiple scattering that is spread like diffuse light.
+LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
+// dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels
+// each: gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and
+// transmission | these two albedos again, their cosine-weighted averages over the row. The first
+// DIELECTRIC_ETA_NODES are for eta (index behind over index before) below 1, the others for above: total
+// reflection makes two functions of it. Node i has log(1 + (|log eta| - e) / ETA_SCALE) in proportion to i, e
+// = log(1 + SMOOTH_IOR_DIFFERENCE): dense near 1; the column of a cosine c is c (1 + k) / (c + k) (SIZE - 1),
+// k the cosine at which total reflection sets in on the denser side.
+LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 20u;
+LIMPID_CONST uint DIELECTRIC_ETA_NODES = 32u;
+LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
+LIMPID_CONST float DIELECTRIC_ETA_SCALE = 0.005;
+
+// Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.
+LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
+// An index of refraction closer to 1 than this lets light straight through, however rough the surface is.
+LIMPID_CONST float SMOOTH_IOR_DIFFERENCE = 1e-3;
+// Reflectance of a clear coat at normal incidence: index 1.5 (KHR_materials_clearcoat).
+LIMPID_CONST float CLEARCOAT_F0 = 0.04;
+
+/// What shaders must know of the scene besides its buffers.
+struct SceneParams {
+    vec3 sceneCenter;
+    float sceneRadius;
+    uint triangleLightCount;  // of `lights` and `lightAlias`; punctual lights follow
+    uint punctualCount;
+    float environmentProbability;    // of choosing the environment in next-event estimation
+    float triangleLightProbability;  // of triangles rather than punctual lights, where one of those reaches
+    uint environmentWidth;
+    uint environmentHeight;
+    vec3 environmentScale;    // multiplies its radiance
+    float environmentTurn;    // about +Y, of a full circle: added to the direction's u
+    uint rootNode;            // of the tree that rays enter
+    uint previousVertexBase;  // texel of previousGeometry where vertices begin
+};
+
+/// How the pose pass moves the vertices of one deforming instance. Texels count from the start of their
+/// buffer; NONE: no skin, or no weights.
+struct PoseParams {
+    uint firstVertex;
+    uint vertexCount;
+    uint morphFirst;  // of morphDeltas
+    uint targetCount;
+    uint matricesNow;  // of poseMatrices
+    uint matricesBefore;
+    uint weightsNow;
+    uint weightsBefore;
+    uint previousBase;   // of previousGeometry: where vertices begin
+    uint hasVertexData;  // whether there are normals and tangents to write
+};
+
+#undef LIMPID_CONST
+#ifdef __cplusplus
+}  // namespace limpid::layout
+#endif
+#endif

@@ -1,0 +1,353 @@
+// The material's scattering function: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
+//
+//   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
+//
+// metal: GGX reflection plus what bounces several times between the facets (multipleReflection). plastic: GGX
+// reflection over a diffuse base that gets exactly the energy the coat lets through, in and out. glass: thin (a pane:
+// the transmitted lobe is the reflected one mirrored behind the surface) or a boundary that refracts, plus what meets
+// several facets (addDielectricMultiple). Both pluses are fitted to a random walk on microfacets (E. Heitz et al.,
+// "Multiple-scattering microfacet BSDFs with the Smith model", SIGGRAPH 2016; tests/reference/microfacet_walk.h; docs/gltf.md).
+// A white surface of any kind reflects and transmits everything. Energy form: crossing a boundary does not scale
+// radiance by eta^2; the factors cancel for every path that leaves the body again.
+//
+// All f below include the cosine. Directions are local: the shading normal is +Z.
+#ifndef LIMPID_BSDF_GLSL
+#define LIMPID_BSDF_GLSL
+
+#include "shaders/material/clearcoat.glsl"
+#include "shaders/material/material.glsl"
+#include "shaders/material/microfacet.glsl"
+
+struct Bsdf {
+    mat3 frame;
+    vec3 wo;
+    vec3 geometricNormal;  // world, on the viewer's side
+    vec3 diffuse;          // albedo of the base below the coat
+    vec3 f0;               // Schlick's terms of the reflecting lobe
+    float f90;
+    float coatF0, coatF90;  // of the dielectric coat alone
+    float metal;           // weight of the metal
+    vec3 metalF0;
+    vec3 multiple;         // about what is left of white light after several facets of the metal
+    vec3 through;          // tint and weight of the thin pane's transmitted lobe
+    vec3 glass;            // tint of the refracting boundary's transmitted light
+    float glassWeight;     // of the refracting boundary
+    float roughGlass;      // the same, 0 where its lobes are perfectly smooth
+    float alpha, roughness, eta;
+    bool smoothSurface;
+    vec4 albedo;     // ggxAlbedo at wo
+    vec3 average;    // ggxAverage
+    float coatLoss;  // energy that the coat keeps from the base at wo
+    vec2 glassGain;     // what light that meets several facets adds to the refracting boundary's two lobes, unmasked
+    vec2 glassDiffuse;  // what the boundary reflects and transmits besides, like diffuse light
+    vec4 probability;   // of choosing diffuse, reflecting, thin transmitting, refracting lobe
+    float belowProbability;  // of choosing the diffuse-like transmission
+    Clearcoat clearcoat;
+};
+
+struct BsdfValue {
+    vec3 diffuse, specular;  // f cos
+    float pdf;
+};
+
+struct BsdfSample {
+    vec3 direction;  // world
+    BsdfValue value;
+    bool delta;       // no other technique finds this direction
+    bool valid;
+};
+
+Bsdf lambertianBsdf(Surface s, vec3 toViewer) {
+    Bsdf b;
+    b.frame = frameAround(s.normal);
+    b.wo = toViewer * b.frame;
+    b.geometricNormal = s.geometricNormal;
+    b.diffuse = s.unlit ? vec3(0.0) : s.baseColor;
+    return b;
+}
+
+/// What is left of white light that several facets of the metal reflect from wo to this cosine. f: the mean Fresnel
+/// term of such facets, e: the part that escapes after each; both fitted to random walks at roughness 0.5 to 1.
+vec3 multipleTint(Bsdf b, float cosine) {
+    const float x = min(1.0 - b.roughness, 0.5);
+    const vec2 grazing = 1.0 - vec2(b.wo.z, cosine);
+    const float e = min(0.48 + x * (0.89 - 0.66 * x) + (0.2 - 0.095 * x) * (grazing.x + grazing.y), 1.0);
+    const float s = 0.014 + 0.08 * x + (0.069 + x * (1.125 * x - 0.105)) * dot(grazing, grazing);
+    const vec3 f = mix(b.metalF0, vec3(1.0), s);
+    return f * f * e / (1.0 - f * (1.0 - e));
+}
+
+Bsdf makeBsdf(Surface s, vec3 toViewer) {
+    Bsdf b = lambertianBsdf(s, toViewer);
+    if (!HAS_SPECULAR) return b;
+    const float dielectric = s.unlit ? 0.0 : 1.0 - s.metallic;
+    const float metal = s.unlit ? 0.0 : s.metallic;
+    const float transmission = HAS_TRANSMISSION ? s.transmission : 0.0;
+    const float refracting = s.thin ? 0.0 : dielectric * transmission;
+    b.roughness = s.roughness;
+    b.alpha = max(s.roughness * s.roughness, 1e-4);
+    b.smoothSurface = s.roughness < SMOOTH_ROUGHNESS;
+    b.eta = s.front ? s.ior : 1.0 / s.ior;
+    const float root = (s.ior - 1.0) / (s.ior + 1.0);
+    // KHR_materials_specular: the base below gets what the strongest channel of the coat lets through.
+    const vec3 coatF0 = min(root * root * s.specularColor, vec3(1.0)) * s.specular;
+    b.coatF0 = max(coatF0.r, max(coatF0.g, coatF0.b));
+    b.coatF90 = s.specular;
+    b.f0 = metal * s.baseColor + (dielectric - refracting) * coatF0;
+    b.f90 = metal + (dielectric - refracting) * b.coatF90;
+    b.albedo = ggxAlbedo(b.wo.z, b.roughness);
+    b.coatLoss = b.coatF0 * b.albedo.x + b.coatF90 * b.albedo.y;
+    b.diffuse = s.baseColor * (dielectric * (1.0 - transmission));
+    b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
+    b.glassWeight = refracting;
+    b.glass = s.baseColor;
+    b.roughGlass = 0.0;
+    b.glassGain = vec2(0.0);
+    b.glassDiffuse = vec2(0.0);
+    if (HAS_ROUGH_GLASS) {
+        b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
+        if (b.roughGlass > 0.0) {
+            const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
+            b.glassGain = entry.xy;
+            b.glassDiffuse = entry.zw;
+        }
+    }
+    b.metal = metal;
+    b.metalF0 = s.baseColor;
+    b.average = ggxAverage(b.roughness);
+    b.multiple = metal * multipleTint(b, 2.0 / 3.0);
+    const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
+    const vec2 spread = b.glassDiffuse * b.glassWeight;
+    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
+                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y + missing * (1.0 - b.average.z),
+                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
+    const float sum = dot(weights, vec4(1.0)) + spread.y;
+    b.probability = weights / max(sum, 1e-20);
+    b.belowProbability = spread.y / max(sum, 1e-20);
+    if (HAS_CLEARCOAT) b.clearcoat = makeClearcoat(s, toViewer, sum);
+    return b;
+}
+
+/// True if light is reflected in one direction and goes nowhere else.
+bool isPerfectMirror(Bsdf b) {
+    if (!HAS_SPECULAR) return false;
+    if (HAS_CLEARCOAT) {
+        if (b.clearcoat.weight > 0.0) return false;
+    }
+    return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
+}
+
+/// True if some light goes through the surface.
+bool isTransmitting(Bsdf b) {
+    return b.glassWeight > 0.0 || b.through != vec3(0.0);
+}
+
+/// True if wi leaves on the side of the true surface that it leaves on at the shading normal.
+bool sidesAgree(Bsdf b, vec3 wi) {
+    return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;
+}
+
+/// Density of the half vector m seen from wo, as a density of the reflected direction.
+float reflectionPdf(Bsdf b, vec3 m) {
+    return ggxDistribution(m, b.alpha) / (4.0 * b.wo.z * (1.0 + ggxLambda(b.wo.z, b.alpha)));
+}
+
+/// What several facets of a metal reflect, as far as it is spread like diffuse light: f for white metal. The product
+/// of missing energies is that of C. Kulla, A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH
+/// 2017. The rest follows the lobe of one facet (addReflection).
+float multipleReflection(Bsdf b, vec4 albedo) {
+    const float missing = (1.0 - b.albedo.x - b.albedo.y) * (1.0 - albedo.x - albedo.y);
+    return max(b.average.z * missing / (PI * max(1.0 - b.average.x - b.average.y, 1e-6)) + b.albedo.w * albedo.w, 0.0);
+}
+
+/// How likely light that meets a facet of this reflectance is taken to be reflected, in sampling.
+float reflectionChance(Bsdf b, float reflectance) {
+    const float reflected = reflectance * (1.0 + b.glassGain.x);
+    return reflected / (reflected + (1.0 - reflectance) * (1.0 + b.glassGain.y));
+}
+
+void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
+    const vec4 albedo = ggxAlbedo(wi.z, b.roughness);
+    const float cosinePdf = wi.z / PI;
+    const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
+    const float coatAverage = b.coatF0 * b.average.x + b.coatF90 * b.average.y;
+    value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
+    value.specular += multipleTint(b, wi.z) * (b.metal * multipleReflection(b, albedo) * wi.z);
+    value.pdf += b.probability.x * cosinePdf;
+    if (b.smoothSurface) return;
+    const vec3 m = normalize(b.wo + wi);
+    const float cosine = dot(b.wo, m);
+    const float pdf = reflectionPdf(b, m);
+    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(wi.z, b.alpha);
+    const vec3 fresnel = mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+    const float masking = (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn);
+    const vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    value.specular += (fresnel + metal * metal * (b.metal * b.albedo.z * albedo.z)) * (masking * pdf);
+    value.pdf += b.probability.y * pdf;
+    if (HAS_ROUGH_GLASS) {
+        if (b.roughGlass > 0.0) {
+            const float reflectance = fresnelDielectric(cosine, b.eta);
+            value.specular += vec3(b.roughGlass * reflectance * pdf * (masking + b.glassGain.x));
+            value.pdf += b.probability.w * reflectionChance(b, reflectance) * pdf;
+        }
+    }
+}
+
+void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
+    if (b.smoothSurface) return;
+    const vec3 mirrored = vec3(wi.xy, -wi.z);
+    const vec3 paneHalf = normalize(b.wo + mirrored);
+    const float panePdf = reflectionPdf(b, paneHalf);
+    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(mirrored.z, b.alpha);
+    const float single = b.albedo.x + b.albedo.y;
+    value.specular += b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
+    value.pdf += b.probability.z * panePdf;
+    if (!HAS_ROUGH_GLASS) return;
+    vec3 m = b.wo + b.eta * wi;
+    m *= m.z < 0.0 ? -1.0 : 1.0;
+    const float length2 = dot(m, m);
+    m *= inversesqrt(max(length2, 1e-20));
+    const float cosOut = dot(b.wo, m), cosIn = dot(wi, m);
+    if (cosOut <= 0.0 || cosIn >= 0.0 || b.roughGlass <= 0.0) return;
+    const float reflectance = fresnelDielectric(cosOut, b.eta);
+    const float root = cosOut + b.eta * cosIn;
+    const float pdf = ggxDistribution(m, b.alpha) * cosOut / (b.wo.z * (1.0 + lambdaOut)) *
+                      (b.eta * b.eta * -cosIn / max(root * root, 1e-20));
+    const float masking = transmittedMasking(lambdaOut, lambdaIn);
+    value.specular += b.glass * (b.roughGlass * (1.0 - reflectance) * pdf * (masking + b.glassGain.y));
+    value.pdf += b.probability.w * (1.0 - reflectionChance(b, reflectance)) * pdf;
+}
+
+/// What several facets of a refracting boundary reflect or transmit, as far as it is spread like diffuse light: a
+/// product of what is missing in both directions, as for metals; on the other side, of what is missing seen from
+/// there. What is not spread follows the lobes of one facet: the gains in addReflection and addTransmission.
+void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
+    const bool above = wi.z > 0.0;
+    const float cosinePdf = abs(wi.z) / PI;
+    const vec4 entry = dielectricEntry(abs(wi.z), b.roughness, above ? b.eta : 1.0 / b.eta, 1);
+    const vec2 lobes = b.glassDiffuse * entry.xy / max(entry.zw, vec2(1e-6));
+    value.specular += (above ? vec3(lobes.x) : b.glass * lobes.y) * (b.roughGlass * cosinePdf);
+    value.pdf += above ? 0.0 : b.belowProbability * cosinePdf;
+}
+
+/// f cos and the density with which sampleBsdf draws wi (local); without the perfectly smooth lobes.
+BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
+    BsdfValue value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (!HAS_SPECULAR) {
+        value.pdf = max(wi.z, 0.0) / PI;
+        value.diffuse = b.diffuse * value.pdf;
+        return value;
+    }
+    if (wi.z > 0.0) addReflection(b, wi, value);
+    if (HAS_TRANSMISSION) {
+        if (wi.z < 0.0) addTransmission(b, wi, value);
+    }
+    if (HAS_ROUGH_GLASS) {
+        if (b.roughGlass > 0.0) addDielectricMultiple(b, wi, value);
+    }
+    return value;
+}
+
+BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
+    const vec3 wi = direction * b.frame;
+    BsdfValue value = evaluateLocal(b, wi);
+    if (!sidesAgree(b, wi)) value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (HAS_CLEARCOAT) {
+        const vec2 coat = evaluateClearcoat(b.clearcoat, b.geometricNormal, direction);
+        value.diffuse *= 1.0 - b.clearcoat.albedo;
+        value.specular = value.specular * (1.0 - b.clearcoat.albedo) + coat.x;
+        value.pdf = mix(value.pdf, coat.y, b.clearcoat.probability);
+    }
+    return value;
+}
+
+/// A perfectly smooth lobe's direction; value holds f cos / pdf of the lobe with pdf 1.
+BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
+    BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), true, true);
+    const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
+    vec3 wi = reflected;
+    if (lobe == 1u) {
+        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) / b.probability.y;
+    } else if (lobe == 2u) {
+        wi = -b.wo;
+        result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
+    } else {
+        const float reflectance = fresnelDielectric(b.wo.z, b.eta);
+        const bool transmits = u >= reflectance;
+        const float cosine = sqrt(max(0.0, b.wo.z * b.wo.z + (b.eta - 1.0) * (b.eta + 1.0)));
+        wi = transmits ? -vec3(b.wo.xy, cosine) / b.eta : reflected;
+        result.value.specular = (transmits ? b.glass : vec3(1.0)) * (b.glassWeight / b.probability.w);
+    }
+    if (HAS_CLEARCOAT) result.value.specular *= (1.0 - b.clearcoat.albedo) / (1.0 - b.clearcoat.probability);
+    result.direction = b.frame * wi;
+    result.valid = sidesAgree(b, wi);
+    return result;
+}
+
+/// The coat's direction in place of the base's; only a smooth coat's value is set.
+BsdfSample sampleCoat(Bsdf b, vec2 u) {
+    BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), b.clearcoat.smoothSurface, true);
+    result.direction = sampleClearcoat(b.clearcoat, u);
+    const float fresnel = clearcoatFresnel(b.clearcoat.wo.z);
+    result.value.specular = vec3(b.clearcoat.weight * fresnel / max(b.clearcoat.probability, 1e-20));
+    result.valid = dot(result.direction, b.geometricNormal) > 0.0 && dot(result.direction, b.clearcoat.frame[2]) > 0.0;
+    return result;
+}
+
+/// A local direction from the chosen lobe; z = 0 if there is none.
+vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
+    const vec3 m = sampleVisibleNormal(b.wo, b.alpha, u);
+    const float cosine = dot(b.wo, m);
+    const vec3 reflected = 2.0 * cosine * m - b.wo;
+    if (lobe == 1u) return reflected.z > 0.0 ? reflected : vec3(0.0);
+    if (lobe == 2u) return reflected.z > 0.0 ? vec3(reflected.xy, -reflected.z) : vec3(0.0);
+    if (!HAS_ROUGH_GLASS) return vec3(0.0);
+    const float reflectance = fresnelDielectric(cosine, b.eta);
+    if (choice < reflectionChance(b, reflectance)) return reflected.z > 0.0 ? reflected : vec3(0.0);
+    const float transmitted = sqrt(max(0.0, cosine * cosine + (b.eta - 1.0) * (b.eta + 1.0)));
+    const vec3 refracted = ((cosine - transmitted) * m - b.wo) / b.eta;
+    return refracted.z < 0.0 ? refracted : vec3(0.0);
+}
+
+/// Draws a direction; value.diffuse + value.specular over value.pdf is the throughput.
+BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
+    const vec2 u = random2(rng);
+    if (HAS_CLEARCOAT) {
+        if (random(rng) < b.clearcoat.probability) {
+            BsdfSample coat = sampleCoat(b, u);
+            if (!coat.delta) coat.value = evaluateBsdf(b, coat.direction);
+            return coat;
+        }
+    }
+    vec3 wi = sampleCosineHemisphere(u);
+    uint lobe = 0u;
+    float choice = 0.0;
+    if (HAS_SPECULAR) {
+        choice = random(rng);
+        vec4 bounds = vec4(b.probability.xyz, 1.0 - b.belowProbability);
+        bounds.y += bounds.x;
+        bounds.z = bounds.w - b.probability.w;
+        lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : choice < bounds.w ? 3u : 4u;
+        // Reusing the number inside its interval, for the choice between reflection and refraction.
+        choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
+        const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
+        if (lobe != 0u && smoothLobe) return sampleSmooth(b, lobe, choice);
+        if (lobe == 4u) wi.z = -wi.z;
+        else if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
+    }
+    const vec3 direction = b.frame * wi;
+    const BsdfValue value = HAS_CLEARCOAT ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);
+    return BsdfSample(direction, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
+}
+
+/// What the specular lobes reflect and transmit of uniform light: the albedoSpecular layer.
+vec3 specularAlbedo(Bsdf b) {
+    if (!HAS_SPECULAR) return vec3(0.0);
+    const float missing = 1.0 - b.albedo.x - b.albedo.y;
+    const float reflectance = fresnelDielectric(b.wo.z, b.eta);
+    const vec3 base = b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
+                      b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
+    return HAS_CLEARCOAT ? base * (1.0 - b.clearcoat.albedo) + b.clearcoat.albedo : base;
+}
+
+#endif

@@ -1,0 +1,68 @@
+// The lat-long environment: bilinear look-up, and importance sampling by texel (pbrt 4th ed., section 12.5).
+#ifndef LIMPID_ENVIRONMENT_GLSL
+#define LIMPID_ENVIRONMENT_GLSL
+
+#include "shaders/common/sampling.glsl"
+#include "shaders/common/scene_data.glsl"
+
+struct EnvironmentSample {
+    vec3 direction;
+    vec3 radiance;
+    float pdf;  // per solid angle
+};
+
+/// From a direction (latLongOf) to the picture.
+vec2 turnedUv(vec2 uv, SceneParams scene) {
+    return vec2(fract(uv.x - scene.environmentTurn), uv.y);
+}
+
+/// `uv` of the picture.
+vec3 texelRadiance(vec2 uv, SceneParams scene) {
+    const ivec2 size = ivec2(scene.environmentWidth, scene.environmentHeight);
+    const vec2 p = uv * vec2(size) - 0.5;
+    const ivec2 base = ivec2(floor(p));
+    const vec2 f = p - vec2(base);
+    const int x0 = (base.x + size.x) % size.x, x1 = (base.x + 1) % size.x;
+    const int row0 = clamp(base.y, 0, size.y - 1) * size.x, row1 = clamp(base.y + 1, 0, size.y - 1) * size.x;
+    return scene.environmentScale *
+           mix(mix(imageLoad(environment, row0 + x0).rgb, imageLoad(environment, row0 + x1).rgb, f.x),
+               mix(imageLoad(environment, row1 + x0).rgb, imageLoad(environment, row1 + x1).rgb, f.x), f.y);
+}
+
+/// `uv` of a direction.
+vec3 environmentRadiance(vec2 uv, SceneParams scene) {
+    return texelRadiance(turnedUv(uv, scene), scene);
+}
+
+/// A texel's probability as a density per solid angle.
+float environmentDensity(float probability, float v, SceneParams scene) {
+    const float texels = float(scene.environmentWidth) * float(scene.environmentHeight);
+    return probability * texels / (2.0 * PI * PI * max(sin(v * PI), 1e-6));
+}
+
+/// `uv` of a direction.
+float environmentPdf(vec2 uv, SceneParams scene) {
+    uv = turnedUv(uv, scene);
+    const uvec2 size = uvec2(scene.environmentWidth, scene.environmentHeight);
+    const uvec2 texel = min(uvec2(uv * vec2(size)), size - 1u);
+    const float probability = imageLoad(environment, int(texel.y * size.x + texel.x)).w;
+    return environmentDensity(probability, uv.y, scene);
+}
+
+/// `cell` picks a texel (row and column by themselves: one float has too few bits for both), `u` the point in it.
+EnvironmentSample sampleEnvironment(vec2 cell, vec2 u, SceneParams scene) {
+    const uvec2 size = uvec2(scene.environmentWidth, scene.environmentHeight);
+    const uvec2 texel = min(uvec2(cell * vec2(size)), size - 1u);
+    uint index = texel.y * size.x + texel.x;
+    const uvec2 entry = imageLoad(environmentAlias, int(index)).xy;
+    const float keep = uintBitsToFloat(entry.x);
+    const bool kept = u.x < keep;
+    index = kept ? index : entry.y;
+    const float x = kept ? u.x / max(keep, 1e-20) : (u.x - keep) / max(1.0 - keep, 1e-20);
+    const vec2 uv = (vec2(index % size.x, index / size.x) + vec2(clamp(x, 0.0, 0.999999), u.y)) / vec2(size);
+    const float probability = imageLoad(environment, int(index)).w;
+    return EnvironmentSample(directionOfLatLong(vec2(fract(uv.x + scene.environmentTurn), uv.y)), texelRadiance(uv, scene),
+                             environmentDensity(probability, uv.y, scene));
+}
+
+#endif

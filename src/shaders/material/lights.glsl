@@ -1,0 +1,262 @@
+// Next-event estimation: one light, one point on it; and the density of that for a ray that found a light by itself
+// (multiple importance sampling). Punctual lights: KHR_lights_punctual. docs/lighting.md says which light is drawn how often.
+#ifndef LIMPID_LIGHTS_GLSL
+#define LIMPID_LIGHTS_GLSL
+
+#include "shaders/material/environment.glsl"
+#include "shaders/material/material.glsl"
+#include "shaders/trace/trace.glsl"
+
+/// Next-event estimation looks at each punctual light if there are at most so many ...
+const uint PUNCTUAL_LIGHTS_ALL_LOOKED_AT = 256u;
+/// ... and else at so many, drawn by power.
+const uint PUNCTUAL_CANDIDATES = 32u;
+/// Probability of choosing any punctual light that reaches, not by how much.
+const float PUNCTUAL_UNIFORM_SHARE = 0.4;
+
+/// Where light is wanted.
+struct Receiver {
+    vec3 position, normal, geometricNormal;
+    bool bothSides;  // of the surface: light may arrive from behind
+    float grazing;   // least weight of a light before the surface, where a cosine is not what counts
+};
+
+Receiver receiverAt(Surface s) {
+    const bool coated = HAS_CLEARCOAT && s.clearcoat > 0.0;
+    return Receiver(s.position, s.normal, s.geometricNormal, HAS_TRANSMISSION && s.transmission > 0.0, coated ? 0.1 : 0.0);
+}
+
+/// The probabilities of asking the environment and the emissive triangles; what is left is for punctual lights.
+struct LightShares {
+    float environment, triangles;
+};
+
+struct LightSample {
+    vec3 direction;
+    float distance;  // INFINITE_DISTANCE: no target, only a direction
+    vec3 target;     // just before the light: where the shadow ray ends
+    vec3 radiance;   // incident, for punctual lights divided by nothing: weight = radiance / pdf
+    float pdf;       // per solid angle; for punctual lights the probability of choosing the light
+    bool delta;      // only this technique finds the light
+};
+
+/// KHR_lights_punctual's cone and range attenuation over squared distance.
+float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, vec3 shape) {
+    if (kind == LIGHT_DIRECTIONAL) return 1.0;
+    float attenuation = 1.0 / max(distance * distance, 1e-20);
+    if (shape.z > 0.0) {
+        const float ratio = distance / shape.z;
+        const float r2 = ratio * ratio;
+        attenuation *= clamp(1.0 - r2 * r2, 0.0, 1.0);
+    }
+    if (kind == LIGHT_SPOT) {
+        const float scale = 1.0 / max(0.001, shape.x - shape.y);
+        const float cone = clamp((dot(axis, -direction) - shape.y) * scale, 0.0, 1.0);
+        attenuation *= cone * cone;
+    }
+    return attenuation;
+}
+
+/// Barycentrics are of the mesh, not of the light; `cosine` is of the direction in which the light leaves.
+vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float cosine) {
+    vec3 emission = uintBitsToFloat(record3.xyz);
+    if (HAS_TEXTURES || HAS_CLEARCOAT) {
+        if (record3.w != NONE) {
+            const int material = int(record3.w * MATERIAL_TEXELS);
+            float coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).y) : 0.0;
+            if (HAS_TEXTURES) {
+                const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
+                emission *= materialTexture(imageLoad(materials, material + 4).w, data).rgb;
+                if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data).r;
+            }
+            if (HAS_CLEARCOAT) emission *= emissionThroughClearcoat(coat, cosine);
+        }
+    }
+    return emission;
+}
+
+LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 from, vec2 u) {
+    const vec3 v0 = uintBitsToFloat(r0.xyz), v1 = uintBitsToFloat(r1.xyz), v2 = uintBitsToFloat(r2.xyz);
+    const vec2 barycentrics = sampleTriangle(u);
+    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
+    const float doubleArea = length(perpendicular);
+    const vec3 point = interpolate(v0, v1, v2, barycentrics);
+    const vec3 toLight = point - from;
+    const float distance2 = dot(toLight, toLight);
+    vec3 normal = perpendicular / max(doubleArea, 1e-37);
+    float cosine = -dot(normal, toLight) * inversesqrt(max(distance2, 1e-37));
+    if ((r0.w & LIGHT_KIND_MASK) == LIGHT_TRIANGLE_TWO_SIDED && cosine < 0.0) {
+        cosine = -cosine;
+        normal = -normal;
+    }
+    LightSample light;
+    light.target = offsetRay(point, normal, max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2))));
+    light.distance = sqrt(distance2);
+    light.direction = toLight / max(light.distance, 1e-37);
+    const bool visible = cosine > 0.0 && doubleArea > 0.0;
+    light.pdf = visible ? uintBitsToFloat(r1.w) * 2.0 * distance2 / (doubleArea * cosine) : 0.0;
+    const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
+    light.radiance = visible ? lightEmission(r3, r2.w, order, cosine) : vec3(0.0);
+    light.delta = false;
+    return light;
+}
+
+LightSample samplePunctualLight(int at, vec3 from) {
+    const uvec4 r0 = imageLoad(lights, at), r1 = imageLoad(lights, at + 1);
+    const uvec4 r2 = imageLoad(lights, at + 2), r3 = imageLoad(lights, at + 3);
+    const uint kind = r0.w & LIGHT_KIND_MASK;
+    const vec3 axis = uintBitsToFloat(r1.xyz);
+    LightSample light;
+    light.target = uintBitsToFloat(r0.xyz);
+    if (kind == LIGHT_DIRECTIONAL) {
+        light.direction = -axis;
+        light.distance = INFINITE_DISTANCE;
+    } else {
+        const vec3 toLight = uintBitsToFloat(r0.xyz) - from;
+        light.distance = length(toLight);
+        light.direction = toLight / max(light.distance, 1e-37);
+    }
+    light.radiance = uintBitsToFloat(r3.xyz) *
+                     punctualAttenuation(kind, light.direction, axis, light.distance, uintBitsToFloat(r2.xyz));
+    light.pdf = uintBitsToFloat(r1.w);
+    light.delta = true;
+    return light;
+}
+
+/// The ray that must be free for the light to count. It runs from start to target, both moved off their surfaces: along
+/// the unmoved direction the two offsets could cancel and let the light shadow itself.
+Ray shadowRay(vec3 start, LightSample light) {
+    if (light.distance == INFINITE_DISTANCE) return Ray(start, light.direction, INFINITE_DISTANCE);
+    const vec3 path = light.target - start;
+    const float distance = length(path);
+    return Ray(start, path / max(distance, 1e-37), distance);
+}
+
+/// Of what a punctual light sends to `from`, what a diffuse surface there can use; visibility is not looked at.
+float usableLight(Receiver from, LightSample light) {
+    const float cosine = dot(from.normal, light.direction);
+    float usable = max(cosine, from.grazing);
+    if (dot(from.geometricNormal, light.direction) <= 0.0) usable = 0.0;
+    if (from.bothSides) usable = max(abs(cosine), 0.01);
+    return luminance(light.radiance) * usable;
+}
+
+/// A punctual light for `from`; pdf 0: none of those looked at reaches it.
+struct PunctualChoice {
+    int at;  // in `lights`
+    float pdf;
+};
+
+/// Looks at all punctual lights, or at PUNCTUAL_CANDIDATES of them drawn by power (resampled importance sampling,
+/// J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005), and chooses by usable light or, with
+/// PUNCTUAL_UNIFORM_SHARE, any that has some: the brightest may be hidden. One pass: two weighted reservoirs.
+PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
+    const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
+    const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
+    float u = random(rng), v = random(rng);
+    PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf: the weight, for now
+    float bestSource = 1.0, anySource = 1.0, sum = 0.0, reaching = 0.0;
+    for (uint i = 0u; i < count; ++i) {
+        uint index = i;
+        float source = 1.0;
+        if (!all) {
+            index = min(uint(random(rng) * float(scene.punctualCount)), scene.punctualCount - 1u);
+            const uvec2 entry = imageLoad(lightAlias, int(scene.triangleLightCount + index)).xy;
+            index = random(rng) < uintBitsToFloat(entry.x) ? index : entry.y;
+        }
+        const int at = int((scene.triangleLightCount + index) * LIGHT_TEXELS);
+        const LightSample light = samplePunctualLight(at, from.position);
+        if (!all) source = light.pdf * float(count);
+        const float weight = usableLight(from, light) / max(source, 1e-30);
+        if (!(weight > 0.0)) continue;
+        sum += weight;
+        reaching += 1.0;
+        const float share = weight / sum, uniformShare = 1.0 / reaching;
+        if (u < share) {
+            best = PunctualChoice(at, weight);
+            bestSource = source;
+        }
+        if (v < uniformShare) {
+            any = PunctualChoice(at, weight);
+            anySource = source;
+        }
+        // What is left of the numbers is as random as they were.
+        u = u < share ? u / share : (u - share) / (1.0 - share);
+        v = v < uniformShare ? v / uniformShare : (v - uniformShare) / (1.0 - uniformShare);
+    }
+    if (random(rng) < PUNCTUAL_UNIFORM_SHARE) {
+        best = any;
+        bestSource = anySource;
+    }
+    if (reaching > 0.0) {
+        best.pdf = bestSource * mix(best.pdf / sum, 1.0 / reaching, PUNCTUAL_UNIFORM_SHARE);
+    }
+    return best;
+}
+
+LightShares lightShares(bool punctual, SceneParams scene) {
+    LightShares shares = LightShares(HAS_ENVIRONMENT ? scene.environmentProbability : 0.0, 0.0);
+    if (HAS_TRIANGLE_LIGHTS) shares.triangles = 1.0 - shares.environment;
+    if (HAS_PUNCTUAL_LIGHTS) {
+        shares.triangles *= punctual ? scene.triangleLightProbability : 1.0;
+        // Where no other light can be: all for the environment.
+        if (HAS_ENVIRONMENT && !HAS_TRIANGLE_LIGHTS && !punctual) shares.environment = 1.0;
+    }
+    return shares;
+}
+
+LightSample chooseTriangleLight(Receiver from, float choice, float decision, vec2 u, SceneParams scene) {
+    uint index = min(uint(choice * float(scene.triangleLightCount)), scene.triangleLightCount - 1u);
+    const uvec2 entry = imageLoad(lightAlias, int(index)).xy;
+    index = decision < uintBitsToFloat(entry.x) ? index : entry.y;
+    const int at = int(index * LIGHT_TEXELS);
+    return sampleTriangleLight(imageLoad(lights, at), imageLoad(lights, at + 1), imageLoad(lights, at + 2),
+                               imageLoad(lights, at + 3), from.position, u);
+}
+
+/// A light as seen from `from`; pdf 0: nothing to be had there. `shares` are what lightPdf() and its like need for a ray
+/// that leaves from here.
+LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
+    PunctualChoice punctual = PunctualChoice(0, 0.0);
+    if (HAS_PUNCTUAL_LIGHTS) punctual = choosePunctualLight(from, scene, rng);
+    shares = lightShares(punctual.pdf > 0.0, scene);
+    const float choice = random(rng), decision = random(rng);
+    const vec2 u = random2(rng);
+    LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
+    if (HAS_ENVIRONMENT) {
+        if (choice < shares.environment) {
+            const EnvironmentSample s = sampleEnvironment(vec2(choice / shares.environment, decision), u, scene);
+            light = LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf * shares.environment, false);
+        }
+    }
+    const float rest = choice - shares.environment;
+    if (HAS_TRIANGLE_LIGHTS) {
+        if (rest >= 0.0 && (!HAS_PUNCTUAL_LIGHTS || rest < shares.triangles)) {
+            light = chooseTriangleLight(from, rest / max(shares.triangles, 1e-20), decision, u, scene);
+            light.pdf *= shares.triangles;
+        }
+    }
+    if (HAS_PUNCTUAL_LIGHTS) {
+        if (punctual.pdf > 0.0 && rest >= shares.triangles) {
+            light = samplePunctualLight(punctual.at, from.position);
+            light.pdf = punctual.pdf * (1.0 - shares.environment - shares.triangles);
+        }
+    }
+    return light;
+}
+
+/// Density per solid angle with which sampleLight draws the point where a ray of length `distance` met the surface.
+float lightPdf(Surface s, float distance, vec3 direction, LightShares shares) {
+    const uint first = imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).y;
+    if (first == NONE) return 0.0;
+    const float perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
+    const float cosine = abs(dot(s.geometricNormal, direction));
+    return cosine > 0.0 ? shares.triangles * perArea * distance * distance / cosine : 0.0;
+}
+
+/// The same for a ray that met nothing.
+float environmentLightPdf(vec2 uv, LightShares shares, SceneParams scene) {
+    return environmentPdf(uv, scene) * shares.environment;
+}
+
+#endif

@@ -1,0 +1,361 @@
+// From a hit to the surface there: geometry, material parameters after textures and vertex colours, alpha test.
+// Materials: glTF 2.0, section 3.9 and appendix B.
+#ifndef LIMPID_MATERIAL_GLSL
+#define LIMPID_MATERIAL_GLSL
+
+#include "shaders/material/microfacet.glsl"
+#include "shaders/common/sampling.glsl"
+#include "shaders/common/rng.glsl"
+#include "shaders/material/texture.glsl"
+
+struct Surface {
+    vec3 position;
+    vec3 geometricNormal;  // unit, on the viewer's side
+    vec3 normal;           // shading normal: unit, on the viewer's side
+    float magnitude;       // the largest coordinate behind `position`, for offsetRay
+    bool front;            // the viewer is on the side that the winding calls front
+    uint instance, primitive, material;
+    vec3 baseColor;
+    float metallic, roughness, specular, ior, transmission;
+    vec3 specularColor;  // factor of the dielectric's reflectance at normal incidence
+    bool thin, unlit;
+    float clearcoat, clearcoatRoughness;
+    vec3 clearcoatNormal;  // unit, on the viewer's side
+    vec3 absorption;       // of the body whose boundary this is, per unit of length; 0 if it is none
+    bool culled;    // the back of a single-sided, not transmitting material
+    vec3 emission;  // radiance towards the viewer
+    float area;     // of the triangle
+};
+
+/// Whether another medium begins behind the surface: a body that lets light in, not a thin wall.
+bool isBoundary(Surface s) {
+    return !s.thin && s.transmission > 0.0;
+}
+
+/// Where a ray that leaves the surface in `direction` starts.
+vec3 leavingPoint(Surface s, vec3 direction) {
+    const float side = dot(direction, s.geometricNormal) < 0.0 ? -1.0 : 1.0;
+    return offsetRay(s.position, side * s.geometricNormal, s.magnitude);
+}
+
+/// What a triangle in bvhTriangles says of itself.
+struct TriangleIds {
+    uint instance, primitive, shadingTriangle;
+};
+
+TriangleIds loadTriangleIds(uint triangle, uint instance) {
+    const int at = int(triangle * BVH_TRIANGLE_TEXELS);
+    const uint primitive = floatBitsToUint(imageLoad(bvhTriangles, at).w) & ~BVH_TRIANGLE_ALPHA;
+    const uint named = floatBitsToUint(imageLoad(bvhTriangles, at + 1).w);
+    return TriangleIds(named != NONE ? named : instance, primitive, floatBitsToUint(imageLoad(bvhTriangles, at + 2).w));
+}
+
+/// Materials of static triangles are absolute; those of instanced meshes count from the instance's.
+uint materialOf(uint word, uint instance) {
+    uint material = word & TRIANGLE_MATERIAL_MASK;
+    if (TWO_LEVEL && instance != NONE) {
+        material += imageLoad(instances, int(instance * INSTANCE_TEXELS) + 3).x;
+    }
+    return material;
+}
+
+vec3 interpolate(vec3 a, vec3 b, vec3 c, vec2 barycentrics) {
+    return a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
+}
+
+struct VertexData {
+    vec3 normal;
+    vec4 tangent;
+    vec2 uv0, uv1;
+    vec4 color;
+    vec4 uv0Edges, uv1Edges;  // how far the two edges from the first vertex go in uv
+};
+
+VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
+    vec3 normals[3];
+    vec4 tangents[3], colors[3];
+    vec2 uv0[3], uv1[3];
+    for (int i = 0; i < 3; ++i) {
+        const int at = int(indices[i] * VERTEX_TEXELS);
+        const uvec4 a = imageLoad(vertices, at), b = imageLoad(vertices, at + 1);
+        normals[i] = decodeOctahedral(a.x);
+        tangents[i] = vec4(decodeOctahedral(a.y), (a.y & 1u) != 0u ? -1.0 : 1.0);
+        uv0[i] = uintBitsToFloat(a.zw);
+        uv1[i] = uintBitsToFloat(b.xy);
+        colors[i] = vec4(unpackUnorm2x16(b.z), unpackUnorm2x16(b.w));
+    }
+    const float u = barycentrics.x, v = barycentrics.y;
+    // From the first vertex: exact where all three are equal, as an alpha at its cutoff must be.
+    VertexData data;
+    data.normal = interpolate(normals[0], normals[1], normals[2], barycentrics);
+    data.tangent.xyz = interpolate(tangents[0].xyz, tangents[1].xyz, tangents[2].xyz, barycentrics);
+    data.tangent.w = tangents[0].w;
+    data.uv0 = uv0[0] + u * (uv0[1] - uv0[0]) + v * (uv0[2] - uv0[0]);
+    data.uv1 = uv1[0] + u * (uv1[1] - uv1[0]) + v * (uv1[2] - uv1[0]);
+    data.color = colors[0] + u * (colors[1] - colors[0]) + v * (colors[2] - colors[0]);
+    data.uv0Edges = vec4(uv0[1] - uv0[0], uv0[2] - uv0[0]);
+    data.uv1Edges = vec4(uv1[1] - uv1[0], uv1[2] - uv1[0]);
+    return data;
+}
+
+/// A ray's cone where it meets a surface: textures are averaged over it.
+struct RayCone {
+    float width;
+    /// Sent here by a rough surface's lobe. Then next-event estimation can find the same emission, and reads it at points:
+    /// both must tell of one light for their weighted sum to be right. Other textures need less care: the lobe blurs.
+    bool scattered;
+    bool wide;  // as wide across as along, for rays through the centres of pixels: nothing else keeps those from shimmering
+};
+
+/// The axes of a ray's footprint on a triangle: whole widths, in barycentrics.
+struct Footprint {
+    vec2 across, along;
+    bool exact;  // what sampleFootprint() makes of it
+};
+
+/// Of a vector in the triangle's plane. `unitNormal`: of edge1 x edge2, whose length is doubleArea.
+vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea) {
+    return vec2(dot(cross(v, edge2), unitNormal), dot(cross(edge1, v), unitNormal)) / doubleArea;
+}
+
+/// Where a cone of this width meets the triangle's plane: an ellipse, longer by 1 / cosine along the ray (T.
+/// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021); a circle around it if
+/// the cone is `wide`.
+Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, RayCone cone) {
+    const float cosine = dot(unitNormal, toViewer);
+    const vec3 inPlane = toViewer - cosine * unitNormal;
+    const vec3 along = inPlane * inversesqrt(max(dot(inPlane, inPlane), 1e-20));
+    const bool tilted = dot(inPlane, inPlane) > 1e-8;
+    const vec3 axis = tilted ? along : edge1 * inversesqrt(max(dot(edge1, edge1), 1e-37));
+    const vec3 other = cross(unitNormal, axis);
+    const float length_ = cone.width / max(abs(cosine), 0.05);
+    return Footprint(barycentricsOf((cone.wide ? length_ : cone.width) * other, edge1, edge2, unitNormal, doubleArea),
+                     barycentricsOf(length_ * axis, edge1, edge2, unitNormal, doubleArea),
+                     !cone.scattered);
+}
+
+/// Looks a material's texture up; white if it has none.
+vec4 materialTexture(uint index, VertexData data, Footprint footprint) {
+    vec4 result = vec4(1.0);
+    if (index != NONE) {
+        const TextureRef ref = loadTextureRef(index);
+        const bool second = (ref.flags & TEXTURE_UV1) != 0u;
+        const vec3 uv = vec3(second ? data.uv1 : data.uv0, 1.0);
+        const vec4 edges = second ? data.uv1Edges : data.uv0Edges;
+        const mat2 toTexture = mat2(ref.rowU.x, ref.rowV.x, ref.rowU.y, ref.rowV.y) * mat2(edges.xy, edges.zw);
+        result = sampleFootprint(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)), toTexture * footprint.across,
+                                 toTexture * footprint.along, footprint.exact);
+    }
+    return result;
+}
+
+/// The same at the point itself, in the finest level.
+vec4 materialTexture(uint index, VertexData data) {
+    vec4 result = vec4(1.0);
+    if (index != NONE) {
+        const TextureRef ref = loadTextureRef(index);
+        const vec3 uv = vec3((ref.flags & TEXTURE_UV1) != 0u ? data.uv1 : data.uv0, 1.0);
+        result = sampleTexture(ref, vec2(dot(ref.rowU, uv), dot(ref.rowV, uv)), -1.0);
+    }
+    return result;
+}
+
+/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by `rng` and the triangle together, so
+/// that neither the order of candidates nor asking twice makes a difference.
+bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) {
+    const TriangleIds ids = loadTriangleIds(triangle, instance);
+    const uvec4 indices = imageLoad(triangles, int(ids.shadingTriangle));
+    const int at = int(materialOf(indices.w, instance) * MATERIAL_TEXELS);
+    const uint flags = imageLoad(materials, at).w;
+    const uvec4 alphaTexel = imageLoad(materials, at + 3);
+    float alpha = uintBitsToFloat(alphaTexel.x);
+    if (HAS_VERTEX_DATA) {
+        const VertexData data = loadVertexData(indices.xyz, barycentrics);
+        alpha *= data.color.a;
+        if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data).a;
+    }
+    const bool blend = (flags & MATERIAL_BLEND) != 0u;
+    const float threshold = blend ? randomOf(rng, triangle, instance) : uintBitsToFloat(alphaTexel.y);
+    const bool opaque = (flags & (MATERIAL_BLEND | MATERIAL_MASK)) == 0u;
+    return opaque || (blend ? alpha > threshold : alpha >= threshold);
+}
+
+/// The tangent-space normal of the map, in world space.
+vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
+    const vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
+    const float length2 = dot(t, t);
+    if (length2 < 1e-12) return normal;
+    const vec3 local = (texel * 2.0 - 1.0) * vec3(scale, scale, 1.0);
+    const vec3 unit = t * inversesqrt(length2);
+    const vec3 mapped = local.x * unit + local.y * tangent.w * cross(normal, unit) + local.z * normal;
+    return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : normal;
+}
+
+/// What a clear coat lets through of light emitted below it. By the geometric normal, so that light sampling, which knows
+/// no other, agrees with rays that find the light.
+float emissionThroughClearcoat(float weight, float cosine) {
+    return 1.0 - weight * mix(CLEARCOAT_F0, 1.0, schlickWeight(cosine));
+}
+
+vec3 objectToWorldNormal(uint instance, vec3 n) {
+    const int at = int(instance * INSTANCE_TEXELS);
+    const vec3 r0 = uintBitsToFloat(imageLoad(instances, at).xyz);
+    const vec3 r1 = uintBitsToFloat(imageLoad(instances, at + 1).xyz);
+    const vec3 r2 = uintBitsToFloat(imageLoad(instances, at + 2).xyz);
+    // Cofactors: the inverse transpose up to the determinant, whose sign keeps the side.
+    const vec3 result = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
+    return normalize(dot(r0, cross(r1, r2)) < 0.0 ? -result : result);
+}
+
+vec3 objectToWorld(uint instance, vec4 p) {
+    const int at = int(instance * INSTANCE_TEXELS);
+    return vec3(dot(uintBitsToFloat(imageLoad(instances, at)), p), dot(uintBitsToFloat(imageLoad(instances, at + 1)), p),
+                dot(uintBitsToFloat(imageLoad(instances, at + 2)), p));
+}
+
+/// The shading normal on the viewer's side. A mapped or interpolated normal may point away from the viewer, or mirror
+/// them into the surface, which would be black; it is tilted just as far as it takes to face them and to mirror them
+/// along the surface.
+vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
+    const float least = 0.01;
+    vec3 facing = normal;
+    const float cosine = dot(normal, toViewer);
+    if (cosine < least) {
+        const vec3 tilted = normal + (least - cosine) * toViewer;
+        facing = dot(tilted, tilted) > 1e-8 ? normalize(tilted) : geometricNormal;
+    }
+    const vec3 mirrored = reflect(-toViewer, facing);
+    const float height = dot(mirrored, geometricNormal);
+    const float lowest = min(least, 0.5 * dot(geometricNormal, toViewer));
+    return height >= lowest ? facing : normalize(toViewer + normalize(mirrored + (lowest - height) * geometricNormal));
+}
+
+void applySpecularTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec4 refs = imageLoad(materials, material + 6);
+    s.specular *= materialTexture(refs.x, data, footprint).a;
+    s.specularColor *= materialTexture(refs.y, data, footprint).rgb;
+}
+
+void applyClearcoatTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec4 refs = imageLoad(materials, material + 6);
+    s.clearcoat *= materialTexture(refs.z, data, footprint).r;
+    s.clearcoatRoughness *= materialTexture(refs.w, data, footprint).g;
+}
+
+/// The coat has a normal map of its own or none: the base's does not change it.
+vec3 clearcoatNormal(int material, VertexData data, Footprint footprint, vec3 normal, vec4 tangent) {
+    const uvec4 coat = imageLoad(materials, material + 7);
+    if (coat.x == NONE) return normal;
+    return mappedNormal(normal, tangent, materialTexture(coat.x, data, footprint).rgb, uintBitsToFloat(coat.w));
+}
+
+/// `toViewer`: unit.
+Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, RayCone cone) {
+    Surface s;
+    const int at = int(triangle * BVH_TRIANGLE_TEXELS);
+    const vec4 t0 = imageLoad(bvhTriangles, at), t1 = imageLoad(bvhTriangles, at + 1), t2 = imageLoad(bvhTriangles, at + 2);
+    const bool instanced = TWO_LEVEL && hitInstance != NONE;
+    s.primitive = floatBitsToUint(t0.w) & ~BVH_TRIANGLE_ALPHA;
+    s.instance = instanced ? hitInstance : floatBitsToUint(t1.w);
+    vec3 v0 = t0.xyz, v1 = t1.xyz, v2 = t2.xyz;
+    bool mirrored = false;
+    if (TWO_LEVEL) {
+        if (instanced) {
+            v0 = objectToWorld(hitInstance, vec4(v0, 1.0));
+            v1 = objectToWorld(hitInstance, vec4(v1, 1.0));
+            v2 = objectToWorld(hitInstance, vec4(v2, 1.0));
+        }
+    }
+    s.position = interpolate(v0, v1, v2, barycentrics);
+    s.magnitude = max(maxAbs(v0), max(maxAbs(v1), maxAbs(v2)));
+    const vec3 perpendicular = cross(v1 - v0, v2 - v0);
+    const float doubleArea = length(perpendicular);
+    s.area = 0.5 * doubleArea;
+    vec3 windingNormal = perpendicular / max(doubleArea, 1e-37);
+    const uvec4 shading = imageLoad(triangles, int(floatBitsToUint(t2.w)));
+    s.material = materialOf(shading.w, instanced ? hitInstance : NONE);
+    if (HAS_MIRRORED) {
+        mirrored = (imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).w & INSTANCE_MIRRORED) != 0u;
+    }
+    if (mirrored) windingNormal = -windingNormal;
+    s.front = dot(windingNormal, toViewer) >= 0.0;
+    s.geometricNormal = s.front ? windingNormal : -windingNormal;
+    s.normal = s.geometricNormal;
+
+    const int material = int(s.material * MATERIAL_TEXELS);
+    const uvec4 m0 = imageLoad(materials, material), m1 = imageLoad(materials, material + 1);
+    const uvec4 m2 = imageLoad(materials, material + 2);
+    s.baseColor = uintBitsToFloat(m0.xyz);
+    s.emission = uintBitsToFloat(m1.xyz);
+    s.roughness = uintBitsToFloat(m1.w);
+    s.metallic = uintBitsToFloat(m2.x);
+    s.specular = uintBitsToFloat(m2.y);
+    s.ior = uintBitsToFloat(m2.z);
+    s.transmission = uintBitsToFloat(m2.w);
+    s.specularColor = HAS_SPECULAR ? uintBitsToFloat(imageLoad(materials, material + 5).yzw) : vec3(1.0);
+    s.thin = (m0.w & MATERIAL_THIN) != 0u;
+    s.unlit = (m0.w & MATERIAL_UNLIT) != 0u;
+    const vec2 coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).yz) : vec2(0.0);
+    s.clearcoat = coat.x;
+    s.clearcoatRoughness = coat.y;
+    float coatOverEmission = coat.x;
+    s.clearcoatNormal = s.geometricNormal;
+    if (HAS_VERTEX_DATA) {
+        const VertexData data = loadVertexData(shading.xyz, barycentrics);
+        vec3 normal = data.normal;
+        vec3 tangent = data.tangent.xyz;
+        const bool smoothShaded = (shading.w & TRIANGLE_SMOOTH) != 0u;
+        if (TWO_LEVEL) {
+            if (instanced) {
+                normal = objectToWorldNormal(hitInstance, normal);
+                tangent = objectToWorld(hitInstance, vec4(tangent, 0.0));
+            }
+        }
+        normal = smoothShaded && dot(normal, normal) > 1e-12 ? normalize(normal) : windingNormal;
+        vec3 coatNormal = normal;
+        s.baseColor *= data.color.rgb;
+        if (HAS_TEXTURES) {
+            const uvec4 refs = imageLoad(materials, material + 4);
+            const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
+                                                    max(doubleArea, 1e-37), toViewer, cone);
+            const float share = cone.scattered ? 0.0 : 1.0;
+            const Footprint emitting = Footprint(share * footprint.across, share * footprint.along, footprint.exact);
+            s.baseColor *= materialTexture(refs.x, data, footprint).rgb;
+            s.emission *= materialTexture(refs.w, data, emitting).rgb;
+            const vec4 metallicRoughness = materialTexture(refs.y, data, footprint);
+            s.roughness *= metallicRoughness.g;
+            s.metallic *= metallicRoughness.b;
+            const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
+            if (refs.z != NONE) {
+                const float scale = uintBitsToFloat(imageLoad(materials, material + 3).z);
+                normal = mappedNormal(normal, vec4(tangent, handedness), materialTexture(refs.z, data, footprint).rgb, scale);
+            }
+            if (HAS_CLEARCOAT) {
+                coatOverEmission *= materialTexture(imageLoad(materials, material + 6).z, data, emitting).r;
+                applyClearcoatTextures(s, material, data, footprint);
+                coatNormal = clearcoatNormal(material, data, footprint, coatNormal, vec4(tangent, handedness));
+            }
+            if (HAS_SPECULAR_TEXTURES) applySpecularTextures(s, material, data, footprint);
+            if (HAS_TRANSMISSION) {
+                s.transmission *= materialTexture(imageLoad(materials, material + 5).x, data, footprint).r;
+            }
+        }
+        s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);
+        if (HAS_CLEARCOAT) {
+            s.clearcoatNormal = facingNormal(s.front ? coatNormal : -coatNormal, s.geometricNormal, toViewer);
+        }
+    }
+    const bool visible = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
+    s.emission = s.unlit ? s.baseColor : visible ? s.emission : vec3(0.0);
+    if (HAS_CLEARCOAT) s.emission *= emissionThroughClearcoat(coatOverEmission, dot(s.geometricNormal, toViewer));
+    s.culled = !visible && s.transmission == 0.0;
+    s.absorption = vec3(0.0);
+    if (HAS_VOLUME) {
+        if (isBoundary(s)) s.absorption = uintBitsToFloat(imageLoad(materials, material + 8).xyz);
+    }
+    s.roughness = clamp(s.roughness, 0.0, 1.0);
+    s.metallic = clamp(s.metallic, 0.0, 1.0);
+    return s;
+}
+
+#endif

@@ -1,0 +1,96 @@
+// A ray against the four children of a node, in either format of scene_layout.h.
+#ifndef LIMPID_BVH_NODE_GLSL
+#define LIMPID_BVH_NODE_GLSL
+
+#include "shaders/common/scene_data.glsl"
+
+const uint KEY_MISS = 0xffffffffu;
+
+struct TraversalRay {
+    vec3 origin, direction, inverse;
+    vec3 acrossX, acrossY;        // perpendicular to the ray, of any length
+    vec3 offsetNear, offsetFar;  // t of a plane at p is p * inverse + offset, at least and at most
+};
+
+TraversalRay traversalRay(vec3 origin, vec3 direction) {
+    // A component of 0 would make 0 * infinity; the smallest direction that does not overflow stands for it.
+    const vec3 tiny = vec3(1e-18);
+    const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
+    const vec3 acrossX = abs(direction.x) > abs(direction.z) ? vec3(-direction.y, direction.x, 0.0)
+                                                             : vec3(0.0, -direction.z, direction.y);
+    const vec3 inverse = 1.0 / safe;
+    const vec3 offset = -origin * inverse, padding = 3e-7 * abs(offset);
+    return TraversalRay(origin, direction, inverse, acrossX, cross(direction, acrossX), offset - padding,
+                        offset + padding);
+}
+
+/// Entry distances as sortable keys: distance bits with the child's number in the lowest two; KEY_MISS where the ray
+/// misses.
+uvec4 keysOf(vec4 tNear, vec4 tFar) {
+    const uvec4 keys = (floatBitsToUint(tNear) & ~3u) | uvec4(0u, 1u, 2u, 3u);
+    return mix(uvec4(KEY_MISS), keys, lessThanEqual(tNear, tFar));
+}
+
+vec4 bytesOf(uint word) {
+    return vec4(float(word & 255u), float((word >> 8) & 255u), float((word >> 16) & 255u), float(word >> 24));
+}
+
+float exponentScale(uint biased) {
+    return uintBitsToFloat(biased << 23);
+}
+
+uvec4 intersectQuantised(uint node, TraversalRay ray, float tMax, out uvec4 children) {
+    const int at = int(node * BVH_NODE_TEXELS);
+    const uvec4 head = imageLoad(bvhNodes, at);
+    const uvec4 boundsA = imageLoad(bvhNodes, at + 1);
+    const uvec4 boundsB = imageLoad(bvhNodes, at + 2);
+    children = imageLoad(bvhNodes, at + 3);
+    const vec3 scale = ray.inverse * vec3(exponentScale(head.w & 255u), exponentScale((head.w >> 8) & 255u),
+                                          exponentScale((head.w >> 16) & 255u));
+    const vec3 base = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse;
+    // Rounding of origin and cells in ray space, at most: both sides of a box move outwards by it, so that a flat box or
+    // a hit on an edge of one is not lost (compare T. Ize, "Robust BVH ray traversal", JCGT 2013).
+    const vec3 padding = 5e-7 * (abs(base) + 255.0 * abs(scale));
+    const vec3 baseNear = base - padding, baseFar = base + padding;
+    const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
+    const vec4 nearX = bytesOf(flip.x ? boundsA.w : boundsA.x) * scale.x + baseNear.x;
+    const vec4 nearY = bytesOf(flip.y ? boundsB.x : boundsA.y) * scale.y + baseNear.y;
+    const vec4 nearZ = bytesOf(flip.z ? boundsB.y : boundsA.z) * scale.z + baseNear.z;
+    const vec4 farX = bytesOf(flip.x ? boundsA.x : boundsA.w) * scale.x + baseFar.x;
+    const vec4 farY = bytesOf(flip.y ? boundsA.y : boundsB.x) * scale.y + baseFar.y;
+    const vec4 farZ = bytesOf(flip.z ? boundsA.z : boundsB.y) * scale.z + baseFar.z;
+    const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
+    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax)));
+    return keysOf(tNear, tFar);
+}
+
+/// Faster where arithmetic counts and not the number of loads: on GPUs.
+uvec4 intersectExpanded(uint node, TraversalRay ray, float tMax, out uvec4 children) {
+    const int at = int(node * EXPANDED_NODE_TEXELS);
+    children = imageLoad(bvhNodes, at + 6);
+    const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
+    const ivec3 near = at + mix(ivec3(0, 1, 2), ivec3(3, 4, 5), flip), far = at + mix(ivec3(3, 4, 5), ivec3(0, 1, 2), flip);
+    const vec4 nearX = uintBitsToFloat(imageLoad(bvhNodes, near.x)) * ray.inverse.x + ray.offsetNear.x;
+    const vec4 nearY = uintBitsToFloat(imageLoad(bvhNodes, near.y)) * ray.inverse.y + ray.offsetNear.y;
+    const vec4 nearZ = uintBitsToFloat(imageLoad(bvhNodes, near.z)) * ray.inverse.z + ray.offsetNear.z;
+    const vec4 farX = uintBitsToFloat(imageLoad(bvhNodes, far.x)) * ray.inverse.x + ray.offsetFar.x;
+    const vec4 farY = uintBitsToFloat(imageLoad(bvhNodes, far.y)) * ray.inverse.y + ray.offsetFar.y;
+    const vec4 farZ = uintBitsToFloat(imageLoad(bvhNodes, far.z)) * ray.inverse.z + ray.offsetFar.z;
+    const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
+    const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax)));
+    // The offsets are padded by their own rounding; this is that of the sum.
+    return keysOf(tNear, tFar * 1.000001);
+}
+
+uvec4 intersectChildren(uint node, TraversalRay ray, float tMax, out uvec4 children) {
+    return EXPANDED_NODES ? intersectExpanded(node, ray, tMax, children)
+                          : intersectQuantised(node, ray, tMax, children);
+}
+
+uint childOf(uint key, uvec4 children) {
+    const uint low = (key & 1u) != 0u ? children.y : children.x;
+    const uint high = (key & 1u) != 0u ? children.w : children.z;
+    return (key & 2u) != 0u ? high : low;
+}
+
+#endif

@@ -1,0 +1,10 @@
+// What rays of the `pipeline` tracer run, whichever pass starts them.
+#pragma once
+
+#include "gpu/graph/frame_graph.h"
+
+namespace limpid {
+
+const gpu::RayShaders& rayShaders();
+
+}  // namespace limpid

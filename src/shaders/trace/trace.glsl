@@ -1,0 +1,40 @@
+// The one interface through which passes trace rays. Implementations: trace_compute.glsl (our tree, walked in a
+// compute shader) and, where the including shader defines LIMPID_TRACE_PIPELINE, trace_pipeline.glsl (the driver's, from
+// ray generation). Shading never depends on which one is used.
+#ifndef LIMPID_TRACE_GLSL
+#define LIMPID_TRACE_GLSL
+
+#include "shaders/material/material.glsl"
+
+struct Ray {
+    vec3 origin;
+    vec3 direction;  // unit
+    float tMax;
+};
+
+const float INFINITE_DISTANCE = 1e30;
+
+struct Hit {
+    float t;            // distance; INFINITE_DISTANCE: nothing hit
+    vec2 barycentrics;  // of vertices 1 and 2
+    uint triangle;      // in bvhTriangles; its record names instance, primitive and shading triangle
+    uint instance;      // of an instanced mesh; NONE: the triangle's record names it
+};
+
+bool isHit(Hit hit) {
+    return hit.t < INFINITE_DISTANCE;
+}
+
+// Each has:
+//
+//     /// The nearest hit with t in (0, ray.tMax). `rng` decides on partly transparent (BLEND) surfaces; it is not used up.
+//     Hit traceClosest(Ray ray, uint rootNode, uint rng);
+//     /// Whether anything lies between the origin and ray.tMax.
+//     bool traceAny(Ray ray, uint rootNode, uint rng);
+#ifdef LIMPID_TRACE_PIPELINE
+#include "shaders/trace/trace_pipeline.glsl"
+#else
+#include "shaders/trace/trace_compute.glsl"
+#endif
+
+#endif

@@ -1,0 +1,104 @@
+// limpid dataset: the same files whatever the shards, healed when damaged, right by a furnace.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "neural/tensor_file.h"
+#include "tests/cli/cli_fixture.h"
+
+namespace limpid {
+namespace {
+
+using neural::Tensor;
+using neural::TensorFile;
+using neural::valuesOf;
+
+class CliDatasetTest : public CliTest {
+  protected:
+    std::string command(const std::string& folder, const std::string& more = "") const {
+        return "dataset --device cpu --rooms 1 --still-lifes 1 --scene builtin:cornell --width 16 --height "
+               "12 --samples 1,4 "
+               "--reference-samples 8 --per-file 1 -o '" +
+               path(folder) + "' " + more;
+    }
+    std::string file(const std::string& folder, int number) const {
+        return get(folder + "/examples.0000" + std::to_string(number) + ".safetensors");
+    }
+};
+
+TEST_F(CliDatasetTest, ShardsMakeWhatOneProcessMakes) {
+    expect(command("whole"), 0, "3 examples in 3 files");
+    expect(command("parts", "--shard 2/2"), 0, "the others are not yet");
+    EXPECT_FALSE(fs::exists(path("parts/manifest.json")));
+    EXPECT_FALSE(fs::exists(path("parts/examples.00000.safetensors")));
+    expect(command("parts", "--shard 1/2"), 0, "their manifest");
+    for (int number = 0; number < 3; ++number)
+        EXPECT_EQ(file("whole", number), file("parts", number)) << number;
+    EXPECT_EQ(get("whole/manifest.json"), get("parts/manifest.json"));
+    const auto manifest = nlohmann::json::parse(get("whole/manifest.json"));
+    ASSERT_EQ(manifest["files"].size(), 3u);
+    EXPECT_EQ(manifest["files"][2]["examples"][0]["scene"], "builtin:cornell");
+    for (int number = 0; number < 3; ++number) {
+        const TensorFile read =
+            neural::readTensorFile(path("whole/examples.0000" + std::to_string(number) + ".safetensors"));
+        EXPECT_EQ(manifest["files"][static_cast<size_t>(number)]["crc32"], read.metadata.at("crc32"));
+    }
+}
+
+TEST_F(CliDatasetTest, KeepsWhatIsWholeAndMakesAnewWhatIsDamaged) {
+    expect(command("data"), 0, "manifest");
+    const std::string first = file("data", 0), second = file("data", 1);
+    const auto time = fs::last_write_time(path("data/examples.00000.safetensors"));
+    put("data/examples.00001.safetensors", second.substr(0, second.size() - 100));
+    fs::remove(path("data/examples.00002.safetensors"));
+    expect(command("data"), 0, "made anew");
+    EXPECT_EQ(file("data", 1), second);
+    EXPECT_TRUE(fs::exists(path("data/examples.00002.safetensors")));
+    EXPECT_EQ(file("data", 0), first);
+    EXPECT_EQ(fs::last_write_time(path("data/examples.00000.safetensors")), time);
+    expect(command("data", "--seed 1"), 2, "with other parameters");
+    EXPECT_EQ(file("data", 0), first);
+}
+
+TEST_F(CliDatasetTest, SaysWhatIsWrong) {
+    expect(command("data", "--shard 3/2"), 2, "--shard");
+    expect(command("data", "--shard x"), 2, "--shard");
+    expect("dataset --rooms 0 -o '" + path("data") + "'", 2, "no rooms");
+    expect("dataset --samples 4,1 -o '" + path("data") + "'", 2, "ascend");
+    expect("dataset --device cpu --rooms 0 --scene nothing.gltf -o '" + path("data") + "'", 3,
+           "nothing.gltf");
+    put("file", "");
+    expect("dataset -o '" + path("file/data") + "'", 1, "cannot be made");
+}
+
+double meanOf(const Tensor& tensor) {
+    const std::vector<float> values = valuesOf(tensor);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Every surface emits 1 and reflects half: what 8 reflections bring is 1 - 1/256.
+TEST_F(CliDatasetTest, AFurnaceIsAsBrightAsItMustBe) {
+    expect(
+        "dataset --device cpu --rooms 0 --scene builtin:furnace --width 24 --height 16 --samples 2,16 "
+        "--reference-samples 64 -o '" +
+            path("data") + "'",
+        0, "manifest");
+    const TensorFile file = neural::readTensorFile(path("data/examples.00000.safetensors"));
+    const auto& tensors = file.tensors;
+    const Tensor& reference = tensors.at("000000/reference/diffuse");
+    EXPECT_EQ(reference.shape, (std::vector<uint64_t>{3, 16, 24}));
+    EXPECT_EQ(tensors.at("000000/2/depth.variance").shape, (std::vector<uint64_t>{1, 16, 24}));
+    EXPECT_EQ(tensors.size(), 2u * 10u + 2u);
+    EXPECT_NEAR(meanOf(reference), 0.996, 0.01);
+    EXPECT_NEAR(meanOf(tensors.at("000000/16/diffuse")), 0.996, 0.02);
+    EXPECT_NEAR(meanOf(tensors.at("000000/16/albedo")), 0.5, 1e-3);
+    EXPECT_EQ(meanOf(tensors.at("000000/reference/specular")), 0.0);
+    // The variance of the mean falls with the number of samples.
+    const double ratio =
+        meanOf(tensors.at("000000/2/diffuse.variance")) / meanOf(tensors.at("000000/16/diffuse.variance"));
+    EXPECT_GT(ratio, 5.0);
+    EXPECT_LT(ratio, 13.0);
+}
+
+}  // namespace
+}  // namespace limpid

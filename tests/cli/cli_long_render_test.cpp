@@ -1,0 +1,287 @@
+// Renders that are killed, limited in time or split in shards: the same bits as one undisturbed run.
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "image/io/exr/exr.h"
+#include "tests/cli/cli_fixture.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* small = " --width 32 --height 18 --device cpu ";
+
+class CliLongRenderTest : public CliTest {
+  protected:
+    void expectDone(const std::string& arguments) {
+        const Result result = run(arguments);
+        ASSERT_EQ(result.code, 0) << arguments << "\n" << result.output;
+    }
+    void expectSame(const std::string& a, const std::string& b) const {
+        const std::string bytes = get(a);
+        EXPECT_FALSE(bytes.empty()) << a;
+        EXPECT_TRUE(bytes == get(b)) << a << " and " << b << " differ";
+    }
+    std::string frame(const char* pattern, int number) const {
+        return fmt::format(fmt::runtime(pattern), number);
+    }
+    size_t hiddenFiles() const {
+        size_t count = 0;
+        for (const auto& entry : fs::directory_iterator(folder_))
+            count += entry.path().filename().string().starts_with(".");
+        return count;
+    }
+
+    /// Starts the program and kills it after `milliseconds`; false if it ended before.
+    static bool startAndKill(const std::vector<std::string>& arguments, int milliseconds) {
+        std::vector<char*> argv{const_cast<char*>(LIMPID_PROGRAM)};
+        for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+        argv.push_back(nullptr);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            const int null = ::open("/dev/null", O_WRONLY);
+            ::dup2(null, STDOUT_FILENO);
+            ::dup2(null, STDERR_FILENO);
+            ::execv(LIMPID_PROGRAM, argv.data());
+            ::_exit(127);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        ::kill(child, SIGKILL);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0) << "exit code " << WEXITSTATUS(status);
+        return WIFSIGNALED(status);
+    }
+
+    /// Kills the render ten times at random moments, resuming each time, and lets the last run end.
+    static void killTenTimes(const std::vector<std::string>& arguments) {
+        const char* given = std::getenv("LIMPID_TEST_SEED");
+        const auto seed =
+            given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : std::random_device()();
+        fmt::print("LIMPID_TEST_SEED={}\n", seed);
+        std::mt19937 random(seed);
+        std::uniform_int_distribution<int> milliseconds(20, 700);
+        int killed = 0;
+        std::string moments;
+        for (int i = 0; i < 10; ++i) {
+            const int after = milliseconds(random);
+            moments += fmt::format(" {}", after);
+            killed += startAndKill(arguments, after);
+        }
+        fmt::print("killed {} times, after ms:{}\n", killed, moments);
+        EXPECT_GE(killed, 3) << "the render is too short for this machine";
+        std::string line;
+        for (const std::string& argument : arguments) line += " '" + argument + "'";
+        const Result last = run(line);
+        EXPECT_EQ(last.code, 0) << last.output;
+    }
+};
+
+TEST_F(CliLongRenderTest, AStillKilledTenTimesIsTheSame) {
+    const std::string scene = "render builtin:cornell --samples-per-launch 4 --spp 960 --aov all";
+    expectDone(scene + small + "-o " + path("whole.exr"));
+    killTenTimes({"render", "builtin:cornell", "--samples-per-launch", "4", "--spp", "960", "--aov", "all",
+                  "--width", "32", "--height", "18", "--device", "cpu", "-o", path("killed.exr"),
+                  "--checkpoint", path("still.ck"), "--resume"});
+    expectSame("whole.exr", "killed.exr");
+    EXPECT_EQ(hiddenFiles(), 0u) << "temporary files of killed runs";
+}
+
+TEST_F(CliLongRenderTest, ASequenceKilledTenTimesIsTheSame) {
+    constexpr int frames = 16;
+    const std::string scene =
+        "render builtin:cornell-moving --frames 16 --samples-per-launch 4 --spp 80 --aov all";
+    expectDone(scene + small + "-o " + path("whole.%04d.exr"));
+    killTenTimes({"render",
+                  "builtin:cornell-moving",
+                  "--frames",
+                  "16",
+                  "--samples-per-launch",
+                  "4",
+                  "--spp",
+                  "80",
+                  "--aov",
+                  "all",
+                  "--width",
+                  "32",
+                  "--height",
+                  "18",
+                  "--device",
+                  "cpu",
+                  "-o",
+                  path("killed.%04d.exr"),
+                  "--checkpoint",
+                  path("sequence.ck"),
+                  "--resume"});
+    for (int i = 0; i < frames; ++i) expectSame(frame("whole.{:04}.exr", i), frame("killed.{:04}.exr", i));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()),
+              2 * frames + 1 + static_cast<int>(hiddenFiles()));
+}
+
+TEST_F(CliLongRenderTest, MergedSamplesAreThoseOfOneRun) {
+    const std::string scene =
+        "render builtin:cornell-spheres --spp 200 --seed 4 --aov all" + std::string(small);
+    expectDone(scene + "-o " + path("whole.exr"));
+    std::string files;
+    for (const char* shard : {"3", "1", "5", "2", "4"}) {  // four blocks: the fifth shard has none
+        const std::string file = path(fmt::format("{}.sums", shard));
+        expectDone(scene + fmt::format("--shard {}/5 -o {}", shard, file));
+        files += " " + file;
+    }
+    expectDone("merge" + files + " -o " + path("merged.exr"));
+    expectSame("whole.exr", "merged.exr");
+}
+
+TEST_F(CliLongRenderTest, MergedPngsAndFloatsAreThoseOfOneRun) {
+    const std::string scene = "render builtin:cornell --spp 70 --exposure 0.5" + std::string(small);
+    expectDone(scene + "-o " + path("whole.png"));
+    for (const char* shard : {"1", "2"})
+        expectDone(scene + fmt::format("--shard {0}/2 -o {1}/{0}.sums", shard, folder_.string()));
+    expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.png"));
+    expectSame("whole.png", "merged.png");
+    expectDone(scene + "--float -o " + path("whole.exr"));
+    for (const char* shard : {"1", "2"})
+        expectDone(scene + fmt::format("--float --shard {0}/2 -o {1}/{0}.sums", shard, folder_.string()));
+    expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.exr"));
+    expectSame("whole.exr", "merged.exr");
+}
+
+TEST_F(CliLongRenderTest, FramesOfShardsAreThoseOfOneRun) {
+    const std::string scene =
+        "render builtin:cornell-moving --frames 5 --fps 8 --camera-path orbit --spp 2 --aov all" +
+        std::string(small);
+    fs::create_directories(folder_ / "a");
+    fs::create_directories(folder_ / "b");
+    fs::create_directories(folder_ / "all");
+    expectDone(scene + "-o " + path("%d.exr"));
+    expectDone(scene + "--shard 1/2 -o " + path("a/%d.exr"));
+    expectDone(scene + "--shard 2/2 -o " + path("b/%d.exr"));
+    for (int i = 0; i < 5; ++i)
+        expectSame(frame("{}.exr", i), frame(i % 2 == 0 ? "a/{}.exr" : "b/{}.exr", i));
+    const std::string a = path("a/%d.exr "), b = path("b/%d.exr "), to = "-o " + path("all/%d.exr");
+    expectDone("merge " + b + a + to);
+    for (int i = 0; i < 5; ++i) expectSame(frame("{}.exr", i), frame("all/{}.exr", i));
+
+    expect("merge " + b + to, 3, "lacks frame 0, 2, 4 of 0-4");
+    expect("merge " + a + b + a + to, 3, "which is");
+    expect("merge " + path("none.%d.exr ") + to, 3, "no such frames");
+    expectDone(scene + "--seed 1 --shard 2/2 -o " + path("b/%d.exr"));
+    expect("merge " + a + b + to, 3, "another render");
+    fs::rename(folder_ / "a/2.exr", folder_ / "a/1.exr");
+    expect("merge " + a + to, 3, "by its name");
+    put("a/1.exr", "broken");
+    expect("merge " + a + to, 3, "a/1.exr");
+}
+
+TEST_F(CliLongRenderTest, TimeLimitsAreKeptAndGoneOnFrom) {
+    const std::string scene = "render builtin:cornell --spp 640 --json" + std::string(small);
+    expectDone(scene + "-o " + path("whole.exr"));
+    const std::string limited = scene + "--checkpoint " + path("a.ck") + " --resume -o " + path("a.exr");
+    // So little time that only the one launch that a picture needs fits in.
+    const Result first = run(limited + " --time-limit 0.001");
+    ASSERT_EQ(first.code, 0) << first.output;
+    EXPECT_NE(first.output.find("\"samples\": 1,"), std::string::npos) << first.output;
+    EXPECT_NE(first.output.find("\"complete\": false"), std::string::npos) << first.output;
+    EXPECT_NE(first.output.find("1 of 640 samples"), std::string::npos) << first.output;
+    EXPECT_NE(first.output.find("not one block of 64"), std::string::npos) << first.output;
+    EXPECT_EQ(image::readExr(path("a.exr")).metadata.at("limpid.samples"), "1");
+    const auto start = std::chrono::steady_clock::now();
+    const Result second = run(limited + " --time-limit 1.5");
+    EXPECT_EQ(second.code, 0) << second.output;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    expectDone(limited);
+    expectSame("whole.exr", "a.exr");
+    const Result again = run(limited);
+    EXPECT_NE(again.output.find("\"rays\": 0"), std::string::npos) << "it was finished: " << again.output;
+    expectSame("whole.exr", "a.exr");
+}
+
+TEST_F(CliLongRenderTest, ASequenceOutOfTimeHasWholeFramesOnly) {
+    const std::string scene =
+        "render builtin:cornell-moving --frames 3 --spp 4 --checkpoint " + path("s.ck") + " --resume" + small;
+    const Result first = run(scene + "--time-limit 0.001 -o " + path("%d.exr"));
+    EXPECT_EQ(first.code, 0) << first.output;
+    EXPECT_NE(first.output.find("0 of 3 frames"), std::string::npos) << first.output;
+    EXPECT_FALSE(fs::exists(path("0.exr")));
+    expectDone(scene + "-o " + path("%d.exr"));
+    const std::string bytes = get("1.exr");
+    fs::remove(path("1.exr"));
+    put("2.exr", "not touched");
+    expectDone(scene + "-o " + path("%d.exr"));
+    EXPECT_TRUE(get("1.exr") == bytes) << "a frame that was removed is rendered again";
+    EXPECT_EQ(get("2.exr"), "not touched");
+}
+
+TEST_F(CliLongRenderTest, ACheckpointThatDoesNotFitIsRefused) {
+    const std::string ck = "--checkpoint " + path("a.ck") + " -o " + path("a.exr");
+    const std::string scene = "render builtin:cornell --spp 64 " + ck + small;
+    expectDone(scene);
+    const std::string whole = get("a.ck");
+    fs::remove(path("a.exr"));
+    expect(scene, 2, "--resume");
+    expect(scene + "--resume --seed 7", 3, "seed is 0, not 7");
+    expect(scene + "--resume --max-depth 3", 3, "pathtrace.max_depth is 8, not 3");
+    expect(scene + "--resume --jitter off", 3, "jitter is pixel, not off");
+    expect(scene + "--resume --aov depth", 3, "layers");
+    expect("render builtin:cornell-spheres --spp 64 --resume " + ck + small, 3, "scene");
+    expect("render builtin:cornell --spp 64 --resume --width 16 --height 18 --device cpu " + ck, 3,
+           "width is 32, not 16");
+    expect("render builtin:cornell --spp 64 --resume --shard 1/2 --checkpoint " + path("a.ck") + " -o " +
+               path("a.sums") + small,
+           3, "shard 1/1, not 1/2");
+    put("a.ck", whole.substr(0, whole.size() / 2));
+    expect(scene + "--resume", 3, "a.ck: ");
+    put("a.ck", "");
+    expect(scene + "--resume", 3, "a.ck: ");
+    std::string damaged = whole;
+    damaged[whole.size() / 2] ^= 1;
+    put("a.ck", damaged);
+    expect(scene + "--resume", 3, "checksum");
+    EXPECT_EQ(get("a.ck"), damaged) << "a refused checkpoint is left alone";
+    EXPECT_FALSE(fs::exists(path("a.exr")));
+}
+
+TEST_F(CliLongRenderTest, EmptyShardsSaySo) {
+    const std::string rest = " --spp 1 --shard 3/3" + std::string(small);
+    expect("render builtin:cornell -o " + path("a.sums") + rest, 0, "shard 3/3 is empty");
+    EXPECT_TRUE(fs::exists(path("a.sums"))) << "or a script that expects it fails";
+    expect("render builtin:cornell-moving --frames 2 -o " + path("%d.exr") + rest, 0, "shard 3/3 is empty");
+    expect("render builtin:cornell-moving --frames 1 -o " + path("%d.exr") + rest, 2, "a still");
+}
+
+TEST_F(CliLongRenderTest, TheSceneFilesContentCounts) {
+    const auto triangle = [&](const char* height) {
+        put("a.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 0 {} 0\nf 1 2 3\n", height));
+    };
+    const std::string scene = "render " + path("a.obj") + " --spp 1 --checkpoint " + path("a.ck") +
+                              " --resume -o " + path("a.exr") + small;
+    triangle("1");
+    expectDone(scene);
+    triangle("1.5");
+    expect(scene, 3, "another render: the scene's content");
+}
+
+TEST_F(CliLongRenderTest, WrongUsageIsExitCode2) {
+    const std::string scene = "render builtin:cornell --spp 1" + std::string(small);
+    expect(scene + "--resume -o " + path("a.exr"), 2, "--checkpoint");
+    expect(scene + "--time-limit 0 -o " + path("a.exr"), 2, "--time-limit");
+    for (const char* shard : {"0/2", "3/2", "1/0", "1", "/", "a/b", "1/2/3", "-1/2", "1/2x"})
+        expect(scene + "--shard " + shard + " -o " + path("a.sums"), 2, "--shard");
+    expect(scene + "--shard 1/2 -o " + path("a.exr"), 2, ".sums");
+    expect(scene + "-o " + path("a.sums"), 2, "only a shard");
+    expect("merge -o " + path("a.exr"), 2, "FILE");
+    expect("merge " + path("a.sums") + " -o " + path("a.jpg"), 2, ".exr or .png");
+    expect("merge " + path("%d.exr") + " -o " + path("b.%d.png"), 2, ".exr");
+    expect("merge " + path("a.exr") + " -o " + path("b.%d.exr"), 2, "holds a number");
+    expect("merge " + path("a.sums") + " -o " + path("a.exr"), 3, "a.sums");
+    expect(scene + "--checkpoint " + path("no/such.ck") + " -o " + path("a.exr"), 1, "does not exist");
+}
+
+}  // namespace
+}  // namespace limpid

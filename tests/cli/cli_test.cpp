@@ -1,0 +1,177 @@
+// The command line as its users and scripts meet it: exit codes, messages, and outputs that survive failures.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/cli_fixture.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* tiny = " --width 32 --height 18 --spp 1 --device cpu ";
+
+TEST_F(CliTest, WrongUsageIsExitCode2) {
+    expect("", 2, "subcommand");
+    expect("render builtin:cornell", 2, "--output");
+    expect("render builtin:nothing -o " + path("a.png") + tiny, 2, "builtin:cornell");
+    expect("render builtin:cornell -o " + path("a.bmp") + tiny, 2, ".exr or .png");
+    expect("render builtin:cornell -o " + path("a.png") + " --width 0", 2, "--width");
+    expect("render builtin:cornell -o " + path("a.png") + " --width 99999999999", 2, "--width");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=x", 2,
+           "whole number");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set pathtrace.max_depth=-1", 2,
+           "outside its range");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--set no.such=1", 2, "no.such");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--camera 7", 2, "its cameras are");
+    expect("render builtin:cornell -o " + path("a.exr") + tiny + "--aov nonsense", 2, "the layers are");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--exposure nan", 2, "range");
+    expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
+}
+
+/// Black is black only where it is asked for.
+TEST_F(CliTest, DarkScenesGetASkyUnlessABackgroundIsChosen) {
+    put("plate.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
+    const std::string render = "render " + path("plate.obj") + " -o " + path("a.png") + tiny;
+    const std::string message = "a soft sky was added";
+    expect(render, 0, message);
+    expect(render + "--light point,0,-2,0,5", 0, message);
+    for (const char* light : {"--background 0,0,0", "--background 0.2,0.2,0.2", "--light point,0,2,0,5"}) {
+        const Result result = run(render + light);
+        EXPECT_EQ(result.code, 0) << result.output;
+        EXPECT_EQ(result.output.find(message), std::string::npos) << light << result.output;
+    }
+}
+
+TEST_F(CliTest, UnreadableInputIsExitCode3AndNamesFileAndFault) {
+    expect("render " + path("none.gltf") + " -o " + path("a.png") + tiny, 3, "none.gltf");
+    put("broken.gltf", "{\"asset\": ");
+    expect("render " + path("broken.gltf") + " -o " + path("a.png") + tiny, 3, "broken.gltf");
+    put("empty.glb", "");
+    expect("render " + path("empty.glb") + " -o " + path("a.png") + tiny, 3, "empty.glb");
+    put("no_triangles.gltf", "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[]}]}");
+    expect("render " + path("no_triangles.gltf") + " -o " + path("a.png") + tiny, 3, "no_triangles.gltf");
+    put("scene.fbx", "x");
+    expect("render " + path("scene.fbx") + " -o " + path("a.png") + tiny, 3, "scene.fbx");
+    put("bad.hdr", "#?RADIANCE\n");
+    expect("render builtin:cornell --env " + path("bad.hdr") + " -o " + path("a.png") + tiny, 3, "bad.hdr");
+    expect("compare " + path("x.exr") + " " + path("y.exr"), 3, "x.exr");
+    EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(CliTest, AnOutputThatCannotBeWrittenIsExitCode1) {
+    fs::create_directories(folder_ / "folder.png");
+    expect("render builtin:cornell -o " + path("folder.png") + tiny, 1, "is a directory");
+    expect("render builtin:cornell -o " + path("no/such/a.png") + tiny, 1, "does not exist");
+}
+
+TEST_F(CliTest, AFailedRunLeavesTheOldOutputAlone) {
+    put("a.png", "old");
+    expect("render " + path("none.gltf") + " -o " + path("a.png") + tiny, 3, "none.gltf");
+    EXPECT_EQ(get("a.png"), "old");
+}
+
+TEST_F(CliTest, AFileSizeLimitActsLikeAFullDisk) {
+    put("a.exr", "old");
+    // SIGXFSZ ignored, so that the write fails as it does on a full disk.
+    const std::string inner =
+        std::string("trap \"\" XFSZ; ulimit -f 1; exec \"") + LIMPID_PROGRAM +
+        "\" render builtin:cornell --width 256 --height 144 --spp 1 --device cpu --aov all -o " +
+        path("a.exr");
+    const int status = std::system(("bash -c '" + inner + "' >/dev/null 2>&1").c_str());
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 1);
+    EXPECT_EQ(get("a.exr"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+        << "no temporary file stays";
+}
+
+TEST_F(CliTest, RendersComparesAndReports) {
+    const std::string options = " --width 64 --height 36 --spp 4 --device cpu --json";
+    const Result render = run("render builtin:cornell --float --aov all -o " + path("a.exr") + options);
+    ASSERT_EQ(render.code, 0) << render.output;
+    EXPECT_NE(render.output.find("\"rejected_samples\": 0"), std::string::npos) << render.output;
+    ASSERT_EQ(run("render builtin:cornell --float --aov all -o " + path("b.exr") + options).code, 0);
+    EXPECT_EQ(get("a.exr"), get("b.exr")) << "same seed, same device, same options: the same bits";
+    const Result same = run("compare " + path("a.exr") + " " + path("b.exr") + " --json");
+    EXPECT_EQ(same.code, 0);
+    EXPECT_NE(same.output.find("\"flip\":0.0"), std::string::npos) << same.output;
+    ASSERT_EQ(run("render builtin:cornell --seed 1 -o " + path("c.png") + options).code, 0);
+    EXPECT_EQ(run("compare " + path("c.png") + " " + path("a.exr") + " --error-map " + path("e.png")).code,
+              0);
+    EXPECT_TRUE(fs::exists(folder_ / "e.png"));
+}
+
+/// A triangle, two cameras, and two clips that move it.
+constexpr const char* sceneWithCameras = R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2]}],
+  "nodes": [{"mesh": 0}, {"camera": 0, "name": "front \u001b[2J", "translation": [0.3, 0.3, 2]},
+            {"camera": 1, "name": "top", "translation": [0.1, 0.2, 1]}],
+  "cameras": [{"type": "perspective", "name": "front \u001b[2J",
+               "perspective": {"yfov": 0.7853982, "znear": 0.1}},
+              {"type": "orthographic", "name": "top", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 9}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "buffers": [{"byteLength": 68, "uri": "scene.bin"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                  {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                 "max": [1, 1, 0]},
+                {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2]},
+                {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+  "animations": [
+    {"name": "move", "samplers": [{"input": 1, "output": 2}],
+     "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]},
+    {"name": "shrink", "samplers": [{"input": 1, "output": 2}],
+     "channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}]}]})";
+
+TEST_F(CliTest, InfoListsWhatASceneHoldsAndWhatItListsCanBeChosen) {
+    put("scene.gltf", sceneWithCameras);
+    const float floats[17] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0.5f};
+    put("scene.bin", std::string(reinterpret_cast<const char*>(floats), sizeof floats));
+    const std::string scene = path("scene.gltf");
+
+    const Result text = run("info " + scene);
+    EXPECT_EQ(text.code, 0) << text.output;
+    for (const char* part : {"'front \\x1b[2J'", "perspective, fov 45.0 degrees", "'top'",
+                             "orthographic, 2 high", "'move'", "2.00 s", "1 triangles"})
+        EXPECT_NE(text.output.find(part), std::string::npos) << part << "\n" << text.output;
+    EXPECT_EQ(text.output.find('\x1b'), std::string::npos);
+
+    const Result report = run("info " + scene + " --json 2>/dev/null");
+    const auto json = nlohmann::json::parse(report.output.substr(report.output.find('{')));
+    ASSERT_EQ(json["cameras"].size(), 2u);
+    EXPECT_EQ(json["cameras"][0]["type"], "perspective");
+    EXPECT_NEAR(json["cameras"][0]["fov"].get<double>(), 45.0, 1e-3);
+    EXPECT_EQ(json["cameras"][1]["name"], "top");
+    EXPECT_EQ(json["animations"].size(), 2u);
+    EXPECT_EQ(json["triangles"], 1);
+
+    const std::string render = "render " + scene + tiny + "-o ";
+    for (const char* index : {"0", "1"}) {
+        const std::string name = json["cameras"][index[0] - '0']["name"];
+        ASSERT_EQ(run(render + path("index.exr") + " --camera " + index).code, 0);
+        ASSERT_EQ(run(render + path("name.exr") + " --camera '" + name + "'").code, 0);
+        EXPECT_EQ(get("index.exr"), get("name.exr")) << name;
+        put(std::string(index) + ".exr", get("index.exr"));
+    }
+    EXPECT_NE(get("0.exr"), get("1.exr"));
+    expect(render + path("a.exr") + " --camera 2", 2, "1 'top'");
+
+    // Each clip and both together are three pictures.
+    for (const char* clip : {"none", "0", "shrink", "all"})
+        ASSERT_EQ(run(render + path(std::string(clip) + ".exr") + " --time 1 --animation " + clip).code, 0);
+    EXPECT_NE(get("all.exr"), get("0.exr"));
+    EXPECT_NE(get("all.exr"), get("shrink.exr"));
+    EXPECT_NE(get("all.exr"), get("none.exr"));
+}
+
+TEST_F(CliTest, InfoListsWhatThereIs) {
+    const Result info = run("info --json");
+    EXPECT_EQ(info.code, 0);
+    for (const char* part : {"pathtrace.max_depth", "builtin:heavy", "\"devices\"", "\"layers\""}) {
+        EXPECT_NE(info.output.find(part), std::string::npos) << part;
+    }
+    EXPECT_EQ(run("--help").code, 0);
+    for (const char* command : {"render", "compare", "bench", "info"}) {
+        EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
+    }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,57 @@
+// Running denoisers on frames from host memory.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "denoise/api/denoiser.h"
+#include "tests/gpu/gpu_fixture.h"
+#include "tests/oracle/double_atrous.h"
+#include "tests/oracle/double_history.h"
+#include "tests/oracle/synthetic_frames.h"
+
+namespace limpid::test {
+
+using denoise::DenoiserSettings;
+using denoise::HostFrame;
+
+inline std::vector<dvec4> asDouble(const std::vector<float>& texels) {
+    std::vector<dvec4> result(texels.size() / 4);
+    for (size_t p = 0; p < result.size(); ++p)
+        result[p] = {texels[4 * p], texels[4 * p + 1], texels[4 * p + 2], texels[4 * p + 3]};
+    return result;
+}
+
+class DenoiseTest : public GpuTest {
+  protected:
+    /// The images that a pass of the last frame wrote, by the end of their names.
+    gpu::ImageHandle written(const std::string& pass, const std::string& nameEnd) const {
+        for (const gpu::ImageHandle image : graph_.imagesWrittenBy(pass)) {
+            if (graph_.name(image).ends_with(nameEnd)) return image;
+        }
+        throw Error("pass '" + pass + "' writes no image '" + nameEnd + "'");
+    }
+    std::vector<dvec4> download(gpu::ImageHandle image) {
+        return asDouble(graph_.downloadFloat(device(), image));
+    }
+    std::vector<dvec4> download(const std::string& pass, const std::string& nameEnd) {
+        return download(written(pass, nameEnd));
+    }
+
+    /// One frame of a method; the next call is the next frame. Returns the beauty, four floats a pixel.
+    std::vector<float> denoise(const denoise::Denoiser& method, const HostFrame& frame,
+                               const DenoiserSettings& settings = {}) {
+        graph_.beginFrame();
+        denoise::DenoiserInput input = denoise::upload(graph_, frame);
+        input.filters = filters_;
+        output_ = method.record(graph_, input, settings);
+        graph_.execute(device());
+        return graph_.downloadFloat(device(), output_.beauty);
+    }
+
+    gpu::FrameGraph graph_;
+    denoise::DenoiserOutput output_;
+    gpu::Backing filters_ = gpu::Backing::Image;
+};
+
+}  // namespace limpid::test

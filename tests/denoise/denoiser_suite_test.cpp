@@ -1,0 +1,230 @@
+// What must hold of every denoiser, whatever it does: design, section 11.4. A new one is in it by being in
+// denoise::denoisers(). Networks are in kpcn_test.cpp.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/metrics/metrics.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "tests/denoise/denoise_fixture.h"
+#include "tests/oracle/double_denoise_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr uint32_t columns = 96, rows = 54;
+constexpr int frames = 8;
+
+class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std::string> {
+  protected:
+    static const denoise::Denoiser& method() { return *denoise::findDenoiser(GetParam()); }
+
+    /// The last picture of a sequence, from fresh histories.
+    std::vector<float> denoiseSequence(const SyntheticScene& scene, const DenoiserSettings& settings = {},
+                                       int count = frames) {
+        graph_.beginFrame();
+        graph_.resetHistories();
+        std::vector<float> picture;
+        for (int number = 0; number < count; ++number)
+            picture = denoise(method(), scene.frame(number, columns, rows, 1), settings);
+        return picture;
+    }
+
+    static image::Image rgbOf(const std::vector<float>& texels) {
+        image::Image picture(columns, rows, 3);
+        for (size_t p = 0; p < size_t{columns} * rows; ++p) {
+            for (size_t c = 0; c < 3; ++c) picture.pixels[3 * p + c] = texels[4 * p + c];
+        }
+        return picture;
+    }
+
+    static double psnrOf(const std::vector<float>& picture, const std::vector<float>& truth) {
+        return image::psnr(image::displayEncode(rgbOf(picture), 0.0f),
+                           image::displayEncode(rgbOf(truth), 0.0f));
+    }
+};
+
+const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
+
+void expectFinite(const std::vector<float>& picture) {
+    for (size_t i = 0; i < picture.size(); ++i) ASSERT_TRUE(std::isfinite(picture[i])) << i;
+}
+
+TEST_P(DenoiserSuite, AConstantImageStaysConstant) {
+    HostFrame frame = frontalPlane(columns, rows);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        for (size_t c = 0; c < 3; ++c) frame.diffuse[4 * p + c] = 0.25f * static_cast<float>(c + 1);
+    }
+    for (int number = 0; number < frames; ++number) {
+        const std::vector<float> picture = denoise(method(), frame);
+        for (size_t i = 0; i < picture.size(); ++i) {
+            const float expected = i % 4 == 3 ? 1.0f : 0.25f * static_cast<float>(i % 4 + 1);
+            ASSERT_NEAR(picture[i], expected, 1e-3f) << "frame " << number << " pixel " << i / 4;
+        }
+    }
+}
+
+TEST_P(DenoiserSuite, TexturesUnderConstantLightStaySharp) {
+    const SyntheticScene scene({.cameraMoves = true});
+    for (int number = 0; number < frames; ++number) {
+        HostFrame frame = scene.frame(number, columns, rows, 1);
+        std::fill(frame.specular.begin(), frame.specular.end(), 0.0f);
+        for (size_t i = 0; i < frame.albedo.size(); ++i)
+            frame.diffuse[i] = frame.depth[i / 4 * 4 + 1] > 0.0f ? std::max(frame.albedo[i], 0.1f) : 0.0f;
+        const std::vector<float> picture = denoise(method(), frame);
+        for (size_t i = 0; i < picture.size(); ++i) {
+            if (i % 4 == 3) continue;
+            const float expected = frame.diffuse[i] + frame.emission[i];
+            ASSERT_NEAR(picture[i], expected, 2e-3f * expected + 1e-6f) << "frame " << number << " " << i / 4;
+        }
+    }
+}
+
+TEST_P(DenoiserSuite, NoNanGoesInOrComesOut) {
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::max()};
+    const SyntheticScene scene(moving);
+    for (int number = 0; number < frames; ++number) {
+        HostFrame frame = scene.frame(number, columns, rows, 1);
+        size_t at = 5 + static_cast<size_t>(number);
+        for (auto* layer :
+             {&frame.diffuse, &frame.specular, &frame.emission, &frame.albedo, &frame.albedoSpecular,
+              &frame.normal, &frame.depth, &frame.motion, &frame.reflectionMotion, &frame.previousNormal}) {
+            for (const float value : bad) {
+                if (layer == &frame.emission && value == bad[3]) continue;  // it passes by as it is
+                (*layer)[at % layer->size()] = value;
+                at += 617;
+            }
+        }
+        expectFinite(denoise(method(), frame));
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST_P(DenoiserSuite, AnySizeWorks) {
+    const SyntheticScene scene(moving);
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 3u}, {17u, 5u}, {33u, 65u}}) {
+        for (int number = 0; number < 3; ++number) {
+            const std::vector<float> picture = denoise(method(), scene.frame(number, width, height, 1));
+            ASSERT_EQ(picture.size(), size_t{4} * width * height);
+            expectFinite(picture);
+        }
+    }
+}
+
+TEST_P(DenoiserSuite, ResizeAndResetStartAnew) {
+    const SyntheticScene scene(moving);
+    const std::vector<float> fresh = denoiseSequence(scene);
+    denoise(method(), scene.frame(3, 40, 30, 1));
+    std::vector<float> picture;
+    for (int number = 0; number < frames; ++number)
+        picture = denoise(method(), scene.frame(number, columns, rows, 1));
+    EXPECT_EQ(picture, fresh) << "after a resize";
+    EXPECT_EQ(denoiseSequence(scene), fresh) << "after a reset; and the same input gives the same bits";
+}
+
+/// Both ends of the range, and one that is neither.
+std::vector<std::string> numbersOf(const ParamInfo& info) {
+    if (!std::holds_alternative<int>(info.defaultValue)) {
+        const double between = std::min(std::ceil(info.minimum) + 1.0, 0.5 * (info.minimum + info.maximum));
+        return {fmt::format("{}", info.minimum), fmt::format("{}", between), fmt::format("{}", info.maximum)};
+    }
+    const int least = static_cast<int>(info.minimum), most = static_cast<int>(info.maximum);
+    return {std::to_string(least), std::to_string(std::min(least + 1, most)), std::to_string(most)};
+}
+
+/// What must be set besides for a parameter to matter.
+std::vector<std::string> neededFor(const std::string& parameter) {
+    if (parameter == "history.grey" || parameter == "history.grey_misses") return {"history.grey_restart=on"};
+    if (parameter == "history.identity") return {"history.depth=1e6", "history.normal=-1"};
+    return {};
+}
+
+TEST_P(DenoiserSuite, EveryParameterMatters) {
+    const SyntheticScene scene(moving);
+    const std::vector<float> defaults = denoiseSequence(scene);
+    for (const ParamGroup& group : paramGroups()) {
+        if (std::ranges::find(method().groups, group.name) == method().groups.end()) continue;
+        for (const ParamInfo& info : group.infos) {
+            const bool flag = std::holds_alternative<bool>(info.defaultValue);
+            const std::vector<std::string> values =
+                flag ? std::vector<std::string>{std::get<bool>(info.defaultValue) ? "off" : "on"}
+                     : numbersOf(info);
+            RenderSettings beside;
+            const std::vector<std::string> needed = neededFor(group.name + "." + info.name);
+            for (const std::string& text : needed) assign(beside, text);
+            const std::vector<float> plain =
+                needed.empty() ? defaults : denoiseSequence(scene, beside.denoisers);
+            bool matters = false;
+            for (const std::string& value : values) {
+                RenderSettings settings = beside;
+                assign(settings, group.name + "." + info.name + "=" + value);
+                const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);
+                SCOPED_TRACE(group.name + "." + info.name + "=" + value);
+                expectFinite(picture);
+                matters = matters || picture != plain;
+            }
+            EXPECT_TRUE(matters) << group.name << '.' << info.name;
+        }
+    }
+}
+
+TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
+    const SyntheticScene scene(moving);
+    const std::vector<float> plain = denoiseSequence(scene);
+    for (const Preset& preset : presets()) {
+        if (!preset.isFor(parsePipeline(GetParam()))) continue;
+        RenderSettings settings;
+        applyPreset(settings, preset.name);
+        const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);
+        expectFinite(picture);
+        EXPECT_NE(picture, plain) << preset.name;
+    }
+}
+
+TEST_P(DenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {
+    for (const SyntheticOptions& options : {SyntheticOptions{}, moving}) {
+        const SyntheticScene scene(options);
+        const int count = 24;
+        const std::vector<float> picture = denoiseSequence(scene, {}, count);
+        const HostFrame last = scene.frame(count - 1, columns, rows, 1);
+        std::vector<float> noisy(picture.size(), 1.0f);
+        for (size_t i = 0; i < noisy.size(); ++i)
+            noisy[i] = last.diffuse[i] + last.specular[i] + last.emission[i];
+        const std::vector<float> truth = scene.truth(count - 1, columns, rows);
+        const double gain = psnrOf(picture, truth) - psnrOf(noisy, truth);
+        RecordProperty(options.cameraMoves ? "gain_moving_dB" : "gain_still_dB", std::to_string(gain));
+        EXPECT_GE(gain, method().leastGain) << (options.cameraMoves ? "moving" : "still");
+    }
+}
+
+TEST_P(DenoiserSuite, ImagesAndBuffersGiveTheSamePicture) {
+    const SyntheticScene scene(moving);
+    const std::vector<float> images = denoiseSequence(scene);
+    filters_ = gpu::Backing::Buffer;
+    const std::vector<float> buffers = denoiseSequence(scene);
+    for (size_t i = 0; i < images.size(); ++i)
+        ASSERT_NEAR(buffers[i], images[i], 3e-3f * std::abs(images[i]) + 1e-6f) << i;
+}
+
+std::vector<std::string> names() {
+    std::vector<std::string> result;
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
+        if (!denoiser.network) result.emplace_back(denoiser.name);  // kpcn_test.cpp
+    }
+    return result;
+}
+
+std::string nameOf(const testing::TestParamInfo<std::string>& info) {
+    return info.param;
+}
+
+INSTANTIATE_TEST_SUITE_P(Denoisers, DenoiserSuite, testing::ValuesIn(names()), nameOf);
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,129 @@
+// What a moving object leaves behind: the bias of denoised frames where it has been, against that elsewhere
+// on the same wall.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "base/log.h"
+#include "scene/builtin/builtin.h"
+#include "tests/denoise/sequence_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr gpu::Extent extent{112, 63};
+constexpr size_t pixels = size_t{extent.width} * extent.height;
+constexpr uint64_t lastFrame = 30;
+constexpr uint32_t seeds = 16;
+
+/// By pixel: was the object seen here before, and is what it stood before seen now?
+struct Regions {
+    std::vector<bool> swept, elsewhere;
+};
+
+class GhostsTest : public SequenceTest {
+  protected:
+    void SetUp() override {
+        RenderTest::SetUp();
+        if (IsSkipped()) return;
+        load(scene::cornellMovingScene());
+    }
+
+    RenderSettings settings(const Pipeline& pipeline, uint32_t seed) const {
+        RenderSettings result;
+        result.extent = extent;
+        result.seed = seed;
+        result.jitter = Jitter::Off;
+        result.pipeline = pipeline;
+        result.layers = true;
+        return result;
+    }
+
+    /// Beauty of the last frame; `ids` of every frame are given to `look`.
+    template <typename Look>
+    std::vector<float> denoised(const Pipeline& pipeline, uint32_t seed, Look look) {
+        FrameRenderer renderer(device(), *gpuScene_, settings(pipeline, seed), 1);
+        RenderedLayers layers;
+        for (uint64_t frame = 0; frame <= lastFrame; ++frame) {
+            renderer.render(sequence_->moment(frame, extent));
+            if (frame < lastFrame && seed > 1) continue;
+            layers = renderer.download();
+            look(layers.ids);
+        }
+        return layers.beauty;
+    }
+
+    /// The wall is the still thing that the moving ones uncover most of.
+    Regions regions() {
+        std::vector<std::vector<uint32_t>> seen;
+        denoised(parsePipeline("history"), 1, [&](const std::vector<uint32_t>& ids) {
+            std::vector<uint32_t> instances(pixels);
+            for (size_t p = 0; p < pixels; ++p) instances[p] = ids[2 * p];
+            seen.push_back(instances);
+        });
+        const auto moves = [&](uint32_t instance) {
+            return instance < scene_.instances.size() &&
+                   scene_.instances[instance].movement != scene::Movement::Still;
+        };
+        const std::vector<uint32_t>& now = seen.back();
+        std::vector<bool> covered(pixels, false);
+        std::map<uint32_t, size_t> uncovered;
+        for (size_t p = 0; p < pixels; ++p) {
+            for (const auto& frame : seen) covered[p] = covered[p] || moves(frame[p]);
+            if (covered[p] && !moves(now[p])) ++uncovered[now[p]];
+        }
+        uint32_t wall = 0;
+        for (const auto& [instance, count] : uncovered) {
+            if (count > uncovered[wall]) wall = instance;
+        }
+        Regions result{std::vector<bool>(pixels), std::vector<bool>(pixels)};
+        for (size_t p = 0; p < pixels; ++p) {
+            result.swept[p] = now[p] == wall && covered[p];
+            result.elsewhere[p] = now[p] == wall && !covered[p];
+        }
+        return result;
+    }
+};
+
+/// Mean over the region of (mean - truth)^2 less the mean's own variance.
+double squaredBias(const std::vector<std::vector<float>>& pictures, const image::Image& truth,
+                   const std::vector<bool>& region) {
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t p = 0; p < pixels; ++p) {
+        if (!region[p]) continue;
+        for (size_t c = 0; c < 3; ++c) {
+            double mean = 0.0, squares = 0.0;
+            for (const auto& picture : pictures) mean += double{picture[4 * p + c]} / seeds;
+            for (const auto& picture : pictures) squares += std::pow(double{picture[4 * p + c]} - mean, 2);
+            const double variance = squares / (seeds - 1);
+            sum += std::pow(mean - double{truth.pixels[3 * p + c]}, 2) - variance / seeds;
+            ++count;
+        }
+    }
+    return sum / static_cast<double>(count);
+}
+
+TEST_F(GhostsTest, WhereAnObjectHasBeenThePictureIsAsRightAsElsewhere) {
+    const Regions found = regions();
+    const auto sizeOf = [](const std::vector<bool>& region) {
+        return std::count(region.begin(), region.end(), true);
+    };
+    ASSERT_GT(sizeOf(found.swept), 100);
+    ASSERT_GT(sizeOf(found.elsewhere), 100);
+    const image::Image truth = reference(lastFrame, settings({}, 0), 2048);
+    for (const denoise::Denoiser& method : denoise::denoisers()) {
+        if (method.network) continue;  // without a past there are no ghosts
+        std::vector<std::vector<float>> pictures;
+        for (uint32_t seed = 1; seed <= seeds; ++seed)
+            pictures.push_back(denoised({Pipeline::Kind::Denoised, &method}, seed, [](const auto&) {}));
+        const double swept = squaredBias(pictures, truth, found.swept);
+        const double elsewhere = squaredBias(pictures, truth, found.elsewhere);
+        log::info("{}: squared bias {:.3e} where the object was ({} pixels), {:.3e} elsewhere ({})",
+                  method.name, swept, sizeOf(found.swept), elsewhere, sizeOf(found.elsewhere));
+        EXPECT_LE(swept, 1.3 * elsewhere) << method.name;
+    }
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,180 @@
+// The pass of history tracking, on identical inputs, against the version in double precision.
+#include <gmock/gmock.h>
+
+#include "base/params.h"
+#include "renderer/frame/presets.h"
+#include "tests/denoise/denoise_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr uint32_t columns = 213, rows = 119;
+
+DoubleHistoryParams inDouble(const denoise::HistorySettings& s) {
+    return {.normal = double{s.normal},
+            .depth = double{s.depth},
+            .relative = s.relative,
+            .search = s.search,
+            .demodulate = s.demodulate,
+            .maxHistory = static_cast<uint32_t>(s.maxHistory),
+            .greyRestart = s.greyRestart,
+            .grey = double{s.grey},
+            .greyMisses = s.greyMisses,
+            .identity = s.identity};
+}
+
+/// Where float32's error of the position, or of the numbers, does not explain the difference.
+bool differs(const dvec4& value, const dvec4& expected, const dvec4& slope) {
+    for (int c = 0; c < 4; ++c) {
+        const double tolerance = 1e-4 * slope[c] + 1e-5 * (1.0 + std::abs(expected[c]));
+        if (!(std::abs(value[c] - expected[c]) <= tolerance)) return true;
+    }
+    return false;
+}
+
+struct Sequence {
+    const char* name;
+    SyntheticOptions options;
+    const char* parameters;  ///< "name=value" of the group history, by blanks
+    int resizeAt = -1;       ///< from this frame on the picture is smaller
+};
+
+std::string nameOf(const testing::TestParamInfo<Sequence>& info) {
+    return info.param.name;
+}
+
+class HistoryPassTest : public DenoiseTest, public testing::WithParamInterface<Sequence> {
+  protected:
+    static denoise::HistorySettings settings() {
+        denoise::HistorySettings result;
+        std::istringstream words(GetParam().parameters);
+        for (std::string word; words >> word;) {
+            const size_t equals = word.find('=');
+            if (equals == std::string::npos) {
+                RenderSettings all;
+                applyPreset(all, word);
+                result = all.denoisers.history;
+            } else {
+                EXPECT_TRUE(
+                    denoise::historyParams().set(result, word.substr(0, equals), word.substr(equals + 1)));
+            }
+        }
+        return result;
+    }
+
+    /// Compares a frame on the device with the double version, which starts from what the device had before.
+    void compare(const HostFrame& frame, const HistoryImages& before, const denoise::HistorySettings& s,
+                 int number) {
+        const HistoryResult expected = trackHistory(frame, before, inDouble(s));
+        const HistoryImages now = images(frame);
+        const std::vector<uint32_t> cases = graph_.downloadUint(device(), output_.cases);
+        size_t doubtful = 0, wrong = 0;
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            const HistoryPixel& pixel = expected.pixels[p];
+            doubtful += pixel.doubtful;
+            if (pixel.doubtful) continue;
+            ASSERT_EQ(cases[p] & denoise::CASE_MASK, static_cast<uint32_t>(pixel.failure))
+                << "frame " << number << " pixel " << p;
+            ASSERT_EQ((cases[p] & denoise::SAMPLE_REJECTED) != 0, pixel.rejected);
+            wrong += differs(now.colour[p], expected.images.colour[p], pixel.slope) ||
+                     differs(now.normalDepth[p], expected.images.normalDepth[p], dvec4(0.0)) ||
+                     differs(now.albedoId[p], expected.images.albedoId[p], dvec4(0.0));
+        }
+        // A position that rounds across a pixel's centre takes taps that the slope does not know.
+        EXPECT_LE(wrong, frame.pixelCount() / 1000) << "frame " << number;
+        EXPECT_LE(doubtful, frame.pixelCount() / 1000) << "frame " << number;
+        counts_ = denoise::countCases(cases);
+    }
+
+    HistoryImages images(const HostFrame& frame) {
+        return {frame.width, frame.height, download("history/track", "color"),
+                download("history/track", "normal_depth"), download("history/track", "albedo_id")};
+    }
+
+    denoise::HistoryCounts counts_;
+};
+
+TEST_P(HistoryPassTest, AgreesWithTheFormulasInDouble) {
+    const Sequence& sequence = GetParam();
+    const SyntheticScene scene(sequence.options);
+    const denoise::HistorySettings s = settings();
+    HistoryImages before;
+    for (int number = 0; number < 8; ++number) {
+        const bool small = sequence.resizeAt >= 0 && number >= sequence.resizeAt;
+        const HostFrame frame = scene.frame(number, small ? 101 : columns, small ? 67 : rows, 7);
+        DenoiserSettings all;
+        all.history = s;
+        denoise(*denoise::findDenoiser("history"), frame, all);
+        compare(frame, before, s, number);
+        if (testing::Test::HasFatalFailure()) return;
+        before = images(frame);
+    }
+    if (!sequence.options.orthographic) {
+        EXPECT_GT(counts_.nothingHit, 0u) << "the sky";
+    }
+    if (sequence.options.cameraMoves) {
+        EXPECT_GT(counts_.offScreen, 0u);
+    }
+    if (sequence.options.objectMoves) {
+        EXPECT_GT(counts_.noValidTap, 0u) << "what the object uncovers";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, HistoryPassTest,
+    testing::Values(
+        Sequence{"Static", {}, ""}, Sequence{"StaticUnlimited", {}, "max_history=0"},
+        Sequence{"Camera", {.cameraMoves = true}, ""},
+        Sequence{"CameraOrthographic", {.cameraMoves = true, .orthographic = true}, ""},
+        Sequence{"Object", {.objectMoves = true}, ""},
+        Sequence{"Both", {.cameraMoves = true, .objectMoves = true}, "max_history=4"},
+        Sequence{"Resize", {.cameraMoves = true}, "", 4},
+        Sequence{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}, ""},
+        Sequence{"NoSearch", {.cameraMoves = true, .objectMoves = true}, "search=off"},
+        Sequence{"Modulated", {.cameraMoves = true}, "demodulate=off"},
+        Sequence{"Grey", {.cameraMoves = true}, "grey_restart=on grey=0.1 grey_misses=on"},
+        Sequence{"AnyObject", {.cameraMoves = true, .objectMoves = true}, "identity=off depth=0.3 normal=-1"},
+        Sequence{"Course", {.cameraMoves = true, .objectMoves = true}, "history-tracking-course"}),
+    nameOf);
+
+class HistoryTest : public DenoiseTest {};
+
+TEST_F(HistoryTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
+    const SyntheticScene scene({});
+    const denoise::Denoiser& method = *denoise::findDenoiser("history");
+    denoise(method, scene.frame(0, 32, 18, 1));
+    denoise(method, scene.frame(1, 32, 18, 1));
+    const std::vector<dvec4> before = download("history/track", "color");
+    HostFrame frame = scene.frame(2, 32, 18, 1);
+    frame.diffuse[4 * 300] = std::numeric_limits<float>::quiet_NaN();
+    frame.specular[4 * 500 + 2] = std::numeric_limits<float>::infinity();
+    denoise(method, frame);
+    const std::vector<dvec4> after = download("history/track", "color");
+    // Dividing by the albedo and multiplying again may cost the last bit.
+    EXPECT_LT(glm::distance(after[300], before[300]), 1e-6);
+    EXPECT_LT(glm::distance(after[500], before[500]), 1e-6);
+    EXPECT_NE(after[301], before[301]);
+    EXPECT_EQ(denoise::countCases(graph_.downloadUint(device(), output_.cases)).rejected, 2u);
+}
+
+TEST_F(HistoryTest, CasesAreShownInColours) {
+    const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
+    DenoiserSettings settings;
+    settings.history.showCases = true;
+    std::vector<float> picture;
+    for (int number = 0; number < 3; ++number)
+        picture = denoise(*denoise::findDenoiser("history"), scene.frame(number, 64, 36, 1), settings);
+    const std::vector<uint32_t> cases = graph_.downloadUint(device(), output_.cases);
+    const vec3 colors[] = {{}, {0, 0, 1}, {1, 1, 0}, {1, 0, 0}};
+    for (size_t p = 0; p < cases.size(); ++p) {
+        const vec3 shown{picture[4 * p], picture[4 * p + 1], picture[4 * p + 2]};
+        if (cases[p] == denoise::CASE_TRACKED) {
+            ASSERT_EQ(shown.x, shown.z) << "grey";
+        } else {
+            ASSERT_EQ(shown, colors[cases[p]]);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace limpid::test

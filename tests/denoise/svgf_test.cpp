@@ -1,0 +1,490 @@
+// Every pass of SVGF, on identical inputs, against the version in double precision: each frame starts from
+// what the device stored in the frame before.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "renderer/frame/presets.h"
+#include "tests/denoise/denoise_fixture.h"
+#include "tests/oracle/double_svgf.h"
+
+namespace limpid::test {
+namespace {
+
+using denoise::SvgfSettings;
+
+DoubleSvgfParams inDouble(const SvgfSettings& s) {
+    return {.demodulate = s.demodulate,
+            .alpha = double{s.alpha},
+            .alphaMoments = double{s.alphaMoments},
+            .alphaFast = double{s.alphaFast},
+            .normalTest = double{s.normalTest},
+            .depthTest = double{s.depthTest},
+            .relative = s.relative,
+            .search = s.search,
+            .reflections = s.reflections,
+            .antilag = double{s.antilag},
+            .antilagNoise = double{s.antilagNoise},
+            .antilagPixel = double{s.antilagPixel},
+            .alphaShown = double{s.alphaShown},
+            .shownNoise = double{s.shownNoise},
+            .phiColor = double{s.phiColor},
+            .phiNormal = double{s.phiNormal},
+            .phiDepth = double{s.phiDepth},
+            .blurLevels = s.blurLevels,
+            .boost = s.boost,
+            .wide = s.wide,
+            .position = s.position};
+}
+
+struct Case {
+    const char* name;
+    SyntheticOptions options;
+    SvgfSettings settings;
+    uint32_t columns = 101, rows = 57;
+    int frames = 8;
+    int resizeAt = -1;     ///< from this frame on the picture is smaller
+    int jumpAt = -1;       ///< from this frame on the light is three times as bright
+    bool hasNans = false;  ///< and infinities, in radiance and albedo
+    int mixesFrom = 0;     ///< until this frame filtered light is shown as it is
+};
+
+SvgfSettings preset(const char* name) {
+    RenderSettings settings;
+    applyPreset(settings, name);
+    return settings.denoisers.svgf;
+}
+
+struct Signal {
+    std::string name;
+    SvgfSignal signal;
+};
+
+std::vector<Signal> signalsOf(const SvgfSettings& settings) {
+    if (!settings.separate) return {{"joint", SvgfSignal::Joint}};
+    return {{"diffuse", SvgfSignal::Diffuse}, {"specular", SvgfSignal::Specular}};
+}
+
+using CaseParam = std::tuple<Case, bool, gpu::Backing>;
+
+std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
+    return std::string(std::get<0>(info.param).name) + (std::get<1>(info.param) ? "Separate" : "Joint") +
+           (std::get<2>(info.param) == gpu::Backing::Image ? "Images" : "Buffers");
+}
+
+/// What the steps up to that of young pixels' variance stored.
+struct Stored {
+    std::vector<dvec4> color, moments;
+    std::vector<double> tiles;     ///< none without anti-lag
+    std::vector<dvec4> shownPast;  ///< none if filtered light is shown as it is
+};
+
+constexpr double halfRounding = 1e-3, leastHalf = 1e-7, floatRounding = 1e-5;
+
+/// `error` bounds what float32 makes of the difference of moments whose root is taken, then it is a half.
+bool isDeviation(double value, double expected, double error) {
+    const double square = expected * expected;
+    const double least = std::sqrt(std::max(square - error, 0.0)), most = std::sqrt(square + error);
+    return value >= least * (1.0 - halfRounding) - leastHalf &&
+           value <= most * (1.0 + halfRounding) + leastHalf;
+}
+
+/// 2^-16 of a pixel or so, by which float32's position may be off, explains 1e-4 of the slope.
+dvec4 toleranceOf(const dvec4& expected, const dvec4& slope, const dvec4& operands, double relative) {
+    return relative * glm::abs(expected) + 1e-4 * slope + 1e-6 * operands + leastHalf;
+}
+
+bool isNear(const dvec4& value, const dvec4& expected, const dvec4& slope, const dvec4& operands,
+            double relative, int components) {
+    const dvec4 tolerance = toleranceOf(expected, slope, operands, relative);
+    for (int c = 0; c < components; ++c) {
+        if (!(std::abs(value[c] - expected[c]) <= tolerance[c])) return false;
+    }
+    return true;
+}
+
+std::string shown(const dvec4& v) {
+    std::string result;
+    for (int c = 0; c < 4; ++c) result += std::to_string(v[c]) + ' ';
+    return result;
+}
+
+class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<CaseParam> {
+  protected:
+    void SetUp() override {
+        DenoiseTest::SetUp();
+        settings_ = std::get<0>(GetParam()).settings;
+        settings_.separate = std::get<1>(GetParam());
+        filters_ = std::get<2>(GetParam());
+        params_ = inDouble(settings_);
+    }
+
+    static HostFrame frameOf(int number);
+    void compare(const HostFrame& frame);
+    SvgfSurfaces surfaces(const HostFrame& frame);
+    Stored stored(const Signal& signal);
+    std::vector<bool> compareAccumulated(const SvgfAccumulated& expected, const Stored& is);
+    void compareTiles(const HostFrame& frame, const SvgfAccumulated& expected,
+                      const std::vector<bool>& leftOut, const Stored& is);
+    void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is);
+    void compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
+                       const Stored& is, std::vector<std::vector<dvec4>>& colors);
+    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+
+    SvgfSettings settings_;
+    DoubleSvgfParams params_;
+    std::map<std::string, SvgfHistory> before_;  ///< by signal
+    double largestLag_ = 0.0;                    ///< in the last frame
+    size_t tiles_ = 0, sharp_ = 0;               ///< compared so far, and of them with errors below 0.1
+};
+
+HostFrame SvgfPassTest::frameOf(int number) {
+    const Case& c = std::get<0>(GetParam());
+    const bool small = c.resizeAt >= 0 && number >= c.resizeAt;
+    HostFrame frame = SyntheticScene(c.options).frame(number, small ? 61 : c.columns, small ? 43 : c.rows, 7);
+    if (c.jumpAt >= 0 && number >= c.jumpAt) {
+        for (auto* layer : {&frame.diffuse, &frame.specular}) {
+            for (float& value : *layer) value *= 3.0f;
+        }
+    }
+    if (!c.hasNans) return frame;
+    size_t at = static_cast<size_t>(number) * 4 + 1;
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                            std::numeric_limits<float>::max()}) {
+        for (auto* layer : {&frame.diffuse, &frame.specular, &frame.albedo, &frame.albedoSpecular}) {
+            for (size_t i = at; i < layer->size(); i += 4 * 997) (*layer)[i] = bad;
+            at += 4 * 83;
+        }
+    }
+    return frame;
+}
+
+SvgfSurfaces SvgfPassTest::surfaces(const HostFrame& frame) {
+    const std::string pass = "svgf/surfaces";
+    const SvgfSurfaces is = decodeSurfaces(graph_.downloadUint(device(), written(pass, "surfaces")),
+                                           graph_.downloadUint(device(), written(pass, "ids")));
+    const SvgfSurfaces expected = svgfSurfaces(frame);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const double z = expected.distance[p];
+        EXPECT_NEAR(is.distance[p], z, floatRounding * z) << p;
+        EXPECT_EQ(is.id[p], expected.id[p]) << p;
+        if (z <= 0.0) continue;
+        EXPECT_LT(glm::distance(is.normal[p], expected.normal[p]), 1e-4) << p;
+    }
+    return is;
+}
+
+Stored SvgfPassTest::stored(const Signal& signal) {
+    Stored result;
+    result.moments = download("svgf/reproject " + signal.name, "moments");
+    if (settings_.antilag > 0.0f) {
+        const char* const pass = filters_ == gpu::Backing::Buffer ? "svgf/reproject " : "svgf/tiles ";
+        const std::vector<float> tiles = graph_.downloadFloat(device(), written(pass + signal.name, "tiles"));
+        result.tiles.assign(tiles.begin(), tiles.end());
+    }
+    const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
+    if (images.size() != 1) throw Error("the variance of young pixels is not one image");
+    result.color = download(images[0]);
+    if (mixesShown()) result.shownPast = download("svgf/reproject " + signal.name, "shown past");
+    return result;
+}
+
+/// Returns which pixels are not compared, or not the same. The deviation that is stored here is visible only
+/// where the next step left it alone.
+std::vector<bool> SvgfPassTest::compareAccumulated(const SvgfAccumulated& expected, const Stored& is) {
+    const size_t count = is.moments.size();
+    std::vector<bool> leftOut(count);
+    size_t doubtful = 0, wrong = 0;
+    for (size_t p = 0; p < count; ++p) {
+        const SvgfPixel& pixel = expected.pixels[p];
+        const dvec4& m = is.moments[p];
+        if (pixel.failure == 1) {
+            EXPECT_EQ(is.color[p].w, -1.0) << p;
+        } else if (m.w >= 4.0) {
+            const double boost = svgfBoost(m.w, params_.boost);
+            const double expectedDeviation = std::min(boost * svgfDeviation(m.x, m.y), 65504.0);
+            EXPECT_PRED3(isDeviation, is.color[p].w, expectedDeviation, boost * boost * 1e-6 * std::abs(m.y))
+                << p;
+        }
+        doubtful += pixel.doubtful;
+        leftOut[p] = pixel.doubtful;
+        if (pixel.doubtful) continue;
+        const bool agrees =
+            isNear(is.color[p], expected.color[p], pixel.colorSlope, pixel.colorOperands, halfRounding, 3) &&
+            isNear(m, expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding, 4) &&
+            (!mixesShown() || isNear(is.shownPast[p], expected.shownPast[p], pixel.shownPastSlope,
+                                     expected.shownPast[p], halfRounding, 4));
+        wrong += !agrees;
+        leftOut[p] = !agrees;
+        EXPECT_TRUE(agrees || !pixel.rejected) << "too few to be let off, pixel " << p;
+    }
+    // A position that rounds across a pixel's centre takes taps that the slope does not know.
+    EXPECT_LE(wrong, count / 1000);
+    EXPECT_LE(doubtful, count / 1000);
+    return leftOut;
+}
+
+/// `expected`: before anti-lag, of which nothing is left on the device.
+void SvgfPassTest::compareTiles(const HostFrame& frame, const SvgfAccumulated& expected,
+                                const std::vector<bool>& leftOut, const Stored& is) {
+    constexpr uint32_t edge = 8;
+    const size_t columns = (frame.width + edge - 1) / edge;
+    std::vector<dvec4> errors;
+    std::vector<bool> skipped(is.tiles.size());
+    for (size_t p = 0; p < leftOut.size(); ++p) {
+        const SvgfPixel& pixel = expected.pixels[p];
+        errors.push_back(
+            toleranceOf(expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding));
+        if (leftOut[p]) skipped[p / frame.width / edge * columns + p % frame.width / edge] = true;
+    }
+    // Where no lag is large enough to be noticed, the device has still got what the tiles saw.
+    const bool noneShortened = *std::ranges::max_element(is.tiles) < 0.1;
+    const SvgfTiles tiles = noneShortened ? svgfTiles(frame, is.moments, params_)
+                                          : svgfTiles(frame, expected.moments, params_, errors);
+    ASSERT_EQ(is.tiles.size(), tiles.tiles.size());
+    largestLag_ = 0.0;
+    for (size_t t = 0; t < is.tiles.size(); ++t) {
+        largestLag_ = std::max(largestLag_, is.tiles[t]);
+        if (skipped[t]) continue;
+        sharp_ += tiles.error[t] < 0.1;
+        ++tiles_;
+        const double lag = tiles.tiles[t];
+        ASSERT_NEAR(is.tiles[t], lag, floatRounding * lag + tiles.error[t] + 1e-30) << "tile " << t;
+    }
+}
+
+void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is) {
+    const SvgfVariance expected = svgfYoungVariance(frame, surfaces, is.color, is.moments, params_);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        if (surfaces.distance[p] <= 0.0 || is.moments[p].w >= 4.0) continue;
+        ASSERT_PRED3(isDeviation, is.color[p].w, expected.color[p].w, expected.error[p]) << p;
+    }
+}
+
+/// Appends what every level stored to `colors`, which holds the first one's input. The last one's is shown.
+void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
+                                 const Stored& is, std::vector<std::vector<dvec4>>& colors) {
+    for (int i = 0; i < settings_.levels; ++i) {
+        const std::string pass = "svgf/level " + std::to_string(i + 1) + " " + signal.name;
+        const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy(pass);
+        ASSERT_EQ(images.size(), 1u) << pass;
+        std::vector<dvec4> expected =
+            svgfLevel(frame, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
+        if (mixesShown() && i + 1 == settings_.levels) {
+            for (size_t p = 0; p < frame.pixelCount(); ++p)
+                expected[p] = dvec4(svgfShown(expected[p], is.shownPast[p], params_), expected[p].w);
+        }
+        colors.push_back(download(images[0]));
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            ASSERT_TRUE(isNear(colors.back()[p], expected[p], dvec4(0.0), dvec4(0.0), halfRounding, 4))
+                << pass << " pixel " << p << ": " << shown(colors.back()[p]) << " and " << shown(expected[p]);
+        }
+    }
+}
+
+/// All passes of the last frame.
+void SvgfPassTest::compare(const HostFrame& frame) {
+    const SvgfSurfaces seen = surfaces(frame);
+    std::vector<SvgfFiltered> filtered;
+    for (const Signal& signal : signalsOf(settings_)) {
+        SCOPED_TRACE(signal.name);
+        const Stored is = stored(signal);
+        SvgfAccumulated expected = svgfAccumulate(frame, signal.signal, before_[signal.name], params_);
+        const SvgfAccumulated lagging = expected;
+        if (!is.tiles.empty()) svgfShorten(frame, signal.signal, is.tiles, params_, expected);
+        const std::vector<bool> leftOut = compareAccumulated(expected, is);
+        if (!is.tiles.empty()) compareTiles(frame, lagging, leftOut, is);
+        compareYoung(frame, seen, is);
+        std::vector<std::vector<dvec4>> colors{is.color};
+        if (!HasFatalFailure()) compareLevels(frame, seen, signal, is, colors);
+        if (HasFatalFailure()) return;
+        const auto fedBack = static_cast<size_t>(std::min(settings_.historyLevel, settings_.levels));
+        before_[signal.name] = {frame.width, frame.height,
+                                seen,        colors[fedBack],
+                                is.moments,  mixesShown() ? colors.back() : std::vector<dvec4>()};
+        filtered.push_back({signal.signal, colors.back()});
+    }
+    const std::vector<dvec4> beauty = download(output_.beauty);
+    const std::vector<dvec4> expected = svgfModulate(frame, filtered, settings_.demodulate);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        ASSERT_TRUE(isNear(beauty[p], expected[p], dvec4(0.0), dvec4(0.0), floatRounding, 4))
+            << "modulate, pixel " << p << ": " << shown(beauty[p]) << " and " << shown(expected[p]);
+    }
+}
+
+TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
+    const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
+    ASSERT_NE(method, nullptr);
+    const Case& c = std::get<0>(GetParam());
+    const float alphaShown = settings_.alphaShown;
+    for (int number = 0; number < c.frames; ++number) {
+        settings_.alphaShown = number < c.mixesFrom ? 1.0f : alphaShown;
+        params_ = inDouble(settings_);
+        DenoiserSettings settings;
+        settings.svgf = settings_;
+        SCOPED_TRACE("frame " + std::to_string(number));
+        const HostFrame frame = frameOf(number);
+        denoise(*method, frame, settings);
+        compare(frame);
+        if (HasFatalFailure()) return;
+        if (number == c.jumpAt && settings_.antilag > 0.0f) {
+            EXPECT_GT(largestLag_, settings_.antilag < 1.0f ? 0.001 : 0.2);
+        }
+    }
+    EXPECT_GE(sharp_, tiles_ * 4 / 5);
+}
+
+const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, SvgfPassTest,
+    testing::Combine(
+        testing::Values(
+            Case{"Static", {}, {}}, Case{"Camera", {.cameraMoves = true}, {}},
+            Case{"Object", {.objectMoves = true}, {}}, Case{"Both", moving, {}},
+            Case{"Orthographic", {.cameraMoves = true, .objectMoves = true, .orthographic = true}, {}},
+            Case{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}, {}},
+            Case{.name = "Resize", .options = moving, .settings = {}, .resizeAt = 4},
+            Case{"Tiny", moving, {}, 3, 2}, Case{"Thin", {}, {}, 1, 40},
+            Case{"Position",
+                 moving,
+                 {.historyLevel = 2, .phiNormal = 0.3f, .phiDepth = 0.5f, .blurLevels = 0, .position = true}},
+            Case{"PositionOrthographic",
+                 {.cameraMoves = true, .orthographic = true},
+                 {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
+            Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
+            Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
+            Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
+            Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},
+            Case{"Slow", moving, {.alpha = 0.05f, .alphaMoments = 0.1f, .alphaFast = 0.3f, .levels = 1}},
+            Case{"Fast", moving, {.alpha = 0.6f, .alphaMoments = 0.5f, .alphaFast = 0.9f, .levels = 1}},
+            Case{"Noiseless", {.cameraMoves = true, .noise = false}, {}},
+            Case{"NoReflections", moving, {.reflections = false, .levels = 1}},
+            Case{"ShownAsFiltered", moving, {.alphaShown = 1.0f, .levels = 2}},
+            Case{"ShownAndFedBack", moving, {.shownNoise = 2.0f, .levels = 2, .historyLevel = 2}},
+            Case{.name = "MixedLater",
+                 .options = moving,
+                 .settings = {.shownNoise = 9.0f, .levels = 1},
+                 .mixesFrom = 3},
+            Case{"NoBoost", moving, {.levels = 2, .boost = false}},
+            Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
+            Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
+            Case{.name = "LittleLag",
+                 .options = moving,
+                 .settings = {.antilag = 0.09f, .levels = 1},
+                 .frames = 10,
+                 .jumpAt = 6},
+            Case{.name = "EqualMeans",
+                 .options = moving,
+                 .settings = {.alphaMoments = 0.3f, .alphaFast = 0.3f, .levels = 1},
+                 .frames = 6},
+            Case{.name = "NoSlowMean", .options = moving, .settings = {.alphaMoments = 1.0f, .levels = 1}},
+            Case{.name = "Nans",
+                 .options = moving,
+                 .settings = {.levels = 3},
+                 .frames = 10,
+                 .jumpAt = 6,
+                 .hasNans = true}),
+        testing::Bool(), testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
+    nameOf);
+
+/// Pixels of one signal over an ensemble of independent sequences.
+struct Ensemble {
+    explicit Ensemble(size_t pixels) : sum(pixels, 0.0), squares(sum), first(sum), last(sum) {}
+
+    std::vector<double> sum, squares;  ///< of the samples' luminance
+    std::vector<double> first, last;   ///< sums of sigma^2 of the first and of the last frame
+};
+
+class SvgfVarianceTest : public DenoiseTest {
+  protected:
+    static constexpr uint32_t columns = 64, rows = 36, seeds = 64;
+    static constexpr int frames = 40;
+
+    void addDeviations(const std::string& signal, std::vector<double>& sums) {
+        const std::vector<dvec4> color = download(graph_.imagesWrittenBy("svgf/variance " + signal)[0]);
+        for (size_t p = 0; p < sums.size(); ++p) sums[p] += color[p].w * color[p].w;
+    }
+
+    /// Means over the pixels that see something of E[sigma^2] / (true variance), of the two frames. Both are
+    /// relative to the square of the mean first, so that bright pixels count no more than dark ones.
+    static dvec2 ratios(const HostFrame& frame, const Ensemble& e) {
+        const double samples = double{seeds} * frames;
+        double variance = 0.0;
+        dvec2 estimates(0.0);
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            const double mean = e.sum[p] / samples, square = mean * mean;
+            if (!DoubleFrame(frame).hit(p) || square == 0.0) continue;
+            variance += (e.squares[p] / samples - square) / square;
+            estimates += dvec2(e.first[p], e.last[p]) / double{seeds} / square;
+        }
+        return estimates / variance;
+    }
+};
+
+TEST_F(SvgfVarianceTest, TheDeviationIsThatOfTheNoise) {
+    const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
+    ASSERT_NE(method, nullptr);
+    DenoiserSettings settings;
+    settings.svgf.levels = 0;     // moments are never filtered
+    settings.svgf.boost = false;  // it exceeds the samples' deviation, which is what is measured here
+    const SyntheticScene scene({});
+    const std::vector<Signal> signals = signalsOf(settings.svgf);
+    std::vector<Ensemble> ensembles(signals.size(), Ensemble(size_t{columns} * rows));
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
+        graph_.beginFrame();
+        graph_.resetHistories();
+        for (int number = 0; number < frames; ++number) {
+            const HostFrame frame = scene.frame(number, columns, rows, seed);
+            denoise(*method, frame, settings);
+            for (size_t s = 0; s < signals.size(); ++s) {
+                Ensemble& e = ensembles[s];
+                for (size_t p = 0; p < frame.pixelCount(); ++p) {
+                    const double l = luminance(svgfSample(frame, signals[s].signal, p, true).x);
+                    e.sum[p] += l;
+                    e.squares[p] += l * l;
+                }
+                if (number == 0) addDeviations(signals[s].name, e.first);
+                if (number == frames - 1) addDeviations(signals[s].name, e.last);
+            }
+        }
+    }
+    const HostFrame frame = scene.frame(0, columns, rows, 0);
+    const double alpha = double{settings.svgf.alphaMoments};
+    for (size_t s = 0; s < signals.size(); ++s) {
+        const dvec2 ratio = ratios(frame, ensembles[s]);
+        const double steady = ratio.y / (1.0 - alpha / (2.0 - alpha));
+        RecordProperty(signals[s].name + "_young", std::to_string(ratio.x));
+        RecordProperty(signals[s].name + "_steady", std::to_string(steady));
+        EXPECT_NEAR(steady, 1.0, 0.2) << signals[s].name;
+        EXPECT_GT(ratio.x, 0.5) << signals[s].name;
+        EXPECT_LT(ratio.x, 2.0) << signals[s].name;
+    }
+}
+
+using SvgfMemoryTest = DenoiseTest;
+
+TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
+    const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
+    ASSERT_NE(method, nullptr);
+    constexpr uint32_t columns = 64, rows = 40;
+    const HostFrame frame = SyntheticScene({}).frame(0, columns, rows, 0);
+    for (const bool separate : {false, true}) {
+        DenoiserSettings settings;
+        settings.svgf.separate = separate;
+        denoise(*method, frame, settings);
+        const double bytes =
+            static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
+        EXPECT_EQ(bytes, separate ? 232.125 : 136.0625);
+        // Of one signal the same image is read as both.
+        const auto modulate =
+            std::ranges::find(graph_.passes(), std::string("svgf/modulate"), &gpu::RecordedPass::name);
+        ASSERT_NE(modulate, graph_.passes().end());
+        EXPECT_EQ(modulate->imageBytes, uint64_t{columns} * rows * (separate ? 2 * 8 + 4 * 16 : 8 + 4 * 16));
+    }
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,90 @@
+// Blocks summed on the host against the running mean on the device, which sees the same random numbers.
+#include "renderer/long/block_renderer.h"
+
+#include <fmt/format.h>
+
+#include "scene/builtin/builtin.h"
+#include "scene/model/prepare.h"
+#include "tests/gpu/render_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+class BlockRendererTest : public RenderTest {
+  protected:
+    static scene::Scene prepared() {
+        scene::Scene scene = scene::cornellScene();
+        scene::prepare(scene);
+        return scene;
+    }
+    static RenderSettings smallLayers() {
+        RenderSettings settings;
+        settings.extent = {33, 17};
+        settings.samplesPerLaunch = 3;
+        settings.layers = true;
+        settings.jitter = Jitter::Pixel;
+        return settings;
+    }
+    static bool always(uint32_t) { return true; }
+
+    /// The components of a layer, and its variance where there is one.
+    static void expectNear(const LayerSums& layer, const std::vector<float>& a, const std::vector<float>& b) {
+        ASSERT_EQ(a.size(), b.size()) << layer.kind->name;
+        for (size_t i = 0; i < a.size(); ++i) {
+            if (i % 4 >= layer.kind->components && !(layer.squares && i % 4 == 3)) continue;
+            ASSERT_NEAR(a[i], b[i], 1e-4f * (std::abs(b[i]) + 1e-4f)) << layer.kind->name << " " << i;
+        }
+    }
+};
+
+TEST_F(BlockRendererTest, SumsAreTheRunningMeansOfTheSameSamples) {
+    const scene::Scene scene = prepared();
+    const RenderSettings settings = smallLayers();
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    // The blocks' launches are those of the running mean: 48 samples are 16 launches of 3.
+    const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
+    BlockRenderer renderer(device(), gpuScene, settings, plan);
+    renderer.begin({.camera = camera(scene, settings)});
+    FrameSums sums(settings.extent, plan, layerNames());
+    for (const uint32_t block : {2u, 0u, 1u}) {
+        EXPECT_EQ(renderer.render(block, always), plan.samplesOf(block));
+        renderer.addTo(sums);
+    }
+    ProgressiveStill still(device(), gpuScene, 120);
+    still.update(camera(scene, settings), settings);
+    while (still.launch()) {
+    }
+    const RenderedLayers expected = still.download(), got = sums.means();
+    EXPECT_EQ(got.samples, 120u);
+    EXPECT_EQ(got.ids, expected.ids);
+    EXPECT_EQ(sums.counts.rays, still.counters().rays);
+    EXPECT_EQ(sums.counts.clamped, 0u);
+    for (const LayerSums& layer : sums.layers) {
+        expectNear(layer, got.*layer.kind->means, expected.*layer.kind->means);
+    }
+}
+
+TEST_F(BlockRendererTest, APartOfABlockIsItsFirstSamples) {
+    const scene::Scene scene = prepared();
+    const RenderSettings settings = smallLayers();
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
+    const BlockPlan nine{.samples = 9, .blockSamples = 48, .launchSamples = 3};
+    FrameSums part(settings.extent, plan, {"depth"}), whole(settings.extent, nine, {"depth"});
+    BlockRenderer renderer(device(), gpuScene, settings, plan), other(device(), gpuScene, settings, nine);
+    renderer.begin({.camera = camera(scene, settings)});
+    other.begin({.camera = camera(scene, settings)});
+    EXPECT_EQ(renderer.render(0, [](uint32_t samples) { return samples < 9; }), 9u);
+    EXPECT_EQ(other.render(0, always), 9u);
+    renderer.addTo(part);
+    other.addTo(whole);
+    EXPECT_EQ(part.samples(), 9u);
+    EXPECT_EQ(part.blockCount(), 0u);
+    EXPECT_EQ(part.means().diffuse, whole.means().diffuse);
+    EXPECT_EQ(part.means().depth, whole.means().depth);
+    EXPECT_EQ(renderer.render(0, [](uint32_t) { return false; }), 0u);
+    EXPECT_THROW(renderer.addTo(whole), Error) << "nothing was rendered";
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,101 @@
+// What tests that run shaders share: a device with validation, and running one compute shader over buffers.
+// LIMPID_TEST_DEVICE selects the device as --device does; default: cpu (lavapipe).
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "gpu/graph/frame_graph.h"
+#include "gpu/vulkan/device.h"
+#include "scene/device/gpu_scene.h"
+
+namespace limpid::test {
+
+/// A compute job: `count` threads along x.
+struct Job {
+    const gpu::ShaderCode& shader;
+    const scene::GpuScene* scene = nullptr;  ///< binds its buffers and constants
+    std::vector<gpu::Binding> buffers;       ///< besides the scene's and the results
+    std::vector<gpu::ConstantValue> constants;
+    std::span<const std::byte> params;
+    uint32_t count = 0;
+    const gpu::RayShaders* rays = nullptr;  ///< `shader` generates rays
+};
+
+inline std::string wantedDevice() {
+    const char* variable = std::getenv("LIMPID_TEST_DEVICE");
+    return variable ? variable : "cpu";
+}
+
+class GpuTest : public testing::Test {
+  protected:
+    /// One device lives as long as the suite: NVIDIA's driver can be unloaded and loaded again only so often.
+    static void SetUpTestSuite() {
+        if (!gpu::enumerateDevices().empty())
+            driver_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
+    }
+    static void TearDownTestSuite() { driver_.reset(); }
+
+    void SetUp() override {
+        if (gpu::enumerateDevices().empty()) {
+            GTEST_SKIP()
+                << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
+        }
+        try {
+            device_ = std::make_unique<gpu::Device>(
+                gpu::DeviceOptions{.select = wantedDevice(), .validation = true});
+        } catch (const Error& error) {
+            if (std::string(error.what()).find("vulkan-validationlayers") == std::string::npos) throw;
+            log::warn("NOT VALIDATED: {}", error.what());
+            device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
+        }
+    }
+    void TearDown() override {
+        if (!device_) return;
+        EXPECT_EQ(device_->validationMessages(), 0u);
+    }
+
+    gpu::Device& device() { return *device_; }
+
+    template <typename T>
+    gpu::Buffer upload(const std::string& name, const std::vector<T>& values) {
+        return device().createStorageBuffer(name, gpu::bytesOf(values));
+    }
+
+    /// Runs the job and returns what it wrote to its buffer `results`, `resultCount` of them.
+    template <typename Result>
+    std::vector<Result> run(const Job& job, size_t resultCount) {
+        const gpu::Buffer results = device().createStorageBuffer("results", resultCount * sizeof(Result));
+        gpu::Dispatch dispatch{
+            .pass = "test", .shader = job.shader, .bindings = job.buffers, .params = job.params};
+        dispatch.constants = job.constants;
+        if (job.scene) {
+            for (const gpu::Binding& b : job.scene->bindings()) dispatch.bindings.push_back(b);
+            for (const gpu::ConstantValue& c : job.scene->constants()) dispatch.constants.push_back(c);
+        }
+        dispatch.bindings.push_back({"results", &results});
+        dispatch.extent = {job.count, 1};
+        dispatch.rays = job.rays;
+        graph_.beginFrame();
+        graph_.dispatch(dispatch);
+        graph_.execute(device());
+        const std::vector<std::byte> bytes = device().download(results);
+        std::vector<Result> values(resultCount);
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+        return values;
+    }
+
+  private:
+    inline static std::unique_ptr<gpu::Device> driver_;
+    std::unique_ptr<gpu::Device> device_;
+    gpu::FrameGraph graph_;  ///< one for the whole test: it keeps compiled pipelines
+};
+
+}  // namespace limpid::test

@@ -1,0 +1,138 @@
+// What must hold of any picture: repeatability, seeds, launches, layers, parameters, counters.
+#include "scene/builtin/builtin.h"
+#include "tests/gpu/render_fixture.h"
+#include "tests/reference/statistics.h"
+
+namespace limpid::test {
+namespace {
+
+class RulesTest : public RenderTest {
+  protected:
+    static RenderSettings small(uint32_t size, uint32_t samplesPerLaunch) {
+        RenderSettings settings;
+        settings.extent = {size, size};
+        settings.samplesPerLaunch = samplesPerLaunch;
+        return settings;
+    }
+};
+
+TEST_F(RulesTest, TheSameSeedGivesTheSameBits) {
+    Renderer renderer(device(), scene::cornellSpheresScene());
+    RenderSettings settings = small(24, 2);
+    const Rendered first = renderer(settings, 8), second = renderer(settings, 8);
+    EXPECT_EQ(first.layers.beauty, second.layers.beauty);
+    EXPECT_EQ(first.counters.rays, second.counters.rays);
+    settings.seed = 1;
+    EXPECT_NE(renderer(settings, 8).layers.beauty, first.layers.beauty);
+}
+
+TEST_F(RulesTest, NoSampleIsRejectedWhereNothingIsNaN) {
+    for (const char* name : {"cornell", "cornell-spheres", "furnace"}) {
+        const Rendered picture = render(scene::builtinScene(name), small(32, 16), 32);
+        EXPECT_EQ(picture.counters.rejected, 0u) << name;
+        EXPECT_GT(picture.counters.rays, 32u * 32u * 32u) << name;
+        for (const float value : picture.layers.beauty) ASSERT_TRUE(std::isfinite(value)) << name;
+    }
+}
+
+/// Samples per launch change the noise, not the mean.
+TEST_F(RulesTest, SamplesPerLaunchKeepTheMean) {
+    Renderer renderer(device(), scene::cornellScene());
+    RenderSettings settings = small(24, 1);
+    settings.layers = true;
+    constexpr uint64_t samples = 256;
+    const Rendered one = renderer(settings, samples);
+    settings.samplesPerLaunch = 4;
+    settings.seed = 99;
+    const Rendered four = renderer(settings, samples);
+    double beyond = 0, count = 0, sum = 0;
+    for (size_t i = 0; i < one.pixelCount(); ++i) {
+        // Alpha is the variance of one sample's luminance.
+        const auto luminance = [&](const Rendered& r) {
+            const float* p = &r.layers.diffuse[4 * i];
+            return 0.2126 * double{p[0]} + 0.7152 * double{p[1]} + 0.0722 * double{p[2]};
+        };
+        const double variance =
+            double{one.layers.diffuse[4 * i + 3]} + double{four.layers.diffuse[4 * i + 3]};
+        if (variance <= 0.0) continue;
+        const double z = (luminance(one) - luminance(four)) / std::sqrt(variance / samples);
+        ++count;
+        sum += z;
+        beyond += std::abs(z) > 3.0;
+    }
+    fmt::print("launches of 1 and 4: {} of {} pixels beyond 3 sigma, mean z {:.3f}\n", beyond, count,
+               sum / count);
+    EXPECT_GT(count, 300);
+    EXPECT_LE(beyond, 0.015 * count);
+    EXPECT_LT(std::abs(sum / std::sqrt(count)), 4.0);
+}
+
+TEST_F(RulesTest, LayersAddUpToTheBeauty) {
+    Renderer renderer(device(), scene::cornellSpheresScene());
+    RenderSettings settings = small(32, 4);
+    const Rendered beauty = renderer(settings, 16);
+    settings.layers = true;
+    const Rendered layered = renderer(settings, 16);
+    const image::Image sum = beautyOf(layered.layers);
+    size_t different = 0;
+    for (size_t i = 0; i < beauty.pixelCount(); ++i) {
+        const float* d = &layered.layers.diffuse[4 * i];
+        const float* s = &layered.layers.specular[4 * i];
+        const float* e = &layered.layers.emission[4 * i];
+        for (size_t k = 0; k < 3; ++k) {
+            ASSERT_EQ(sum.pixels[3 * i + k], d[k] + s[k] + e[k]);
+            const float expected = beauty.layers.beauty[4 * i + k];
+            if (std::abs(sum.pixels[3 * i + k] - expected) > 1e-4f * expected + 1e-5f) {
+                ++different;
+                break;
+            }
+        }
+    }
+    // Two programs may round differently, and a path then take another turn.
+    EXPECT_LE(different, beauty.pixelCount() / 50) << "of " << beauty.pixelCount() << " pixels";
+    fmt::print("layers: {} of {} pixels differ from the beauty by more than rounding\n", different,
+               beauty.pixelCount());
+}
+
+TEST_F(RulesTest, EveryParameterChangesThePicture) {
+    Renderer renderer(device(), scene::cornellSpheresScene());
+    RenderSettings settings = small(24, 4);
+    settings.layers = true;
+    const RenderedLayers before = renderer(settings, 8).layers;
+    const auto& table = pathtraceParams();
+    for (const ParamInfo& info : table.infos()) {
+        RenderSettings changed = settings;
+        const std::string value = std::holds_alternative<bool>(info.defaultValue)
+                                      ? (std::get<bool>(info.defaultValue) ? "off" : "on")
+                                  : std::holds_alternative<int>(info.defaultValue) ? "1"
+                                                                                   : "0.05";
+        ASSERT_TRUE(table.set(changed.pathtrace, info.name, value));
+        ASSERT_NE(changed.pathtrace, settings.pathtrace) << info.name << " = " << value << " is the default";
+        const RenderedLayers after = renderer(changed, 8).layers;
+        EXPECT_TRUE(after.diffuse != before.diffuse || after.specular != before.specular)
+            << info.name << " = " << value;
+    }
+}
+
+TEST_F(RulesTest, JitterMovesTheRays) {
+    Renderer renderer(device(), scene::cornellScene());
+    RenderSettings settings = small(16, 1);
+    settings.pathtrace.maxDepth = 0;
+    settings.layers = true;
+    std::vector<std::vector<float>> depths;
+    for (const Jitter jitter : {Jitter::Off, Jitter::Frame, Jitter::Pixel}) {
+        settings.jitter = jitter;
+        // The first frame goes through the centres in every mode.
+        const Rendered first = renderer(settings, 1);
+        depths.push_back(renderer(settings, 4).layers.depth);
+        if (jitter == Jitter::Off) continue;
+        settings.jitter = Jitter::Off;
+        EXPECT_EQ(first.layers.depth, renderer(settings, 1).layers.depth);
+    }
+    EXPECT_NE(depths[0], depths[1]);
+    EXPECT_NE(depths[0], depths[2]);
+    EXPECT_NE(depths[1], depths[2]);
+}
+
+}  // namespace
+}  // namespace limpid::test

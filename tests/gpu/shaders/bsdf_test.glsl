@@ -1,0 +1,41 @@
+// A material and a viewer by parameters, for the shaders that test the scattering function.
+#include "shaders/material/bsdf.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    vec3 baseColor;
+    float metallic;
+    vec3 toViewer;
+    float roughness;
+    vec3 normal;
+    float specular;
+    vec3 geometricNormal;
+    float ior;
+    vec3 specularColor;
+    float transmission;
+    float clearcoat, clearcoatRoughness;
+    vec3 clearcoatNormal;
+    uint thin, front;
+    uint count, perThread, seed;
+} params;
+
+Bsdf testBsdf() {
+    // What is not set below is the scene's default material.
+    Surface s = loadSurface(0u, NONE, vec2(0.25), params.toViewer, RayCone(0.0, false, false));
+    s.geometricNormal = params.geometricNormal;
+    s.normal = params.normal;
+    s.front = params.front != 0u;
+    s.baseColor = params.baseColor;
+    s.metallic = params.metallic;
+    s.roughness = params.roughness;
+    s.specular = params.specular;
+    s.specularColor = params.specularColor;
+    s.ior = params.ior;
+    s.transmission = params.transmission;
+    s.thin = params.thin != 0u;
+    s.clearcoat = params.clearcoat;
+    s.clearcoatRoughness = params.clearcoatRoughness;
+    s.clearcoatNormal = params.clearcoatNormal;
+    return makeBsdf(s, params.toViewer);
+}

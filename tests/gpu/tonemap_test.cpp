@@ -1,0 +1,43 @@
+// The tone-mapping pass against the one for files.
+#include "image/tonemap.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "image/io/png/png.h"
+#include "passes/tonemap/tonemap.h"
+#include "tests/gpu/gpu_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+using TonemapTest = GpuTest;
+
+TEST_F(TonemapTest, ShowsWhatFilesShow) {
+    image::Image radiance(61, 47, 4);
+    std::mt19937 generator(3);
+    std::uniform_real_distribution<float> stops(-18.0f, 14.0f);
+    for (float& value : radiance.pixels) value = std::exp2(stops(generator));
+    const float special[] = {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(),
+                             std::numeric_limits<float>::infinity(), 1e38f};
+    std::copy(std::begin(special), std::end(special), radiance.pixels.begin());
+    for (const float exposure : {0.0f, -3.5f, 6.0f}) {
+        gpu::FrameGraph graph;
+        graph.beginFrame();
+        const gpu::ImageHandle source = graph.transient("radiance", gpu::Format::RGBA32Float, {61, 47});
+        graph.upload(source, gpu::bytesOf(radiance.pixels));
+        const gpu::ImageHandle display = tonemap(graph, source, exposure);
+        graph.execute(device());
+        const std::vector<float> shown = graph.downloadFloat(device(), display);
+        const image::Image expected = image::tonemap(radiance, exposure);
+        for (size_t i = 0; i < shown.size(); ++i)
+            ASSERT_NEAR(shown[i], i % 4 == 3 ? 1.0f : expected.pixels[i], 1.0f / 255.0f)
+                << i << " at " << exposure;
+    }
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,58 @@
+// The edge-avoiding a-trous filter in double precision, written from the formulas of docs/denoising.md and
+// from nothing else: the oracle of the denoiser `atrous`. Each step takes its input as an argument, so that
+// it can be given what a device stored (halves, packed normals) and be compared alone.
+#pragma once
+
+#include <vector>
+
+#include "tests/oracle/double_frame.h"
+
+namespace limpid::test {
+
+struct DoubleAtrousParams {
+    uint32_t levels = 5;
+    double normalFactor = 3e-4;
+    double depthFactor = 1e-4;
+    double sampleTarget = 32.0;  ///< 0: no limit
+    bool plane = true;
+    bool demodulate = true;
+    double colorFactor = 0.0;  ///< 0: differences of light do not count
+};
+
+struct AtrousGeometry {
+    std::vector<dvec3> normal;
+    /// d: along the camera's `forward`; with `plane` off the distance from the eye; 0 where nothing is seen.
+    std::vector<double> distance;
+};
+
+struct Demodulated {
+    std::vector<dvec4> light;  ///< L, and N, the count of the mean
+    AtrousGeometry geometry;
+};
+
+/// C, and 1: what is filtered with `atrous.history=off`.
+std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
+
+/// Nothing is rounded. `mean`: of the history, with its count, or scatteredLight().
+Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
+                       const DoubleAtrousParams& params);
+
+/// Level `i` of the filter. Of the frame only the size and the camera are read.
+std::vector<dvec4> level(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
+                         const AtrousGeometry& geometry, uint32_t i, const DoubleAtrousParams& params);
+
+/// The result; alpha 1.
+std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
+                            const DoubleAtrousParams& params);
+
+/// All of it.
+std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
+                                const DoubleAtrousParams& params);
+
+/// A unit vector from two snorm16, x in the low half: decodeOctahedral() of src/shaders/common/sampling.glsl.
+dvec3 decodeOctahedral(uint32_t packed);
+
+/// From two words a pixel: the normal, and the bits of d as a float.
+AtrousGeometry decodeGeometry(const std::vector<uint32_t>& words);
+
+}  // namespace limpid::test

@@ -1,0 +1,101 @@
+// Where a pixel's surface was seen in the previous frame, in double precision: steps 1 to 4 of history
+// tracking in docs/denoising.md and nothing else. The oracles of the denoisers with a history share it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tests/oracle/double_frame.h"
+
+namespace limpid::test {
+
+/// Compares, and remembers whether float32 may have decided otherwise.
+class Decision {
+  public:
+    bool above(double value, double threshold, double margin) {
+        near(value, threshold, margin);
+        return value > threshold;
+    }
+    void near(double value, double threshold, double margin);
+    bool doubtful() const { return doubtful_; }
+
+  private:
+    bool doubtful_ = false;
+};
+
+struct ReprojectionParams {
+    double normal, depth;
+    bool relative, search;
+    bool identity = true;  ///< off: whatever object a tap saw
+};
+
+/// What a pixel of the previous frame saw.
+struct PreviousSurface {
+    dvec3 normal{0.0};
+    double distance = 0.0;  ///< 0: nothing
+    double id = 0.0;
+    bool hasHistory = false;  ///< a sample is in its mean
+};
+
+struct Tap {
+    size_t pixel;
+    double weight;
+};
+
+struct Reprojection {
+    int failure = 0;        ///< 0: there are taps; else the failure case of the specification
+    std::vector<Tap> taps;  ///< those that count
+    bool searched = false;
+};
+
+class Reprojector {
+  public:
+    /// `previous`: as many pixels as the frame has. All arguments must outlive it.
+    Reprojector(const denoise::HostFrame& frame, const std::vector<PreviousSurface>& previous,
+                const ReprojectionParams& params);
+    Reprojection find(size_t p, Decision& decision) const { return find(p, frame_.motion(p), decision); }
+    /// With another motion than the frame's, or none.
+    Reprojection find(size_t p, const std::optional<dvec3>& motion, Decision& decision) const;
+
+  private:
+    struct Expected;
+    Expected expect(size_t p, const dvec3& motion) const;
+    bool inPicture(const dvec2& s, Decision& decision) const;
+    bool agrees(const Expected& expected, const PreviousSurface& was, Decision& decision) const;
+    void addTap(std::vector<Tap>& taps, const Expected& expected, const dvec2& q, double weight,
+                Decision& decision) const;
+    std::vector<Tap> bilinearTaps(const Expected& expected, const dvec2& s, Decision& decision) const;
+    std::vector<Tap> searchedTaps(const Expected& expected, const dvec2& s, Decision& decision) const;
+
+    DoubleFrame frame_;
+    const CameraParams& camera_;
+    dvec2 size_;
+    const std::vector<PreviousSurface>& previous_;
+    const ReprojectionParams& params_;
+};
+
+/// A mean over taps. `slope` bounds its change per pixel in x and y: times float32's error of the position
+/// this is how far a right shader may be off between noisy taps.
+struct Resampled {
+    dvec4 mean{0.0}, slope{0.0};
+};
+
+/// `valueAt` gives a tap's value by its pixel. No taps give zeros.
+template <typename ValueAt>
+Resampled resample(const Reprojection& found, const ValueAt& valueAt) {
+    Resampled result;
+    double weights = 0.0;
+    for (const Tap& tap : found.taps) {
+        result.mean += tap.weight * dvec4(valueAt(tap.pixel));
+        weights += tap.weight;
+    }
+    if (found.taps.empty()) return result;
+    result.mean /= weights;
+    if (found.searched) return result;  // equal weights, wherever in its pixel s is
+    // A bilinear weight changes by at most 2, and as it does, the mean changes by (value - mean) / weights.
+    for (const Tap& tap : found.taps)
+        result.slope += 2.0 * glm::abs(dvec4(valueAt(tap.pixel)) - result.mean) / weights;
+    return result;
+}
+
+}  // namespace limpid::test

@@ -1,0 +1,201 @@
+// Steps 5 and 6: what is done over a pixel's neighbours.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tests/oracle/double_svgf.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double leastCosine = 0.05;  // steeper surfaces have this one's slope
+constexpr double youngFrames = 4.0;
+constexpr double largestHalf = 65504.0;
+/// Sums of weights below this may be lost in float32.
+constexpr double leastWeights = 1e-30;
+
+/// The picture's pixels by their coordinates, and the weights that surfaces give them.
+class Neighbours {
+  public:
+    Neighbours(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const DoubleSvgfParams& params)
+        : width_(frame.width), height_(frame.height), surfaces_(surfaces), params_(params) {
+        const DoubleFrame pixels(frame);
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            const double z = surfaces.distance[p];
+            slopes_.push_back(z > 0.0 ? svgfSlope(frame, p, surfaces.normal[p], z) : dvec2(0.0));
+            const dvec3 v = pixels.ray(p);
+            const CameraParams& camera = frame.camera;
+            const dvec3 across = v - dvec3(camera.forward);
+            points_.push_back(camera.orthographic != 0 ? across + z * dvec3(camera.forward)
+                                                       : z * v / glm::length(v));
+        }
+    }
+
+    bool sees(size_t p) const { return surfaces_.distance[p] > 0.0; }
+
+    /// Calls visit(q, i, j) for the pixels q = p + step (i, j), i and j from -radius to radius, that lie in
+    /// the picture and see something.
+    template <typename Visit>
+    void around(size_t p, int64_t step, int radius, const Visit& visit) const {
+        const auto x = static_cast<int64_t>(p) % width_, y = static_cast<int64_t>(p) / width_;
+        for (int j = -radius; j <= radius; ++j) {
+            for (int i = -radius; i <= radius; ++i) {
+                const int64_t qx = x + step * i, qy = y + step * j;
+                if (qx < 0 || qy < 0 || qx >= width_ || qy >= height_) continue;
+                const auto q = static_cast<size_t>(qy * width_ + qx);
+                if (sees(q)) visit(q, i, j);
+            }
+        }
+    }
+
+    /// w_n w_z of a neighbour that lies `offset` pixels away.
+    double weight(size_t p, size_t q, const dvec2& offset) const {
+        if (p == q) return 1.0;
+        const dvec3 &n = surfaces_.normal[p], &other = surfaces_.normal[q];
+        if (params_.position) {
+            return std::exp(-glm::distance(n, other) / params_.phiNormal -
+                            glm::distance(points_[p], points_[q]) / params_.phiDepth);
+        }
+        const double z = surfaces_.distance[p];
+        const double expected = std::abs(glm::dot(offset, slopes_[p])) + 0.001 * z;
+        return std::exp(-params_.phiNormal * (1.0 - glm::dot(n, other)) -
+                        std::abs(z - surfaces_.distance[q]) / (params_.phiDepth * expected));
+    }
+
+  private:
+    int64_t width_, height_;
+    const SvgfSurfaces& surfaces_;
+    const DoubleSvgfParams& params_;
+    std::vector<dvec2> slopes_;
+    std::vector<dvec3> points_;  ///< X
+};
+
+class Level {
+  public:
+    Level(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
+          uint32_t i, const DoubleSvgfParams& params)
+        : neighbours_(frame, surfaces, params),
+          color_(color),
+          level_(i),
+          step_(int64_t{1} << i),
+          params_(params) {
+        for (const dvec4& c : color) luminances_.push_back(luminance(dvec3(c)));
+    }
+
+    dvec4 at(size_t p) const {
+        constexpr std::array<double, 5> b3{1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
+        constexpr std::array<double, 5> tent{0.0, 1.0 / 4, 2.0 / 4, 1.0 / 4, 0.0};
+        const std::array<double, 5>& spline = params_.wide ? b3 : tent;
+        if (!neighbours_.sees(p)) return color_[p];
+        const double l = luminances_[p];
+        const double own = tolerance(l, std::sqrt(guide(p)));
+        dvec3 sum(0.0);
+        double variance = 0.0, weights = 0.0;
+        neighbours_.around(p, step_, 2, [&](size_t q, int i, int j) {
+            double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)];
+            if (p != q) {
+                w *= neighbours_.weight(p, q, static_cast<double>(step_) * dvec2(i, j)) *
+                     std::exp(-std::abs(l - luminances_[q]) / own);
+            }
+            sum += w * dvec3(color_[q]);
+            variance += w * w * color_[q].w * color_[q].w;
+            weights += w;
+        });
+        return {sum / weights, std::sqrt(variance) / weights};
+    }
+
+  private:
+    double tolerance(double luminance, double deviation) const {
+        return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
+    }
+
+    /// g
+    double guide(size_t p) const {
+        if (level_ >= params_.blurLevels) return color_[p].w * color_[p].w;
+        double sum = 0.0, weights = 0.0;
+        neighbours_.around(p, 1, 1, [&](size_t q, int i, int j) {
+            const double w = (i == 0 ? 2.0 : 1.0) * (j == 0 ? 2.0 : 1.0);
+            sum += w * color_[q].w * color_[q].w;
+            weights += w;
+        });
+        return sum / weights;
+    }
+
+    Neighbours neighbours_;
+    const std::vector<dvec4>& color_;
+    int level_;
+    int64_t step_;
+    const DoubleSvgfParams& params_;
+    std::vector<double> luminances_;
+};
+
+/// sigma, and what float32 may make of its square.
+struct Deviation {
+    double sigma, error;
+};
+
+/// That of the light of those around p that have a history.
+Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
+    dvec2 sum(0.0);
+    double weights = 0.0;
+    bool found = false;
+    neighbours.around(p, 1, 3, [&](size_t q, int i, int j) {
+        if (moments[q].w <= 0.0) return;
+        const double w = neighbours.weight(p, q, dvec2(i, j));
+        sum += w * dvec2(moments[q]);
+        weights += w;
+        found = true;
+    });
+    if (!found) return {0.0, 0.0};
+    if (weights < leastWeights) return {0.0, std::numeric_limits<double>::infinity()};
+    const dvec2 mean = sum / weights;
+    // As many roundings as there are neighbours. Without the centre, whose weight is 1, the others may all be
+    // small, and then the rounding of their exponents counts too.
+    const double rounding = 49 * 0x1p-24 + 2e-6 * std::max(-std::log(weights), 0.0);
+    return {svgfDeviation(mean.x, mean.y), rounding * mean.y};
+}
+
+}  // namespace
+
+dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance) {
+    const CameraParams& camera = frame.camera;
+    const bool orthographic = camera.orthographic != 0;
+    const dvec3 toRight = 2.0 * dvec3(camera.right) / static_cast<double>(frame.width);
+    const dvec3 toBelow = -2.0 * dvec3(camera.up) / static_cast<double>(frame.height);
+    const dvec3 v = orthographic ? dvec3(camera.forward) : DoubleFrame(frame).ray(p);
+    double t = glm::dot(normal, v);
+    const double least = leastCosine * glm::length(v);
+    if (std::abs(t) < least) t = t < 0.0 ? -least : least;
+    const auto along = [&](const dvec3& pixel) {
+        const double turned = -glm::dot(normal, pixel) / t;
+        return orthographic ? turned : distance * (glm::dot(v, pixel) / glm::dot(v, v) + turned);
+    };
+    return {along(toRight), along(toBelow)};
+}
+
+SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
+                               const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
+                               const DoubleSvgfParams& params) {
+    const Neighbours neighbours(frame, surfaces, params);
+    SvgfVariance result{color, std::vector<double>(frame.pixelCount(), 0.0)};
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const double n = moments[p].w;
+        if (!neighbours.sees(p) || n >= youngFrames) continue;
+        const Deviation around = deviationAround(neighbours, p, moments);
+        const double boost = svgfBoost(n, params.boost);
+        result.color[p].w = std::min(boost * around.sigma, largestHalf);
+        result.error[p] = boost * boost * around.error;
+    }
+    return result;
+}
+
+std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
+                             const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params) {
+    const Level filter(frame, surfaces, color, i, params);
+    std::vector<dvec4> filtered;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) filtered.push_back(filter.at(p));
+    return filtered;
+}
+
+}  // namespace limpid::test

@@ -1,0 +1,238 @@
+#include "tests/oracle/double_taa.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tests/oracle/double_reprojection.h"
+#include "tests/oracle/double_svgf.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double deviations = 1.25, leastDistance = 1e-6;
+/// Pixels. Several times the error of s in float32, an ulp: 2^-16 below 256 pixels.
+constexpr double positionMargin = 1e-4;
+/// Of encoded values, which are below 1 in magnitude: several operations' worth.
+constexpr double encodedRounding = 1e-6, clipRounding = 3e-7;
+
+/// Of the encoded beauty over the 3x3 pixels around one.
+struct Around {
+    dvec3 mean{0.0}, deviation{0.0};
+};
+
+std::array<double, 4> catmullRom(double t) {
+    return {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + 0.5 * t * t * (-5.0 + 3.0 * t),
+            0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
+}
+
+/// Step 3. `error` is added to what the components may differ by.
+dvec3 clip(const dvec3& h, const Around& around, double error) {
+    const dvec3 most = glm::max(deviations * around.deviation, dvec3(leastDistance)) + error;
+    const dvec3 e = glm::abs(h - around.mean) / most;
+    return around.mean + (h - around.mean) / std::max({e.x, e.y, e.z, 1.0});
+}
+
+class Antialiaser {
+  public:
+    Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty, const TaaPast& past,
+                double frames);
+    Antialiaser(const Antialiaser&) = delete;
+    Antialiaser& operator=(const Antialiaser&) = delete;
+
+    TaaPixel at(size_t p) const;
+
+  private:
+    size_t clamped(int64_t x, int64_t y) const {
+        return static_cast<size_t>(std::clamp<int64_t>(y, 0, height_ - 1) * width_ +
+                                   std::clamp<int64_t>(x, 0, width_ - 1));
+    }
+    std::array<size_t, 9> block(size_t p) const;
+    Around around(size_t p) const;
+    std::optional<dvec3> motion(size_t p) const;
+    size_t nearest(size_t p, Decision& decision) const;
+    bool movesAlike(size_t p, size_t q) const;
+    bool inPicture(const dvec2& s, Decision& decision) const;
+    double countAfter(double count) const { return std::min(count + 1.0, frames_); }
+    double countAt(const dvec2& s) const;
+    double countAt(const dvec2& s, Decision& decision) const;
+    dvec3 pastAt(const dvec2& s) const;
+    void addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const;
+
+    DoubleFrame frame_;
+    int64_t width_, height_;
+    double frames_;
+    std::vector<dvec3> encoded_;  ///< E(B)
+    std::vector<dvec3> past_;     ///< E of the last frame's means; empty: nothing
+    std::vector<double> counts_;  ///< N of each pixel
+};
+
+Antialiaser::Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty,
+                         const TaaPast& past, double frames)
+    : frame_(frame), width_(frame.width), height_(frame.height), frames_(frames) {
+    for (size_t p = 0; p < frame.pixelCount(); ++p)
+        encoded_.push_back(taaEncode({beauty[4 * p], beauty[4 * p + 1], beauty[4 * p + 2]}));
+    if (past.width != frame.width || past.height != frame.height) return;
+    for (const dvec4& mean : past.mean) {
+        past_.push_back(taaEncode(dvec3(mean)));
+        counts_.push_back(mean.w);
+    }
+}
+
+/// In reading order.
+std::array<size_t, 9> Antialiaser::block(size_t p) const {
+    const auto x = static_cast<int64_t>(p) % width_, y = static_cast<int64_t>(p) / width_;
+    std::array<size_t, 9> pixels{};
+    for (size_t i = 0; i < 9; ++i)
+        pixels[i] = clamped(x + static_cast<int64_t>(i % 3) - 1, y + static_cast<int64_t>(i / 3) - 1);
+    return pixels;
+}
+
+Around Antialiaser::around(size_t p) const {
+    Around result;
+    for (const size_t q : block(p)) result.mean += encoded_[q] / 9.0;
+    dvec3 variance(0.0);
+    for (const size_t q : block(p)) {
+        const dvec3 difference = encoded_[q] - result.mean;
+        variance += difference * difference / 9.0;
+    }
+    result.deviation = glm::sqrt(variance);
+    return result;
+}
+
+/// Motion with a NaN or an infinity counts as missing.
+std::optional<dvec3> Antialiaser::motion(size_t p) const {
+    const std::optional<dvec3> m = frame_.motion(p);
+    return m && isFiniteInFloat(*m) ? m : std::nullopt;
+}
+
+bool Antialiaser::movesAlike(size_t p, size_t q) const {
+    const std::optional<dvec3> a = motion(p), b = motion(q);
+    if (!a || !b) return !a && !b;
+    return glm::distance(dvec2(*a), dvec2(*b)) < 0.1 * positionMargin;  // the slope knows as much
+}
+
+/// Distances that are equal in double are equal in float32; those that nearly are may become so.
+size_t Antialiaser::nearest(size_t p, Decision& decision) const {
+    const std::array<size_t, 9> pixels = block(p);
+    size_t nearest = p;
+    double least = 0.0;
+    for (const size_t q : pixels) {
+        const double z = frame_.distance(q);
+        if (!(z > 0.0) || !std::isfinite(z) || (least > 0.0 && z >= least)) continue;
+        nearest = q;
+        least = z;
+    }
+    for (const size_t q : pixels) {
+        const double z = frame_.distance(q);
+        if (z > least && !movesAlike(q, nearest)) decision.near(z, least, 3e-7 * least);
+    }
+    return nearest;
+}
+
+bool Antialiaser::inPicture(const dvec2& s, Decision& decision) const {
+    const dvec2 size(width_, height_);
+    bool inside = true;
+    for (int axis = 0; axis < 2; ++axis) {
+        inside = inside && !decision.above(0.0, s[axis], positionMargin) &&
+                 decision.above(size[axis], s[axis], positionMargin);
+    }
+    return inside;
+}
+
+double Antialiaser::countAt(const dvec2& s) const {
+    const dvec2 pixel = glm::floor(s);
+    return counts_[clamped(static_cast<int64_t>(pixel.x), static_cast<int64_t>(pixel.y))];
+}
+
+double Antialiaser::countAt(const dvec2& s, Decision& decision) const {
+    const double count = countAt(s);
+    for (const double x : {-positionMargin, positionMargin}) {
+        for (const double y : {-positionMargin, positionMargin}) {
+            if (countAfter(countAt(s + dvec2(x, y))) == countAfter(count)) continue;
+            for (int axis = 0; axis < 2; ++axis) decision.near(s[axis], std::round(s[axis]), positionMargin);
+        }
+    }
+    return count;
+}
+
+/// Where rounding moves s across the centre of a pixel, other taps come in, but the cubic and its derivative
+/// are continuous there: nothing is doubtful.
+dvec3 Antialiaser::pastAt(const dvec2& s) const {
+    const dvec2 first = glm::floor(s - 0.5), fraction = s - 0.5 - first;
+    const std::array<double, 4> across = catmullRom(fraction.x), down = catmullRom(fraction.y);
+    const auto x = static_cast<int64_t>(first.x) - 1, y = static_cast<int64_t>(first.y) - 1;
+    dvec3 sum(0.0);
+    for (size_t j = 0; j < 4; ++j) {
+        for (size_t i = 0; i < 4; ++i) {
+            sum += across[i] * down[j] *
+                   past_[clamped(x + static_cast<int64_t>(i), y + static_cast<int64_t>(j))];
+        }
+    }
+    return sum;
+}
+
+/// By trying: the clip and E^-1 bend what the cubic's derivative alone would say.
+void Antialiaser::addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const {
+    const auto meanWith = [&](const dvec2& at, double error) {
+        const dvec3 h = clip(pastAt(at), around, error);
+        return taaDecode(h + (own - h) / pixel.frames);
+    };
+    dvec3 clipped(0.0);
+    for (const double sign : {-1.0, 1.0}) {
+        clipped = glm::max(clipped, glm::abs(meanWith(s, sign * clipRounding) - pixel.mean));
+    }
+    pixel.rounding += clipped;
+    for (int axis = 0; axis < 2; ++axis) {
+        dvec3 most(0.0);
+        for (const double sign : {-1.0, 1.0}) {
+            dvec2 off = s;
+            off[axis] += sign * positionMargin;
+            most = glm::max(most, glm::abs(meanWith(off, 0.0) - pixel.mean) / positionMargin);
+        }
+        pixel.slope += most;
+    }
+}
+
+TaaPixel Antialiaser::at(size_t p) const {
+    Decision decision;
+    const dvec3 own = encoded_[p];
+    const std::optional<dvec3> m = past_.empty() ? std::nullopt : motion(nearest(p, decision));
+    const dvec2 centre(static_cast<double>(static_cast<int64_t>(p) % width_) + 0.5,
+                       static_cast<double>(static_cast<int64_t>(p) / width_) + 0.5);
+    const dvec2 s = m ? centre + dvec2(*m) : centre;
+    const double count = m && inPicture(s, decision) ? countAt(s, decision) : 0.0;
+    TaaPixel pixel;
+    pixel.frames = countAfter(count);
+    const Around surroundings = around(p);
+    const dvec3 h = count > 0.0 ? clip(pastAt(s), surroundings, 0.0) : own;
+    pixel.mean = taaDecode(h + (own - h) / pixel.frames);
+    // c = e / (1 - l) has the derivatives 1 / (1 - l) = 1 + l by e and c (1 + l) by l.
+    pixel.rounding = encodedRounding * (1.0 + luminance(pixel.mean)) * (1.0 + pixel.mean);
+    if (count > 0.0) addErrors(pixel, s, surroundings, own);
+    pixel.doubtful = decision.doubtful();
+    return pixel;
+}
+
+}  // namespace
+
+dvec3 taaEncode(const dvec3& color) {
+    const dvec3 c = color / (1.0 + luminance(color));
+    return {0.25 * (c.r + 2.0 * c.g + c.b), 0.5 * (c.r - c.b), 0.25 * (-c.r + 2.0 * c.g - c.b)};
+}
+
+dvec3 taaDecode(const dvec3& encoded) {
+    const auto [x, y, z] = std::array{encoded.x, encoded.y, encoded.z};
+    const dvec3 c = glm::max(dvec3(x + y - z, x + z, x - y - z), dvec3(0.0));
+    return c / std::max(1.0 - luminance(c), 1e-6);
+}
+
+std::vector<TaaPixel> taa(const denoise::HostFrame& frame, const std::vector<float>& beauty,
+                          const TaaPast& past, double frames) {
+    const Antialiaser antialiaser(frame, beauty, past, frames);
+    std::vector<TaaPixel> pixels;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) pixels.push_back(antialiaser.at(p));
+    return pixels;
+}
+
+}  // namespace limpid::test

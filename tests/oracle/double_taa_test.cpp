@@ -1,0 +1,260 @@
+// The oracle of temporal anti-aliasing, by numbers that were computed by hand and by what must hold.
+#include "tests/oracle/double_taa.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/oracle/double_denoise_fixture.h"
+
+namespace limpid::test {
+namespace {
+
+using denoise::HostFrame;
+
+constexpr uint32_t side = 9;
+constexpr size_t middle = size_t{side} * 4 + 4;
+
+/// A plane of nine by nine pixels that does not move.
+class TaaByHand : public testing::Test {
+  protected:
+    /// Of pixel p, by its column and row.
+    template <typename ColorOf>
+    static std::vector<float> pictureOf(const ColorOf& colorOf) {
+        std::vector<float> picture;
+        for (size_t p = 0; p < size_t{side} * side; ++p) {
+            const dvec3 c = colorOf(p % side, p / side);
+            picture.insert(picture.end(),
+                           {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z), 1});
+        }
+        return picture;
+    }
+    static std::vector<float> plain(const dvec3& color) {
+        return pictureOf([&](size_t, size_t) { return color; });
+    }
+    static TaaPast pastOf(const dvec3& mean, double frames) {
+        return {side, side, std::vector<dvec4>(size_t{side} * side, dvec4(mean, frames))};
+    }
+    void move(size_t p, const dvec2& by) {
+        frame.motion[4 * p] = static_cast<float>(by.x);
+        frame.motion[4 * p + 1] = static_cast<float>(by.y);
+    }
+    void moveAll(const dvec2& by) {
+        for (size_t p = 0; p < frame.pixelCount(); ++p) move(p, by);
+    }
+    /// The next frame.
+    std::vector<TaaPixel> advance(const std::vector<float>& beauty) {
+        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, frames);
+        past = {side, side, {}};
+        for (const TaaPixel& pixel : pixels) past.mean.emplace_back(pixel.mean, pixel.frames);
+        return pixels;
+    }
+    TaaPixel inTheMiddle(const std::vector<float>& beauty) const {
+        return taa(frame, beauty, past, frames)[middle];
+    }
+
+    HostFrame frame = frontalPlane(side, side);
+    TaaPast past;
+    double frames = 100.0;
+};
+
+TEST_F(TaaByHand, EncodingAndItsInverse) {
+    const dvec3 e = taaEncode({1, 1, 1});
+    EXPECT_LT(glm::distance(e, dvec3(0.5, 0, 0)), 1e-12);
+    EXPECT_LT(glm::distance(taaEncode({1, 0, 0}) * 1.2126, dvec3(0.25, 0.5, -0.25)), 1e-12);
+    for (const dvec3& c : {dvec3(0.0), dvec3(1, 0, 0), dvec3(0, 1e-4, 0.3), dvec3(7, 2, 40),
+                           dvec3(9e5, 8e5, 1e4), dvec3(0, 0, 1e6)}) {
+        EXPECT_LT(largest(taaDecode(taaEncode(c)) - c), 1e-9 * largest(c) * (1.0 + largest(c)) + 1e-15);
+    }
+    EXPECT_LT(glm::distance(taaDecode({0.25, 0, 0.5}), dvec3(0, 0.75, 0) / (1.0 - 0.7152 * 0.75)), 1e-12);
+    EXPECT_NEAR(taaDecode({1, 0, 0}).x, 1e6, 1e-3);
+}
+
+TEST_F(TaaByHand, AConstantPictureStaysConstant) {
+    moveAll({0.3, -0.4});
+    for (int number = 1; number < 12; ++number) {
+        const std::vector<TaaPixel> pixels = advance(plain({0.25, 4, 0.5}));
+        for (const TaaPixel& pixel : pixels) ASSERT_LT(glm::distance(pixel.mean, dvec3(0.25, 4, 0.5)), 1e-12);
+        ASSERT_EQ(pixels[middle].frames, number < 4 ? number : pixels[middle].frames);
+        ASSERT_FALSE(pixels[middle].doubtful);
+    }
+}
+
+TEST_F(TaaByHand, TheFirstFrameIsTheBeauty) {
+    const std::vector<float> beauty = pictureOf([](size_t x, size_t y) { return dvec3(x, y * y, 0.5); });
+    const auto expectBeauty = [&] {
+        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, frames);
+        for (size_t p = 0; p < pixels.size(); ++p) {
+            const dvec3 is(beauty[4 * p], beauty[4 * p + 1], beauty[4 * p + 2]);
+            ASSERT_LT(glm::distance(pixels[p].mean, is), 1e-10) << p;
+            ASSERT_EQ(pixels[p].frames, 1.0);
+            ASSERT_EQ(pixels[p].slope, dvec3(0.0));
+        }
+    };
+    expectBeauty();
+    past = {side - 2, side, std::vector<dvec4>(size_t{side} * (side - 2), dvec4(1, 1, 1, 5))};
+    expectBeauty();  // after a resize
+}
+
+/// A quarter and three quarters of the edge's pixel are light: the past is always in the clip's range.
+TEST_F(TaaByHand, AnAlternatingEdgeConvergesToTheMean) {
+    const dvec3 light = taaEncode({4, 2, 1});
+    std::vector<TaaPixel> pixels;
+    for (int number = 0; number < 40; ++number) {
+        const double share = number % 2 == 0 ? 0.25 : 0.75;
+        pixels = advance(pictureOf([&](size_t x, size_t) {
+            return taaDecode((x < 4 ? 1.0 : x == 4 ? share : 0.0) * light);
+        }));
+    }
+    EXPECT_EQ(pixels[middle].frames, 40.0);
+    EXPECT_LT(glm::distance(taaEncode(pixels[middle].mean), 0.5 * light), 1e-6);
+    EXPECT_LT(glm::distance(pixels[middle - 1].mean, dvec3(4, 2, 1)), 1e-5);
+    EXPECT_LT(glm::length(pixels[middle + 1].mean), 1e-12);
+}
+
+/// The pixel is encoded as 1/2, those around it as 1/4: u = 5/18, d^2 = 1/162.
+TEST_F(TaaByHand, TheClipPullsThePastBack) {
+    const std::vector<float> beauty =
+        pictureOf([](size_t x, size_t y) { return dvec3(x == 4 && y == 4 ? 1.0 : 1.0 / 3); });
+    const double u = 5.0 / 18, d = std::sqrt(1.0 / 162);
+    const auto expectPast = [&](double h) {
+        const TaaPixel pixel = inTheMiddle(beauty);
+        EXPECT_EQ(pixel.frames, 8.0);
+        EXPECT_NEAR(taaEncode(pixel.mean).x, h + (0.5 - h) / 8.0, 1e-7);
+    };
+    past = pastOf(dvec3(100), 7);
+    expectPast(u + 1.25 * d);
+    past = pastOf(dvec3(0), 7);
+    expectPast(u - 1.25 * d);
+    past = pastOf(dvec3(0.5), 7);  // encoded as 1/3
+    expectPast(1.0 / 3);
+    past = pastOf({1, 0, 0}, 7);  // grey may not become red
+    expectPast(u + (0.25 / 1.2126 - u) * 1e-6 / (0.5 / 1.2126));
+}
+
+/// The beauty's pixels are encoded as nearly 1 and 0 in turns: nothing is clipped.
+TEST_F(TaaByHand, TheCubicReproducesParabolas) {
+    const std::vector<float> beauty =
+        pictureOf([](size_t x, size_t y) { return dvec3((x + y) % 2 == 0 ? 1000.0 : 0.0); });
+    const auto ramp = [](double x, double y) { return 0.3 + 0.02 * x + 0.01 * y + 0.002 * x * x; };
+    past = {side, side, {}};
+    for (uint32_t y = 0; y < side; ++y) {
+        for (uint32_t x = 0; x < side; ++x) past.mean.emplace_back(taaDecode({ramp(x, y), 0, 0}), 3);
+    }
+    for (const dvec2& by : {dvec2(0), dvec2(-1.3, 0.6), dvec2(0.5, -0.25), dvec2(1.9, 2.2)}) {
+        moveAll(by);
+        const TaaPixel pixel = inTheMiddle(beauty);
+        const double h = ramp(4.0 + by.x, 4.0 + by.y), own = 1000.0 / 1001.0;
+        EXPECT_NEAR(taaEncode(pixel.mean).x, h + (own - h) / 4.0, 1e-6);
+    }
+}
+
+/// Nearest pixels are told by the number of frames where their motion leads to.
+TEST_F(TaaByHand, MotionIsThatOfTheNearest) {
+    past = pastOf(dvec3(1), 0);
+    for (size_t p = 0; p < past.mean.size(); ++p) past.mean[p].w = 1.0 + static_cast<double>(p % side);
+    const auto count = [&] { return inTheMiddle(plain(dvec3(1))).frames; };
+    EXPECT_EQ(count(), 6.0);
+    move(middle + side + 1, {2, 0});
+    frame.depth[4 * (middle + side + 1)] = 1.5f;
+    EXPECT_EQ(count(), 8.0);
+    move(middle - 1, {-2, 0});  // as near, but before it
+    frame.depth[4 * (middle - 1)] = 1.5f;
+    EXPECT_EQ(count(), 4.0);
+    frame.depth[4 * middle] = 1.0f;
+    EXPECT_EQ(count(), 6.0);
+    frame.depth[4 * (middle + 2)] = 0.5f;  // not around it
+    move(middle + 2, {3, 0});
+    EXPECT_EQ(count(), 6.0);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) frame.depth[4 * p] = frame.depth[4 * p + 1] = 0.0f;
+    move(middle, {1, 0});
+    EXPECT_EQ(count(), 7.0) << "nothing is seen";
+    frame.depth[4 * (middle - 1)] = 9.0f;
+    frame.depth[4 * (middle - 1) + 1] = 1.0f;
+    EXPECT_EQ(count(), 4.0) << "next to the sky";
+}
+
+TEST_F(TaaByHand, WithoutMotionThePixelStartsAnew) {
+    past = pastOf(dvec3(1), 5);
+    const auto expectRestart = [&](bool restarts) {
+        const TaaPixel pixel = inTheMiddle(plain(dvec3(2)));
+        EXPECT_EQ(pixel.frames, restarts ? 1.0 : 6.0);
+        EXPECT_LT(glm::distance(pixel.mean, dvec3(2)), 1e-4);  // the clip leaves no more
+    };
+    expectRestart(false);
+    for (const dvec2& by : {dvec2(-4.6, 0), dvec2(4.6, 0), dvec2(0, -4.6), dvec2(0, 4.6)}) {
+        moveAll(by);
+        expectRestart(true);
+        moveAll(0.95 * by);
+        expectRestart(false);
+    }
+    moveAll(dvec2(std::numeric_limits<double>::quiet_NaN(), 0));
+    expectRestart(true);
+    moveAll(dvec2(0));
+    for (size_t p = 0; p < frame.pixelCount(); ++p) frame.motion[4 * p + 3] = 0.0f;
+    expectRestart(true);
+}
+
+TEST_F(TaaByHand, FramesAreAtMostThoseWanted) {
+    past = pastOf(dvec3(1), 7);
+    for (const double most : {2.5, 7.0, 8.0, 9.0}) {
+        frames = most;
+        EXPECT_EQ(inTheMiddle(plain(dvec3(1))).frames, std::min(most, 8.0));
+    }
+}
+
+TEST_F(TaaByHand, Doubt) {
+    past = pastOf(dvec3(1), 7);
+    const auto doubtful = [&] { return inTheMiddle(plain(dvec3(1))).doubtful; };
+    moveAll({0.50005, 0});
+    EXPECT_FALSE(doubtful()) << "either way the same number";
+    past.mean[middle].w = 1.0;
+    EXPECT_TRUE(doubtful());
+    frames = 2.0;
+    EXPECT_FALSE(doubtful());
+    moveAll({0, 4.49995});
+    EXPECT_TRUE(doubtful()) << "next to the picture's edge";
+    moveAll({0, 4.499});
+    EXPECT_FALSE(doubtful());
+    frame.depth[4 * (middle - 1)] = std::nextafter(2.0f, 1.0f);
+    EXPECT_FALSE(doubtful()) << "either way the same motion";
+    move(middle - 1, {1, 0});
+    EXPECT_TRUE(doubtful());
+    frame.depth[4 * (middle - 1)] = 1.99f;
+    EXPECT_FALSE(doubtful());
+}
+
+TEST(DoubleTaa, SlopeAndDoubtCoverErrorsOfPosition) {
+    const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
+    const auto beautyOf = [&](int number) { return scene.truth(number, width, height); };
+    TaaPast past;
+    for (int number = 0; number < 5; ++number) {
+        const std::vector<TaaPixel> pixels =
+            taa(scene.frame(number, width, height, 1), beautyOf(number), past, 4.0);
+        past = {width, height, {}};
+        for (const TaaPixel& pixel : pixels) past.mean.emplace_back(pixel.mean, pixel.frames);
+    }
+    const HostFrame frame = scene.frame(5, width, height, 1);
+    HostFrame off = frame;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        off.motion[4 * p] += 5e-5f;
+        off.motion[4 * p + 1] -= 5e-5f;
+    }
+    const std::vector<TaaPixel> a = taa(frame, beautyOf(5), past, 4.0), b = taa(off, beautyOf(5), past, 4.0);
+    size_t doubtful = 0, outside = 0, restarted = 0;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        doubtful += a[p].doubtful;
+        restarted += a[p].frames == 1.0;
+        if (a[p].doubtful) continue;
+        ASSERT_EQ(a[p].frames, b[p].frames) << p;
+        outside += glm::any(
+            glm::greaterThan(glm::abs(a[p].mean - b[p].mean), 1.1 * 5e-5 * a[p].slope + a[p].rounding));
+    }
+    EXPECT_GT(restarted, 0u);
+    EXPECT_LE(doubtful, frame.pixelCount() / 1000);
+    EXPECT_LE(outside, frame.pixelCount() / 1000);
+}
+
+}  // namespace
+}  // namespace limpid::test

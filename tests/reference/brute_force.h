@@ -1,0 +1,41 @@
+// A ray tracer without any tree, in double precision: what the shaders' traversal is compared with.
+#pragma once
+
+#include <vector>
+
+#include "scene/model/scene.h"
+
+namespace limpid::test {
+
+struct TestRay {
+    vec3 origin;
+    vec3 direction;  ///< unit
+    float tMax = 1e30f;
+};
+
+struct BruteHit {
+    double t = -1.0;  ///< negative: nothing
+    uint32_t instance = UINT32_MAX, primitive = UINT32_MAX;
+    /// Float32 may see it otherwise: another triangle at nearly the same distance, or an edge nearly touched.
+    bool doubtful = false;
+};
+
+class BruteForce {
+  public:
+    explicit BruteForce(const scene::Scene& scene);
+
+    BruteHit closest(const TestRay& ray) const;
+    size_t triangleCount() const { return triangles_.size(); }
+    const vec3& lower() const { return lower_; }
+    const vec3& upper() const { return upper_; }
+
+  private:
+    struct Triangle {
+        glm::dvec3 v0, e1, e2;
+        uint32_t instance, primitive;
+    };
+    std::vector<Triangle> triangles_;
+    vec3 lower_, upper_;
+};
+
+}  // namespace limpid::test

@@ -1,0 +1,187 @@
+// The window under real input events.
+#include <gmock/gmock.h>
+
+#include "image/io/picture.h"
+#include "renderer/frame/parameters.h"
+#include "tests/viewer/view_fixture.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+class ViewEventsTest : public ViewTest {};
+
+/// A mean that was left for another pipeline begins anew.
+TEST_F(ViewEventsTest, AMeanOfBeforeIsNotTakenUp) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 5");
+    const std::string start = viewer.settledPicture();
+    viewer.choose("pipeline", "svgf");
+    viewer.settledPicture();
+    viewer.choose("pipeline", "path");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.fact("samples"), "5");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+/// limpid info lists paramGroups().
+TEST_F(ViewEventsTest, EveryParameterChangesAndGoesBack) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+    const std::string start = viewer.settledPicture();
+    for (const ParamGroup& group : paramGroups()) {
+        open(viewer, group.name);
+        std::map<std::string, std::string> defaults;
+        for (const ParamInfo& info : group.infos)
+            defaults[group.name + "." + info.name] = viewer.value(group.name + "." + info.name);
+        for (const auto& [name, value] : defaults) change(viewer, name);
+        if (group.name == "pathtrace") {
+            EXPECT_NE(viewer.settledPicture(), start);
+        }
+        viewer.click(group.name + ".defaults");
+        for (const auto& [name, value] : defaults)
+            viewer.waitFor(name + " to be " + value,
+                           [&, n = name, v = value] { return viewer.value(n) == v; });
+        close(viewer, group.name);
+    }
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewEventsTest, PicturesChangeAndComeBack) {
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 4");
+    const std::string start = viewer.settledPicture();
+    for (const std::string pipeline : {"gbuffer", "ao", "atrous", "svgf"}) {
+        viewer.choose("pipeline", pipeline);
+        EXPECT_NE(viewer.settledPicture(), start) << pipeline;
+    }
+    viewer.choose("pipeline", "path");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    for (const std::string name : {"seed", "time, s", "field of view"}) {
+        change(viewer, name);
+        EXPECT_NE(viewer.settledPicture(), start) << name;
+    }
+    viewer.xdotool("mousemove 420 1000 mousedown 1 mousemove 440 1010 sleep 0.2 mouseup 1");
+    const std::string orbited = viewer.settledPicture();
+    viewer.xdotool("mousemove 420 1000 click 4 sleep 0.1");
+    const std::string nearer = viewer.settledPicture();
+    EXPECT_NE(nearer, orbited) << "the wheel";
+    change(viewer, "exposure, stops");
+    EXPECT_NE(viewer.settledPicture(), nearer) << "exposure";
+    viewer.xdotool("mousemove 420 1000 mousedown 3 keydown w sleep 0.3 keyup w mouseup 3");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewEventsTest, PassesShowTheirImages) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --pipeline svgf");
+    viewer.settledPicture();
+    open(viewer, "passes");
+    const std::string pass = "pass svgf/reproject diffuse";
+    viewer.waitFor("passes", [&] { return viewer.controls().contains(pass); });
+    viewer.click(pass);
+    viewer.waitFor("images", [&] { return viewer.controls().contains("image"); });
+    viewer.choose("channels", "green");
+    change(viewer, "brightness, stops");
+    change(viewer, "false color");
+    viewer.xdotool("mousemove 430 850");
+    viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
+    viewer.choose("pipeline", "path");  // which has no such pass
+    viewer.settledPicture();
+    EXPECT_FALSE(viewer.controls().contains("image"));
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewEventsTest, SettingsAreKept) {
+    {
+        DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3");
+        viewer.choose("pipeline", "atrous");
+        open(viewer, "atrous");
+        change(viewer, "atrous.levels");
+        EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+    }
+    const std::string kept = get("kept.json");
+    EXPECT_THAT(kept, HasSubstr("atrous.levels="));
+    DrivenViewer viewer(folder_, "builtin:cornell");
+    EXPECT_EQ(viewer.value("pipeline"), "atrous");
+    EXPECT_EQ(viewer.value("most samples"), "3");
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+    EXPECT_EQ(get("kept.json"), kept);
+}
+
+TEST_F(ViewEventsTest, AnySizeOfWindow) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+    const std::string start = viewer.settledPicture();
+    for (const std::string size : {"900 300", "1 1", "64 1700", "460 1700"}) {
+        viewer.xdotool("windowsize " + viewer.window() + " " + size + " sleep 0.5");
+    }
+    viewer.xdotool("windowunmap " + viewer.window() + " sleep 0.5 windowmap " + viewer.window() +
+                   " sleep 0.5");
+    EXPECT_EQ(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewEventsTest, WhatCannotBeOpenedLeavesTheOldScene) {
+    put("broken.gltf", "{\"asset\": {");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+    const std::string start = viewer.settledPicture();
+    viewer.click("open");
+    viewer.xdotool("sleep 0.3 type broken.gltf");
+    viewer.xdotool("sleep 0.2 key Return");
+    viewer.waitFor("a message", [&] { return !viewer.fact("fault").empty(); });
+    EXPECT_THAT(viewer.fact("fault"), HasSubstr("broken.gltf"));
+    EXPECT_EQ(viewer.settledPicture(), start);
+    viewer.click("open");
+    viewer.xdotool("sleep 0.3 key ctrl+a type builtin:heavy");
+    viewer.xdotool("sleep 0.2 key Return");
+    viewer.waitFor("the scene", [&] { return viewer.fact("message") == "opened builtin:heavy"; });
+    EXPECT_NE(viewer.settledPicture(), start);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
+    for (const std::string pipeline : {"path", "svgf"}) {
+        std::string command;
+        {
+            DrivenViewer viewer(folder_, "builtin:cornell --max-spp 12 --seed 5 --pipeline " + pipeline +
+                                             " --screenshot shown.exr");
+            viewer.xdotool(
+                "mousemove 420 1000 mousedown 1 mousemove 430 1004 sleep 0.1 mousemove 437 1011 sleep 0.2 "
+                "mouseup 1");
+            viewer.settledPicture();
+            viewer.click("copy command line");
+            viewer.waitFor("the command",
+                           [&] { return viewer.fact("message").starts_with("limpid render"); });
+            command = viewer.fact("message").substr(7);
+            EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+        }
+        const Result result = runProgram("cd '" + folder_.string() + "' && '" + LIMPID_PROGRAM + "' " +
+                                         command + " --device cpu --float");
+        ASSERT_EQ(result.code, 0) << command << "\n" << result.output;
+        fs::path last = folder_ / "frame.exr";
+        for (int i = 0; fs::exists(folder_ / ("frame." + std::string(4 - std::to_string(i).size(), '0') +
+                                              std::to_string(i) + ".exr"));
+             ++i)
+            last = folder_ /
+                   ("frame." + std::string(4 - std::to_string(i).size(), '0') + std::to_string(i) + ".exr");
+        EXPECT_EQ(image::readPicture(folder_ / "shown.exr").linear.pixels,
+                  image::readPicture(last).linear.pixels)
+            << command;
+        EXPECT_EQ(command.find("--camera-path") != std::string::npos, pipeline == "svgf");
+    }
+}
+
+TEST_F(ViewEventsTest, RestsWhereNothingChangesAndKeepsNothing) {
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1300", /*shrink=*/8);
+    viewer.waitFor("200 frames", [&] { return viewer.number("frames") >= 200; });
+    const double early = viewer.residentBytes();
+    viewer.waitFor("1200 frames", [&] { return viewer.number("frames") >= 1200; });
+    EXPECT_LT(viewer.residentBytes() - early, 4e6);
+    viewer.settledPicture();
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const double before = viewer.processorSeconds();
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    EXPECT_LT((viewer.processorSeconds() - before) / 5.0, 0.02);
+    EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
+}
+
+}  // namespace
+}  // namespace limpid

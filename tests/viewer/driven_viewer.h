@@ -1,0 +1,213 @@
+// `limpid view` on a display of its own, moved by a real mouse and keyboard (xdotool), read by what it
+// writes.
+#pragma once
+
+#include <signal.h>
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/cli/cli_fixture.h"
+
+namespace limpid {
+
+struct Control {
+    float left = 0.0f, top = 0.0f, right = 0.0f, bottom = 0.0f;
+    std::string value;
+};
+
+class DrivenViewer {
+  public:
+    /// What it needs, or why that is missing.
+    static std::string missing() {
+        for (const char* program : {"Xvfb", "xdotool"}) {
+            if (::system((std::string("command -v ") + program + " > /dev/null").c_str()) != 0)
+                return std::string(program) + " is missing (Debian packages xvfb and xdotool)";
+        }
+        return {};
+    }
+
+    /// `folder` gets its files; a window of 460x1700 pixels, each 2^shrink of which, along each axis, are one
+    /// of the picture's.
+    DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3) : folder_(folder) {
+        const std::string in = "cd '" + folder_.string() + "' && ";
+        // A display that ends with its last client: the viewer must stay one all the time.
+        shell(
+            in +
+            "rm -f display controls code log; Xvfb -terminate -displayfd 3 -screen 0 1000x1800x24 3>display "
+            ">/dev/null 2>&1 & "
+            "echo $! > '" +
+            (folder_ / "xvfb.pid").string() + "'");
+        waitFor("a display", [&] { return !get("display").empty() && get("display").back() == '\n'; });
+        display_ = ":" + get("display").substr(0, get("display").find('\n'));
+        shell(in + "DISPLAY=" + display_ + " LIMPID_VALIDATION=1 '" + LIMPID_PROGRAM + "' view " + arguments +
+                  " --settings kept.json --device cpu --width 460 --height 1700 --shrink " +
+                  std::to_string(shrink) +
+                  " --controls "
+                  "controls >log 2>&1 & echo "
+                  "$! > '" +
+                  (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +
+                  "'",
+              true);
+        waitFor("the panel", [&] { return number("frames") > 0; });
+        findWindow();
+    }
+    void findWindow() {
+        window_ = output("xdotool search --name Limpid | tail -1");
+        xdotool("windowfocus " + window_ + " sleep 0.5");
+    }
+    ~DrivenViewer() {
+        kill("view.pid");
+        kill("xvfb.pid");
+    }
+    DrivenViewer(const DrivenViewer&) = delete;
+    DrivenViewer& operator=(const DrivenViewer&) = delete;
+
+    /// Leaves it by the keyboard; its exit code.
+    int leave() {
+        xdotool("mousemove 450 1690 key Escape");
+        waitFor("the end", [&] { return !get("code").empty(); });
+        return std::stoi(get("code"));
+    }
+
+    std::map<std::string, Control> controls() const {
+        std::map<std::string, Control> result;
+        std::istringstream lines(get("controls"));
+        for (std::string line; std::getline(lines, line);) {
+            std::istringstream parts(line);
+            Control c;
+            std::string name;
+            if (parts >> c.left >> c.top >> c.right >> c.bottom && parts.get() == '\t' &&
+                std::getline(parts, name, '\t')) {
+                std::getline(parts, c.value);
+                result[name] = c;
+            }
+        }
+        return result;
+    }
+    std::string fact(const std::string& name) const {
+        std::istringstream lines(get("controls"));
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with(name + "\t")) return line.substr(name.size() + 1);
+        }
+        return {};
+    }
+    double number(const std::string& name) const {
+        const std::string text = fact(name);
+        return text.empty() ? 0.0 : std::stod(text);
+    }
+    std::string value(const std::string& name) const { return at(name).value; }
+    Control at(const std::string& name) const {
+        const auto all = controls();
+        const auto found = all.find(name);
+        if (found == all.end())
+            throw std::runtime_error("there is no control '" + name + "' in\n" + get("controls"));
+        return found->second;
+    }
+
+    void click(const std::string& name) const { press(name, 0.03); }
+    /// At a share of its width.
+    void press(const std::string& name, double share) const {
+        const Control c = at(name);
+        xdotool("mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) +
+                " " + std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
+                " sleep 0.15 mousedown 1 sleep 0.15 mouseup 1 sleep 0.05");
+    }
+    /// A number into a slider, or into what is dragged. At a share of its width.
+    void type(const std::string& name, const std::string& text, double share = 0.03) const {
+        const Control c = at(name);
+        xdotool(
+            "mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) + " " +
+            std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
+            " sleep 0.15 keydown ctrl sleep 0.1 mousedown 1 sleep 0.15 mouseup 1 sleep 0.1 keyup ctrl sleep "
+            "0.15 key ctrl+a sleep 0.1 type --delay 30 -- " +
+            text);
+        xdotool("sleep 0.2 key Return sleep 0.1");
+    }
+    void choose(const std::string& name, const std::string& choice) const {
+        click(name);
+        waitFor("the list of " + name, [&] { return controls().contains(name + "=" + choice); });
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        press(name + "=" + choice, 0.1);
+        waitFor(name + " to be " + choice, [&] { return value(name) == choice; });
+    }
+    void xdotool(const std::string& arguments) const {
+        shell("DISPLAY=" + display_ + " xdotool " + arguments);
+    }
+    /// A program, on its display.
+    void run(const std::string& command) const { shell("DISPLAY=" + display_ + " " + command); }
+    const std::string& window() const { return window_; }
+
+    /// The bytes of limpid.png, once `samples` are in the picture and nothing is rendered any more.
+    std::string settledPicture() const {
+        std::string last;
+        waitFor("the picture to settle", [&] {
+            const std::string now = fact("frames") + " " + fact("samples");
+            const bool same = now == last;
+            last = now;
+            std::this_thread::sleep_for(std::chrono::milliseconds(400));
+            return same;
+        });
+        fs::remove(folder_ / "limpid.png");
+        click("screenshot");
+        waitFor("a screenshot", [&] { return fs::exists(folder_ / "limpid.png"); });
+        return get("limpid.png");
+    }
+
+    /// Seconds of processor time so far; bytes of memory.
+    double processorSeconds() const {
+        std::istringstream stat(slurp("/proc/" + pid() + "/stat"));
+        std::string skipped;
+        for (int i = 0; i < 13; ++i) stat >> skipped;
+        double user = 0.0, system = 0.0;
+        stat >> user >> system;
+        return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    }
+    double residentBytes() const {
+        std::istringstream statm(slurp("/proc/" + pid() + "/statm"));
+        double all = 0.0, resident = 0.0;
+        statm >> all >> resident;
+        return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    }
+
+    void waitFor(const std::string& what, const std::function<bool()>& done) const {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(240);
+        while (!done()) {
+            if (std::chrono::steady_clock::now() > end)
+                throw std::runtime_error("waited in vain for " + what + "; log:\n" + get("log") +
+                                         get("controls"));
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+    }
+    std::string get(const std::string& name) const { return slurp(folder_ / name); }
+
+  private:
+    static std::string slurp(const fs::path& file) {
+        std::ifstream stream(file);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    static void shell(const std::string& command, bool background = false) {
+        if (::system((background ? "(" + command + ") &" : command).c_str()) != 0)
+            throw std::runtime_error("failed: " + command);
+    }
+    std::string output(const std::string& command) const {
+        shell("DISPLAY=" + display_ + " " + command + " > '" + (folder_ / "output").string() + "'");
+        std::string text = get("output");
+        return text.substr(0, text.find('\n'));
+    }
+    /// Of the program, not of a shell around it.
+    std::string pid() const { return get("view.pid").substr(0, get("view.pid").find('\n')); }
+    void kill(const char* file) const {
+        const std::string text = get(file);
+        if (!text.empty()) ::kill(static_cast<pid_t>(std::stol(text)), SIGTERM);
+    }
+
+    fs::path folder_;
+    std::string display_, window_;
+};
+
+}  // namespace limpid
