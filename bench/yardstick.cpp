@@ -170,7 +170,7 @@ void printRow(const json& r) {
 }
 
 void run(const Options& o) {
-    gpu::Device device(gpu::DeviceOptions{.select = o.device});
+    gpu::Device device(gpu::DeviceOptions{.select = o.device, .messages = log::write});
     const std::string embree = embreeVersion();
     if (!o.json) {
         fmt::print("Embree {}; ours on {}; {}x{}, depth {}, {} rounds of {} frames\n", embree,

@@ -3,6 +3,8 @@
 # How Limpid's own files are compiled; whoever links its libraries sees none of it.
 add_library(limpid_options INTERFACE)
 target_include_directories(limpid_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
+# Everything can go into the shared library, which exports nothing by accident.
+target_compile_options(limpid_options INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
 target_compile_options(limpid_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 sees overlaps inside std::string that are not there (its bug 105651).
@@ -74,8 +76,6 @@ function(limpid_library NAME)
   add_library(limpid_${NAME} STATIC ${ARG_SOURCES})
   add_library(limpid::${NAME} ALIAS limpid_${NAME})
   target_link_libraries(limpid_${NAME} PUBLIC ${ARG_DEPS} PRIVATE limpid_options ${ARG_PRIVATE_DEPS})
-  set_target_properties(limpid_${NAME} PROPERTIES
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
   limpid_use_pch(limpid_${NAME} limpid_pch)
 endfunction()
 
@@ -140,7 +140,7 @@ if(LIMPID_TESTS)
   add_custom_target(limpid_fast_tests)
 endif()
 
-# limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): a GoogleTest program; every case is a ctest test.
+# limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): a GoogleTest program; every suite is a ctest test.
 # The target limpid_fast_tests builds all that are not slow.
 function(limpid_test NAME)
   cmake_parse_arguments(ARG "" "LABELS" "SOURCES;DEPS" ${ARGN})
@@ -158,5 +158,10 @@ function(limpid_test NAME)
   if(ARG_LABELS STREQUAL fast)
     add_dependencies(limpid_fast_tests ${NAME})
   endif()
-  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABELS} TIMEOUT 600)
+  set(REGISTER ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_suites.cmake)
+  file(GENERATE OUTPUT ${REGISTER} CONTENT "set(PROGRAM \"$<TARGET_FILE:${NAME}>\")
+set(LABELS \"${ARG_LABELS}\")
+include(\"${PROJECT_SOURCE_DIR}/cmake/discover_suites.cmake\")
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${REGISTER})
 endfunction()

@@ -9,7 +9,7 @@ ctest --preset release --parallel "$(nproc)"
 
 echo "== the pipeline tracer, on a software driver that has ray-tracing pipelines"
 if icd=$(scripts/lavapipe25.sh); then
-    VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -R '/pipeline|^TracersTest'
+    LIMPID_TEST_CASES='*/pipeline*:TracersTest*' VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -LE python
 else
     echo "NOTE: NOT TESTED here: the pipeline tracer."
 fi

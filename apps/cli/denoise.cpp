@@ -124,7 +124,7 @@ DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
         if (summary.frames == 0) warnOfLacking(lacking);
         graph.beginFrame();
         denoise::DenoiserInput images = denoise::upload(graph, host);
-        images.filters = denoise::filterBacking(device);
+        images.filters = gpu::filterBacking(device);
         const denoise::DenoiserOutput denoised = method.record(graph, images, settings);
         graph.execute(device);
         write(o, result, std::move(file), graph.downloadFloat(device, denoised.beauty));

@@ -6,14 +6,16 @@
 #include <string>
 #include <utility>
 
+#include "base/message.h"
+
 namespace limpid::log {
 
-enum class Level { Debug, Info, Warning, Error };
+using Level = MessageLevel;
 
 /// Messages below this level are dropped. Default: Info.
 void setLevel(Level level);
 
-/// Control characters of the message are escaped, all but line feeds and tabs.
+/// Control characters of the message are escaped, all but line feeds and tabs. A MessageCallback.
 void write(Level level, const std::string& message);
 
 template <typename... Args>

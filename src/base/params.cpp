@@ -1,11 +1,10 @@
 #include "base/params.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text/format.h"
 
 namespace limpid {
 namespace {
@@ -15,8 +14,8 @@ T parseNumber(std::string_view name, std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) {
-        throw UsageError(fmt::format("{}: '{}' is not {}", name, text,
-                                     std::is_same_v<T, int> ? "a whole number" : "a number"));
+        throw UsageError(formatText("{}: '{}' is not {}", name, text,
+                                    std::is_same_v<T, int> ? "a whole number" : "a number"));
     }
     return value;
 }
@@ -24,7 +23,7 @@ T parseNumber(std::string_view name, std::string_view text) {
 bool parseBool(std::string_view name, std::string_view text) {
     if (text == "1" || text == "true" || text == "on") return true;
     if (text == "0" || text == "false" || text == "off") return false;
-    throw UsageError(fmt::format("{}: '{}' is neither on nor off", name, text));
+    throw UsageError(formatText("{}: '{}' is neither on nor off", name, text));
 }
 
 double asDouble(const ParamValue& value) {
@@ -41,7 +40,7 @@ ParamValue parseParam(std::string_view name, std::string_view text, const ParamV
 
 std::string toString(const ParamValue& value) {
     if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
-    return std::visit([](auto v) { return fmt::format("{}", v); }, value);
+    return std::visit([](auto v) { return formatText("{}", v); }, value);
 }
 
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value) {
@@ -52,8 +51,8 @@ void checkRange(std::string_view group, const ParamInfo& info, const ParamValue&
     };
     const double number = asDouble(value);
     if (!(std::isfinite(number) && number >= end(info.minimum) && number <= end(info.maximum))) {
-        throw UsageError(fmt::format("{}.{}: {} is outside its range {} to {}", group, info.name,
-                                     toString(value), info.minimum, info.maximum));
+        throw UsageError(formatText("{}.{}: {} is outside its range {} to {}", group, info.name,
+                                    toString(value), info.minimum, info.maximum));
     }
 }
 
@@ -61,7 +60,7 @@ Assignment parseAssignment(std::string_view text) {
     const size_t equals = text.find('=');
     const size_t dot = text.substr(0, equals).find('.');
     if (equals == std::string_view::npos || dot == std::string_view::npos || dot == 0 || dot + 1 == equals) {
-        throw UsageError(fmt::format("'{}' is not of the form group.name=value", text));
+        throw UsageError(formatText("'{}' is not of the form group.name=value", text));
     }
     return {std::string(text.substr(0, dot)), std::string(text.substr(dot + 1, equals - dot - 1)),
             std::string(text.substr(equals + 1))};

@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "image/io/png/png.h"
 #include "image/io/temp_folder.h"
-#include "quality_json.h"
-#include "quality_methods.h"
-#include "quality_page.h"
-#include "quality_ranking.h"
-#include "quality_sequences.h"
+#include "lab/quality/quality_json.h"
+#include "lab/quality/quality_methods.h"
+#include "lab/quality/quality_page.h"
+#include "lab/quality/quality_ranking.h"
+#include "lab/quality/quality_sequences.h"
 #include "scene/builtin/builtin.h"
 
 namespace limpid::cli {

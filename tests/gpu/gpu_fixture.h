@@ -34,32 +34,48 @@ inline std::string wantedDevice() {
     return variable ? variable : "cpu";
 }
 
-class GpuTest : public testing::Test {
-  protected:
-    /// One device lives as long as the suite: NVIDIA's driver can be unloaded and loaded again only so often.
-    static void SetUpTestSuite() {
-        if (!gpu::enumerateDevices().empty())
-            driver_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
+/// The device of all tests of a program, with validation where its layer is installed. Tests share it so that
+/// each shader is compiled once, and because NVIDIA's driver can be unloaded and loaded again only so often.
+/// Null if this machine has no Vulkan device.
+class TestDevice : public testing::Environment {
+  public:
+    static gpu::Device* get() {
+        if (!device_ && !gpu::enumerateDevices().empty()) device_ = make();
+        return device_.get();
     }
-    static void TearDownTestSuite() { driver_.reset(); }
+    void TearDown() override { device_.reset(); }
 
-    void SetUp() override {
-        if (gpu::enumerateDevices().empty()) {
-            GTEST_SKIP()
-                << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
-        }
+  private:
+    static std::unique_ptr<gpu::Device> make() {
+        gpu::DeviceOptions options{.select = wantedDevice(), .validation = true, .messages = log::write};
         try {
-            device_ = std::make_unique<gpu::Device>(
-                gpu::DeviceOptions{.select = wantedDevice(), .validation = true});
+            return std::make_unique<gpu::Device>(options);
         } catch (const Error& error) {
             if (std::string(error.what()).find("vulkan-validationlayers") == std::string::npos) throw;
             log::warn("NOT VALIDATED: {}", error.what());
-            device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.select = wantedDevice()});
+            options.validation = false;
+            return std::make_unique<gpu::Device>(options);
         }
+    }
+
+    inline static std::unique_ptr<gpu::Device> device_;
+};
+inline testing::Environment* const testDevice = testing::AddGlobalTestEnvironment(new TestDevice);
+
+class GpuTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        device_ = TestDevice::get();
+        if (!device_) {
+            GTEST_SKIP()
+                << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
+        }
+        messagesBefore_ = device_->validationMessages();
     }
     void TearDown() override {
         if (!device_) return;
-        EXPECT_EQ(device_->validationMessages(), 0u);
+        device_->waitIdle();
+        EXPECT_EQ(device_->validationMessages(), messagesBefore_);
     }
 
     gpu::Device& device() { return *device_; }
@@ -93,9 +109,9 @@ class GpuTest : public testing::Test {
     }
 
   private:
-    inline static std::unique_ptr<gpu::Device> driver_;
-    std::unique_ptr<gpu::Device> device_;
-    gpu::FrameGraph graph_;  ///< one for the whole test: it keeps compiled pipelines
+    gpu::Device* device_ = nullptr;
+    uint64_t messagesBefore_ = 0;
+    gpu::FrameGraph graph_;
 };
 
 }  // namespace limpid::test

@@ -1,6 +1,7 @@
 #include "cli/options/device_options.h"
 
 #include "base/error.h"
+#include "base/log.h"
 
 namespace limpid::cli {
 
@@ -9,6 +10,7 @@ void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
                        "Device by name, index, or 'cpu'; default: the best one");
     command.add_option("--tracer", choice.tracer, "How rays are traced: auto (default), compute or pipeline")
         ->check(CLI::IsMember({"auto", "compute", "pipeline"}));
+    choice.device.messages = log::write;
     command.add_flag("--validation", choice.device.validation, "Run under the Vulkan validation layer; slow");
 }
 

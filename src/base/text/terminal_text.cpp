@@ -1,10 +1,7 @@
 #include "base/text/terminal_text.h"
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 
 namespace limpid {
 namespace {
@@ -48,8 +45,9 @@ std::string terminalText(std::string_view text, LineBreaks breaks) {
             result += taken;
             continue;
         }
-        for (const char c : taken)
-            fmt::format_to(std::back_inserter(result), "\\x{:02x}", static_cast<uint8_t>(c));
+        constexpr std::string_view digits = "0123456789abcdef";
+        for (size_t i = 0; i < taken.size(); ++i)
+            result.append("\\x").append({digits[byteAt(taken, i) >> 4], digits[byteAt(taken, i) & 15]});
     }
     return result;
 }

@@ -6,10 +6,6 @@
 
 namespace limpid::denoise {
 
-gpu::Backing filterBacking(const gpu::Device& device) {
-    return device.isCpu() ? gpu::Backing::Image : gpu::Backing::Buffer;
-}
-
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     const gpu::Extent extent{frame.width, frame.height};
     const auto image = [&](const char* name, const std::vector<float>& pixels) {

@@ -23,12 +23,8 @@ struct DenoiserInput {
     /// over them, of the luminance (of normals the components' mean), and of depth its own; only networks
     /// look at it.
     uint32_t samples = 1;
-    gpu::Backing filters = gpu::Backing::Image;  ///< filterBacking(device)
+    gpu::Backing filters = gpu::Backing::Image;  ///< gpu::filterBacking(device)
 };
-
-/// Of images that filters read many times over: buffers are faster on GPUs, images on CPUs
-/// (docs/benchmarks.md).
-gpu::Backing filterBacking(const gpu::Device& device);
 
 /// The frame's images on the device. Throws Error if an image of `frame` has another size than the frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);

@@ -1,10 +1,9 @@
 #include "gpu/graph/dispatch_recorder.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text/format.h"
 
 namespace limpid::gpu {
 namespace {
@@ -13,6 +12,8 @@ std::string_view kindName(BindingKind kind) {
     switch (kind) {
         case BindingKind::StorageImage:
             return "image";
+        case BindingKind::SampledImage:
+            return "sampled image";
         case BindingKind::StorageTexelBuffer:
             return "texel buffer";
         case BindingKind::StorageBuffer:
@@ -31,11 +32,11 @@ DispatchRecorder::DispatchRecorder(FrameGraph::Impl& graph, const Dispatch& disp
     : graph_(graph), dispatch_(dispatch), shader_(graph.shaderOf(dispatch.shader, dispatch.rays)) {}
 
 void DispatchRecorder::fail(const std::string& fault) const {
-    throw Error(fmt::format("pass '{}' ({}): {}", dispatch_.pass, shader_->name, fault));
+    throw Error(formatText("pass '{}' ({}): {}", dispatch_.pass, shader_->name, fault));
 }
 
 void DispatchRecorder::fail(std::string_view variable, const std::string& fault) const {
-    fail(fmt::format("variable '{}': {}", variable, fault));
+    fail(formatText("variable '{}': {}", variable, fault));
 }
 
 void DispatchRecorder::record() {
@@ -112,30 +113,48 @@ void DispatchRecorder::bindImage(Bound& bound, ImageHandle handle) const {
     } catch (const Error& error) {
         fail(variable.name, error.what());
     }
-    const RecordedImage& image = graph_.frame.images[bound.resource.image];
+    RecordedImage& image = graph_.frame.images[bound.resource.image];
     bound.name = image.name;
+    if (variable.kind == BindingKind::SampledImage) return bindSampled(bound, image);
+    if (image.sampled)
+        fail(variable.name, formatText("'{}' is sampled by another pass of this frame", bound.name));
     const bool inBuffer = image.key.backing == Backing::Buffer;
     if (inBuffer && variable.kind == BindingKind::StorageImage)
         fail(variable.name, "is an image in the shader, but what is bound lies in a buffer");
     if (variable.kind != (inBuffer ? BindingKind::StorageBuffer : BindingKind::StorageImage)) {
         fail(variable.name,
-             fmt::format("is a {} in the shader, but an image is bound", kindName(variable.kind)));
+             formatText("is a {} in the shader, but an image is bound", kindName(variable.kind)));
     }
     if (!inBuffer && image.key.format != variable.format) {
-        fail(variable.name, fmt::format("is {} in the shader, but image '{}' is {}",
-                                        toString(variable.format), image.name, toString(image.key.format)));
+        fail(variable.name, formatText("is {} in the shader, but image '{}' is {}", toString(variable.format),
+                                       image.name, toString(image.key.format)));
     }
     const bool previous = image.role == RecordedImage::Role::Previous;
     if (previous && variable.writable) {
-        fail(variable.name, fmt::format("would write '{}', but a history's previous image can only be read: "
-                                        "declare the variable readonly, or bind the current one",
-                                        image.name));
+        fail(variable.name, formatText("would write '{}', but a history's previous image can only be read: "
+                                       "declare the variable readonly, or bind the current one",
+                                       image.name));
     }
     if (!previous && variable.readable && !image.written) {
         fail(variable.name,
-             fmt::format("reads image '{}', which no pass of this frame has written{}", image.name,
-                         variable.writable ? " (declare the variable writeonly if it only writes)" : ""));
+             formatText("reads image '{}', which no pass of this frame has written{}", image.name,
+                        variable.writable ? " (declare the variable writeonly if it only writes)" : ""));
     }
+}
+
+/// Whatever the format, texels are read as four floats or four unsigned integers.
+void DispatchRecorder::bindSampled(const Bound& bound, RecordedImage& image) const {
+    const ShaderBinding& variable = *bound.variable;
+    if (image.key.backing == Backing::Buffer)
+        fail(variable.name, "is sampled in the shader, but what is bound lies in a buffer");
+    if (hasUnsignedComponents(image.key.format) != hasUnsignedComponents(variable.format))
+        fail(variable.name, formatText("samples {} in the shader, but image '{}' is {}",
+                                       toString(variable.format), image.name, toString(image.key.format)));
+    if (!image.written && image.role != RecordedImage::Role::Previous)
+        fail(variable.name,
+             formatText("reads image '{}', which no pass of this frame has written", image.name));
+    if (image.stored) fail(variable.name, formatText("'{}' is a storage image in another pass", image.name));
+    image.sampled = image.role == RecordedImage::Role::Foreign;
 }
 
 void DispatchRecorder::bindBuffer(Bound& bound, const Buffer* buffer) const {
@@ -145,27 +164,27 @@ void DispatchRecorder::bindBuffer(Bound& bound, const Buffer* buffer) const {
     if (variable.kind == BindingKind::AccelerationStructure)
         fail(variable.name, "is an acceleration structure in the shader, but a buffer is bound");
     if (!buffer || !*buffer) fail(variable.name, "the buffer is empty");
-    bound.resource.buffer = buffer->impl()->storage;
+    bound.resource.buffer = buffer->resource();
     bound.name = bound.resource.buffer->name;
     const std::optional<Format> format = buffer->texelFormat();
     const BindingKind kind = format ? BindingKind::StorageTexelBuffer : BindingKind::StorageBuffer;
     if (kind != variable.kind) {
-        fail(variable.name, fmt::format("is a {} in the shader, but '{}' is a {}", kindName(variable.kind),
-                                        bound.name, kindName(kind)));
+        fail(variable.name, formatText("is a {} in the shader, but '{}' is a {}", kindName(variable.kind),
+                                       bound.name, kindName(kind)));
     }
     if (format && *format != variable.format) {
-        fail(variable.name, fmt::format("is {} in the shader, but texel buffer '{}' is {}",
-                                        toString(variable.format), bound.name, toString(*format)));
+        fail(variable.name, formatText("is {} in the shader, but texel buffer '{}' is {}",
+                                       toString(variable.format), bound.name, toString(*format)));
     }
 }
 
 void DispatchRecorder::bindStructures(Bound& bound, const AccelerationStructures* structures) const {
     const ShaderBinding& variable = *bound.variable;
     if (variable.kind != BindingKind::AccelerationStructure) {
-        fail(variable.name, fmt::format("is a {} in the shader, but an acceleration structure is bound",
-                                        kindName(variable.kind)));
+        fail(variable.name, formatText("is a {} in the shader, but an acceleration structure is bound",
+                                       kindName(variable.kind)));
     }
-    bound.resource.structures = structures->storage();
+    bound.resource.structures = structures->resource();
     bound.resource.buffer = bound.resource.structures->topBuffer;
     bound.name = bound.resource.buffer->name;
 }
@@ -175,7 +194,7 @@ void DispatchRecorder::checkComplete() const {
         if (variable.kind == BindingKind::UniformBuffer) continue;
         const bool there =
             std::ranges::any_of(bound_, [&](const Bound& b) { return b.variable == &variable; });
-        if (!there) fail(variable.name, fmt::format("nothing is bound to this {}", kindName(variable.kind)));
+        if (!there) fail(variable.name, formatText("nothing is bound to this {}", kindName(variable.kind)));
     }
 }
 
@@ -188,8 +207,8 @@ void DispatchRecorder::checkAliases() const {
             const bool same = a.buffer == b.buffer && (a.buffer || a.image == b.image);
             if (same && (bound_[i].variable->writable || bound_[j].variable->writable)) {
                 fail(bound_[i].variable->name,
-                     fmt::format("'{}' is also bound to '{}', and one of the two can write it",
-                                 bound_[i].name, bound_[j].variable->name));
+                     formatText("'{}' is also bound to '{}', and one of the two can write it", bound_[i].name,
+                                bound_[j].variable->name));
             }
         }
     }
@@ -200,12 +219,12 @@ void DispatchRecorder::checkParams() {
     const auto block = std::ranges::find(bindings, BindingKind::UniformBuffer, &ShaderBinding::kind);
     const size_t given = dispatch_.params.size();
     if (block == bindings.end()) {
-        if (given != 0) fail(fmt::format("params has {} bytes, but the shader has no uniform block", given));
+        if (given != 0) fail(formatText("params has {} bytes, but the shader has no uniform block", given));
         return;
     }
     if (given != block->blockSize) {
         fail(block->name,
-             fmt::format("the uniform block has {} bytes, but params has {}", block->blockSize, given));
+             formatText("the uniform block has {} bytes, but params has {}", block->blockSize, given));
     }
     result_.paramsBinding = block->binding;
     result_.paramsSize = given;
@@ -216,8 +235,8 @@ void DispatchRecorder::readConstants() {
         const auto& constants = shader_->reflection.constants;
         const auto constant = std::ranges::find(constants, value.name, &ShaderConstant::name);
         if (constant == constants.end()) {
-            fail(fmt::format("constant '{}': the shader declares no such specialisation constant",
-                             value.name));
+            fail(
+                formatText("constant '{}': the shader declares no such specialisation constant", value.name));
         }
         result_.constants.emplace_back(constant->id, value.value);
     }
@@ -225,14 +244,14 @@ void DispatchRecorder::readConstants() {
     const auto again =
         std::ranges::adjacent_find(result_.constants, {}, &std::pair<uint32_t, uint32_t>::first);
     if (again != result_.constants.end()) {
-        fail(fmt::format("the specialisation constant of id {} is set twice", again->first));
+        fail(formatText("the specialisation constant of id {} is set twice", again->first));
     }
 }
 
 void DispatchRecorder::computeGroups() {
     if (dispatch_.extent.width == 0 || dispatch_.extent.height == 0) {
-        fail(fmt::format("the extent is empty: {} x {} threads", dispatch_.extent.width,
-                         dispatch_.extent.height));
+        fail(formatText("the extent is empty: {} x {} threads", dispatch_.extent.width,
+                        dispatch_.extent.height));
     }
     const std::array<uint32_t, 3> threads{dispatch_.extent.width, dispatch_.extent.height, 1};
     std::array<uint32_t, 3> size = shader_->reflection.workgroupSize;

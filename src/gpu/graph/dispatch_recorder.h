@@ -23,6 +23,7 @@ class DispatchRecorder {
     [[noreturn]] void fail(std::string_view variable, const std::string& fault) const;
     Bound bind(const Binding& binding) const;
     void bindImage(Bound& bound, ImageHandle handle) const;
+    void bindSampled(const Bound& bound, RecordedImage& image) const;
     void bindBuffer(Bound& bound, const Buffer* buffer) const;
     void bindStructures(Bound& bound, const AccelerationStructures* structures) const;
     void checkComplete() const;

@@ -2,16 +2,14 @@
 // frame_executor.cpp.
 #include "gpu/graph/frame_graph.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/graph/dispatch_recorder.h"
 #include "gpu/graph/frame_graph_impl.h"
-#include "gpu/vulkan/execute/frame_executor.h"
-#include "gpu/vulkan/memory/memory.h"
 
 namespace limpid::gpu {
 namespace {
@@ -39,6 +37,13 @@ bool sameCode(const Shader& shader, const std::vector<ShaderCode>& codes) {
 constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, ShaderStage::Miss,
                                                ShaderStage::ClosestHit, ShaderStage::AnyHit};
 
+/// FNV-1a, word by word.
+uint64_t hashOf(std::span<const uint32_t> words, uint64_t before) {
+    uint64_t hash = before == 0 ? 0xCBF29CE484222325u : before;
+    for (const uint32_t word : words) hash = (hash ^ word) * 0x100000001B3u;
+    return hash;
+}
+
 /// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
 Shader makeShader(const std::vector<ShaderCode>& codes) {
     Shader shader;
@@ -48,7 +53,7 @@ Shader makeShader(const std::vector<ShaderCode>& codes) {
         ShaderReflection reflection = reflect(code);
         const ShaderStage wanted = codes.size() == 1 ? ShaderStage::Compute : rayStages[i];
         if (reflection.stage != wanted)
-            throw Error(fmt::format("shader '{}' is of another stage than its use", code.name));
+            throw Error(formatText("shader '{}' is of another stage than its use", code.name));
         shader.stages.push_back(
             {reflection.stage, {code.words.begin(), code.words.end()}, std::string(code.name)});
         if (i == 0) {
@@ -56,13 +61,17 @@ Shader makeShader(const std::vector<ShaderCode>& codes) {
         } else {
             merge(shader.reflection, reflection, code.name);
         }
+        shader.hash = hashOf(code.words, shader.hash);
     }
     return shader;
 }
 
 }  // namespace
 
-FrameGraph::Impl::Impl() = default;
+FrameGraph::Impl::Impl(GraphOptions chosen) : options(std::move(chosen)) {
+    if (options.framesInFlight < 1 || options.framesInFlight > 8)
+        throw Error(formatText("a frame graph has 1 to 8 frames in flight, not {}", options.framesInFlight));
+}
 FrameGraph::Impl::~Impl() = default;
 
 void FrameGraph::Impl::requireRecording() const {
@@ -92,14 +101,13 @@ void FrameGraph::Impl::commitHistories() {
 
 void FrameGraph::Impl::claimName(const std::string& name) {
     if (name.empty()) throw Error("an image needs a name");
-    if (!names.insert(name).second)
-        throw Error(fmt::format("image '{}' is created twice in one frame", name));
+    if (!names.insert(name).second) throw Error(formatText("image '{}' is created twice in one frame", name));
 }
 
 ImageHandle FrameGraph::Impl::addImage(RecordedImage image) {
     if (image.key.width == 0 || image.key.height == 0) {
-        throw Error(fmt::format("image '{}' is empty: {} x {} pixels", image.name, image.key.width,
-                                image.key.height));
+        throw Error(
+            formatText("image '{}' is empty: {} x {} pixels", image.name, image.key.width, image.key.height));
     }
     const uint32_t index = static_cast<uint32_t>(frame.images.size());
     if (index >= indexMask) throw Error("too many images in one frame");
@@ -144,7 +152,7 @@ std::vector<ShaderCode> FrameGraph::usedShaders() const {
     return codes;
 }
 
-FrameGraph::FrameGraph() : impl_(std::make_unique<Impl>()) {}
+FrameGraph::FrameGraph(GraphOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
 FrameGraph::~FrameGraph() = default;
 
 void FrameGraph::beginFrame() {
@@ -189,6 +197,19 @@ History FrameGraph::history(const std::string& name, Format format, Extent exten
     return result;
 }
 
+ImageHandle FrameGraph::import(const std::string& name, Format format, Extent extent,
+                               const ForeignImage& foreign) {
+    impl_->requireRecording();
+    impl_->claimName(name);
+    if (foreign.image == 0 || foreign.view == 0)
+        throw Error(formatText("image '{}' is imported without a handle", name));
+    return impl_->addImage({.name = name,
+                            .key = {name, 0, format, extent.width, extent.height, Backing::Image},
+                            .role = RecordedImage::Role::Foreign,
+                            .foreign = foreign,
+                            .written = true});
+}
+
 void FrameGraph::resetHistories() {
     impl_->resetRequested = true;
 }
@@ -213,11 +234,11 @@ void FrameGraph::dispatch(const Dispatch& dispatch) {
 void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const std::byte> data) {
     impl_->requireRecording();
     if (!buffer) throw Error("an upload needs a buffer");
-    const std::shared_ptr<const BufferStorage>& storage = buffer.impl()->storage;
+    const std::shared_ptr<const BufferResource>& storage = buffer.resource();
     if (offset % 4 != 0 || data.size() % 4 != 0 || offset > storage->size ||
         data.size() > storage->size - offset) {
-        throw Error(fmt::format("an upload of {} bytes at {} does not fit buffer '{}' of {} bytes",
-                                data.size(), offset, storage->name, storage->size));
+        throw Error(formatText("an upload of {} bytes at {} does not fit buffer '{}' of {} bytes",
+                               data.size(), offset, storage->name, storage->size));
     }
     if (data.empty()) return;
     std::vector<std::byte>& all = impl_->frame.uploadData;
@@ -231,14 +252,14 @@ void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
     const uint32_t index = impl_->indexOf(handle);
     RecordedImage& image = impl_->frame.images[index];
     if (image.role != RecordedImage::Role::Transient || image.written)
-        throw Error(fmt::format("image '{}' cannot be uploaded: it is a history, or written", image.name));
+        throw Error(formatText("image '{}' cannot be uploaded: it is a history, or written", image.name));
     if (pixels.size() != image.bytes()) {
-        throw Error(fmt::format("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
-                                pixels.size()));
+        throw Error(formatText("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
+                               pixels.size()));
     }
     image.written = true;
     std::vector<std::byte>& all = impl_->frame.uploadData;
-    all.resize(alignUp(all.size(), 16));  // copies to images start at whole texels
+    all.resize((all.size() + 15) / 16 * 16);  // copies to images start at whole texels
     impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
     all.insert(all.end(), pixels.begin(), pixels.end());
 }
@@ -246,12 +267,11 @@ void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
 void FrameGraph::place(const AccelerationStructures& structures, uint32_t placement,
                        const TreePlacement& where) {
     impl_->requireRecording();
-    const auto& storage = structures.storage();
-    const auto record = storage->instanceRecord(placement, where);
-    const auto bytes = std::as_bytes(std::span(&record, 1));
+    const StructuresResource& storage = *structures.resource();
+    const StructuresResource::InstanceRecord bytes = storage.instanceRecord(placement, where);
     std::vector<std::byte>& all = impl_->frame.uploadData;
-    impl_->frame.uploads.push_back({.buffer = storage->instances,
-                                    .offset = uint64_t{placement} * sizeof(record),
+    impl_->frame.uploads.push_back({.buffer = storage.instances,
+                                    .offset = uint64_t{placement} * bytes.size(),
                                     .at = all.size(),
                                     .size = bytes.size()});
     all.insert(all.end(), bytes.begin(), bytes.end());
@@ -259,7 +279,7 @@ void FrameGraph::place(const AccelerationStructures& structures, uint32_t placem
 
 void FrameGraph::rebuild(std::string_view pass, const AccelerationStructures& structures) {
     impl_->requireRecording();
-    const std::shared_ptr<const AccelerationStorage>& storage = structures.storage();
+    const std::shared_ptr<const StructuresResource>& storage = structures.resource();
     RecordedPass recorded;
     recorded.name = pass;
     const std::array<Access, 2> accesses{
@@ -283,10 +303,10 @@ void FrameGraph::host(HostPass pass) {
         const uint32_t index = impl_->indexOf(handle);
         const RecordedImage& image = impl_->frame.images[index];
         if (image.key.backing != Backing::Buffer)
-            throw Error(fmt::format("pass '{}': the host cannot see image '{}', which is not in a buffer",
-                                    pass.pass, image.name));
+            throw Error(formatText("pass '{}': the host cannot see image '{}', which is not in a buffer",
+                                   pass.pass, image.name));
         if (!writes && !image.written && image.role != RecordedImage::Role::Previous)
-            throw Error(fmt::format("pass '{}': nothing has written image '{}'", pass.pass, image.name));
+            throw Error(formatText("pass '{}': nothing has written image '{}'", pass.pass, image.name));
         accesses.push_back({.image = index, .name = image.name, .reads = !writes, .writes = writes});
         dispatch.hostImages.push_back(index);
         recorded.imageBytes += image.bytes();
@@ -297,6 +317,13 @@ void FrameGraph::host(HostPass pass) {
     dispatch.host = std::move(pass.run);
     impl_->frame.passes.push_back(std::move(recorded));
     impl_->frame.dispatches.push_back(std::move(dispatch));
+}
+
+uint64_t FrameGraph::imageBytes() const {
+    uint64_t bytes = 0;
+    for (const RecordedImage& image : impl_->frame.images)
+        if (image.role != RecordedImage::Role::Foreign) bytes += image.bytes();
+    return bytes;
 }
 
 const std::vector<RecordedPass>& FrameGraph::passes() const {

@@ -28,9 +28,10 @@
 #include <variant>
 #include <vector>
 
+#include "gpu/graph/resources.h"
 #include "gpu/graph/shader.h"
-#include "gpu/vulkan/device.h"
-#include "gpu/vulkan/execute/acceleration_structures.h"
+
+struct VkCommandBuffer_T;
 
 namespace limpid::gpu {
 
@@ -52,7 +53,22 @@ struct ImageHandle {
 /// 0 first, in a storage buffer; on some GPUs filters read buffers twice as fast, on CPUs images are faster.
 enum class Backing { Image, Buffer };
 
-struct Image;  ///< gpu/vulkan/memory/image.h, for this folder only
+struct Image;  ///< gpu/vulkan/memory/image.h, for gpu/ only
+
+/// An image of somebody else's, as Vulkan describes it (the values are Vulkan's own). It has one layer and
+/// one level in `view`. What it is bound to decides how it is used: sampled, it stays in its layout, which
+/// must be one that shaders may read in; as a storage image it is in GENERAL while the frame runs.
+struct ForeignImage {
+    uint64_t image = 0;         ///< VkImage
+    uint64_t view = 0;          ///< VkImageView
+    uint32_t aspects = 1;       ///< VkImageAspectFlags of the view; 1: colour
+    uint32_t layoutBefore = 0;  ///< VkImageLayout in which the frame finds it; 0 (UNDEFINED): content is lost
+    uint32_t layoutAfter = 0;   ///< ... and in which it leaves it; of sampled images layoutBefore
+    uint64_t stagesBefore = 0;  ///< VkPipelineStageFlags2 and VkAccessFlags2 that the frame waits for
+    uint64_t accessBefore = 0;
+    uint64_t stagesAfter = 0;  ///< ... and that wait for the frame
+    uint64_t accessAfter = 0;
+};
 
 /// An image pair that lives from frame to frame.
 struct History {
@@ -128,9 +144,18 @@ struct PassTime {
     double milliseconds = 0.0;
 };
 
+struct GraphOptions {
+    /// Of frames that are under way on the device at once. execute() waits for the frame that so many frames
+    /// ago was executed; record() relies on the caller for that. 1 to 8.
+    uint32_t framesInFlight = 2;
+    /// Before the names of images and passes, for debuggers: "a/" tells this graph's from others'.
+    std::string prefix;
+    bool timestamps = true;  ///< passTimes() tells something
+};
+
 class FrameGraph {
   public:
-    FrameGraph();
+    explicit FrameGraph(GraphOptions options = {});
     ~FrameGraph();
     FrameGraph(const FrameGraph&) = delete;
     FrameGraph& operator=(const FrameGraph&) = delete;
@@ -146,6 +171,11 @@ class FrameGraph {
     /// `previous` can only be read; while the history is invalid it is zero. The history is valid in the next
     /// frame if this frame writes `current` and is executed.
     History history(const std::string& name, Format format, Extent extent, Backing backing = Backing::Image);
+    /// An image of the caller's. It counts as written. `format`: bound as a storage image, what the shader
+    /// declares; sampled, RGBA32Float for components that are read as floats and RGBA32Uint for unsigned
+    /// ones.
+    ImageHandle import(const std::string& name, Format format, Extent extent, const ForeignImage& foreign);
+
     /// From the next frame on, every history starts anew (scene cut, changed settings).
     void resetHistories();
 
@@ -196,9 +226,20 @@ class FrameGraph {
     /// The previous images of histories that the pass reads, for --dump too.
     std::vector<ImageHandle> previousReadBy(std::string_view pass) const;
 
-    /// Submits the recorded frame. Returns at once; at most two frames are under way. Once per frame, and
-    /// always on the same device.
+    /// Submits the recorded frame. Returns at once; at most `framesInFlight` frames are under way. Once per
+    /// frame, and always on the same device.
     void execute(Device& device);
+    /// The same, into a command buffer of the caller's, outside of a render pass; he submits it to a queue
+    /// that computes. What the frame waits for, and what may run after it:
+    /// gpu/vulkan/execute/frame_executor.h. He sees to it that the frame recorded `framesInFlight` calls ago
+    /// is done. Throws Error if a pass runs on the host.
+    void record(Device& device, VkCommandBuffer_T* commands);
+    /// Makes the pipelines of what has been recorded and are not there yet, on several threads. Executes
+    /// nothing.
+    void prepare(Device& device);
+    /// Device memory of the images that this frame needs, histories as the pairs that they are, imported ones
+    /// left out.
+    uint64_t imageBytes() const;
     /// As if execute() had run: lets tests follow histories over frames without a device.
     void assumeExecuted();
     /// The pixels of an image of the last executed frame, all components, row 0 first. Waits for the device.

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "gpu/graph/frame_graph.h"
-#include "gpu/vulkan/execute/acceleration_storage.h"
 
 namespace limpid::gpu {
 
@@ -14,6 +13,7 @@ class FrameExecutor;
 /// A compute shader, or the shaders of a ray-tracing pipeline with ray generation first, and what they
 /// declare together; kept as long as a frame or a pipeline uses it.
 struct Shader {
+    uint64_t hash = 0;  ///< of all stages' code
     struct Stage {
         ShaderStage stage{};
         std::vector<uint32_t> words;
@@ -37,12 +37,15 @@ struct ImageKey {
 };
 
 struct RecordedImage {
-    enum class Role { Transient, Previous, Current };
+    enum class Role { Transient, Previous, Current, Foreign };
     std::string name;
     ImageKey key;
     Role role{};
-    bool clear = false;  ///< zeroed before the first pass: of a history that is not valid
+    ForeignImage foreign;  ///< of role Foreign
+    bool clear = false;    ///< zeroed before the first pass: of a history that is not valid
     bool written = false;
+    /// Of role Foreign: some pass samples it, or binds it as a storage image. It cannot be in both layouts.
+    bool sampled = false, stored = false;
 
     Extent extent() const { return {key.width, key.height}; }
     uint64_t bytes() const { return uint64_t{key.width} * key.height * bytesPerTexel(key.format); }
@@ -52,9 +55,9 @@ struct BoundResource {
     uint32_t binding = 0;
     BindingKind kind{};
     uint32_t image = 0;  ///< index of images
-    std::shared_ptr<const BufferStorage>
-        buffer;  ///< of buffers; of acceleration structures where the top level lies
-    std::shared_ptr<const AccelerationStorage> structures;
+    /// Of buffers; of acceleration structures where the top level lies.
+    std::shared_ptr<const BufferResource> buffer;
+    std::shared_ptr<const StructuresResource> structures;
 };
 
 struct RecordedDispatch {
@@ -73,10 +76,10 @@ struct RecordedDispatch {
 
 /// Data that reaches a buffer or an image before the first pass.
 struct RecordedUpload {
-    std::shared_ptr<const BufferStorage> buffer;  ///< none: an image
-    uint64_t offset = 0;                          ///< in the buffer
-    uint32_t image = 0;                           ///< index of images
-    size_t at = 0, size = 0;                      ///< in RecordedFrame::uploadData
+    std::shared_ptr<const BufferResource> buffer;  ///< none: an image
+    uint64_t offset = 0;                           ///< in the buffer
+    uint32_t image = 0;                            ///< index of images
+    size_t at = 0, size = 0;                       ///< in RecordedFrame::uploadData
 };
 
 /// Everything that one frame says.
@@ -100,8 +103,8 @@ struct ResourceUse {
 
 /// One resource of a pass.
 struct Access {
-    const BufferStorage* buffer = nullptr;  ///< of buffers
-    uint32_t image = 0;                     ///< index of images
+    const BufferResource* buffer = nullptr;  ///< of buffers
+    uint32_t image = 0;                      ///< index of images
     std::string name;
     bool reads = false, writes = false;
 };
@@ -116,6 +119,7 @@ struct HistoryState {
 };
 
 struct FrameGraph::Impl {
+    GraphOptions options;
     RecordedFrame frame;
     std::set<std::string, std::less<>> names;  ///< of this frame's images
     std::map<std::string, HistoryState> histories;
@@ -124,11 +128,11 @@ struct FrameGraph::Impl {
     std::map<std::string, std::shared_ptr<const Shader>, std::less<>> shaders;
     const ShaderReplacements* replacements = nullptr;
     std::vector<ResourceUse> imageUses;
-    std::map<const BufferStorage*, ResourceUse> bufferUses;
-    size_t lastBarrier = 0;  ///< the last pass that waits: all before it are done by then
-    std::unique_ptr<FrameExecutor> executor;
+    std::map<const BufferResource*, ResourceUse> bufferUses;
+    size_t lastBarrier = 0;                   ///< the last pass that waits: all before it are done by then
+    std::shared_ptr<FrameExecutor> executor;  ///< none in recording alone; only gpu/vulkan looks inside
 
-    Impl();
+    explicit Impl(GraphOptions options);
     ~Impl();
 
     void requireRecording() const;
@@ -142,6 +146,8 @@ struct FrameGraph::Impl {
     /// Finds what the pass, which comes next, has to wait for; then notes what it touches.
     void noteAccesses(RecordedPass& pass, std::span<const Access> accesses);
     FrameExecutor& executorFor(Device& device);
+    /// For what runs the frame: checks that everything it uses lies on `device`.
+    FrameExecutor& readyToRun(Device& device);
     /// For downloads and times: throws Error unless a frame was executed on `device`.
     FrameExecutor& executed(Device& device) const;
 };

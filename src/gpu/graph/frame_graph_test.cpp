@@ -42,11 +42,11 @@ std::string faultOf(const std::function<void()>& action) {
 
 /// A buffer that recording takes for real.
 Buffer fakeBuffer(const std::string& name, std::optional<Format> format = {}) {
-    auto storage = std::make_shared<BufferStorage>();
-    storage->name = name;
-    storage->size = storage->allocated = 64;
-    storage->format = format;
-    return Buffer(std::make_unique<Buffer::Impl>(Buffer::Impl{std::move(storage)}));
+    auto resource = std::make_shared<BufferResource>();
+    resource->name = name;
+    resource->size = 64;
+    resource->format = format;
+    return Buffer(std::move(resource));
 }
 
 class FrameGraphTest : public testing::Test {

@@ -1,6 +1,5 @@
 #include "gpu/graph/shader.h"
 
-#include <fmt/format.h>
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/graph/spirv_declarations.h"
 
 namespace limpid::gpu {
@@ -66,6 +66,7 @@ class Reflector {
 
     ShaderStage stageOf(SpvExecutionModel model) const;
     ShaderBinding accelerationStructure(const spvc_reflected_resource& resource) const;
+    ShaderBinding sampledImage(const spvc_reflected_resource& resource) const;
 
     const ShaderCode& code_;
     ShaderStage stage_{};
@@ -88,12 +89,12 @@ Reflector::Reflector(const ShaderCode& code) : code_(code) {
 }
 
 void Reflector::fail(const std::string& fault) const {
-    throw Error(fmt::format("shader '{}': {}", code_.name, fault));
+    throw Error(formatText("shader '{}': {}", code_.name, fault));
 }
 
 void Reflector::check(spvc_result result) const {
     if (result == SPVC_SUCCESS) return;
-    fail(fmt::format("SPIRV-Cross cannot read it: {}", spvc_context_get_last_error_string(context_.get())));
+    fail(formatText("SPIRV-Cross cannot read it: {}", spvc_context_get_last_error_string(context_.get())));
 }
 
 Reflector::List Reflector::list(spvc_resource_type type) const {
@@ -105,7 +106,7 @@ Reflector::List Reflector::list(spvc_resource_type type) const {
 
 void Reflector::refuse(spvc_resource_type type, std::string_view what) const {
     const List found = list(type);
-    if (!found.empty()) fail(fmt::format("variable '{}': Limpid has no {}", found[0].name, what));
+    if (!found.empty()) fail(formatText("variable '{}': Limpid has no {}", found[0].name, what));
 }
 
 /// What every kind of resource has: the number, the set, no array.
@@ -114,14 +115,14 @@ ShaderBinding Reflector::common(const spvc_reflected_resource& resource, std::st
     result.name = std::move(name);
     if (result.name.empty()) fail("a variable has no name (was the SPIR-V stripped or optimised?)");
     if (spvc_compiler_get_decoration(compiler_, resource.id, SpvDecorationDescriptorSet) != 0) {
-        fail(fmt::format("variable '{}': only descriptor set 0 is supported", result.name));
+        fail(formatText("variable '{}': only descriptor set 0 is supported", result.name));
     }
     if (!spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationBinding)) {
-        fail(fmt::format("variable '{}' has no layout(binding = ...)", result.name));
+        fail(formatText("variable '{}' has no layout(binding = ...)", result.name));
     }
     result.binding = spvc_compiler_get_decoration(compiler_, resource.id, SpvDecorationBinding);
     if (spvc_type_get_num_array_dimensions(spvc_compiler_get_type_handle(compiler_, resource.type_id)) != 0) {
-        fail(fmt::format("variable '{}': arrays of resources are not supported", result.name));
+        fail(formatText("variable '{}': arrays of resources are not supported", result.name));
     }
     result.readable = !spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationNonReadable);
     result.writable = !spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationNonWritable);
@@ -143,16 +144,36 @@ ShaderBinding Reflector::image(const spvc_reflected_resource& resource) const {
                !spvc_type_get_image_multisampled(type)) {
         result.kind = BindingKind::StorageImage;
     } else {
-        fail(fmt::format("variable '{}': images are two-dimensional or buffers here", result.name));
+        fail(formatText("variable '{}': images are two-dimensional or buffers here", result.name));
     }
     const std::optional<Format> format = toFormat(spvc_type_get_image_storage_format(type));
     if (!format) {
-        fail(fmt::format(
+        fail(formatText(
             "variable '{}' needs one of the formats r32f, r32ui, rg32f, rg32ui, rgba32f, rgba32ui, "
             "rgba16f, rgba8",
             result.name));
     }
     result.format = *format;
+    return result;
+}
+
+/// texture2D and utexture2D. What is read has no declared format, only floats or unsigned integers as
+/// components.
+ShaderBinding Reflector::sampledImage(const spvc_reflected_resource& resource) const {
+    ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
+    result.kind = BindingKind::SampledImage;
+    result.readable = true;
+    result.writable = false;
+    const spvc_type type = spvc_compiler_get_type_handle(compiler_, resource.type_id);
+    if (spvc_type_get_image_dimension(type) != SpvDim2D || spvc_type_get_image_arrayed(type) ||
+        spvc_type_get_image_multisampled(type))
+        fail(formatText("variable '{}': sampled images are two-dimensional here", result.name));
+    const spvc_type component =
+        spvc_compiler_get_type_handle(compiler_, spvc_type_get_image_sampled_type(type));
+    const spvc_basetype base = spvc_type_get_basetype(component);
+    if (base != SPVC_BASETYPE_FP32 && base != SPVC_BASETYPE_UINT32)
+        fail(formatText("variable '{}': sampled images have floats or unsigned integers here", result.name));
+    result.format = base == SPVC_BASETYPE_FP32 ? Format::RGBA32Float : Format::RGBA32Uint;
     return result;
 }
 
@@ -216,7 +237,7 @@ void Reflector::checkNumbers(const ShaderReflection& reflection) const {
         const ShaderBinding& a = reflection.bindings[i - 1];
         const ShaderBinding& b = reflection.bindings[i];
         if (a.binding == b.binding) {
-            fail(fmt::format("variables '{}' and '{}' share binding {}", a.name, b.name, a.binding));
+            fail(formatText("variables '{}' and '{}' share binding {}", a.name, b.name, a.binding));
         }
     }
 }
@@ -232,12 +253,12 @@ void Reflector::readConstants(ShaderReflection& reflection) const {
         const spvc_type type = spvc_compiler_get_type_handle(compiler_, spvc_constant_get_type(handle));
         const bool isBool = spvc_type_get_basetype(type) == SPVC_BASETYPE_BOOLEAN;
         if (!isBool && spvc_type_get_bit_width(type) != 32) {
-            fail(fmt::format("constant '{}' has no 32 bits", name));
+            fail(formatText("constant '{}' has no 32 bits", name));
         }
         const auto sameId = [&](const ShaderConstant& other) { return other.id == constant.constant_id; };
         if (const auto other = std::ranges::find_if(reflection.constants, sameId);
             other != reflection.constants.end()) {
-            fail(fmt::format("constants '{}' and '{}' share id {}", other->name, name, other->id));
+            fail(formatText("constants '{}' and '{}' share id {}", other->name, name, other->id));
         }
         reflection.constants.push_back({name, constant.constant_id});
     }
@@ -260,8 +281,7 @@ void Reflector::readWorkgroupSize(ShaderReflection& reflection) const {
 }
 
 ShaderReflection Reflector::run() {
-    refuse(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, "sampled images");
-    refuse(SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, "sampled images");
+    refuse(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, "images with samplers");
     refuse(SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS, "samplers");
     refuse(SPVC_RESOURCE_TYPE_PUSH_CONSTANT, "push constants");
     refuse(SPVC_RESOURCE_TYPE_ATOMIC_COUNTER, "atomic counters");
@@ -270,6 +290,8 @@ ShaderReflection Reflector::run() {
     for (const auto& r : list(SPVC_RESOURCE_TYPE_ACCELERATION_STRUCTURE))
         reflection.bindings.push_back(accelerationStructure(r));
     for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_IMAGE)) reflection.bindings.push_back(image(r));
+    for (const auto& r : list(SPVC_RESOURCE_TYPE_SEPARATE_IMAGE))
+        reflection.bindings.push_back(sampledImage(r));
     for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_BUFFER))
         reflection.bindings.push_back(storageBuffer(r));
     const List uniforms = list(SPVC_RESOURCE_TYPE_UNIFORM_BUFFER);
@@ -310,7 +332,7 @@ bool sameInterface(const ShaderReflection& a, const ShaderReflection& b) {
 void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other) {
     const auto fail = [&](const std::string& name) {
         throw Error(
-            fmt::format("shader '{}' declares '{}' otherwise than the shader that calls it", other, name));
+            formatText("shader '{}' declares '{}' otherwise than the shader that calls it", other, name));
     };
     for (const ShaderBinding& b : from.bindings) {
         const auto same = [&](const ShaderBinding& a) { return a.name == b.name || a.binding == b.binding; };

@@ -22,12 +22,13 @@ enum class ShaderStage { Compute, RayGeneration, Miss, ClosestHit, AnyHit };
 
 enum class BindingKind {
     StorageImage,
+    SampledImage,  ///< read by texelFetch(), of any format: float components, or unsigned ones (Format tells)
     StorageTexelBuffer,
     StorageBuffer,
     UniformBuffer,
     AccelerationStructure
 };
-inline constexpr size_t bindingKindCount = 5;
+inline constexpr size_t bindingKindCount = 6;
 
 /// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares
 /// it.
@@ -44,7 +45,9 @@ enum class Format {
 
 uint32_t bytesPerTexel(Format format);
 uint32_t componentCount(Format format);
+bool hasUnsignedComponents(Format format);
 std::string_view toString(Format format);
+std::span<const Format> allFormats();
 
 /// One resource that the shader declares, named as in GLSL.
 struct ShaderBinding {
@@ -78,7 +81,7 @@ struct ShaderReflection {
 /// Reads the bindings of a shader with SPIRV-Cross: all that the SPIR-V declares, used or not (glslc
 /// without -O keeps unused ones), in the order of their binding numbers. A buffer block is named by its
 /// instance, or by the block if it has none. Constants that have no GLSL name are left out. Throws Error
-/// naming the shader if it uses what Limpid does not (sampled images, push constants, arrays of resources,
+/// naming the shader if it uses what Limpid does not (samplers, push constants, arrays of resources,
 /// another set than 0, an unlisted format, several uniform blocks, two variables at one binding).
 ShaderReflection reflect(const ShaderCode& code);
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "gpu/vulkan/memory/format.h"
 #include "test_accumulate.comp.h"
 #include "test_array.comp.h"
 #include "test_buffers.comp.h"
@@ -106,7 +105,8 @@ TEST(Reflection, ListsUnusedVariables) {
 }
 
 TEST(Reflection, RefusesWhatLimpidDoesNotUse) {
-    EXPECT_THAT(faultOf(shaders::test_sampled_comp), HasSubstr("'picture': Limpid has no sampled images"));
+    EXPECT_THAT(faultOf(shaders::test_sampled_comp),
+                HasSubstr("'picture': Limpid has no images with samplers"));
     EXPECT_THAT(faultOf(shaders::test_sampled_comp), HasSubstr("gpu/tests/shaders/test_sampled.comp"));
     EXPECT_THAT(faultOf(shaders::test_set1_comp), HasSubstr("'result': only descriptor set 0"));
     EXPECT_THAT(faultOf(shaders::test_array_comp), HasSubstr("'results': arrays of resources"));

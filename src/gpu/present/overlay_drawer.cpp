@@ -22,8 +22,8 @@ UniqueShaderModule makeModule(const Context& context, const ShaderCode& code) {
     info.codeSize = code.words.size_bytes();
     info.pCode = code.words.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateShaderModule(context.device(), &info, nullptr, &module));
-    return {context.device(), module};
+    LIMPID_VK(context.vk().CreateShaderModule(context.device(), &info, nullptr, &module));
+    return {context.vk(), module};
 }
 
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, const UniqueShaderModule& module) {
@@ -92,9 +92,10 @@ UniquePipeline makeOverlayPipeline(const Context& context, VkPipelineLayout layo
     info.pDynamicState = &dynamic;
     info.layout = layout;
     VkPipeline raw = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &raw));
+    LIMPID_VK(
+        context.vk().CreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &raw));
     context.setName(raw, "overlay");
-    return {context.device(), raw};
+    return {context.vk(), raw};
 }
 
 }  // namespace
@@ -115,8 +116,8 @@ void OverlayDrawer::makeLayout() {
     setInfo.bindingCount = 1;
     setInfo.pBindings = &binding;
     VkDescriptorSetLayout rawSet = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateDescriptorSetLayout(context_->device(), &setInfo, nullptr, &rawSet));
-    setLayout_ = UniqueSetLayout(context_->device(), rawSet);
+    LIMPID_VK(context_->vk().CreateDescriptorSetLayout(context_->device(), &setInfo, nullptr, &rawSet));
+    setLayout_ = UniqueSetLayout(context_->vk(), rawSet);
 
     const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                     sizeof(Push)};
@@ -126,8 +127,8 @@ void OverlayDrawer::makeLayout() {
     layoutInfo.pushConstantRangeCount = 1;
     layoutInfo.pPushConstantRanges = &range;
     VkPipelineLayout rawLayout = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreatePipelineLayout(context_->device(), &layoutInfo, nullptr, &rawLayout));
-    layout_ = UniquePipelineLayout(context_->device(), rawLayout);
+    LIMPID_VK(context_->vk().CreatePipelineLayout(context_->device(), &layoutInfo, nullptr, &rawLayout));
+    layout_ = UniquePipelineLayout(context_->vk(), rawLayout);
 }
 
 void OverlayDrawer::makeDescriptors() {
@@ -137,14 +138,14 @@ void OverlayDrawer::makeDescriptors() {
     poolInfo.poolSizeCount = 1;
     poolInfo.pPoolSizes = &size;
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateDescriptorPool(context_->device(), &poolInfo, nullptr, &pool));
-    descriptors_ = UniqueDescriptorPool(context_->device(), pool);
+    LIMPID_VK(context_->vk().CreateDescriptorPool(context_->device(), &poolInfo, nullptr, &pool));
+    descriptors_ = UniqueDescriptorPool(context_->vk(), pool);
     VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     info.descriptorPool = pool;
     info.descriptorSetCount = 1;
     const VkDescriptorSetLayout raw = setLayout_.get();
     info.pSetLayouts = &raw;
-    LIMPID_VK(vkAllocateDescriptorSets(context_->device(), &info, &set_));
+    LIMPID_VK(context_->vk().AllocateDescriptorSets(context_->device(), &info, &set_));
 }
 
 void OverlayDrawer::setTexture(Transfer& transfer, Extent size, std::span<const uint32_t> texels) {
@@ -160,7 +161,7 @@ void OverlayDrawer::setTexture(Transfer& transfer, Extent size, std::span<const 
     write.descriptorCount = 1;
     write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     write.pBufferInfo = &buffer;
-    vkUpdateDescriptorSets(context_->device(), 1, &write, 0, nullptr);
+    context_->vk().UpdateDescriptorSets(context_->device(), 1, &write, 0, nullptr);
 }
 
 void OverlayDrawer::upload(Triangles& triangles, const Overlay& overlay) const {
@@ -189,21 +190,22 @@ void OverlayDrawer::draw(VkCommandBuffer commands, const Triangles& triangles, c
     rendering.layerCount = 1;
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &attachment;
-    vkCmdBeginRendering(commands, &rendering);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0,
-                            nullptr);
+    context_->vk().CmdBeginRendering(commands, &rendering);
+    context_->vk().CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
+    context_->vk().CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1,
+                                         &set_, 0, nullptr);
     const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height),
                               0.0f, 1.0f};
-    vkCmdSetViewport(commands, 0, 1, &viewport);
+    context_->vk().CmdSetViewport(commands, 0, 1, &viewport);
     const Push push{{2.0f / viewport.width, 2.0f / viewport.height},
                     {textureExtent_.width, textureExtent_.height}};
-    vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                       sizeof(push), &push);
+    context_->vk().CmdPushConstants(commands, layout_.get(),
+                                    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                    sizeof(push), &push);
     const VkBuffer buffer = triangles.buffer->buffer.get();
     const VkDeviceSize start = 0;
-    vkCmdBindVertexBuffers(commands, 0, 1, &buffer, &start);
-    vkCmdBindIndexBuffer(commands, buffer, triangles.indicesAt, VK_INDEX_TYPE_UINT16);
+    context_->vk().CmdBindVertexBuffers(commands, 0, 1, &buffer, &start);
+    context_->vk().CmdBindIndexBuffer(commands, buffer, triangles.indicesAt, VK_INDEX_TYPE_UINT16);
     for (const OverlayDraw& draw : overlay.draws) {
         const auto pixel = [](float value, uint32_t most) {
             return static_cast<int32_t>(std::clamp(value, 0.0f, static_cast<float>(most)));
@@ -213,11 +215,11 @@ void OverlayDrawer::draw(VkCommandBuffer commands, const Triangles& triangles, c
         if (right <= left || bottom <= top) continue;
         const VkRect2D scissor{{left, top},
                                {static_cast<uint32_t>(right - left), static_cast<uint32_t>(bottom - top)}};
-        vkCmdSetScissor(commands, 0, 1, &scissor);
-        vkCmdDrawIndexed(commands, draw.indexCount, 1, draw.firstIndex,
-                         static_cast<int32_t>(draw.firstVertex), 0);
+        context_->vk().CmdSetScissor(commands, 0, 1, &scissor);
+        context_->vk().CmdDrawIndexed(commands, draw.indexCount, 1, draw.firstIndex,
+                                      static_cast<int32_t>(draw.firstVertex), 0);
     }
-    vkCmdEndRendering(commands);
+    context_->vk().CmdEndRendering(commands);
 }
 
 }  // namespace limpid::gpu

@@ -29,13 +29,13 @@ struct Slot {
 UniqueSemaphore makeSemaphore(const Context& context) {
     const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     VkSemaphore semaphore = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateSemaphore(context.device(), &info, nullptr, &semaphore));
-    return {context.device(), semaphore};
+    LIMPID_VK(context.vk().CreateSemaphore(context.device(), &info, nullptr, &semaphore));
+    return {context.vk(), semaphore};
 }
 
-void imageBarrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
-                  VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess, VkPipelineStageFlags2 toStage,
-                  VkAccessFlags2 toAccess) {
+void imageBarrier(const Context& context, VkCommandBuffer commands, VkImage image, VkImageLayout from,
+                  VkImageLayout to, VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess,
+                  VkPipelineStageFlags2 toStage, VkAccessFlags2 toAccess) {
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
     barrier.srcStageMask = fromStage;
     barrier.srcAccessMask = fromAccess;
@@ -49,7 +49,7 @@ void imageBarrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, V
     VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     dependency.imageMemoryBarrierCount = 1;
     dependency.pImageMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &dependency);
+    context.vk().CmdPipelineBarrier2(commands, &dependency);
 }
 
 /// A pane and its picture.
@@ -109,8 +109,8 @@ Presenter::Impl::Impl(std::shared_ptr<const Context> from, const std::function<u
         throw Error(context->info().name + " cannot show pictures in windows; 'limpid render' writes files");
     surface = reinterpret_cast<VkSurfaceKHR>(makeSurface(context->instance()));
     VkBool32 supported = VK_FALSE;
-    LIMPID_VK(vkGetPhysicalDeviceSurfaceSupportKHR(context->physicalDevice(), context->queueFamily(), surface,
-                                                   &supported));
+    LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceSupportKHR(
+        context->physicalDevice(), context->queueFamily(), surface, &supported));
     if (!supported)
         throw Error(context->info().name +
                     " cannot show pictures in this window; 'limpid render' writes files");
@@ -127,16 +127,18 @@ Presenter::Impl::Impl(std::shared_ptr<const Context> from, const std::function<u
 Presenter::Impl::~Impl() {
     context->waitIdleNoThrow();
     dropSwapchain();
-    if (surface != VK_NULL_HANDLE) vkDestroySurfaceKHR(context->instance(), surface, nullptr);
+    if (surface != VK_NULL_HANDLE)
+        context->instanceVk().DestroySurfaceKHR(context->instance(), surface, nullptr);
 }
 
 /// Pictures are encoded already: no format that encodes once more.
 VkSurfaceFormatKHR Presenter::Impl::chooseFormat() const {
     uint32_t count = 0;
-    LIMPID_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface, &count, nullptr));
+    LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface,
+                                                                       &count, nullptr));
     std::vector<VkSurfaceFormatKHR> formats(count);
-    LIMPID_VK(
-        vkGetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface, &count, formats.data()));
+    LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface,
+                                                                       &count, formats.data()));
     for (const VkFormat wanted :
          {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32}) {
         for (const VkSurfaceFormatKHR& candidate : formats) {
@@ -158,7 +160,8 @@ void Presenter::Impl::dropSwapchain() {
 bool Presenter::Impl::makeSwapchain(Extent window) {
     context->waitIdle();
     VkSurfaceCapabilitiesKHR can{};
-    LIMPID_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context->physicalDevice(), surface, &can));
+    LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceCapabilitiesKHR(context->physicalDevice(),
+                                                                            surface, &can));
     const bool free = can.currentExtent.width == UINT32_MAX;  // the swapchain decides
     const Extent wanted = free ? window : Extent{can.currentExtent.width, can.currentExtent.height};
     extent = {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
@@ -180,13 +183,13 @@ bool Presenter::Impl::makeSwapchain(Extent window) {
     info.clipped = VK_TRUE;
     info.oldSwapchain = swapchain.get();
     VkSwapchainKHR raw = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateSwapchainKHR(context->device(), &info, nullptr, &raw));
+    LIMPID_VK(context->vk().CreateSwapchainKHR(context->device(), &info, nullptr, &raw));
     dropSwapchain();
-    swapchain = UniqueSwapchain(context->device(), raw);
+    swapchain = UniqueSwapchain(context->vk(), raw);
     uint32_t count = 0;
-    LIMPID_VK(vkGetSwapchainImagesKHR(context->device(), raw, &count, nullptr));
+    LIMPID_VK(context->vk().GetSwapchainImagesKHR(context->device(), raw, &count, nullptr));
     images.resize(count);
-    LIMPID_VK(vkGetSwapchainImagesKHR(context->device(), raw, &count, images.data()));
+    LIMPID_VK(context->vk().GetSwapchainImagesKHR(context->device(), raw, &count, images.data()));
     for (const VkImage image : images) {
         VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
         view.image = image;
@@ -194,8 +197,8 @@ bool Presenter::Impl::makeSwapchain(Extent window) {
         view.format = format.format;
         view.subresourceRange = wholeImage();
         VkImageView made = VK_NULL_HANDLE;
-        LIMPID_VK(vkCreateImageView(context->device(), &view, nullptr, &made));
-        views.emplace_back(context->device(), made);
+        LIMPID_VK(context->vk().CreateImageView(context->device(), &view, nullptr, &made));
+        views.emplace_back(context->vk(), made);
         rendered.push_back(makeSemaphore(*context));
     }
     return true;
@@ -209,37 +212,37 @@ void Presenter::Impl::blit(VkCommandBuffer commands, uint32_t index, const Devic
     std::copy(source.begin(), source.end(), region.srcOffsets);
     std::copy(target.begin(), target.end(), region.dstOffsets);
     const bool pixels = from == to || pane.enlarge;
-    vkCmdBlitImage(commands, pane.picture->image.get(), VK_IMAGE_LAYOUT_GENERAL, images[index],
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
-                   pixels ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+    context->vk().CmdBlitImage(commands, pane.picture->image.get(), VK_IMAGE_LAYOUT_GENERAL, images[index],
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                               pixels ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
 }
 
 void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
                              const Overlay& overlay) const {
     const VkCommandBuffer commands = slot.commands;
-    LIMPID_VK(vkResetCommandPool(context->device(), slot.pool.get(), 0));
-    beginCommands(commands);
+    LIMPID_VK(context->vk().ResetCommandPool(context->device(), slot.pool.get(), 0));
+    beginCommands(*context, commands);
     // The frame that made the picture was submitted to the same queue.
-    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+    memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
-    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 VK_PIPELINE_STAGE_2_BLIT_BIT, 0, VK_PIPELINE_STAGE_2_BLIT_BIT,
-                 VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT, 0,
+                 VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     for (const DevicePane& pane : panes) {
         blit(commands, index, pane);
         // The next one may lie over it.
-        memoryBarrier(commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+        memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     }
-    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT,
                  VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
     overlays->draw(commands, slot.triangles, overlay, views[index].get(), extent);
-    imageBarrier(commands, images[index], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                  VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                  VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, 0);
-    LIMPID_VK(vkEndCommandBuffer(commands));
+    LIMPID_VK(context->vk().EndCommandBuffer(commands));
 }
 
 void Presenter::Impl::submit(Slot& slot, uint32_t index) const {
@@ -256,7 +259,7 @@ void Presenter::Impl::submit(Slot& slot, uint32_t index) const {
     info.pWaitSemaphoreInfos = &wait;
     info.pSignalSemaphoreInfos = &signal;
     info.pCommandBufferInfos = &commands;
-    LIMPID_VK(vkQueueSubmit2(context->queue(), 1, &info, slot.fence.get()));
+    LIMPID_VK(context->vk().QueueSubmit2(context->queue(), 1, &info, slot.fence.get()));
     slot.submitted = true;
 }
 
@@ -268,8 +271,8 @@ bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, 
     Slot& slot = slots[presented % slots.size()];
     if (std::exchange(slot.submitted, false)) waitAndReset(*context, slot.fence.get());
     uint32_t index = 0;
-    const VkResult acquired = vkAcquireNextImageKHR(context->device(), swapchain.get(), UINT64_MAX,
-                                                    slot.acquired.get(), VK_NULL_HANDLE, &index);
+    const VkResult acquired = context->vk().AcquireNextImageKHR(
+        context->device(), swapchain.get(), UINT64_MAX, slot.acquired.get(), VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
         madeFor = {};  // made anew next time
         return false;
@@ -287,7 +290,7 @@ bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, 
     info.swapchainCount = 1;
     info.pSwapchains = &chain;
     info.pImageIndices = &index;
-    const VkResult result = vkQueuePresentKHR(context->queue(), &info);
+    const VkResult result = context->vk().QueuePresentKHR(context->queue(), &info);
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
         madeFor = {};
     else
@@ -301,7 +304,7 @@ Presenter::Presenter(Device& device, const std::function<uint64_t(void*)>& makeS
 Presenter::~Presenter() = default;
 
 void Presenter::setTexture(Extent extent, std::span<const uint32_t> texels) {
-    impl_->overlays->setTexture(device_.impl().transfer, extent, texels);
+    impl_->overlays->setTexture(device_.impl().transfer(), extent, texels);
 }
 
 bool Presenter::present(std::span<const Pane> panes, Extent window, const Overlay& overlay) {

@@ -150,7 +150,7 @@ TEST_F(GpuTest, StagedCopiesWorkWhereMemoryCouldBeMapped) {
     auto storage =
         makeBuffer(device().impl().context, "staged", BufferUse::Texel, data.size() * 4, Format::R32Uint);
     storage->memory.mapped = nullptr;
-    Transfer& transfer = device().impl().transfer;
+    Transfer& transfer = device().impl().transfer();
     transfer.upload(*storage, bytesOf(data));
     std::vector<std::byte> bytes(data.size() * 4);
     transfer.download(*storage, bytes);

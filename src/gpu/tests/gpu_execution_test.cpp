@@ -111,8 +111,8 @@ TEST_F(GpuTest, AFrameThatIsNotExecutedLeavesHistoriesAlone) {
 }
 
 TEST_F(GpuTest, UnusedImagesAreFreed) {
-    FrameGraph::Impl graph;
-    FrameExecutor executor(device().impl().context);
+    FrameGraph::Impl graph({});
+    FrameExecutor executor(device().impl().context, device().impl().pipelines, {});
     for (uint32_t size = 1; size <= 40; ++size) {
         RecordedFrame frame;
         frame.images.push_back({.name = "a", .key = {"a", 0, rgba, size, size}});
@@ -289,7 +289,7 @@ TEST_F(GpuTest, ValidationSeesAMissingBarrier) {
     expectNoMessages_ = false;
     // The same frame twice: as recorded, and with the hazards that make its barriers taken away.
     for (const bool barriers : {true, false}) {
-        FrameGraph::Impl graph;
+        FrameGraph::Impl graph({});
         graph.frame.number = 1;
         const ImageHandle a = graph.addImage({.name = "a", .key = {"a", 0, rgba, 64, 64}});
         const ImageHandle b = graph.addImage({.name = "b", .key = {"b", 0, rgba, 64, 64}});
@@ -307,7 +307,7 @@ TEST_F(GpuTest, ValidationSeesAMissingBarrier) {
             .record();
         ASSERT_EQ(graph.frame.passes[1].hazards.size(), 1u);
         if (!barriers) graph.frame.passes[1].hazards.clear();
-        FrameExecutor executor(device().impl().context);
+        FrameExecutor executor(device().impl().context, device().impl().pipelines, {});
         executor.execute(graph.frame);
         if (barriers) {
             EXPECT_EQ(device().validationMessages(), 0u);

@@ -57,7 +57,8 @@ class GpuTest : public testing::Test {
                 << "NOT TESTED: this machine has no Vulkan device. Install mesa-vulkan-drivers (lavapipe).";
         }
         try {
-            device_ = std::make_unique<Device>(DeviceOptions{.select = wantedDevice(), .validation = true});
+            device_ = std::make_unique<Device>(
+                DeviceOptions{.select = wantedDevice(), .validation = true, .messages = log::write});
             validated_ = true;
         } catch (const Error& error) {
             if (std::string(error.what()).find("vulkan-validationlayers") == std::string::npos) throw;

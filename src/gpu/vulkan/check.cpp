@@ -1,9 +1,7 @@
 #include "gpu/vulkan/check.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
-#include "base/log.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/device.h"
 
 namespace limpid::gpu {
@@ -60,7 +58,7 @@ std::string resultName(VkResult result) {
         case VK_ERROR_UNKNOWN:
             return "VK_ERROR_UNKNOWN";
         default:
-            return fmt::format("VkResult {}", static_cast<int>(result));
+            return formatText("VkResult {}", static_cast<int>(result));
     }
 }
 
@@ -80,19 +78,12 @@ std::string_view resultMeaning(VkResult result) {
 void checkResult(VkResult result, const char* expression, const char* file, int line) {
     if (result == VK_SUCCESS) return;
     const std::string_view meaning = resultMeaning(result);
-    const std::string text = fmt::format("{}{}{} returned {} ({}:{})", meaning, meaning.empty() ? "" : ": ",
-                                         expression, resultName(result), sourcePath(file), line);
+    const std::string text = formatText("{}{}{} returned {} ({}:{})", meaning, meaning.empty() ? "" : ": ",
+                                        expression, resultName(result), sourcePath(file), line);
     if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text);
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+        throw OutOfMemory(text);
     throw Error(text);
-}
-
-void logResult(VkResult result, const char* expression) noexcept {
-    if (result == VK_SUCCESS) return;
-    try {
-        log::error("{} returned {}", expression, resultName(result));
-    } catch (...) {
-        // A destructor runs: there is nobody left to tell.
-    }
 }
 
 }  // namespace limpid::gpu

@@ -19,9 +19,6 @@ std::string_view resultMeaning(VkResult result);
 /// is VK_SUCCESS.
 void checkResult(VkResult result, const char* expression, const char* file, int line);
 
-/// For destructors, which must not throw: logs instead.
-void logResult(VkResult result, const char* expression) noexcept;
-
 }  // namespace limpid::gpu
 
 /// A macro only because the message names the expression, the file and the line.

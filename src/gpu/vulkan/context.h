@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 
+#include "gpu/vulkan/adopted_device.h"
 #include "gpu/vulkan/physical_device.h"
 #include "gpu/vulkan/unique_handle.h"
 
@@ -13,13 +15,22 @@ namespace limpid::gpu {
 class Context {
   public:
     explicit Context(const DeviceOptions& options);
+    explicit Context(const AdoptedDevice& adopted);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
 
-    VkDevice device() const { return device_.get(); }
-    VkInstance instance() const { return instance_->handle(); }
+    VkDevice device() const { return vk_.device; }
+    const DeviceFunctions& vk() const { return vk_; }
+    const InstanceFunctions& instanceVk() const { return instanceVk_; }
+    /// Null on an adopted device.
+    VkInstance instance() const { return instance_ ? instance_->handle() : VK_NULL_HANDLE; }
     VkPhysicalDevice physicalDevice() const { return physical_.handle; }
     /// It may show pictures in windows.
     bool presents() const { return presents_; }
     VkQueue queue() const { return queue_; }
+    /// It has a queue of its own: not on an adopted device.
+    bool submits() const { return queue_ != VK_NULL_HANDLE; }
     uint32_t queueFamily() const { return physical_.queueFamily; }
     uint32_t timestampValidBits() const { return physical_.timestampValidBits; }
     const DeviceInfo& info() const { return physical_.info; }
@@ -31,9 +42,10 @@ class Context {
     const VkPhysicalDeviceMemoryProperties& memoryProperties() const { return memory_; }
     /// Bytes of device memory that are allocated now.
     const std::shared_ptr<std::atomic<uint64_t>>& allocated() const { return allocated_; }
-    uint64_t validationMessages() const { return instance_->validationMessages(); }
+    uint64_t validationMessages() const { return instance_ ? instance_->validationMessages() : 0; }
+    const MemoryHooks& memoryHooks() const { return hooks_; }
 
-    bool hasDebugUtils() const { return instance_->hasDebugUtils(); }
+    bool hasDebugUtils() const { return debugUtils_; }
     /// Names an object for validation messages and debuggers; nothing where debug utils are absent.
     template <typename Handle>
     void setName(Handle handle, const std::string& name) const {
@@ -42,25 +54,30 @@ class Context {
 
     void submit(VkCommandBuffer commands, VkFence fence) const;
     void waitIdle() const;
-    /// For destructors: failures are logged.
+    /// For destructors: failures become messages.
     void waitIdleNoThrow() const noexcept;
 
   private:
     void createDevice();
     void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
 
-    std::unique_ptr<Instance> instance_;
+    std::unique_ptr<Instance> instance_;  ///< none on an adopted device
+    InstanceFunctions instanceVk_;
     PhysicalDevice physical_;
     VkPhysicalDeviceMemoryProperties memory_{};
-    UniqueDevice device_;
+    DeviceFunctions vk_;
+    MemoryHooks hooks_;
+    MessageCallback messages_;
+    bool debugUtils_ = false;
     VkQueue queue_ = VK_NULL_HANDLE;
+    mutable std::mutex queueMutex_;  ///< a queue takes one call at a time
     bool presents_ = false;
     std::shared_ptr<std::atomic<uint64_t>> allocated_ = std::make_shared<std::atomic<uint64_t>>(0);
 };
 
 UniqueCommandPool makeCommandPool(const Context& context, const std::string& name);
 VkCommandBuffer allocateCommandBuffer(const Context& context, VkCommandPool pool, const std::string& name);
-void beginCommands(VkCommandBuffer commands);
+void beginCommands(const Context& context, VkCommandBuffer commands);
 UniqueFence makeFence(const Context& context, const std::string& name);
 void waitAndReset(const Context& context, VkFence fence);
 
@@ -68,7 +85,7 @@ void waitAndReset(const Context& context, VkFence fence);
 /// structures.
 void passBarrier(const Context& context, VkCommandBuffer commands);
 /// A global memory barrier; images stay in GENERAL layout, so nothing finer is ever needed.
-void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 fromStage, VkAccessFlags2 from,
-                   VkPipelineStageFlags2 toStage, VkAccessFlags2 to);
+void memoryBarrier(const Context& context, VkCommandBuffer commands, VkPipelineStageFlags2 fromStage,
+                   VkAccessFlags2 from, VkPipelineStageFlags2 toStage, VkAccessFlags2 to);
 
 }  // namespace limpid::gpu

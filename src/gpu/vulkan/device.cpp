@@ -1,15 +1,14 @@
 #include "gpu/vulkan/device.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/device_impl.h"
 
 namespace limpid::gpu {
 namespace {
 
 Buffer wrap(std::shared_ptr<BufferStorage> storage) {
-    return Buffer(std::make_unique<Buffer::Impl>(Buffer::Impl{std::move(storage)}));
+    return Buffer(std::move(storage));
 }
 
 }  // namespace
@@ -22,10 +21,15 @@ std::vector<DeviceInfo> enumerateDevices() {
     return infos;
 }
 
-Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Device::Device(const DeviceOptions& options)
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(options))) {}
+
+Device::Device(const AdoptedDevice& adopted)
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted))) {}
 
 Device::~Device() {
-    impl_->context->waitIdleNoThrow();
+    // The caller of an adopted device sees to that himself.
+    if (impl_->context->submits()) impl_->context->waitIdleNoThrow();
 }
 
 const DeviceInfo& Device::info() const {
@@ -51,44 +55,60 @@ uint64_t Device::maxBufferBytes() const {
 Buffer Device::createTexelBuffer(const std::string& name, Format format, std::span<const std::byte> data) {
     const uint32_t texel = bytesPerTexel(format);
     if (data.size() % texel != 0) {
-        throw Error(fmt::format("texel buffer '{}': {} bytes are no whole number of {} texels", name,
-                                data.size(), toString(format)));
+        throw Error(formatText("texel buffer '{}': {} bytes are no whole number of {} texels", name,
+                               data.size(), toString(format)));
     }
     auto storage =
         makeBuffer(impl_->context, name, BufferUse::Texel, data.empty() ? texel : data.size(), format);
     if (data.empty()) {
-        impl_->transfer.zero(*storage);
+        impl_->transfer().zero(*storage);
     } else {
-        impl_->transfer.upload(*storage, data);
+        impl_->transfer().upload(*storage, data);
     }
     return wrap(std::move(storage));
 }
 
 Buffer Device::createStorageBuffer(const std::string& name, uint64_t bytes) {
     auto storage = makeBuffer(impl_->context, name, BufferUse::Storage, bytes);
-    impl_->transfer.zero(*storage);
+    impl_->transfer().zero(*storage);
     return wrap(std::move(storage));
 }
 
 Buffer Device::createStorageBuffer(const std::string& name, std::span<const std::byte> data) {
     auto storage = makeBuffer(impl_->context, name, BufferUse::Storage, data.size());
-    impl_->transfer.upload(*storage, data);
+    impl_->transfer().upload(*storage, data);
     return wrap(std::move(storage));
 }
 
 std::vector<std::byte> Device::download(const Buffer& buffer) {
     if (!buffer) throw Error("an empty Buffer cannot be downloaded");
-    const BufferStorage& storage = *buffer.impl()->storage;
+    const BufferStorage& storage = storageOf(*buffer.resource());
     if (storage.context != impl_->context)
         throw Error("buffer '" + storage.name + "' belongs to another device");
     waitIdle();
     std::vector<std::byte> data(storage.size);
-    impl_->transfer.download(storage, data);
+    impl_->transfer().download(storage, data);
     return data;
 }
 
 void Device::waitIdle() {
     impl_->context->waitIdle();
+}
+
+std::vector<std::byte> Device::pipelineCacheData() const {
+    return impl_->pipelines->data();
+}
+
+void Device::loadPipelineCache(std::span<const std::byte> data) {
+    impl_->pipelines->load(data);
+}
+
+size_t Device::pipelineCount() const {
+    return impl_->pipelines->size();
+}
+
+Backing filterBacking(const Device& device) {
+    return device.isCpu() ? Backing::Image : Backing::Buffer;
 }
 
 }  // namespace limpid::gpu

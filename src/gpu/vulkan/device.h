@@ -5,20 +5,32 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "gpu/graph/shader.h"
+#include "base/message.h"
+#include "gpu/graph/frame_graph.h"
 
 namespace limpid::gpu {
 
 /// The device does nothing any more: its driver has crashed, or has been reset. All that was made on it is
 /// gone; a new Device may work.
 class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
+
+/// Memory of the device, or of the host for it, has run out.
+class OutOfMemory : public Error {
+  public:
+    using Error::Error;
+};
+
+/// No device fits, or the device lacks what is needed.
+class Unsupported : public Error {
   public:
     using Error::Error;
 };
@@ -55,36 +67,23 @@ struct DeviceOptions {
     /// device shall show pictures in windows (gpu/present/presenter.h). Those that are missing are left out,
     /// and then it cannot.
     std::vector<std::string> surfaceExtensions;
+    bool readsEnvironment = true;  ///< LIMPID_VALIDATION counts
+    /// Gets the validation layer's messages. None: they are only counted.
+    MessageCallback messages;
 };
+
+struct AdoptedDevice;  ///< gpu/vulkan/adopted_device.h
 
 /// All Vulkan devices of this machine; empty if there is no Vulkan loader or driver.
 std::vector<DeviceInfo> enumerateDevices();
 
-class Device;
-
-/// Device memory for storage buffers, texel buffers and uniforms. Move-only; frees itself.
-class Buffer {
-  public:
-    Buffer();
-    Buffer(Buffer&&) noexcept;
-    Buffer& operator=(Buffer&&) noexcept;
-    ~Buffer();
-
-    uint64_t size() const;                      ///< bytes, as asked for
-    std::optional<Format> texelFormat() const;  ///< set if it is a texel buffer
-    explicit operator bool() const { return impl_ != nullptr; }
-
-    struct Impl;  ///< gpu/vulkan/memory/buffer.h, for this folder only
-    explicit Buffer(std::unique_ptr<Impl> impl);
-    const Impl* impl() const { return impl_.get(); }
-
-  private:
-    std::unique_ptr<Impl> impl_;
-};
-
 class Device {
   public:
     explicit Device(const DeviceOptions& options = {});
+    /// On a device of the caller's, which outlives this one. Frames are recorded into his command buffers
+    /// (FrameGraph::record()); execute() and what copies to and from the host throw Error. Throws Error
+    /// naming the features that the device lacks.
+    explicit Device(const AdoptedDevice& adopted);
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -110,6 +109,16 @@ class Device {
 
     void waitIdle();
 
+    /// Pipelines belong to the device: all graphs that run on it share them. What the driver has compiled so
+    /// far, to be kept by the caller and given to loadPipelineCache() in the next run of the program, on the
+    /// same driver.
+    std::vector<std::byte> pipelineCacheData() const;
+    /// To be called before any pipeline is made. The driver checks the data's header and ignores those of
+    /// another device or driver; what it does not check is that the bytes are whole.
+    void loadPipelineCache(std::span<const std::byte> data);
+    /// So far.
+    size_t pipelineCount() const;
+
     struct Impl;
     Impl& impl() { return *impl_; }
 
@@ -117,9 +126,8 @@ class Device {
     std::unique_ptr<Impl> impl_;
 };
 
-template <typename T>
-std::span<const std::byte> bytesOf(const std::vector<T>& values) {
-    return std::as_bytes(std::span<const T>(values));
-}
+/// What to keep images in that filters read many times over: buffers are faster on GPUs, images on CPUs
+/// (docs/benchmarks.md).
+Backing filterBacking(const Device& device);
 
 }  // namespace limpid::gpu

@@ -1,12 +1,11 @@
 // Which device a user means.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <optional>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/physical_device.h"
 
 namespace limpid::gpu {
@@ -15,8 +14,8 @@ namespace {
 std::string describe(const std::vector<DeviceInfo>& infos) {
     std::string text;
     for (const DeviceInfo& info : infos) {
-        text += fmt::format("\n  {}: {} ({}){}", info.index, info.name, info.type,
-                            info.usable ? "" : ", unusable: it lacks " + info.whyNot);
+        text += formatText("\n  {}: {} ({}){}", info.index, info.name, info.type,
+                           info.usable ? "" : ", unusable: it lacks " + info.whyNot);
     }
     return text;
 }
@@ -45,7 +44,7 @@ bool matches(const DeviceInfo& info, const std::string& select) {
 
 size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select) {
     if (infos.empty()) {
-        throw Error(
+        throw Unsupported(
             "there is no Vulkan device: no Vulkan loader or driver was found. For the CPU, install "
             "libvulkan1 and mesa-vulkan-drivers (the Debian packages' names)");
     }
@@ -58,10 +57,10 @@ size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& sele
     }
     if (best) return *best;
     const std::string list = describe(infos);
-    if (select.empty()) throw Error("no Vulkan device here is usable:" + list);
-    throw Error(fmt::format("{} '{}'; there are:{}",
-                            anyMatch ? "no usable Vulkan device is" : "no Vulkan device matches", select,
-                            list));
+    if (select.empty()) throw Unsupported("no Vulkan device here is usable:" + list);
+    throw Unsupported(formatText("{} '{}'; there are:{}",
+                                 anyMatch ? "no usable Vulkan device is" : "no Vulkan device matches", select,
+                                 list));
 }
 
 PhysicalDevice choose(std::vector<PhysicalDevice> devices, const std::string& select) {

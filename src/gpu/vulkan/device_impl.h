@@ -1,16 +1,31 @@
 // The inside of Device, for the other files of this folder.
 #pragma once
 
+#include <mutex>
+#include <optional>
+
+#include "gpu/vulkan/device.h"
+#include "gpu/vulkan/execute/pipeline_cache.h"
 #include "gpu/vulkan/memory/transfer.h"
 
 namespace limpid::gpu {
 
 struct Device::Impl {
-    explicit Impl(const DeviceOptions& options)
-        : context(std::make_shared<const Context>(options)), transfer(context) {}
+    explicit Impl(std::shared_ptr<const Context> on)
+        : context(std::move(on)), pipelines(std::make_shared<PipelineCache>(context)) {}
+
+    /// Made when something is first copied: an adopted device may never need it.
+    Transfer& transfer() {
+        std::call_once(transferMade_, [&] { transfer_.emplace(context); });
+        return *transfer_;
+    }
 
     std::shared_ptr<const Context> context;
-    Transfer transfer;
+    std::shared_ptr<PipelineCache> pipelines;
+
+  private:
+    std::once_flag transferMade_;
+    std::optional<Transfer> transfer_;
 };
 
 }  // namespace limpid::gpu

@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "gpu/vulkan/check.h"
 
 namespace limpid::gpu {
@@ -12,41 +11,44 @@ namespace {
 
 constexpr const char* validationLayer = "VK_LAYER_KHRONOS_validation";
 
-bool layerInstalled() {
+bool layerInstalled(const LoaderFunctions& loader) {
     uint32_t count = 0;
-    LIMPID_VK(vkEnumerateInstanceLayerProperties(&count, nullptr));
+    LIMPID_VK(loader.EnumerateInstanceLayerProperties(&count, nullptr));
     std::vector<VkLayerProperties> layers(count);
-    LIMPID_VK(vkEnumerateInstanceLayerProperties(&count, layers.data()));
+    LIMPID_VK(loader.EnumerateInstanceLayerProperties(&count, layers.data()));
     return std::ranges::any_of(
         layers, [](const VkLayerProperties& l) { return std::string_view(l.layerName) == validationLayer; });
 }
 
-bool hasExtension(const char* layer, std::string_view name) {
+bool hasExtension(const LoaderFunctions& loader, const char* layer, std::string_view name) {
     uint32_t count = 0;
-    LIMPID_VK(vkEnumerateInstanceExtensionProperties(layer, &count, nullptr));
+    LIMPID_VK(loader.EnumerateInstanceExtensionProperties(layer, &count, nullptr));
     std::vector<VkExtensionProperties> extensions(count);
-    LIMPID_VK(vkEnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
+    LIMPID_VK(loader.EnumerateInstanceExtensionProperties(layer, &count, extensions.data()));
     return std::ranges::any_of(extensions,
                                [&](const VkExtensionProperties& e) { return name == e.extensionName; });
 }
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                          VkDebugUtilsMessageTypeFlagsEXT type,
-                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    auto& messages = *static_cast<Instance::Messages*>(user);
     // Performance advice contradicts a decision of ours (images stay in GENERAL layout), and the loader
     // reports through the same channel (a broken driver file, say): neither is a fault, so neither counts.
     if (!(type & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT)) {
-        log::debug("Vulkan: {}", data->pMessage);
+        if (messages.callback)
+            messages.callback(MessageLevel::Debug, std::string("Vulkan: ") + data->pMessage);
         return VK_FALSE;
     }
-    ++*static_cast<std::atomic<uint64_t>*>(counter);
+    ++messages.count;
     const bool error = severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    log::write(error ? log::Level::Error : log::Level::Warning,
-               std::string("Vulkan validation: ") + data->pMessage);
+    if (messages.callback)
+        messages.callback(error ? MessageLevel::Error : MessageLevel::Warning,
+                          std::string("Vulkan validation: ") + data->pMessage);
     return VK_FALSE;
 }
 
-VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::atomic<uint64_t>* counter) {
+VkDebugUtilsMessengerCreateInfoEXT messengerInfo(Instance::Messages* messages) {
     VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
@@ -54,23 +56,30 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::atomic<uint64_t>* counter)
                        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
                        VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pfnUserCallback = onMessage;
-    info.pUserData = counter;
+    info.pUserData = messages;
     return info;
 }
 
 }  // namespace
 
-std::unique_ptr<Instance> Instance::create(bool validation,
-                                           const std::vector<std::string>& surfaceExtensions) {
-    if (volkInitialize() != VK_SUCCESS || volkGetInstanceVersion() < VK_API_VERSION_1_1) return nullptr;
-    if (validation && !layerInstalled()) {
+std::unique_ptr<Instance> Instance::create(bool validation, const std::vector<std::string>& surfaceExtensions,
+                                           const MessageCallback& messages) {
+    const PFN_vkGetInstanceProcAddr getInstanceProcAddr = systemLoader();
+    if (!getInstanceProcAddr) return nullptr;
+    const LoaderFunctions loader(getInstanceProcAddr);
+    uint32_t version = VK_API_VERSION_1_0;
+    if (loader.EnumerateInstanceVersion) LIMPID_VK(loader.EnumerateInstanceVersion(&version));
+    if (version < VK_API_VERSION_1_1) return nullptr;
+    if (validation && !layerInstalled(loader)) {
         throw Error(
             "Vulkan validation is asked for, but the Khronos validation layer is not installed "
             "(Debian package vulkan-validationlayers)");
     }
     std::unique_ptr<Instance> self(new Instance);
-    self->debugUtils_ = hasExtension(nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
-                        (validation && hasExtension(validationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
+    self->messages_->callback = messages;
+    self->debugUtils_ =
+        hasExtension(loader, nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
+        (validation && hasExtension(loader, validationLayer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
 
     VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(self->messages_.get());
     const VkValidationFeatureEnableEXT enabled[] = {
@@ -83,8 +92,8 @@ std::unique_ptr<Instance> Instance::create(bool validation,
     if (validation) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
 
     self->surfaces_ =
-        !surfaceExtensions.empty() && std::ranges::all_of(surfaceExtensions, [](const std::string& name) {
-            return hasExtension(nullptr, name);
+        !surfaceExtensions.empty() && std::ranges::all_of(surfaceExtensions, [&](const std::string& name) {
+            return hasExtension(loader, nullptr, name);
         });
     if (self->surfaces_) {
         for (const std::string& name : surfaceExtensions) extensions.push_back(name.c_str());
@@ -104,34 +113,33 @@ std::unique_ptr<Instance> Instance::create(bool validation,
         info.pNext = &features;
     }
     VkInstance instance = VK_NULL_HANDLE;
-    const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+    const VkResult result = loader.CreateInstance(&info, nullptr, &instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return nullptr;
     LIMPID_VK(result);
-    // Functions are loaded through the instance, not the device: the loader then dispatches by handle, so
-    // several devices may exist at once.
-    volkLoadInstance(instance);
-    self->instance_.reset(instance);
+    self->instance_ = instance;
+    self->vk_ = InstanceFunctions(getInstanceProcAddr, instance);
     if (validation) self->createMessenger();
     return self;
 }
 
 void Instance::createMessenger() {
     const VkDebugUtilsMessengerCreateInfoEXT info = messengerInfo(messages_.get());
-    LIMPID_VK(vkCreateDebugUtilsMessengerEXT(instance_.get(), &info, nullptr, &messenger_));
+    LIMPID_VK(vk_.CreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_));
 }
 
 Instance::~Instance() {
-    if (messenger_ != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance_.get(), messenger_, nullptr);
+    if (messenger_ != VK_NULL_HANDLE) vk_.DestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    if (instance_ != VK_NULL_HANDLE) vk_.DestroyInstance(instance_, nullptr);
 }
 
 std::vector<VkPhysicalDevice> Instance::physicalDevices() const {
     uint32_t count = 0;
-    const VkResult result = vkEnumeratePhysicalDevices(instance_.get(), &count, nullptr);
+    const VkResult result = vk_.EnumeratePhysicalDevices(instance_, &count, nullptr);
     // What some loaders answer where every driver failed to load.
     if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
     LIMPID_VK(result);
     std::vector<VkPhysicalDevice> devices(count);
-    LIMPID_VK(vkEnumeratePhysicalDevices(instance_.get(), &count, devices.data()));
+    LIMPID_VK(vk_.EnumeratePhysicalDevices(instance_, &count, devices.data()));
     devices.resize(count);
     return devices;
 }

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gpu/vulkan/unique_handle.h"
+#include "base/message.h"
+#include "gpu/vulkan/functions.h"
 
 namespace limpid::gpu {
 
@@ -16,7 +17,8 @@ class Instance {
     /// asked for and the layer is not installed.
     /// `surfaceExtensions`: DeviceOptions.
     static std::unique_ptr<Instance> create(bool validation,
-                                            const std::vector<std::string>& surfaceExtensions = {});
+                                            const std::vector<std::string>& surfaceExtensions = {},
+                                            const MessageCallback& messages = {});
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -26,16 +28,24 @@ class Instance {
     bool hasDebugUtils() const { return debugUtils_; }
     /// All surface extensions that were asked for are there.
     bool hasSurfaces() const { return surfaces_; }
-    VkInstance handle() const { return instance_.get(); }
-    uint64_t validationMessages() const { return *messages_; }
+    VkInstance handle() const { return instance_; }
+    const InstanceFunctions& vk() const { return vk_; }
+    uint64_t validationMessages() const { return messages_->count; }
+
+    /// What the validation layer reports goes here.
+    struct Messages {
+        std::atomic<uint64_t> count = 0;
+        MessageCallback callback;
+    };
 
   private:
     Instance() = default;
     void createMessenger();
 
     /// Outlives the instance: destroying it may still produce messages.
-    std::unique_ptr<std::atomic<uint64_t>> messages_ = std::make_unique<std::atomic<uint64_t>>(0);
-    UniqueInstance instance_;
+    std::unique_ptr<Messages> messages_ = std::make_unique<Messages>();
+    VkInstance instance_ = VK_NULL_HANDLE;
+    InstanceFunctions vk_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     bool debugUtils_ = false, surfaces_ = false;
 };

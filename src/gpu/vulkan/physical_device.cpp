@@ -1,11 +1,10 @@
 #include "gpu/vulkan/physical_device.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <string_view>
 
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/memory/format.h"
 
@@ -91,23 +90,23 @@ std::string_view typeName(VkPhysicalDeviceType type) {
 }
 
 std::string versionText(uint32_t version) {
-    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
-                       VK_API_VERSION_PATCH(version));
+    return formatText("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                      VK_API_VERSION_PATCH(version));
 }
 
-std::set<std::string> extensionsOf(VkPhysicalDevice handle) {
+std::set<std::string> extensionsOf(const InstanceFunctions& vk, VkPhysicalDevice handle) {
     uint32_t count = 0;
-    LIMPID_VK(vkEnumerateDeviceExtensionProperties(handle, nullptr, &count, nullptr));
+    LIMPID_VK(vk.EnumerateDeviceExtensionProperties(handle, nullptr, &count, nullptr));
     std::vector<VkExtensionProperties> extensions(count);
-    LIMPID_VK(vkEnumerateDeviceExtensionProperties(handle, nullptr, &count, extensions.data()));
+    LIMPID_VK(vk.EnumerateDeviceExtensionProperties(handle, nullptr, &count, extensions.data()));
     std::set<std::string> names;
     for (const VkExtensionProperties& e : extensions) names.insert(e.extensionName);
     return names;
 }
 
-uint64_t deviceLocalBytes(VkPhysicalDevice handle) {
+uint64_t deviceLocalBytes(const InstanceFunctions& vk, VkPhysicalDevice handle) {
     VkPhysicalDeviceMemoryProperties memory{};
-    vkGetPhysicalDeviceMemoryProperties(handle, &memory);
+    vk.GetPhysicalDeviceMemoryProperties(handle, &memory);
     uint64_t largest = 0;
     for (uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
         const VkMemoryHeap& heap = memory.memoryHeaps[i];
@@ -117,11 +116,11 @@ uint64_t deviceLocalBytes(VkPhysicalDevice handle) {
 }
 
 /// The first family that computes and has timestamps; graphics is not needed (data-centre GPUs may lack it).
-bool findQueueFamily(PhysicalDevice& device) {
+bool findQueueFamily(const InstanceFunctions& vk, PhysicalDevice& device) {
     uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(device.handle, &count, nullptr);
+    vk.GetPhysicalDeviceQueueFamilyProperties(device.handle, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(device.handle, &count, families.data());
+    vk.GetPhysicalDeviceQueueFamilyProperties(device.handle, &count, families.data());
     for (uint32_t i = 0; i < count; ++i) {
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) || families[i].timestampValidBits == 0) continue;
         device.queueFamily = i;
@@ -155,9 +154,9 @@ void listLimits(PhysicalDevice& device) {
     };
 }
 
-void checkFeatures(PhysicalDevice& device, std::vector<std::string>& missing) {
+void checkFeatures(const InstanceFunctions& vk, PhysicalDevice& device, std::vector<std::string>& missing) {
     FeatureChain available;
-    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    vk.GetPhysicalDeviceFeatures2(device.handle, &available.core);
     for (const Feature& feature : features) {
         const bool there = feature.flag(available);
         device.info.features.emplace_back(feature.name, there);
@@ -165,26 +164,27 @@ void checkFeatures(PhysicalDevice& device, std::vector<std::string>& missing) {
     }
 }
 
-void checkFormats(VkPhysicalDevice handle, std::vector<std::string>& missing) {
+void checkFormats(const InstanceFunctions& vk, VkPhysicalDevice handle, std::vector<std::string>& missing) {
     for (const Format format : allFormats()) {
         VkFormatProperties properties{};
-        vkGetPhysicalDeviceFormatProperties(handle, toVulkan(format), &properties);
+        vk.GetPhysicalDeviceFormatProperties(handle, toVulkan(format), &properties);
         if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) {
-            missing.push_back(fmt::format("storage images of {}", toString(format)));
+            missing.push_back(formatText("storage images of {}", toString(format)));
         }
         if (!(properties.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT)) {
-            missing.push_back(fmt::format("storage texel buffers of {}", toString(format)));
+            missing.push_back(formatText("storage texel buffers of {}", toString(format)));
         }
     }
 }
 
-void inspectRayTracing(PhysicalDevice& device, const std::set<std::string>& extensions) {
+void inspectRayTracing(const InstanceFunctions& vk, PhysicalDevice& device,
+                       const std::set<std::string>& extensions) {
     for (const char* name : rayTracingExtensions) {
         if (!extensions.contains(name)) return;
     }
     FeatureChain available;
     available.linkRayTracing();
-    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    vk.GetPhysicalDeviceFeatures2(device.handle, &available.core);
     device.info.rayTracing = available.v12.bufferDeviceAddress &&
                              available.accelerationStructure.accelerationStructure &&
                              available.rayTracingPipeline.rayTracingPipeline;
@@ -201,7 +201,7 @@ void inspectRayTracing(PhysicalDevice& device, const std::set<std::string>& exte
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR};
     core.pNext = &structure;
     structure.pNext = &pipeline;
-    vkGetPhysicalDeviceProperties2(device.handle, &core);
+    vk.GetPhysicalDeviceProperties2(device.handle, &core);
     device.rayTracing = {.handleSize = pipeline.shaderGroupHandleSize,
                          .handleAlignment = pipeline.shaderGroupHandleAlignment,
                          .baseAlignment = pipeline.shaderGroupBaseAlignment,
@@ -211,23 +211,24 @@ void inspectRayTracing(PhysicalDevice& device, const std::set<std::string>& exte
                          .maxPrimitives = structure.maxPrimitiveCount};
 }
 
-void inspectCooperativeMatrices(PhysicalDevice& device, const std::set<std::string>& extensions) {
+void inspectCooperativeMatrices(const InstanceFunctions& vk, PhysicalDevice& device,
+                                const std::set<std::string>& extensions) {
     if (!extensions.contains(VK_NV_COOPERATIVE_MATRIX_EXTENSION_NAME)) return;
     FeatureChain available;
     available.linkCooperativeMatrix();
-    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    vk.GetPhysicalDeviceFeatures2(device.handle, &available.core);
     VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
     core.pNext = &subgroup;
-    vkGetPhysicalDeviceProperties2(device.handle, &core);
+    vk.GetPhysicalDeviceProperties2(device.handle, &core);
     if (!available.cooperativeMatrix.cooperativeMatrix || !available.v12.shaderFloat16 ||
         subgroup.subgroupSize != 32)
         return;
     uint32_t count = 0;
-    LIMPID_VK(vkGetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, nullptr));
+    LIMPID_VK(vk.GetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, nullptr));
     std::vector<VkCooperativeMatrixPropertiesNV> kinds(count,
                                                        {VK_STRUCTURE_TYPE_COOPERATIVE_MATRIX_PROPERTIES_NV});
-    LIMPID_VK(vkGetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, kinds.data()));
+    LIMPID_VK(vk.GetPhysicalDeviceCooperativeMatrixPropertiesNV(device.handle, &count, kinds.data()));
     device.info.cooperativeMatrices =
         std::ranges::any_of(kinds, [](const VkCooperativeMatrixPropertiesNV& kind) {
             return kind.MSize == 16 && kind.NSize == 16 && kind.KSize == 16 &&
@@ -238,17 +239,17 @@ void inspectCooperativeMatrices(PhysicalDevice& device, const std::set<std::stri
 }
 
 /// The properties that a driver of this version knows, linked for one query.
-void readProperties(PhysicalDevice& device, uint32_t version) {
+void readProperties(const InstanceFunctions& vk, PhysicalDevice& device, uint32_t version) {
     Properties properties;
     properties.core.pNext = &properties.maintenance3;
     if (version >= VK_API_VERSION_1_2) properties.maintenance3.pNext = &properties.driver;
     if (version >= VK_API_VERSION_1_3) properties.driver.pNext = &properties.maintenance4;
-    vkGetPhysicalDeviceProperties2(device.handle, &properties.core);
+    vk.GetPhysicalDeviceProperties2(device.handle, &properties.core);
     device.limits = properties.core.properties.limits;
     device.maxAllocation = properties.maintenance3.maxMemoryAllocationSize;
     device.maxBufferSize = properties.maintenance4.maxBufferSize;
     if (version >= VK_API_VERSION_1_2) {
-        device.info.driver = fmt::format("{} {}", properties.driver.driverName, properties.driver.driverInfo);
+        device.info.driver = formatText("{} {}", properties.driver.driverName, properties.driver.driverInfo);
     }
 }
 
@@ -270,54 +271,54 @@ FeatureChain::FeatureChain() {
     v12.pNext = &v13;
 }
 
-PhysicalDevice inspect(VkPhysicalDevice handle, uint32_t index) {
+PhysicalDevice inspect(const InstanceFunctions& vk, VkPhysicalDevice handle, uint32_t index) {
     PhysicalDevice device;
     device.handle = handle;
     VkPhysicalDeviceProperties basics{};
-    vkGetPhysicalDeviceProperties(handle, &basics);
+    vk.GetPhysicalDeviceProperties(handle, &basics);
     DeviceInfo& info = device.info;
     info.index = index;
     info.name = basics.deviceName;
     info.type = typeName(basics.deviceType);
     info.apiVersion = versionText(basics.apiVersion);
-    info.memoryBytes = deviceLocalBytes(handle);
+    info.memoryBytes = deviceLocalBytes(vk, handle);
     device.limits = basics.limits;
 
     std::vector<std::string> missing;
-    if (!findQueueFamily(device)) missing.emplace_back("a queue that computes and has timestamps");
-    if (basics.apiVersion >= VK_API_VERSION_1_1) readProperties(device, basics.apiVersion);
+    if (!findQueueFamily(vk, device)) missing.emplace_back("a queue that computes and has timestamps");
+    if (basics.apiVersion >= VK_API_VERSION_1_1) readProperties(vk, device, basics.apiVersion);
     if (basics.apiVersion < VK_API_VERSION_1_3) {
-        missing.push_back(fmt::format("Vulkan 1.3 (it has {})", info.apiVersion));
+        missing.push_back(formatText("Vulkan 1.3 (it has {})", info.apiVersion));
     } else {
-        checkFeatures(device, missing);
-        checkFormats(handle, missing);
+        checkFeatures(vk, device, missing);
+        checkFormats(vk, handle, missing);
     }
-    const std::set<std::string> extensions = extensionsOf(handle);
+    const std::set<std::string> extensions = extensionsOf(vk, handle);
     device.drawsAndPresents = device.drawsAndPresents && extensions.contains(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     for (const char* name : listedExtensions) info.features.emplace_back(name, extensions.contains(name));
     if (basics.apiVersion >= VK_API_VERSION_1_3) {
-        inspectRayTracing(device, extensions);
-        inspectCooperativeMatrices(device, extensions);
+        inspectRayTracing(vk, device, extensions);
+        inspectCooperativeMatrices(vk, device, extensions);
     }
     listLimits(device);
     info.usable = missing.empty();
-    info.whyNot = fmt::format("{}", fmt::join(missing, ", "));
+    info.whyNot = joinText(missing);
     return device;
 }
 
 std::vector<PhysicalDevice> inspectAll(const Instance& instance) {
     std::vector<PhysicalDevice> devices;
     for (VkPhysicalDevice handle : instance.physicalDevices()) {
-        devices.push_back(inspect(handle, static_cast<uint32_t>(devices.size())));
+        devices.push_back(inspect(instance.vk(), handle, static_cast<uint32_t>(devices.size())));
         devices.back().info.features.emplace_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
                                                   instance.hasDebugUtils());
     }
     return devices;
 }
 
-void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted) {
+void enableFeatures(const InstanceFunctions& vk, const PhysicalDevice& device, FeatureChain& wanted) {
     FeatureChain available;
-    vkGetPhysicalDeviceFeatures2(device.handle, &available.core);
+    vk.GetPhysicalDeviceFeatures2(device.handle, &available.core);
     for (const Feature& feature : features) {
         if (feature.need != Need::Listed) feature.flag(wanted) = feature.flag(available);
     }

@@ -52,7 +52,7 @@ struct PhysicalDevice {
 };
 
 /// Reads everything; info.whyNot says what is missing.
-PhysicalDevice inspect(VkPhysicalDevice handle, uint32_t index);
+PhysicalDevice inspect(const InstanceFunctions& vk, VkPhysicalDevice handle, uint32_t index);
 std::vector<PhysicalDevice> inspectAll(const Instance& instance);
 
 /// The device that DeviceOptions::select means. Throws Error saying why there is none and listing what there
@@ -62,7 +62,7 @@ PhysicalDevice choose(std::vector<PhysicalDevice> devices, const std::string& se
 size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select);
 
 /// Switches on in `wanted` what Limpid requires, and what it can use if the device has it.
-void enableFeatures(const PhysicalDevice& device, FeatureChain& wanted);
+void enableFeatures(const InstanceFunctions& vk, const PhysicalDevice& device, FeatureChain& wanted);
 /// The extensions to switch on.
 std::vector<const char*> wantedExtensions(const PhysicalDevice& device);
 

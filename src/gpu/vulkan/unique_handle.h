@@ -1,64 +1,56 @@
 // A Vulkan object that destroys itself with its device.
 #pragma once
 
-#include <memory>
 #include <utility>
 
-#include "gpu/vulkan/vk.h"
+#include "gpu/vulkan/functions.h"
 
 namespace limpid::gpu {
 
-template <typename Handle, auto& destroy>
+/// `destroy`: the member of DeviceFunctions that destroys it. The functions must outlive the object: they
+/// belong to the Context, which everything that is made on a device shares.
+template <typename Handle, auto destroy>
 class UniqueHandle {
   public:
     UniqueHandle() = default;
-    UniqueHandle(VkDevice device, Handle handle) : device_(device), handle_(handle) {}
+    UniqueHandle(const DeviceFunctions& vk, Handle handle) : vk_(&vk), handle_(handle) {}
     UniqueHandle(UniqueHandle&& other) noexcept
-        : device_(other.device_), handle_(std::exchange(other.handle_, VK_NULL_HANDLE)) {}
+        : vk_(other.vk_), handle_(std::exchange(other.handle_, VK_NULL_HANDLE)) {}
     UniqueHandle& operator=(UniqueHandle&& other) noexcept {
-        std::swap(device_, other.device_);
+        std::swap(vk_, other.vk_);
         std::swap(handle_, other.handle_);
         return *this;
     }
     ~UniqueHandle() {
-        if (handle_ != VK_NULL_HANDLE) destroy(device_, handle_, nullptr);
+        if (handle_ != VK_NULL_HANDLE) (vk_->*destroy)(vk_->device, handle_, nullptr);
     }
 
     Handle get() const { return handle_; }
     explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
   private:
-    VkDevice device_ = VK_NULL_HANDLE;
+    const DeviceFunctions* vk_ = nullptr;
     Handle handle_ = VK_NULL_HANDLE;
 };
 
-using UniqueBuffer = UniqueHandle<VkBuffer, vkDestroyBuffer>;
-using UniqueBufferView = UniqueHandle<VkBufferView, vkDestroyBufferView>;
-using UniqueImage = UniqueHandle<VkImage, vkDestroyImage>;
-using UniqueImageView = UniqueHandle<VkImageView, vkDestroyImageView>;
-using UniqueMemory = UniqueHandle<VkDeviceMemory, vkFreeMemory>;
-using UniqueCommandPool = UniqueHandle<VkCommandPool, vkDestroyCommandPool>;
-using UniqueFence = UniqueHandle<VkFence, vkDestroyFence>;
-using UniqueQueryPool = UniqueHandle<VkQueryPool, vkDestroyQueryPool>;
-using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, vkDestroyDescriptorPool>;
-using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
-using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, vkDestroyPipelineLayout>;
-using UniquePipeline = UniqueHandle<VkPipeline, vkDestroyPipeline>;
-using UniqueSemaphore = UniqueHandle<VkSemaphore, vkDestroySemaphore>;
-using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, vkDestroySwapchainKHR>;
+using UniqueBuffer = UniqueHandle<VkBuffer, &DeviceFunctions::DestroyBuffer>;
+using UniqueBufferView = UniqueHandle<VkBufferView, &DeviceFunctions::DestroyBufferView>;
+using UniqueImage = UniqueHandle<VkImage, &DeviceFunctions::DestroyImage>;
+using UniqueImageView = UniqueHandle<VkImageView, &DeviceFunctions::DestroyImageView>;
+using UniqueMemory = UniqueHandle<VkDeviceMemory, &DeviceFunctions::FreeMemory>;
+using UniqueCommandPool = UniqueHandle<VkCommandPool, &DeviceFunctions::DestroyCommandPool>;
+using UniqueFence = UniqueHandle<VkFence, &DeviceFunctions::DestroyFence>;
+using UniqueQueryPool = UniqueHandle<VkQueryPool, &DeviceFunctions::DestroyQueryPool>;
+using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, &DeviceFunctions::DestroyDescriptorPool>;
+using UniqueSetLayout = UniqueHandle<VkDescriptorSetLayout, &DeviceFunctions::DestroyDescriptorSetLayout>;
+using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, &DeviceFunctions::DestroyPipelineLayout>;
+using UniqueDriverCache = UniqueHandle<VkPipelineCache, &DeviceFunctions::DestroyPipelineCache>;
+using UniquePipeline = UniqueHandle<VkPipeline, &DeviceFunctions::DestroyPipeline>;
+using UniqueSemaphore = UniqueHandle<VkSemaphore, &DeviceFunctions::DestroySemaphore>;
+using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, &DeviceFunctions::DestroySwapchainKHR>;
 using UniqueAccelerationStructure =
-    UniqueHandle<VkAccelerationStructureKHR, vkDestroyAccelerationStructureKHR>;
-using UniqueShaderModule = UniqueHandle<VkShaderModule, vkDestroyShaderModule>;
-
-/// Instances and devices have no parent to be destroyed with.
-struct InstanceDeleter {
-    void operator()(VkInstance instance) const { vkDestroyInstance(instance, nullptr); }
-};
-struct DeviceDeleter {
-    void operator()(VkDevice device) const { vkDestroyDevice(device, nullptr); }
-};
-using UniqueInstance = std::unique_ptr<VkInstance_T, InstanceDeleter>;
-using UniqueDevice = std::unique_ptr<VkDevice_T, DeviceDeleter>;
+    UniqueHandle<VkAccelerationStructureKHR, &DeviceFunctions::DestroyAccelerationStructureKHR>;
+using UniqueShaderModule = UniqueHandle<VkShaderModule, &DeviceFunctions::DestroyShaderModule>;
 
 /// What a debug name is attached to.
 constexpr VkObjectType objectType(VkBuffer) {
@@ -102,6 +94,9 @@ constexpr VkObjectType objectType(VkPipelineLayout) {
 }
 constexpr VkObjectType objectType(VkPipeline) {
     return VK_OBJECT_TYPE_PIPELINE;
+}
+constexpr VkObjectType objectType(VkPipelineCache) {
+    return VK_OBJECT_TYPE_PIPELINE_CACHE;
 }
 constexpr VkObjectType objectType(VkShaderModule) {
     return VK_OBJECT_TYPE_SHADER_MODULE;

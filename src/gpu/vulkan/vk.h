@@ -1,7 +1,8 @@
-// The Vulkan API, loaded at run time by volk: without Vulkan, Limpid still starts and says what is missing.
+// The Vulkan API: types, and prototypes of none of its functions (gpu/vulkan/functions.h loads them at run
+// time). Without Vulkan, Limpid still starts and says what is missing.
 #pragma once
 
 #ifndef VK_NO_PROTOTYPES
 #define VK_NO_PROTOTYPES
 #endif
-#include <volk.h>
+#include <vulkan/vulkan.h>

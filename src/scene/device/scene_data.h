@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gpu/vulkan/execute/acceleration_structures.h"
+#include "gpu/graph/resources.h"
 #include "scene/model/scene.h"
 #include "scene/motion/motion_data.h"
 #include "shaders/common/scene_layout.h"

@@ -1,5 +1,5 @@
 // Rays through the driver's acceleration structures, from a ray-generation shader. Its trees are made of the triangles in
-// bvhTriangles, in that order (gpu/vulkan/execute/acceleration_structures.h).
+// bvhTriangles, in that order (gpu/graph/resources.h).
 #ifndef LIMPID_TRACE_PIPELINE_GLSL
 #define LIMPID_TRACE_PIPELINE_GLSL
 

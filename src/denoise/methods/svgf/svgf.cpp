@@ -63,7 +63,7 @@ class Svgf {
 
     /// Each pass for all signals before the next pass: those of one kind do not wait for each other, and the
     /// device starts one while the other runs out.
-    ImageHandle record() {
+    SvgfImages record(bool signalsToo) {
         const Surfaces surfaces = recordSurfaces();
         const std::vector<Signal> all = signals();
         std::vector<Accumulated> accumulated;
@@ -81,7 +81,11 @@ class Svgf {
             for (size_t i = 0; i < all.size(); ++i)
                 filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
         }
-        return modulate(filtered.front(), filtered.back());
+        SvgfImages images{.beauty = beautyOf(filtered)};
+        if (!signalsToo) return images;
+        images.diffuse = lightOf("diffuse", filtered.front(), !settings_.separate);
+        if (settings_.separate) images.specular = lightOf("specular", filtered.back(), false);
+        return images;
     }
 
   private:
@@ -309,21 +313,34 @@ class Svgf {
         return filtered;
     }
 
-    ImageHandle modulate(ImageHandle signal, ImageHandle otherSignal) {
-        const ImageHandle beauty = graph_.transient("svgf/beauty", Format::RGBA32Float, extent_);
+    ImageHandle beautyOf(const std::vector<ImageHandle>& filtered) {
+        return modulate("beauty", filtered.front(), filtered.back(),
+                        {{"TWO_SIGNALS", settings_.separate ? 1u : 0u}});
+    }
+
+    /// One signal, with its albedo and without what is seen directly.
+    ImageHandle lightOf(const char* name, ImageHandle signal, bool allLight) {
+        return modulate(name, signal, signal,
+                        {{"TWO_SIGNALS", 0u}, {"ALL_LIGHT", allLight ? 1u : 0u}, {"EMISSION", 0u}});
+    }
+
+    ImageHandle modulate(const std::string& name, ImageHandle signal, ImageHandle otherSignal,
+                         const std::vector<gpu::ConstantValue>& constants) {
+        const ImageHandle result = graph_.transient("svgf/" + name, Format::RGBA32Float, extent_);
         const SvgfModulateParams params{extent_.width, extent_.height, settings_.demodulate ? 1u : 0u};
-        graph_.dispatch({.pass = "svgf/modulate",
+        const bool specular = name == "specular";
+        graph_.dispatch({.pass = name == "beauty" ? "svgf/modulate" : "svgf/modulate " + name,
                          .shader = choose(shaders::svgf_modulate_comp, shaders::svgf_modulate_buffers_comp),
                          .bindings = {{"signalA", signal},
                                       {"signalB", otherSignal},
-                                      {"albedoA", input_.albedo},
+                                      {"albedoA", specular ? input_.albedoSpecular : input_.albedo},
                                       {"albedoB", input_.albedoSpecular},
                                       {"emission", input_.emission},
-                                      {"beauty", beauty}},
+                                      {"beauty", result}},
                          .params = gpu::paramsOf(params),
-                         .constants = {{"TWO_SIGNALS", settings_.separate ? 1u : 0u}},
+                         .constants = constants,
                          .extent = extent_});
-        return beauty;
+        return result;
     }
 
     FrameGraph& graph_;
@@ -410,7 +427,11 @@ const ParamTable<SvgfSettings>& svgfParams() {
 }
 
 ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
-    return Svgf(graph, input, settings).record();
+    return Svgf(graph, input, settings).record(false).beauty;
+}
+
+SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
+    return Svgf(graph, input, settings).record(true);
 }
 
 }  // namespace limpid::denoise

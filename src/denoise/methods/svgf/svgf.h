@@ -47,4 +47,13 @@ const ParamTable<SvgfSettings>& svgfParams();
 /// is fed back, "svgf/SIGNAL shown".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
+/// The same, and the filtered signals by themselves: rgba32f, with albedo, without emission, alpha 1.
+struct SvgfImages {
+    gpu::ImageHandle beauty;
+    gpu::ImageHandle diffuse;   ///< without `separate`: all light that was filtered
+    gpu::ImageHandle specular;  ///< empty without `separate`
+};
+SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
+                             const SvgfSettings& settings);
+
 }  // namespace limpid::denoise

@@ -1,10 +1,9 @@
 // The first build: bottom levels at full size, their compact copies, the top level.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <deque>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/device_impl.h"
 #include "gpu/vulkan/execute/acceleration_storage.h"
@@ -32,7 +31,7 @@ class Layout {
 
 class Builder {
   public:
-    Builder(Device& device, const std::string& name, std::shared_ptr<const BufferStorage> triangles,
+    Builder(Device& device, const std::string& name, std::shared_ptr<const BufferResource> triangles,
             std::span<const TriangleTree> trees, std::span<const TreePlacement> placements);
     std::shared_ptr<const AccelerationStorage> build();
 
@@ -61,12 +60,12 @@ class Builder {
     std::vector<FullTree> full_;
 };
 
-Builder::Builder(Device& device, const std::string& name, std::shared_ptr<const BufferStorage> triangles,
+Builder::Builder(Device& device, const std::string& name, std::shared_ptr<const BufferResource> triangles,
                  std::span<const TriangleTree> trees, std::span<const TreePlacement> placements)
-    : transfer_(device.impl().transfer), placements_(placements) {
+    : transfer_(device.impl().transfer()), placements_(placements) {
     result_->context = device.impl().context;
     if (!result_->context->hasRayTracing()) {
-        throw Error(fmt::format("{} has no ray-tracing pipelines", device.info().name));
+        throw Error(formatText("{} has no ray-tracing pipelines", device.info().name));
     }
     result_->name = name;
     result_->triangles = std::move(triangles);
@@ -82,8 +81,8 @@ void Builder::checkLimits() const {
     const RayTracingLimits& limits = result_->context->rayTracing();
     const auto check = [&](std::string_view limit, uint64_t maximum, uint64_t asked) {
         if (asked <= maximum) return;
-        throw Error(fmt::format("'{}' needs {} = {}, but {} has {}", result_->name, limit, asked,
-                                result_->context->info().name, maximum));
+        throw Error(formatText("'{}' needs {} = {}, but {} has {}", result_->name, limit, asked,
+                               result_->context->info().name, maximum));
     };
     check("maxInstanceCount", limits.maxInstances, placements_.size());
     for (const AccelerationStorage::Tree& tree : result_->trees)
@@ -94,9 +93,9 @@ VkAccelerationStructureBuildSizesInfoKHR Builder::sizesOf(
     const VkAccelerationStructureBuildGeometryInfoKHR& info, uint32_t primitives) const {
     VkAccelerationStructureBuildSizesInfoKHR sizes{
         VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
-    vkGetAccelerationStructureBuildSizesKHR(result_->context->device(),
-                                            VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info,
-                                            &primitives, &sizes);
+    result_->context->vk().GetAccelerationStructureBuildSizesKHR(
+        result_->context->device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &primitives,
+        &sizes);
     return sizes;
 }
 
@@ -109,9 +108,10 @@ UniqueAccelerationStructure Builder::create(const BufferStorage& buffer, uint64_
     info.size = size;
     info.type = type;
     VkAccelerationStructureKHR handle = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateAccelerationStructureKHR(result_->context->device(), &info, nullptr, &handle));
+    LIMPID_VK(result_->context->vk().CreateAccelerationStructureKHR(result_->context->device(), &info,
+                                                                    nullptr, &handle));
     result_->context->setName(handle, name);
-    return {result_->context->device(), handle};
+    return {result_->context->vk(), handle};
 }
 
 void Builder::buildFullTrees() {
@@ -122,7 +122,7 @@ void Builder::buildFullTrees() {
     for (size_t i = 0; i < full_.size(); ++i) {
         const TriangleTree& source = result_->trees[i].source;
         if (source.count == 0) continue;
-        TreeGeometry& geometry = geometries.emplace_back(*result_->triangles, source);
+        TreeGeometry& geometry = geometries.emplace_back(storageOf(*result_->triangles), source);
         full_[i].sizes = sizesOf(geometry.info, source.count);
         full_[i].offset = layout.add(full_[i].sizes.accelerationStructureSize);
         scratchBytes = std::max(scratchBytes, full_[i].sizes.buildScratchSize);
@@ -145,7 +145,7 @@ void Builder::buildFullTrees() {
         for (const TreeGeometry& g : geometries) {
             passBarrier(*result_->context, commands);
             const VkAccelerationStructureBuildRangeInfoKHR* range = &g.range;
-            vkCmdBuildAccelerationStructuresKHR(commands, 1, &g.info, &range);
+            result_->context->vk().CmdBuildAccelerationStructuresKHR(commands, 1, &g.info, &range);
         }
     });
 }
@@ -162,19 +162,19 @@ std::vector<VkDeviceSize> Builder::compactSizes() const {
     info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
     info.queryCount = count;
     VkQueryPool handle = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateQueryPool(context.device(), &info, nullptr, &handle));
-    const UniqueQueryPool pool(context.device(), handle);
+    LIMPID_VK(context.vk().CreateQueryPool(context.device(), &info, nullptr, &handle));
+    const UniqueQueryPool pool(context.vk(), handle);
     transfer_.run([&](VkCommandBuffer commands) {
-        vkCmdResetQueryPool(commands, handle, 0, count);
+        context.vk().CmdResetQueryPool(commands, handle, 0, count);
         passBarrier(context, commands);
-        vkCmdWriteAccelerationStructuresPropertiesKHR(commands, count, handles.data(),
-                                                      VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
-                                                      handle, 0);
+        context.vk().CmdWriteAccelerationStructuresPropertiesKHR(
+            commands, count, handles.data(), VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, handle,
+            0);
     });
     std::vector<VkDeviceSize> sizes(count);
-    LIMPID_VK(vkGetQueryPoolResults(context.device(), handle, 0, count, count * sizeof(VkDeviceSize),
-                                    sizes.data(), sizeof(VkDeviceSize),
-                                    VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    LIMPID_VK(context.vk().GetQueryPoolResults(
+        context.device(), handle, 0, count, count * sizeof(VkDeviceSize), sizes.data(), sizeof(VkDeviceSize),
+        VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     return sizes;
 }
 
@@ -193,12 +193,13 @@ void Builder::compactTrees() {
         AccelerationStorage::Tree& tree = result_->trees[i];
         tree.handle = create(*result_->treeBuffer, offsets[next], sizes[next],
                              VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
-                             fmt::format("{} tree {}", result_->name, i));
+                             formatText("{} tree {}", result_->name, i));
         ++next;
         VkAccelerationStructureDeviceAddressInfoKHR info{
             VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR};
         info.accelerationStructure = tree.handle.get();
-        tree.address = vkGetAccelerationStructureDeviceAddressKHR(result_->context->device(), &info);
+        tree.address = result_->context->vk().GetAccelerationStructureDeviceAddressKHR(
+            result_->context->device(), &info);
     }
     transfer_.run([&](VkCommandBuffer commands) {
         passBarrier(*result_->context, commands);
@@ -208,14 +209,14 @@ void Builder::compactTrees() {
             info.src = full_[i].handle.get();
             info.dst = result_->trees[i].handle.get();
             info.mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR;
-            vkCmdCopyAccelerationStructureKHR(commands, &info);
+            result_->context->vk().CmdCopyAccelerationStructureKHR(commands, &info);
         }
         passBarrier(*result_->context, commands);
     });
 }
 
 void Builder::fillInstances() {
-    std::vector<VkAccelerationStructureInstanceKHR> records;
+    std::vector<StructuresResource::InstanceRecord> records;
     for (uint32_t i = 0; i < placements_.size(); ++i)
         records.push_back(result_->instanceRecord(i, placements_[i]));
     if (records.empty()) records.emplace_back();
@@ -226,11 +227,11 @@ void Builder::fillInstances() {
 }
 
 void Builder::buildTop() {
-    const TopGeometry geometry(*result_->instances, result_->placementCount, result_->moves);
+    const TopGeometry geometry(storageOf(*result_->instances), result_->placementCount, result_->moves);
     const VkAccelerationStructureBuildSizesInfoKHR sizes = sizesOf(geometry.info, result_->placementCount);
     result_->topBuffer = makeBuffer(result_->context, result_->name + " top level", BufferUse::Structure,
                                     std::max<uint64_t>(sizes.accelerationStructureSize, structureAlignment));
-    result_->top = create(*result_->topBuffer, 0, sizes.accelerationStructureSize,
+    result_->top = create(storageOf(*result_->topBuffer), 0, sizes.accelerationStructureSize,
                           VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, result_->name + " top level");
     result_->topHandle = result_->top.get();
     Layout scratch(result_->context->rayTracing().scratchAlignment);
@@ -258,7 +259,7 @@ std::shared_ptr<const AccelerationStorage> Builder::build() {
 }  // namespace
 
 std::shared_ptr<const AccelerationStorage> makeAccelerationStorage(
-    Device& device, const std::string& name, std::shared_ptr<const BufferStorage> triangles,
+    Device& device, const std::string& name, std::shared_ptr<const BufferResource> triangles,
     std::span<const TriangleTree> trees, std::span<const TreePlacement> placements) {
     return Builder(device, name, std::move(triangles), trees, placements).build();
 }

@@ -1,13 +1,13 @@
 // What acceleration structures are built from, and their rebuilding frame by frame.
 #include "gpu/vulkan/execute/acceleration_storage.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <deque>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/device_impl.h"
 
 namespace limpid::gpu {
@@ -57,10 +57,10 @@ TopGeometry::TopGeometry(const BufferStorage& instances, uint32_t count, bool mo
     range.primitiveCount = count;
 }
 
-VkAccelerationStructureInstanceKHR AccelerationStorage::instanceRecord(uint32_t placement,
+StructuresResource::InstanceRecord AccelerationStorage::instanceRecord(uint32_t placement,
                                                                        const TreePlacement& where) const {
     if (placement >= placementCount || where.tree >= trees.size()) {
-        throw Error(fmt::format("'{}' has no placement {} or no tree {}", name, placement, where.tree));
+        throw Error(formatText("'{}' has no placement {} or no tree {}", name, placement, where.tree));
     }
     VkAccelerationStructureInstanceKHR record{};
     static_assert(sizeof(record.transform.matrix) == sizeof(where.toWorld));
@@ -69,7 +69,8 @@ VkAccelerationStructureInstanceKHR AccelerationStorage::instanceRecord(uint32_t 
     record.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
     // Without a tree the instance is inactive.
     record.accelerationStructureReference = where.visible ? trees[where.tree].address : 0;
-    return record;
+    static_assert(sizeof(record) == sizeof(InstanceRecord));
+    return std::bit_cast<InstanceRecord>(record);
 }
 
 void AccelerationStorage::recordRebuild(VkCommandBuffer commands) const {
@@ -79,7 +80,7 @@ void AccelerationStorage::recordRebuild(VkCommandBuffer commands) const {
     const VkDeviceAddress firstScratch = scratchAddress(*scratch);
     for (const Tree& tree : trees) {
         if (!tree.source.moves || !tree.handle) continue;
-        TreeGeometry& built = geometries.emplace_back(*triangles, tree.source);
+        TreeGeometry& built = geometries.emplace_back(storageOf(*triangles), tree.source);
         built.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
         built.info.srcAccelerationStructure = built.info.dstAccelerationStructure = tree.handle.get();
         built.info.scratchData.deviceAddress = firstScratch + tree.updateScratch;
@@ -87,33 +88,29 @@ void AccelerationStorage::recordRebuild(VkCommandBuffer commands) const {
         ranges.push_back(&built.range);
     }
     if (!infos.empty()) {
-        vkCmdBuildAccelerationStructuresKHR(commands, static_cast<uint32_t>(infos.size()), infos.data(),
-                                            ranges.data());
+        context->vk().CmdBuildAccelerationStructuresKHR(commands, static_cast<uint32_t>(infos.size()),
+                                                        infos.data(), ranges.data());
         passBarrier(*context, commands);
     }
-    TopGeometry built(*instances, placementCount, moves);
+    TopGeometry built(storageOf(*instances), placementCount, moves);
     built.info.dstAccelerationStructure = topHandle;
     built.info.scratchData.deviceAddress = firstScratch + topScratch;
     const VkAccelerationStructureBuildRangeInfoKHR* range = &built.range;
-    vkCmdBuildAccelerationStructuresKHR(commands, 1, &built.info, &range);
+    context->vk().CmdBuildAccelerationStructuresKHR(commands, 1, &built.info, &range);
 }
 
 AccelerationStructures::AccelerationStructures(Device& device, const std::string& name,
                                                const Buffer& triangles, std::span<const TriangleTree> trees,
                                                std::span<const TreePlacement> placements)
-    : storage_(makeAccelerationStorage(device, name, triangles.impl()->storage, trees, placements)) {}
-
-AccelerationStructures::~AccelerationStructures() = default;
-AccelerationStructures::AccelerationStructures(AccelerationStructures&&) noexcept = default;
-AccelerationStructures& AccelerationStructures::operator=(AccelerationStructures&&) noexcept = default;
+    : resource_(makeAccelerationStorage(device, name, triangles.resource(), trees, placements)) {}
 
 uint64_t AccelerationStructures::byteCount() const {
-    const AccelerationStorage& s = *storage_;
+    const auto& s = static_cast<const AccelerationStorage&>(*resource_);
     return s.treeBuffer->size + s.topBuffer->size + s.instances->size + s.scratch->size;
 }
 
 uint64_t AccelerationStructures::bytesSavedByCompaction() const {
-    return storage_->savedBytes;
+    return static_cast<const AccelerationStorage&>(*resource_).savedBytes;
 }
 
 }  // namespace limpid::gpu

@@ -3,13 +3,13 @@
 
 #include <vector>
 
-#include "gpu/vulkan/execute/acceleration_structures.h"
+#include "gpu/graph/resources.h"
 #include "gpu/vulkan/memory/buffer.h"
 
 namespace limpid::gpu {
 
 /// Shared by its owner and the frames under way.
-struct AccelerationStorage {
+struct AccelerationStorage : StructuresResource {
     struct Tree {
         TriangleTree source;
         UniqueAccelerationStructure handle;  ///< empty if it has no triangles
@@ -19,28 +19,25 @@ struct AccelerationStorage {
 
     std::shared_ptr<const Context> context;
     std::string name;
-    std::shared_ptr<const BufferStorage> triangles;
     std::vector<Tree> trees;
     std::shared_ptr<const BufferStorage> treeBuffer;  ///< where all trees lie
-    std::shared_ptr<const BufferStorage>
-        instances;  ///< VkAccelerationStructureInstanceKHR, one per placement
     uint32_t placementCount = 0;
     UniqueAccelerationStructure top;
     VkAccelerationStructureKHR topHandle = VK_NULL_HANDLE;
-    std::shared_ptr<const BufferStorage> topBuffer;
     std::shared_ptr<const BufferStorage> scratch;  ///< of rebuilds
     uint64_t topScratch = 0;                       ///< offset in `scratch`
     bool moves = false;                            ///< some tree does
     uint64_t savedBytes = 0;
 
-    VkAccelerationStructureInstanceKHR instanceRecord(uint32_t placement, const TreePlacement& where) const;
+    /// A VkAccelerationStructureInstanceKHR.
+    InstanceRecord instanceRecord(uint32_t placement, const TreePlacement& where) const override;
     /// Fits the trees that move, then builds the top level. Reads what lies in `triangles` and `instances`.
     void recordRebuild(VkCommandBuffer commands) const;
 };
 
 /// Builds trees and top level on the device, and waits for it.
 std::shared_ptr<const AccelerationStorage> makeAccelerationStorage(
-    Device& device, const std::string& name, std::shared_ptr<const BufferStorage> triangles,
+    Device& device, const std::string& name, std::shared_ptr<const BufferResource> triangles,
     std::span<const TriangleTree> trees, std::span<const TreePlacement> placements);
 
 /// The first address in `scratch` that is aligned as builds want it. makeScratch() leaves room for that.

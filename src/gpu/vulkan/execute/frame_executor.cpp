@@ -1,86 +1,177 @@
 #include "gpu/vulkan/execute/frame_executor.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
+#include "gpu/vulkan/execute/acceleration_storage.h"
 
 namespace limpid::gpu {
 namespace {
 
 /// Tightly packed rows, from byte `offset` of `source` on.
-void copyToImage(VkCommandBuffer commands, VkBuffer source, uint64_t offset, const Image& image) {
+void copyToImage(const Context& context, VkCommandBuffer commands, VkBuffer source, uint64_t offset,
+                 const Image& image) {
     VkBufferImageCopy region{};
     region.bufferOffset = offset;
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {image.extent.width, image.extent.height, 1};
-    vkCmdCopyBufferToImage(commands, source, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    context.vk().CmdCopyBufferToImage(commands, source, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, 1,
+                                      &region);
+}
+
+constexpr VkAccessFlags2 storageAccess =
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+
+VkImageMemoryBarrier2 wholeImageBarrier(VkImage image) {
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = wholeImage();
+    return barrier;
+}
+
+VkImageMemoryBarrier2 foreignBarrier(const RecordedImage& recorded) {
+    VkImageMemoryBarrier2 barrier = wholeImageBarrier(reinterpret_cast<VkImage>(recorded.foreign.image));
+    barrier.subresourceRange.aspectMask = recorded.foreign.aspects;
+    return barrier;
+}
+
+VkImageLayout layoutDuring(const RecordedImage& recorded) {
+    return recorded.sampled ? static_cast<VkImageLayout>(recorded.foreign.layoutBefore)
+                            : VK_IMAGE_LAYOUT_GENERAL;
+}
+
+const AccelerationStorage& structuresOf(const BoundResource& resource) {
+    return static_cast<const AccelerationStorage&>(*resource.structures);
 }
 
 }  // namespace
 
-FrameExecutor::FrameExecutor(std::shared_ptr<const Context> context)
+FrameExecutor::FrameExecutor(std::shared_ptr<const Context> context, std::shared_ptr<PipelineCache> pipelines,
+                             const GraphOptions& options)
     : context_(std::move(context)),
       images_(context_),
-      pipelines_(context_),
-      slots_{FrameSlot(context_, 0), FrameSlot(context_, 1)} {}
+      pipelines_(std::move(pipelines)),
+      prefix_(options.prefix) {
+    for (uint32_t i = 0; i < options.framesInFlight; ++i) slots_.emplace_back(context_, i, options);
+}
 
 FrameExecutor::~FrameExecutor() {
-    context_->waitIdleNoThrow();
+    if (context_->submits()) context_->waitIdleNoThrow();
 }
 
 void FrameExecutor::execute(const RecordedFrame& frame) {
-    FrameSlot& slot = slots_[submitted_ % slots_.size()];
+    constexpr Scope anything{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                             VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+    FrameSlot& slot = nextSlot();
     slot.begin(frame);
+    recordFrame(frame, slot, anything);
+    // Downloads read by copies, or through mapped memory.
+    memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
+                  VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT);
+    slot.submit(frame);
+    finish();
+}
+
+void FrameExecutor::record(const RecordedFrame& frame, VkCommandBuffer commands) {
+    for (size_t i = 0; i < frame.passes.size(); ++i) {
+        if (frame.dispatches[i].host)
+            throw Error(
+                formatText("pass '{}' runs on the host: it cannot be recorded", frame.passes[i].name));
+    }
+    constexpr Scope ours{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                         VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                         VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
+                             VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+    FrameSlot& slot = nextSlot();
+    slot.beginForeign(frame, commands);
+    recordFrame(frame, slot, ours);
+    releaseForeign(frame, commands);
+    slot.endForeign(frame);
+    finish();
+}
+
+void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope) {
     images_.collect(submitted_);
-    const VkCommandBuffer commands = slot.commands();
-    prepareImages(frame, commands);
-    clearHistories(frame, commands);
+    prepareImages(frame, slot.commands(), scope);
+    clearHistories(frame, slot.commands());
     recordUploads(frame, slot);
     slot.writeTimestamp(0);
     for (size_t i = 0; i < frame.passes.size(); ++i) {
         recordPass(frame, i, slot);
         slot.writeTimestamp(static_cast<uint32_t>(i) + 1);
     }
-    // Downloads read by copies, or through mapped memory.
-    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
-                  VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT);
-    slot.submit(frame);
-    ++submitted_;
-    for (ImagePool::Entry* entry : frameImages_) entry->initialised = true;
 }
 
-/// One barrier orders this frame behind all earlier work and brings fresh images into GENERAL layout.
-void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer commands) {
+void FrameExecutor::finish() {
+    ++submitted_;
+    for (const FrameImage& image : frameImages_)
+        if (image.pooled) image.pooled->initialised = true;
+}
+
+/// One barrier orders this frame behind earlier work, and brings fresh images and written foreign ones into
+/// GENERAL layout.
+void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope) {
     frameImages_.clear();
-    std::vector<VkImageMemoryBarrier2> fresh;
+    std::vector<VkImageMemoryBarrier2> barriers;
     for (const RecordedImage& recorded : frame.images) {
-        ImagePool::Entry& entry = images_.acquire(recorded.key, submitted_);
-        frameImages_.push_back(&entry);
-        if (entry.initialised || entry.image.buffer) continue;
-        VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-        barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-        barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+        if (recorded.role == RecordedImage::Role::Foreign) {
+            const VkImageLayout layout = layoutDuring(recorded);
+            frameImages_.push_back(
+                {nullptr, reinterpret_cast<VkImageView>(recorded.foreign.view), layout, nullptr});
+            VkImageMemoryBarrier2& barrier = barriers.emplace_back(foreignBarrier(recorded));
+            barrier.srcStageMask = recorded.foreign.stagesBefore;
+            barrier.srcAccessMask = recorded.foreign.accessBefore;
+            barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+            barrier.dstAccessMask = recorded.sampled ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT : storageAccess;
+            barrier.oldLayout = static_cast<VkImageLayout>(recorded.foreign.layoutBefore);
+            barrier.newLayout = layout;
+            continue;
+        }
+        ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
+        const BufferStorage* buffer = entry.image.buffer.get();
+        frameImages_.push_back({&entry, entry.image.view.get(), VK_IMAGE_LAYOUT_GENERAL, buffer});
+        if (entry.initialised || buffer) continue;
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry.image.image.get()));
+        barrier.dstStageMask = scope.stages;
+        barrier.dstAccessMask = scope.all;
         barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
         barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-        barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = entry.image.image.get();
-        barrier.subresourceRange = wholeImage();
-        fresh.push_back(barrier);
     }
     VkMemoryBarrier2 before{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    before.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    before.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    before.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    before.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    before.srcStageMask = scope.stages;
+    before.srcAccessMask = scope.writes;
+    before.dstStageMask = scope.stages;
+    before.dstAccessMask = scope.all;
     VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
     dependency.memoryBarrierCount = 1;
     dependency.pMemoryBarriers = &before;
-    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(fresh.size());
-    dependency.pImageMemoryBarriers = fresh.data();
-    vkCmdPipelineBarrier2(commands, &dependency);
+    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(barriers.size());
+    dependency.pImageMemoryBarriers = barriers.data();
+    context_->vk().CmdPipelineBarrier2(commands, &dependency);
+}
+
+/// Hands written images of the caller's back to him.
+void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const {
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (const RecordedImage& recorded : frame.images) {
+        if (recorded.role != RecordedImage::Role::Foreign || recorded.sampled) continue;
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(foreignBarrier(recorded));
+        barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+        barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+        barrier.dstStageMask = recorded.foreign.stagesAfter;
+        barrier.dstAccessMask = recorded.foreign.accessAfter;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_GENERAL;
+        barrier.newLayout = static_cast<VkImageLayout>(recorded.foreign.layoutAfter);
+    }
+    if (barriers.empty()) return;
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(barriers.size());
+    dependency.pImageMemoryBarriers = barriers.data();
+    context_->vk().CmdPipelineBarrier2(commands, &dependency);
 }
 
 /// Shaders may read an invalid history's previous image before they look at the flag: it is zero, never
@@ -91,15 +182,16 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
     const VkImageSubresourceRange range = wholeImage();
     for (size_t i = 0; i < frame.images.size(); ++i) {
         if (!frame.images[i].clear) continue;
-        const Image& image = frameImages_[i]->image;
+        const Image& image = frameImages_[i].pooled->image;
         if (image.buffer)
-            vkCmdFillBuffer(commands, image.buffer->buffer.get(), 0, VK_WHOLE_SIZE, 0);
+            context_->vk().CmdFillBuffer(commands, image.buffer->buffer.get(), 0, VK_WHOLE_SIZE, 0);
         else
-            vkCmdClearColorImage(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);
+            context_->vk().CmdClearColorImage(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1,
+                                              &range);
         any = true;
     }
     if (!any) return;
-    memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+    memoryBarrier(*context_, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
@@ -108,17 +200,17 @@ void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
     if (frame.uploads.empty()) return;
     const VkBuffer staging = slot.stage(frame.uploadData);
     for (const RecordedUpload& upload : frame.uploads) {
-        const Image* image = upload.buffer ? nullptr : &frameImages_[upload.image]->image;
+        const Image* image = upload.buffer ? nullptr : &frameImages_[upload.image].pooled->image;
         if (image && !image->buffer) {
-            copyToImage(slot.commands(), staging, upload.at, *image);
+            copyToImage(*context_, slot.commands(), staging, upload.at, *image);
             continue;
         }
-        const BufferStorage& buffer = image ? *image->buffer : *upload.buffer;
+        const BufferStorage& buffer = image ? *image->buffer : storageOf(*upload.buffer);
         const VkBufferCopy region{upload.at, upload.offset, upload.size};
-        vkCmdCopyBuffer(slot.commands(), staging, buffer.buffer.get(), 1, &region);
+        context_->vk().CmdCopyBuffer(slot.commands(), staging, buffer.buffer.get(), 1, &region);
     }
-    memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+    memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                  VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
@@ -127,18 +219,18 @@ void FrameExecutor::checkGroups(const RecordedFrame& frame, size_t index) const 
         const auto& groups = frame.dispatches[index].groups;
         const uint64_t rays = uint64_t{groups[0]} * groups[1];
         if (rays <= context_->rayTracing().maxInvocations) return;
-        throw Error(fmt::format(
-            "pass '{}' starts {} rays, more than maxRayDispatchInvocationCount = {} of {}",
-            frame.passes[index].name, rays, context_->rayTracing().maxInvocations, context_->info().name));
+        throw Error(formatText("pass '{}' starts {} rays, more than maxRayDispatchInvocationCount = {} of {}",
+                               frame.passes[index].name, rays, context_->rayTracing().maxInvocations,
+                               context_->info().name));
     }
     for (size_t axis = 0; axis < 3; ++axis) {
         const uint32_t asked = frame.dispatches[index].groups[axis];
         const uint32_t maximum = context_->limits().maxComputeWorkGroupCount[axis];
         if (asked > maximum) {
             throw Error(
-                fmt::format("pass '{}' dispatches {} workgroups along axis {}, more than "
-                            "maxComputeWorkGroupCount = {} of {}",
-                            frame.passes[index].name, asked, axis, maximum, context_->info().name));
+                formatText("pass '{}' dispatches {} workgroups along axis {}, more than "
+                           "maxComputeWorkGroupCount = {} of {}",
+                           frame.passes[index].name, asked, axis, maximum, context_->info().name));
         }
     }
 }
@@ -153,7 +245,7 @@ void FrameExecutor::recordPass(const RecordedFrame& frame, size_t index, FrameSl
     if (dispatch.shader) {
         recordDispatch(frame, index, slot);
     } else {
-        dispatch.resources.front().structures->recordRebuild(commands);
+        structuresOf(dispatch.resources.front()).recordRebuild(commands);
     }
     endLabel(commands);
 }
@@ -162,14 +254,15 @@ void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlo
     std::vector<std::span<std::byte>> pixels;
     for (const uint32_t image : frame.dispatches[index].hostImages) {
         const RecordedImage& recorded = frame.images[image];
-        std::byte* const mapped = frameImages_[image]->image.buffer->memory.mapped;
+        std::byte* const mapped = frameImages_[image].buffer->memory.mapped;
         if (!mapped)
-            throw Error(fmt::format("pass '{}': the host cannot see image '{}' in the memory of {}",
-                                    frame.passes[index].name, recorded.name, context_->info().name));
+            throw Error(formatText("pass '{}': the host cannot see image '{}' in the memory of {}",
+                                   frame.passes[index].name, recorded.name, context_->info().name));
         pixels.emplace_back(mapped, recorded.bytes());
     }
-    memoryBarrier(slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
+    memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                  VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
     slot.flush();
     frame.dispatches[index].host(pixels);  // what it writes is seen by all that is submitted after it
 }
@@ -178,20 +271,20 @@ void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, Fra
     checkGroups(frame, index);
     const RecordedDispatch& dispatch = frame.dispatches[index];
     const VkCommandBuffer commands = slot.commands();
-    const PipelineCache::Pipeline pipeline = pipelines_.get(dispatch);
+    const PipelineCache::Pipeline pipeline = pipelines_->get(dispatch);
     const VkDescriptorSet set = writeDescriptors(frame, index, pipeline.setLayout, slot);
     const ShaderTable* table = pipeline.table;
     const VkPipelineBindPoint point =
         table ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
-    vkCmdBindPipeline(commands, point, pipeline.pipeline);
-    vkCmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
+    context_->vk().CmdBindPipeline(commands, point, pipeline.pipeline);
+    context_->vk().CmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
     const auto& groups = dispatch.groups;
     if (table) {
         const VkStridedDeviceAddressRegionKHR callable{};
-        vkCmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable, groups[0],
-                          groups[1], groups[2]);
+        context_->vk().CmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable,
+                                       groups[0], groups[1], groups[2]);
     } else {
-        vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
+        context_->vk().CmdDispatch(commands, groups[0], groups[1], groups[2]);
     }
 }
 
@@ -220,25 +313,26 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
     };
     for (const BoundResource& resource : dispatch.resources) {
         VkWriteDescriptorSet& write = add(resource.binding, resource.kind);
-        if (resource.kind == BindingKind::StorageImage) {
-            const Image& image = frameImages_[resource.image]->image;
-            images.push_back({VK_NULL_HANDLE, image.view.get(), VK_IMAGE_LAYOUT_GENERAL});
+        if (resource.kind == BindingKind::StorageImage || resource.kind == BindingKind::SampledImage) {
+            const FrameImage& image = frameImages_[resource.image];
+            images.push_back({VK_NULL_HANDLE, image.view, image.layout});
             write.pImageInfo = &images.back();
         } else if (!resource.buffer) {
-            const BufferStorage& buffer = *frameImages_[resource.image]->image.buffer;
+            const BufferStorage& buffer = *frameImages_[resource.image].buffer;
             buffers.push_back({buffer.buffer.get(), 0, buffer.allocated});
             write.pBufferInfo = &buffers.back();
         } else if (resource.kind == BindingKind::StorageTexelBuffer) {
-            views.push_back(resource.buffer->view.get());
+            views.push_back(storageOf(*resource.buffer).view.get());
             write.pTexelBufferView = &views.back();
         } else if (resource.kind == BindingKind::AccelerationStructure) {
             VkWriteDescriptorSetAccelerationStructureKHR& info = structures.emplace_back();
             info.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
             info.accelerationStructureCount = 1;
-            info.pAccelerationStructures = &resource.structures->topHandle;
+            info.pAccelerationStructures = &structuresOf(resource).topHandle;
             write.pNext = &info;
         } else {
-            buffers.push_back({resource.buffer->buffer.get(), 0, resource.buffer->allocated});
+            const BufferStorage& buffer = storageOf(*resource.buffer);
+            buffers.push_back({buffer.buffer.get(), 0, buffer.allocated});
             write.pBufferInfo = &buffers.back();
         }
     }
@@ -247,25 +341,26 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
         buffers.push_back(slot.pushParams(params.subspan(dispatch.paramsOffset, dispatch.paramsSize)));
         add(dispatch.paramsBinding, BindingKind::UniformBuffer).pBufferInfo = &buffers.back();
     }
-    vkUpdateDescriptorSets(context_->device(), static_cast<uint32_t>(writes.size()), writes.data(), 0,
-                           nullptr);
+    context_->vk().UpdateDescriptorSets(context_->device(), static_cast<uint32_t>(writes.size()),
+                                        writes.data(), 0, nullptr);
     return set;
 }
 
 void FrameExecutor::beginLabel(VkCommandBuffer commands, const std::string& name) const {
     if (!context_->hasDebugUtils()) return;
     VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
-    label.pLabelName = name.c_str();
-    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+    const std::string labelled = prefix_ + name;
+    label.pLabelName = labelled.c_str();
+    context_->vk().CmdBeginDebugUtilsLabelEXT(commands, &label);
 }
 
 void FrameExecutor::endLabel(VkCommandBuffer commands) const {
-    if (context_->hasDebugUtils()) vkCmdEndDebugUtilsLabelEXT(commands);
+    if (context_->hasDebugUtils()) context_->vk().CmdEndDebugUtilsLabelEXT(commands);
 }
 
 const Image& FrameExecutor::image(const RecordedImage& recorded) const {
     const Image* image = images_.find(recorded.key);
-    if (!image) throw Error(fmt::format("image '{}' is not on the device", recorded.name));
+    if (!image) throw Error(formatText("image '{}' is not on the device", recorded.name));
     return *image;
 }
 

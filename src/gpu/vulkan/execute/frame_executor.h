@@ -1,4 +1,15 @@
-// Runs recorded frames on a device.
+// Runs recorded frames on a device, or records them into the caller's command buffer.
+//
+// What record() orders. Before the passes stands one vkCmdPipelineBarrier2 with
+// - a memory barrier from compute shaders and copies (writes) to compute shaders and copies (reads and
+// writes): what the
+//   graph's earlier frames in the same queue did comes first;
+// - an image barrier for each imported image, from ForeignImage::stagesBefore and accessBefore to compute
+// shaders, and
+//   into GENERAL where it is bound as a storage image.
+// After the passes stands one with an image barrier for each imported image that a pass wrote, from compute
+// shaders to stagesAfter and accessAfter, and into layoutAfter. Nothing else is synchronised: no queue
+// ownership is transferred, no event or semaphore is used.
 #pragma once
 
 #include "gpu/vulkan/device_impl.h"
@@ -10,18 +21,36 @@ namespace limpid::gpu {
 
 class FrameExecutor {
   public:
-    explicit FrameExecutor(std::shared_ptr<const Context> context);
+    FrameExecutor(std::shared_ptr<const Context> context, std::shared_ptr<PipelineCache> pipelines,
+                  const GraphOptions& options);
     ~FrameExecutor();
 
     const Context& context() const { return *context_; }
     void execute(const RecordedFrame& frame);
+    void record(const RecordedFrame& frame, VkCommandBuffer commands);
     /// The device image behind an image of a frame that was executed.
     const Image& image(const RecordedImage& recorded) const;
     std::vector<PassTime> passTimes();
     size_t pooledImages() const { return images_.size(); }
 
   private:
-    void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands);
+    /// The device's side of a recorded image.
+    struct FrameImage {
+        ImagePool::Entry* pooled = nullptr;  ///< none of imported ones
+        VkImageView view = VK_NULL_HANDLE;
+        VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;  ///< while the frame runs
+        const BufferStorage* buffer = nullptr;           ///< with Backing::Buffer
+    };
+    /// What earlier commands may have done that the frame has to wait for.
+    struct Scope {
+        VkPipelineStageFlags2 stages;
+        VkAccessFlags2 writes, all;
+    };
+    FrameSlot& nextSlot() { return slots_[submitted_ % slots_.size()]; }
+    void recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope);
+    void releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const;
+    void finish();
+    void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
     void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
@@ -35,10 +64,11 @@ class FrameExecutor {
 
     std::shared_ptr<const Context> context_;
     ImagePool images_;
-    PipelineCache pipelines_;
-    std::array<FrameSlot, 2> slots_;
-    std::vector<ImagePool::Entry*> frameImages_;  ///< by the index of the recorded image
-    uint64_t submitted_ = 0;                      ///< frames so far
+    std::shared_ptr<PipelineCache> pipelines_;
+    std::string prefix_;
+    std::vector<FrameSlot> slots_;
+    std::vector<FrameImage> frameImages_;  ///< by the index of the recorded image
+    uint64_t submitted_ = 0;               ///< frames so far
 };
 
 }  // namespace limpid::gpu

@@ -1,10 +1,9 @@
 // FrameGraph's calls that need a device.
-#include <fmt/format.h>
-
 #include <cstring>
-#include <glm/gtc/packing.hpp>
 
 #include "base/error.h"
+#include "base/half.h"
+#include "base/text/format.h"
 #include "gpu/graph/frame_graph.h"
 #include "gpu/graph/frame_graph_impl.h"
 #include "gpu/vulkan/device_impl.h"
@@ -17,12 +16,12 @@ std::vector<std::byte> downloadPixels(FrameGraph::Impl& graph, Device& device, I
     const RecordedImage& recorded = graph.frame.images[graph.indexOf(handle)];
     FrameExecutor& executor = graph.executed(device);
     if (!recorded.written && recorded.role != RecordedImage::Role::Previous) {
-        throw Error(fmt::format("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
+        throw Error(formatText("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
     }
     const Image& image = executor.image(recorded);
     std::vector<std::byte> pixels(recorded.bytes());
     device.waitIdle();
-    device.impl().transfer.download(image, pixels);
+    device.impl().transfer().download(image, pixels);
     return pixels;
 }
 
@@ -46,7 +45,7 @@ std::vector<float> convertAll(const std::vector<std::byte>& bytes, Convert conve
 
 FrameExecutor& FrameGraph::Impl::executorFor(Device& device) {
     const std::shared_ptr<const Context>& context = device.impl().context;
-    if (!executor) executor = std::make_unique<FrameExecutor>(context);
+    if (!executor) executor = std::make_shared<FrameExecutor>(context, device.impl().pipelines, options);
     if (&executor->context() != context.get())
         throw Error("a frame graph runs on one device only, and this is another");
     return *executor;
@@ -59,23 +58,36 @@ FrameExecutor& FrameGraph::Impl::executed(Device& device) const {
     return *executor;
 }
 
-void FrameGraph::execute(Device& device) {
-    impl_->requireRecording();
-    FrameExecutor& executor = impl_->executorFor(device);
-    for (size_t i = 0; i < impl_->frame.dispatches.size(); ++i) {
-        for (const BoundResource& resource : impl_->frame.dispatches[i].resources) {
-            if (resource.buffer && resource.buffer->context.get() != &executor.context()) {
-                throw Error(fmt::format("pass '{}': buffer '{}' belongs to another device",
-                                        impl_->frame.passes[i].name, resource.buffer->name));
+FrameExecutor& FrameGraph::Impl::readyToRun(Device& device) {
+    requireRecording();
+    FrameExecutor& runner = executorFor(device);
+    for (size_t i = 0; i < frame.dispatches.size(); ++i) {
+        for (const BoundResource& resource : frame.dispatches[i].resources) {
+            if (resource.buffer && storageOf(*resource.buffer).context.get() != &runner.context()) {
+                throw Error(formatText("pass '{}': buffer '{}' belongs to another device",
+                                       frame.passes[i].name, resource.buffer->name));
             }
         }
     }
-    for (const RecordedUpload& upload : impl_->frame.uploads) {
-        if (upload.buffer && upload.buffer->context.get() != &executor.context())
-            throw Error(fmt::format("buffer '{}' belongs to another device", upload.buffer->name));
+    for (const RecordedUpload& upload : frame.uploads) {
+        if (upload.buffer && storageOf(*upload.buffer).context.get() != &runner.context())
+            throw Error(formatText("buffer '{}' belongs to another device", upload.buffer->name));
     }
-    executor.execute(impl_->frame);
+    return runner;
+}
+
+void FrameGraph::execute(Device& device) {
+    impl_->readyToRun(device).execute(impl_->frame);
     impl_->frame.executed = true;
+}
+
+void FrameGraph::record(Device& device, VkCommandBuffer commands) {
+    impl_->readyToRun(device).record(impl_->frame, commands);
+    impl_->frame.executed = true;
+}
+
+void FrameGraph::prepare(Device& device) {
+    device.impl().pipelines->prepare(impl_->frame.dispatches);
 }
 
 const Image& FrameGraph::imageOnDevice(Device& device, ImageHandle image) {
@@ -90,13 +102,13 @@ std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) 
         case Format::RGBA32Float:
             return reinterpretAs<float>(downloadPixels(*impl_, device, image));
         case Format::RGBA16Float:
-            return convertAll<uint16_t>(downloadPixels(*impl_, device, image), glm::unpackHalf1x16);
+            return convertAll<uint16_t>(downloadPixels(*impl_, device, image), halfToFloat);
         case Format::RGBA8Unorm:
             return convertAll<uint8_t>(downloadPixels(*impl_, device, image),
                                        [](uint8_t value) { return static_cast<float>(value) / 255.0f; });
         default:
             throw Error(
-                fmt::format("image '{}' is {}: use downloadUint", name(image), toString(format(image))));
+                formatText("image '{}' is {}: use downloadUint", name(image), toString(format(image))));
     }
 }
 
@@ -108,7 +120,7 @@ std::vector<uint32_t> FrameGraph::downloadUint(Device& device, ImageHandle image
             return reinterpretAs<uint32_t>(downloadPixels(*impl_, device, image));
         default:
             throw Error(
-                fmt::format("image '{}' is {}: use downloadFloat", name(image), toString(format(image))));
+                formatText("image '{}' is {}: use downloadFloat", name(image), toString(format(image))));
     }
 }
 

@@ -1,49 +1,71 @@
 #include "gpu/vulkan/execute/frame_slot.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/execute/pipeline_cache.h"
 
 namespace limpid::gpu {
 
-FrameSlot::FrameSlot(std::shared_ptr<const Context> context, uint32_t index)
+FrameSlot::FrameSlot(std::shared_ptr<const Context> context, uint32_t index, const GraphOptions& options)
     : context_(std::move(context)),
       index_(index),
-      commandPool_(makeCommandPool(*context_, name("commands"))),
-      commands_(allocateCommandBuffer(*context_, commandPool_.get(), name("commands"))),
-      fence_(makeFence(*context_, name("fence"))) {}
+      prefix_(options.prefix),
+      timed_(options.timestamps && context_->timestampValidBits() != 0) {}
 
 std::string FrameSlot::name(const char* what) const {
-    return fmt::format("frame slot {} {}", index_, what);
+    return formatText("{}frame slot {} {}", prefix_, index_, what);
+}
+
+void FrameSlot::makeCommands() {
+    if (commandPool_) return;
+    commandPool_ = makeCommandPool(*context_, name("commands"));
+    ownCommands_ = allocateCommandBuffer(*context_, commandPool_.get(), name("commands"));
+    fence_ = makeFence(*context_, name("fence"));
 }
 
 void FrameSlot::wait() {
     if (!submitted_) return;
     const VkFence fence = fence_.get();
-    LIMPID_VK(vkWaitForFences(context_->device(), 1, &fence, VK_TRUE, UINT64_MAX));
+    LIMPID_VK(context_->vk().WaitForFences(context_->device(), 1, &fence, VK_TRUE, UINT64_MAX));
 }
 
-void FrameSlot::begin(const RecordedFrame& frame) {
-    wait();
-    const VkFence fence = fence_.get();
-    if (std::exchange(submitted_, false)) LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
+void FrameSlot::makeRoom(const RecordedFrame& frame) {
     buffers_.clear();
     structures_.clear();
     passNames_.clear();
     reserveDescriptors(frame);
     reserveParams(frame);
-    reserveTimestamps(static_cast<uint32_t>(frame.passes.size()) + 1);
-    LIMPID_VK(vkResetCommandPool(context_->device(), commandPool_.get(), 0));
-    beginCommands(commands_);
-    vkCmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
+    if (timed_) reserveTimestamps(static_cast<uint32_t>(frame.passes.size()) + 1);
 }
 
-void FrameSlot::submit(const RecordedFrame& frame) {
-    LIMPID_VK(vkEndCommandBuffer(commands_));
+void FrameSlot::begin(const RecordedFrame& frame) {
+    makeCommands();
+    wait();
+    const VkFence fence = fence_.get();
+    if (std::exchange(submitted_, false))
+        LIMPID_VK(context_->vk().ResetFences(context_->device(), 1, &fence));
+    makeRoom(frame);
+    LIMPID_VK(context_->vk().ResetCommandPool(context_->device(), commandPool_.get(), 0));
+    commands_ = ownCommands_;
+    beginCommands(*context_, commands_);
+    if (timed_) context_->vk().CmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
+}
+
+void FrameSlot::beginForeign(const RecordedFrame& frame, VkCommandBuffer commands) {
+    makeRoom(frame);
+    commands_ = commands;
+    if (timed_) context_->vk().CmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
+}
+
+void FrameSlot::endForeign(const RecordedFrame& frame) {
+    keep(frame);
+}
+
+/// What the frame uses lives until the slot's next frame begins.
+void FrameSlot::keep(const RecordedFrame& frame) {
     for (const RecordedDispatch& dispatch : frame.dispatches) {
         for (const BoundResource& resource : dispatch.resources) {
             if (resource.buffer) buffers_.push_back(resource.buffer);
@@ -53,21 +75,26 @@ void FrameSlot::submit(const RecordedFrame& frame) {
     for (const RecordedUpload& upload : frame.uploads) {
         if (upload.buffer) buffers_.push_back(upload.buffer);
     }
-    context_->submit(commands_, fence_.get());
-    submitted_ = true;
     for (const RecordedPass& pass : frame.passes) passNames_.push_back(pass.name);
 }
 
+void FrameSlot::submit(const RecordedFrame& frame) {
+    LIMPID_VK(context_->vk().EndCommandBuffer(commands_));
+    keep(frame);
+    context_->submit(commands_, fence_.get());
+    submitted_ = true;
+}
+
 void FrameSlot::flush() {
-    LIMPID_VK(vkEndCommandBuffer(commands_));
+    LIMPID_VK(context_->vk().EndCommandBuffer(commands_));
     context_->submit(commands_, fence_.get());
     submitted_ = true;
     wait();
     const VkFence fence = fence_.get();
-    LIMPID_VK(vkResetFences(context_->device(), 1, &fence));
+    LIMPID_VK(context_->vk().ResetFences(context_->device(), 1, &fence));
     submitted_ = false;
-    LIMPID_VK(vkResetCommandPool(context_->device(), commandPool_.get(), 0));
-    beginCommands(commands_);
+    LIMPID_VK(context_->vk().ResetCommandPool(context_->device(), commandPool_.get(), 0));
+    beginCommands(*context_, commands_);
 }
 
 /// Resets the pool, or replaces it by one that is twice as large as the frame needs.
@@ -83,7 +110,7 @@ void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
     bool fits = descriptors_ && sets <= setCapacity_;
     for (size_t i = 0; i < needed.size(); ++i) fits = fits && needed[i] <= descriptorCapacity_[i];
     if (fits) {
-        LIMPID_VK(vkResetDescriptorPool(context_->device(), descriptors_.get(), 0));
+        LIMPID_VK(context_->vk().ResetDescriptorPool(context_->device(), descriptors_.get(), 0));
         return;
     }
     std::vector<VkDescriptorPoolSize> sizes;
@@ -99,8 +126,8 @@ void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
     info.poolSizeCount = static_cast<uint32_t>(sizes.size());
     info.pPoolSizes = sizes.data();
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateDescriptorPool(context_->device(), &info, nullptr, &pool));
-    descriptors_ = UniqueDescriptorPool(context_->device(), pool);
+    LIMPID_VK(context_->vk().CreateDescriptorPool(context_->device(), &info, nullptr, &pool));
+    descriptors_ = UniqueDescriptorPool(context_->vk(), pool);
     context_->setName(pool, name("descriptors"));
 }
 
@@ -145,8 +172,8 @@ void FrameSlot::reserveTimestamps(uint32_t count) {
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = timestampCapacity_;
     VkQueryPool pool = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateQueryPool(context_->device(), &info, nullptr, &pool));
-    timestamps_ = UniqueQueryPool(context_->device(), pool);
+    LIMPID_VK(context_->vk().CreateQueryPool(context_->device(), &info, nullptr, &pool));
+    timestamps_ = UniqueQueryPool(context_->vk(), pool);
     context_->setName(pool, name("timestamps"));
 }
 
@@ -156,23 +183,28 @@ VkDescriptorSet FrameSlot::allocateSet(VkDescriptorSetLayout layout, const std::
     info.descriptorSetCount = 1;
     info.pSetLayouts = &layout;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    LIMPID_VK(vkAllocateDescriptorSets(context_->device(), &info, &set));
+    LIMPID_VK(context_->vk().AllocateDescriptorSets(context_->device(), &info, &set));
     context_->setName(set, setName);
     return set;
 }
 
 void FrameSlot::writeTimestamp(uint32_t stamp) {
-    vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps_.get(), stamp);
+    if (!timed_) return;
+    context_->vk().CmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timestamps_.get(),
+                                      stamp);
 }
 
 std::vector<PassTime> FrameSlot::passTimes() {
     wait();
-    if (passNames_.empty()) return {};
+    if (passNames_.empty() || !timed_) return {};
     std::vector<uint64_t> ticks(passNames_.size() + 1);
-    LIMPID_VK(vkGetQueryPoolResults(context_->device(), timestamps_.get(), 0,
-                                    static_cast<uint32_t>(ticks.size()), ticks.size() * sizeof(uint64_t),
-                                    ticks.data(), sizeof(uint64_t),
-                                    VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    // A frame of the caller's may still be under way; waiting for it is not ours.
+    const VkQueryResultFlags waits = submitted_ ? VK_QUERY_RESULT_WAIT_BIT : 0;
+    const VkResult result = context_->vk().GetQueryPoolResults(
+        context_->device(), timestamps_.get(), 0, static_cast<uint32_t>(ticks.size()),
+        ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | waits);
+    if (result == VK_NOT_READY) return {};
+    LIMPID_VK(result);
     const uint32_t bits = context_->timestampValidBits();
     const uint64_t mask = bits >= 64 ? UINT64_MAX : (uint64_t{1} << bits) - 1;
     std::vector<PassTime> times;

@@ -1,4 +1,5 @@
-// What one frame under way owns: commands, descriptors, parameters, timestamps. Two slots take turns.
+// What one frame under way owns: descriptors, parameters, timestamps, and commands unless they are recorded
+// into the caller's. Slots take turns.
 #pragma once
 
 #include "gpu/graph/frame_graph_impl.h"
@@ -8,11 +9,15 @@ namespace limpid::gpu {
 
 class FrameSlot {
   public:
-    FrameSlot(std::shared_ptr<const Context> context, uint32_t index);
+    /// `prefix`: before the names of what it makes.
+    FrameSlot(std::shared_ptr<const Context> context, uint32_t index, const GraphOptions& options);
 
     /// Waits until the slot's last frame is done, then makes room for `frame`.
     void begin(const RecordedFrame& frame);
     void submit(const RecordedFrame& frame);
+    /// The same around commands of the caller's, who knows that the slot's last frame is done.
+    void beginForeign(const RecordedFrame& frame, VkCommandBuffer commands);
+    void endForeign(const RecordedFrame& frame);
     void wait();
     /// Runs the commands so far to their end, in the middle of a frame.
     void flush();
@@ -25,11 +30,15 @@ class FrameSlot {
     VkBuffer stage(std::span<const std::byte> data);
     /// After the passes so far, the clock is read: stamp 0 before the first pass, stamp i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
-    /// Of the slot's last submitted frame; waits for it.
+    /// Of the slot's last frame, which execute() waits for. Of one in the caller's commands: empty until it
+    /// is done.
     std::vector<PassTime> passTimes();
 
   private:
     std::string name(const char* what) const;
+    void makeCommands();
+    void makeRoom(const RecordedFrame& frame);
+    void keep(const RecordedFrame& frame);
     void reserveDescriptors(const RecordedFrame& frame);
     void reserveParams(const RecordedFrame& frame);
     void reserveTimestamps(uint32_t count);
@@ -37,8 +46,11 @@ class FrameSlot {
 
     std::shared_ptr<const Context> context_;
     uint32_t index_;
+    std::string prefix_;
+    bool timed_;
     UniqueCommandPool commandPool_;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkCommandBuffer ownCommands_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< that are being recorded
     UniqueFence fence_;
     bool submitted_ = false;  ///< the fence will be signalled
 
@@ -54,9 +66,9 @@ class FrameSlot {
     uint32_t timestampCapacity_ = 0;
     std::vector<std::string> passNames_;  ///< of the submitted frame
 
-    std::vector<std::shared_ptr<const BufferStorage>>
-        buffers_;  ///< that the frame uses, kept until it is done
-    std::vector<std::shared_ptr<const AccelerationStorage>> structures_;  ///< the same
+    /// What the frame uses, kept until it is done.
+    std::vector<std::shared_ptr<const BufferResource>> buffers_;
+    std::vector<std::shared_ptr<const StructuresResource>> structures_;
 };
 
 }  // namespace limpid::gpu

@@ -1,10 +1,12 @@
 #include "gpu/vulkan/execute/pipeline_cache.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 
 namespace limpid::gpu {
@@ -13,22 +15,25 @@ namespace {
 void checkLimit(const Context& context, const std::string& shader, std::string_view limit, uint64_t maximum,
                 uint64_t asked) {
     if (asked <= maximum) return;
-    throw Error(fmt::format("shader '{}' needs {} = {} but {} has {}", shader, limit, asked,
-                            context.info().name, maximum));
+    throw Error(formatText("shader '{}' needs {} = {} but {} has {}", shader, limit, asked,
+                           context.info().name, maximum));
 }
 
 void checkBindings(const Context& context, const Shader& shader) {
     const VkPhysicalDeviceLimits& limits = context.limits();
-    uint32_t images = 0, buffers = 0, blockSize = 0;
+    uint32_t images = 0, sampled = 0, buffers = 0, blockSize = 0;
     for (const ShaderBinding& binding : shader.reflection.bindings) {
         // Vulkan counts storage texel buffers as storage images.
         if (binding.kind == BindingKind::StorageImage || binding.kind == BindingKind::StorageTexelBuffer)
             ++images;
+        if (binding.kind == BindingKind::SampledImage) ++sampled;
         if (binding.kind == BindingKind::StorageBuffer) ++buffers;
         if (binding.kind == BindingKind::UniformBuffer) blockSize = binding.blockSize;
     }
     checkLimit(context, shader.name, "maxPerStageDescriptorStorageImages",
                limits.maxPerStageDescriptorStorageImages, images);
+    checkLimit(context, shader.name, "maxPerStageDescriptorSampledImages",
+               limits.maxPerStageDescriptorSampledImages, sampled);
     checkLimit(context, shader.name, "maxPerStageDescriptorStorageBuffers",
                limits.maxPerStageDescriptorStorageBuffers, buffers);
     checkLimit(context, shader.name, "maxPerStageResources", limits.maxPerStageResources,
@@ -42,7 +47,7 @@ void checkWorkgroup(const Context& context, const RecordedDispatch& dispatch) {
     uint64_t invocations = 1;
     for (size_t i = 0; i < 3; ++i) {
         invocations *= dispatch.workgroupSize[i];
-        checkLimit(context, dispatch.shader->name, fmt::format("maxComputeWorkGroupSize.{}", axes[i]),
+        checkLimit(context, dispatch.shader->name, formatText("maxComputeWorkGroupSize.{}", axes[i]),
                    limits.maxComputeWorkGroupSize[i], dispatch.workgroupSize[i]);
     }
     checkLimit(context, dispatch.shader->name, "maxComputeWorkGroupInvocations",
@@ -51,8 +56,33 @@ void checkWorkgroup(const Context& context, const RecordedDispatch& dispatch) {
 
 std::string pipelineName(const RecordedDispatch& dispatch) {
     std::string name = dispatch.shader->name;
-    for (const auto& [id, value] : dispatch.constants) name += fmt::format(" [{}={}]", id, value);
+    for (const auto& [id, value] : dispatch.constants) name += formatText(" [{}={}]", id, value);
     return name;
+}
+
+/// Calls `work` with 0 to count - 1, on several threads. Throws what one of the calls threw, after all have
+/// ended.
+void forEachOnThreads(size_t count, const std::function<void(size_t)>& work) {
+    std::atomic<size_t> next = 0;
+    std::mutex mutex;
+    std::exception_ptr fault;
+    const auto run = [&] {
+        for (size_t i = next++; i < count; i = next++) {
+            try {
+                work(i);
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!fault) fault = std::current_exception();
+            }
+        }
+    };
+    const size_t threads = std::min<size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+    {
+        std::vector<std::jthread> others;
+        for (size_t i = 1; i < threads; ++i) others.emplace_back(run);
+        run();
+    }
+    if (fault) std::rethrow_exception(fault);
 }
 
 }  // namespace
@@ -61,6 +91,8 @@ VkDescriptorType descriptorType(BindingKind kind) {
     switch (kind) {
         case BindingKind::StorageImage:
             return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        case BindingKind::SampledImage:
+            return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
         case BindingKind::StorageTexelBuffer:
             return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
         case BindingKind::StorageBuffer:
@@ -89,9 +121,45 @@ VkShaderStageFlagBits stageFlag(ShaderStage stage) {
     return VK_SHADER_STAGE_ALL;
 }
 
+PipelineCache::PipelineCache(std::shared_ptr<const Context> context)
+    : context_(std::move(context)), driverCache_(makeDriverCache({})) {}
+
+UniqueDriverCache PipelineCache::makeDriverCache(std::span<const std::byte> data) const {
+    VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+    info.initialDataSize = data.size();
+    info.pInitialData = data.data();
+    VkPipelineCache cache = VK_NULL_HANDLE;
+    LIMPID_VK(context_->vk().CreatePipelineCache(context_->device(), &info, nullptr, &cache));
+    UniqueDriverCache owned(context_->vk(), cache);
+    context_->setName(cache, "limpid pipelines");
+    return owned;
+}
+
+std::vector<std::byte> PipelineCache::data() const {
+    const DeviceFunctions& vk = context_->vk();
+    size_t size = 0;
+    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, nullptr));
+    std::vector<std::byte> bytes(size);
+    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, bytes.data()));
+    bytes.resize(size);
+    return bytes;
+}
+
+void PipelineCache::load(std::span<const std::byte> data) {
+    const std::lock_guard lock(mutex_);
+    if (!pipelines_.empty()) throw Error("the pipeline cache cannot be loaded: pipelines have been made");
+    driverCache_ = makeDriverCache(data);
+}
+
+size_t PipelineCache::size() const {
+    const std::lock_guard lock(mutex_);
+    return pipelines_.size();
+}
+
 PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
-    const Layouts& layouts = layoutsOf(dispatch.shader);
-    const auto key = std::make_pair(dispatch.shader, dispatch.constants);
+    const std::lock_guard lock(mutex_);
+    const Layouts& layouts = layoutsOf(*dispatch.shader);
+    const Key key{dispatch.shader->hash, dispatch.constants};
     auto found = pipelines_.find(key);
     if (found == pipelines_.end()) found = pipelines_.emplace(key, makePipeline(dispatch, layouts)).first;
     const Made& made = found->second;
@@ -99,9 +167,33 @@ PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
             made.table ? &*made.table : nullptr};
 }
 
-const PipelineCache::Layouts& PipelineCache::layoutsOf(const std::shared_ptr<const Shader>& shader) {
-    auto found = layouts_.find(shader);
-    if (found == layouts_.end()) found = layouts_.emplace(shader, makeLayouts(*shader)).first;
+void PipelineCache::prepare(std::span<const RecordedDispatch> dispatches) {
+    struct Job {
+        const RecordedDispatch* dispatch;
+        const Layouts* layouts;
+    };
+    std::vector<Job> jobs;
+    {
+        const std::lock_guard lock(mutex_);
+        std::set<Key> wanted;
+        for (const RecordedDispatch& dispatch : dispatches) {
+            if (!dispatch.shader) continue;
+            const Key key{dispatch.shader->hash, dispatch.constants};
+            if (pipelines_.contains(key) || !wanted.insert(key).second) continue;
+            jobs.push_back({&dispatch, &layoutsOf(*dispatch.shader)});
+        }
+    }
+    forEachOnThreads(jobs.size(), [&](size_t i) {
+        const RecordedDispatch& dispatch = *jobs[i].dispatch;
+        Made made = makePipeline(dispatch, *jobs[i].layouts);
+        const std::lock_guard lock(mutex_);
+        pipelines_.emplace(Key{dispatch.shader->hash, dispatch.constants}, std::move(made));
+    });
+}
+
+const PipelineCache::Layouts& PipelineCache::layoutsOf(const Shader& shader) {
+    auto found = layouts_.find(shader.hash);
+    if (found == layouts_.end()) found = layouts_.emplace(shader.hash, makeLayouts(shader)).first;
     return found->second;
 }
 
@@ -125,8 +217,8 @@ UniqueSetLayout PipelineCache::makeSetLayout(const Shader& shader) const {
     info.bindingCount = static_cast<uint32_t>(bindings.size());
     info.pBindings = bindings.data();
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateDescriptorSetLayout(context_->device(), &info, nullptr, &layout));
-    UniqueSetLayout owned(context_->device(), layout);
+    LIMPID_VK(context_->vk().CreateDescriptorSetLayout(context_->device(), &info, nullptr, &layout));
+    UniqueSetLayout owned(context_->vk(), layout);
     context_->setName(layout, shader.name);
     return owned;
 }
@@ -137,8 +229,8 @@ UniquePipelineLayout PipelineCache::makePipelineLayout(const Shader& shader,
     info.setLayoutCount = 1;
     info.pSetLayouts = &set;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreatePipelineLayout(context_->device(), &info, nullptr, &layout));
-    UniquePipelineLayout owned(context_->device(), layout);
+    LIMPID_VK(context_->vk().CreatePipelineLayout(context_->device(), &info, nullptr, &layout));
+    UniquePipelineLayout owned(context_->vk(), layout);
     context_->setName(layout, shader.name);
     return owned;
 }
@@ -148,8 +240,8 @@ UniqueShaderModule PipelineCache::makeModule(const Shader& shader, const Shader:
     info.codeSize = stage.words.size() * sizeof(uint32_t);
     info.pCode = stage.words.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateShaderModule(context_->device(), &info, nullptr, &module));
-    UniqueShaderModule owned(context_->device(), module);
+    LIMPID_VK(context_->vk().CreateShaderModule(context_->device(), &info, nullptr, &module));
+    UniqueShaderModule owned(context_->vk(), module);
     context_->setName(module, shader.name);
     return owned;
 }
@@ -160,8 +252,9 @@ UniquePipeline PipelineCache::makeComputePipeline(const VkPipelineShaderStageCre
     info.stage = stage;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-    return {context_->device(), pipeline};
+    LIMPID_VK(context_->vk().CreateComputePipelines(context_->device(), driverCache_.get(), 1, &info, nullptr,
+                                                    &pipeline));
+    return {context_->vk(), pipeline};
 }
 
 PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch,
@@ -189,7 +282,7 @@ PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch
     }
     Made made;
     if (shader.tracesRays()) {
-        made.pipeline = makeRayPipeline(*context_, stages, layouts.pipeline.get());
+        made.pipeline = makeRayPipeline(*context_, stages, layouts.pipeline.get(), driverCache_.get());
         made.table.emplace(makeShaderTable(context_, made.pipeline.get(), shader.name));
     } else {
         checkWorkgroup(*context_, dispatch);

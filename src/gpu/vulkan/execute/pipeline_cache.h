@@ -1,5 +1,10 @@
-// Compute and ray-tracing pipelines, made at the first dispatch that needs them.
+// Compute and ray-tracing pipelines of a device: shared by all graphs that run on it, and made by prepare(),
+// or at the first dispatch that needs them.
 #pragma once
+
+#include <mutex>
+#include <optional>
+#include <set>
 
 #include "gpu/graph/frame_graph_impl.h"
 #include "gpu/vulkan/context.h"
@@ -9,7 +14,7 @@ namespace limpid::gpu {
 
 class PipelineCache {
   public:
-    explicit PipelineCache(std::shared_ptr<const Context> context) : context_(std::move(context)) {}
+    explicit PipelineCache(std::shared_ptr<const Context> context);
 
     struct Pipeline {
         VkPipeline pipeline = VK_NULL_HANDLE;
@@ -18,8 +23,16 @@ class PipelineCache {
         const ShaderTable* table = nullptr;  ///< of ray-tracing pipelines
     };
 
-    /// Throws Error naming the shader if it exceeds a limit of the device.
+    /// Throws Error naming the shader if it exceeds a limit of the device. From any thread.
     Pipeline get(const RecordedDispatch& dispatch);
+    /// Makes what is missing, on as many threads as the machine runs at once. From any thread.
+    void prepare(std::span<const RecordedDispatch> dispatches);
+
+    /// Of the driver's own cache (VkPipelineCache): what it has compiled so far.
+    std::vector<std::byte> data() const;
+    /// Starts the driver's cache from what data() once gave. Throws Error if pipelines have been made.
+    void load(std::span<const std::byte> data);
+    size_t size() const;
 
   private:
     struct Layouts {
@@ -33,7 +46,11 @@ class PipelineCache {
     };
     using Constants = std::vector<std::pair<uint32_t, uint32_t>>;
 
-    const Layouts& layoutsOf(const std::shared_ptr<const Shader>& shader);
+    using Key = std::pair<uint64_t, Constants>;  ///< Shader::hash and the constants
+
+    /// Must hold `mutex_`.
+    const Layouts& layoutsOf(const Shader& shader);
+    UniqueDriverCache makeDriverCache(std::span<const std::byte> data) const;
     Layouts makeLayouts(const Shader& shader) const;
     UniqueSetLayout makeSetLayout(const Shader& shader) const;
     UniquePipelineLayout makePipelineLayout(const Shader& shader, VkDescriptorSetLayout set) const;
@@ -43,9 +60,10 @@ class PipelineCache {
                                        VkPipelineLayout layout) const;
 
     std::shared_ptr<const Context> context_;
-    // The shared pointers as keys keep the shaders alive, so that no other can take their address.
-    std::map<std::shared_ptr<const Shader>, Layouts> layouts_;
-    std::map<std::pair<std::shared_ptr<const Shader>, Constants>, Made> pipelines_;
+    UniqueDriverCache driverCache_;
+    mutable std::mutex mutex_;             ///< of what follows; elements stay where they are
+    std::map<uint64_t, Layouts> layouts_;  ///< by Shader::hash
+    std::map<Key, Made> pipelines_;
 };
 
 /// The Vulkan name of a kind of binding, and of a stage.

@@ -15,7 +15,7 @@ enum Group : uint32_t { rayGenerationGroup, missGroup, hitGroup, groupCount };
 
 UniquePipeline makeRayPipeline(const Context& context,
                                std::span<const VkPipelineShaderStageCreateInfo> stages,
-                               VkPipelineLayout layout) {
+                               VkPipelineLayout layout, VkPipelineCache cache) {
     std::array<VkRayTracingShaderGroupCreateInfoKHR, groupCount> groups{};
     for (uint32_t i = 0; i < groupCount; ++i) {
         groups[i].sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
@@ -36,9 +36,9 @@ UniquePipeline makeRayPipeline(const Context& context,
     info.maxPipelineRayRecursionDepth = 1;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateRayTracingPipelinesKHR(context.device(), VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info,
-                                             nullptr, &pipeline));
-    return {context.device(), pipeline};
+    LIMPID_VK(context.vk().CreateRayTracingPipelinesKHR(context.device(), VK_NULL_HANDLE, cache, 1, &info,
+                                                        nullptr, &pipeline));
+    return {context.vk(), pipeline};
 }
 
 ShaderTable makeShaderTable(const std::shared_ptr<const Context>& context, VkPipeline pipeline,
@@ -48,8 +48,8 @@ ShaderTable makeShaderTable(const std::shared_ptr<const Context>& context, VkPip
     const uint64_t recordBytes = alignUp(handleSize, limits.handleAlignment);
     const uint64_t regionBytes = alignUp(recordBytes, limits.baseAlignment);
     std::vector<std::byte> handles(groupCount * handleSize);
-    LIMPID_VK(vkGetRayTracingShaderGroupHandlesKHR(context->device(), pipeline, 0, groupCount, handles.size(),
-                                                   handles.data()));
+    LIMPID_VK(context->vk().GetRayTracingShaderGroupHandlesKHR(context->device(), pipeline, 0, groupCount,
+                                                               handles.size(), handles.data()));
     // The buffer's own address may be aligned to less than a region needs.
     const auto buffer = makeBuffer(context, name + " shader table", BufferUse::ShaderTable,
                                    groupCount * regionBytes + limits.baseAlignment);

@@ -16,7 +16,7 @@ struct ShaderTable {
 /// `stages`: ray generation, miss, closest hit, any hit. Rays are traced from ray generation alone.
 UniquePipeline makeRayPipeline(const Context& context,
                                std::span<const VkPipelineShaderStageCreateInfo> stages,
-                               VkPipelineLayout layout);
+                               VkPipelineLayout layout, VkPipelineCache cache);
 ShaderTable makeShaderTable(const std::shared_ptr<const Context>& context, VkPipeline pipeline,
                             const std::string& name);
 

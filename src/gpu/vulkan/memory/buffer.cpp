@@ -1,10 +1,9 @@
 #include "gpu/vulkan/memory/buffer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/memory/format.h"
 
@@ -58,8 +57,8 @@ MemoryUse memoryOf(BufferUse use) {
 void checkLimit(const Context& context, const std::string& name, std::string_view limit, uint64_t maximum,
                 uint64_t asked, std::string_view unit) {
     if (asked <= maximum) return;
-    throw Error(fmt::format("buffer '{}' needs {} {}, more than {} = {} of {}", name, asked, unit, limit,
-                            maximum, context.info().name));
+    throw Error(formatText("buffer '{}' needs {} {}, more than {} = {} of {}", name, asked, unit, limit,
+                           maximum, context.info().name));
 }
 
 void checkLimits(const Context& context, const std::string& name, BufferUse use, uint64_t bytes,
@@ -83,8 +82,8 @@ UniqueBufferView makeView(const Context& context, const BufferStorage& storage) 
     info.format = toVulkan(*storage.format);
     info.range = VK_WHOLE_SIZE;
     VkBufferView view = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateBufferView(context.device(), &info, nullptr, &view));
-    UniqueBufferView owned(context.device(), view);
+    LIMPID_VK(context.vk().CreateBufferView(context.device(), &info, nullptr, &view));
+    UniqueBufferView owned(context.vk(), view);
     context.setName(view, storage.name);
     return owned;
 }
@@ -104,14 +103,15 @@ std::shared_ptr<BufferStorage> makeBuffer(std::shared_ptr<const Context> context
     info.size = storage->allocated;
     info.usage = usageOf(*context, use);
     VkBuffer handle = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateBuffer(context->device(), &info, nullptr, &handle));
-    storage->buffer = UniqueBuffer(context->device(), handle);
+    LIMPID_VK(context->vk().CreateBuffer(context->device(), &info, nullptr, &handle));
+    storage->buffer = UniqueBuffer(context->vk(), handle);
     context->setName(handle, name);
     VkMemoryRequirements requirements{};
-    vkGetBufferMemoryRequirements(context->device(), handle, &requirements);
+    context->vk().GetBufferMemoryRequirements(context->device(), handle, &requirements);
     const bool addressed = (info.usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
     storage->memory = allocate(*context, requirements, memoryOf(use), name, addressed);
-    LIMPID_VK(vkBindBufferMemory(context->device(), handle, storage->memory.handle.get(), 0));
+    LIMPID_VK(context->vk().BindBufferMemory(context->device(), handle, storage->memory.handle,
+                                             storage->memory.offset));
     if (format) storage->view = makeView(*context, *storage);
     storage->context = std::move(context);
     return storage;
@@ -120,21 +120,7 @@ std::shared_ptr<BufferStorage> makeBuffer(std::shared_ptr<const Context> context
 VkDeviceAddress deviceAddress(const BufferStorage& buffer) {
     VkBufferDeviceAddressInfo info{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
     info.buffer = buffer.buffer.get();
-    return vkGetBufferDeviceAddress(buffer.context->device(), &info);
-}
-
-Buffer::Buffer() = default;
-Buffer::Buffer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Buffer::Buffer(Buffer&&) noexcept = default;
-Buffer& Buffer::operator=(Buffer&&) noexcept = default;
-Buffer::~Buffer() = default;
-
-uint64_t Buffer::size() const {
-    return impl_ ? impl_->storage->size : 0;
-}
-
-std::optional<Format> Buffer::texelFormat() const {
-    return impl_ ? impl_->storage->format : std::nullopt;
+    return buffer.context->vk().GetBufferDeviceAddress(buffer.context->device(), &info);
 }
 
 }  // namespace limpid::gpu

@@ -3,26 +3,23 @@
 
 #include <optional>
 
+#include "gpu/graph/resources.h"
 #include "gpu/vulkan/memory/memory.h"
 
 namespace limpid::gpu {
 
-/// Shared by the Buffer that owns it and the frames under way that use it: destroying a Buffer never waits.
-/// Without a context (tests of recording) it describes a buffer that no device holds.
-struct BufferStorage {
+/// Every BufferResource but those of tests of recording is one.
+struct BufferStorage : BufferResource {
     std::shared_ptr<const Context> context;
     Memory memory;
     UniqueBuffer buffer;
-    UniqueBufferView view;  ///< of texel buffers
-    std::string name;
-    uint64_t size = 0;       ///< as asked for
-    uint64_t allocated = 0;  ///< of the VkBuffer: a multiple of 4, at least 4
-    std::optional<Format> format;
+    UniqueBufferView view;   ///< of texel buffers
+    uint64_t allocated = 0;  ///< bytes of the VkBuffer: a multiple of 4, at least 4
 };
 
-struct Buffer::Impl {
-    std::shared_ptr<const BufferStorage> storage;
-};
+inline const BufferStorage& storageOf(const BufferResource& resource) {
+    return static_cast<const BufferStorage&>(resource);
+}
 
 /// Triangles are an overlay's vertices and indices. The last four need ray tracing: what acceleration
 /// structures lie in, what their builds need, instances of a top level, shader-binding tables.

@@ -1,10 +1,9 @@
 #include "gpu/vulkan/memory/image.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/memory/format.h"
 
@@ -18,8 +17,8 @@ UniqueImageView makeView(const Context& context, VkImage image, Format format, c
     info.format = toVulkan(format);
     info.subresourceRange = wholeImage();
     VkImageView view = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateImageView(context.device(), &info, nullptr, &view));
-    UniqueImageView owned(context.device(), view);
+    LIMPID_VK(context.vk().CreateImageView(context.device(), &info, nullptr, &view));
+    UniqueImageView owned(context.vk(), view);
     context.setName(view, name);
     return owned;
 }
@@ -46,8 +45,8 @@ Image makeImage(std::shared_ptr<const Context> context, const std::string& name,
     if (backing == Backing::Buffer) return makeBufferImage(std::move(context), name, format, extent);
     const uint32_t maximum = context->limits().maxImageDimension2D;
     if (std::max(extent.width, extent.height) > maximum) {
-        throw Error(fmt::format("image '{}' of {} x {} pixels exceeds maxImageDimension2D = {} of {}", name,
-                                extent.width, extent.height, maximum, context->info().name));
+        throw Error(formatText("image '{}' of {} x {} pixels exceeds maxImageDimension2D = {} of {}", name,
+                               extent.width, extent.height, maximum, context->info().name));
     }
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
@@ -56,20 +55,21 @@ Image makeImage(std::shared_ptr<const Context> context, const std::string& name,
     info.mipLevels = 1;
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage =
-        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     VkImage handle = VK_NULL_HANDLE;
-    LIMPID_VK(vkCreateImage(context->device(), &info, nullptr, &handle));
+    LIMPID_VK(context->vk().CreateImage(context->device(), &info, nullptr, &handle));
 
     Image image;
     image.format = format;
     image.extent = extent;
-    image.image = UniqueImage(context->device(), handle);
+    image.image = UniqueImage(context->vk(), handle);
     context->setName(handle, name);
     VkMemoryRequirements requirements{};
-    vkGetImageMemoryRequirements(context->device(), handle, &requirements);
+    context->vk().GetImageMemoryRequirements(context->device(), handle, &requirements);
     image.memory = allocate(*context, requirements, MemoryUse::Device, name);
-    LIMPID_VK(vkBindImageMemory(context->device(), handle, image.memory.handle.get(), 0));
+    LIMPID_VK(
+        context->vk().BindImageMemory(context->device(), handle, image.memory.handle, image.memory.offset));
     image.view = makeView(*context, handle, format, name);
     image.context = std::move(context);
     return image;

@@ -13,10 +13,11 @@ std::string debugName(const ImageKey& key) {
 
 }  // namespace
 
-ImagePool::Entry& ImagePool::acquire(const ImageKey& key, uint64_t frame) {
+ImagePool::Entry& ImagePool::acquire(const ImageKey& key, const std::string& prefix, uint64_t frame) {
     auto found = entries_.find(key);
     if (found == entries_.end()) {
-        Entry entry{makeImage(context_, debugName(key), key.format, {key.width, key.height}, key.backing)};
+        Entry entry{
+            makeImage(context_, prefix + debugName(key), key.format, {key.width, key.height}, key.backing)};
         found = entries_.emplace(key, std::move(entry)).first;
     }
     found->second.lastFrame = frame;

@@ -17,7 +17,8 @@ class ImagePool {
     };
 
     /// The image of this key, made if there is none. References stay valid until the image is collected.
-    Entry& acquire(const ImageKey& key, uint64_t frame);
+    /// `prefix`: of its debug name.
+    Entry& acquire(const ImageKey& key, const std::string& prefix, uint64_t frame);
     const Image* find(const ImageKey& key) const;
     /// Frees images that no frame has used for a while. `frame` counts submitted frames, and a while is more
     /// of them than are under way at once.

@@ -1,12 +1,12 @@
 #include "gpu/vulkan/memory/memory.h"
 
-#include <fmt/format.h>
-
 #include <atomic>
+#include <functional>
 #include <optional>
 
 #include "base/error.h"
 #include "base/text/bytes_text.h"
+#include "base/text/format.h"
 #include "gpu/vulkan/check.h"
 
 namespace limpid::gpu {
@@ -42,19 +42,48 @@ uint32_t chooseType(const Context& context, uint32_t allowed, MemoryUse use) {
     return *type;
 }
 
-/// Adds them for as long as the result lives.
-std::shared_ptr<const void> countBytes(const std::shared_ptr<std::atomic<uint64_t>>& total, uint64_t bytes) {
+/// Counts the bytes, until it frees them by `release`.
+std::shared_ptr<const void> ownerOf(const Context& context, uint64_t bytes, std::function<void()> release) {
+    const std::shared_ptr<std::atomic<uint64_t>> total = context.allocated();
     *total += bytes;
-    return {static_cast<const void*>(nullptr), [total, bytes](const void*) { *total -= bytes; }};
+    return {static_cast<const void*>(nullptr), [total, bytes, release = std::move(release)](const void*) {
+                release();
+                *total -= bytes;
+            }};
+}
+
+[[noreturn]] void failToAllocate(const Context& context, VkResult result, uint64_t bytes,
+                                 const std::string& name) {
+    throw OutOfMemory(formatText("{} on {}: {} for '{}' could not be allocated ({})", resultMeaning(result),
+                                 context.info().name, bytesText(bytes), name, resultName(result)));
+}
+
+bool isOutOfMemory(VkResult result) {
+    return result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+Memory allocateByHooks(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
+                       const std::string& name) {
+    const MemoryHooks& hooks = context.memoryHooks();
+    const VkMemoryPropertyFlags properties =
+        use == MemoryUse::Device ? VkMemoryPropertyFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT} : hostCoherent;
+    MemoryHooks::Block block;
+    const VkResult result = hooks.allocate(hooks.user, &requirements, properties, name.c_str(), &block);
+    if (result != VK_SUCCESS) failToAllocate(context, result, requirements.size, name);
+    if (use != MemoryUse::Device && !block.mapped)
+        throw Error(formatText("the caller's allocator gave '{}' memory that the host cannot see", name));
+    return {block.memory, block.offset, static_cast<std::byte*>(block.mapped),
+            ownerOf(context, requirements.size, [hooks, block] { hooks.free(hooks.user, &block); })};
 }
 
 }  // namespace
 
 Memory allocate(const Context& context, const VkMemoryRequirements& requirements, MemoryUse use,
                 const std::string& name, bool addressed) {
+    if (context.memoryHooks().allocate) return allocateByHooks(context, requirements, use, name);
     if (requirements.size > context.maxAllocation()) {
-        throw Error(fmt::format("'{}' needs {} bytes, more than maxMemoryAllocationSize = {} of {}", name,
-                                requirements.size, context.maxAllocation(), context.info().name));
+        throw Error(formatText("'{}' needs {} bytes, more than maxMemoryAllocationSize = {} of {}", name,
+                               requirements.size, context.maxAllocation(), context.info().name));
     }
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = requirements.size;
@@ -62,21 +91,20 @@ Memory allocate(const Context& context, const VkMemoryRequirements& requirements
     VkMemoryAllocateFlagsInfo flagsInfo{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     flagsInfo.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     if (addressed) info.pNext = &flagsInfo;
+    const DeviceFunctions& vk = context.vk();
     VkDeviceMemory handle = VK_NULL_HANDLE;
-    const VkResult result = vkAllocateMemory(context.device(), &info, nullptr, &handle);
-    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {
-        throw Error(fmt::format("{} on {}: {} for '{}' could not be allocated ({})", resultMeaning(result),
-                                context.info().name, bytesText(requirements.size), name, resultName(result)));
-    }
+    const VkResult result = vk.AllocateMemory(context.device(), &info, nullptr, &handle);
+    if (isOutOfMemory(result)) failToAllocate(context, result, requirements.size, name);
     LIMPID_VK(result);
-    Memory memory{UniqueMemory(context.device(), handle), nullptr,
-                  countBytes(context.allocated(), requirements.size)};
+    Memory memory{handle, 0, nullptr, ownerOf(context, requirements.size, [&vk, handle] {
+                      vk.FreeMemory(vk.device, handle, nullptr);
+                  })};
     context.setName(handle, name);
     const VkMemoryPropertyFlags flags =
         context.memoryProperties().memoryTypes[info.memoryTypeIndex].propertyFlags;
     if ((flags & hostCoherent) == hostCoherent) {
         void* mapped = nullptr;
-        LIMPID_VK(vkMapMemory(context.device(), handle, 0, VK_WHOLE_SIZE, 0, &mapped));
+        LIMPID_VK(vk.MapMemory(context.device(), handle, 0, VK_WHOLE_SIZE, 0, &mapped));
         memory.mapped = static_cast<std::byte*>(mapped);
     }
     return memory;

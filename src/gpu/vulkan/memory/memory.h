@@ -1,4 +1,5 @@
-// Device memory, one allocation per resource: there are tens of them, far below any maxMemoryAllocationCount.
+// Device memory: from the caller's allocator, or one allocation per resource. There are tens of them, far
+// below any maxMemoryAllocationCount.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +10,10 @@
 namespace limpid::gpu {
 
 struct Memory {
-    UniqueMemory handle;
-    std::byte* mapped = nullptr;                    ///< set if the host can see it (coherent): always mapped
-    std::shared_ptr<const void> counted = nullptr;  ///< its bytes, in Context::allocated()
+    VkDeviceMemory handle = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;                      ///< in `handle`
+    std::byte* mapped = nullptr;                  ///< set if the host can see it (coherent): always mapped
+    std::shared_ptr<const void> owner = nullptr;  ///< frees it, and takes its bytes from Context::allocated()
 };
 
 enum class MemoryUse {

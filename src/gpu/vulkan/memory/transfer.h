@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <span>
 
 #include "gpu/vulkan/memory/buffer.h"
@@ -27,6 +28,7 @@ class Transfer {
     const BufferStorage& staging(BufferUse use, uint64_t bytes);
 
     std::shared_ptr<const Context> context_;
+    std::recursive_mutex mutex_;  ///< all that lives on the device shares this: copies take turns
     UniqueCommandPool pool_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     UniqueFence fence_;

@@ -5,7 +5,9 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool TWO_SIGNALS = false;  // else one, of all light
+layout(constant_id = 0) const bool TWO_SIGNALS = false;  // else one
+layout(constant_id = 1) const bool ALL_LIGHT = true;      // the one has the light of both albedos
+layout(constant_id = 2) const bool EMISSION = true;       // what is seen directly is in the picture
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfModulateParams params;
@@ -26,7 +28,8 @@ void main() {
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
     const vec4 a = imageLoad(albedoA, at), b = imageLoad(albedoB, at);
-    vec3 light = modulated(LOAD_HALF4(signalA, at).rgb, TWO_SIGNALS ? a : a + b);
+    vec3 light = modulated(LOAD_HALF4(signalA, at).rgb, TWO_SIGNALS || !ALL_LIGHT ? a : a + b);
     if (TWO_SIGNALS) light += modulated(LOAD_HALF4(signalB, at).rgb, b);
-    imageStore(beauty, at, vec4(light + finiteOr(imageLoad(emission, at).rgb, vec3(0.0)), 1.0));
+    if (EMISSION) light += finiteOr(imageLoad(emission, at).rgb, vec3(0.0));
+    imageStore(beauty, at, vec4(light, 1.0));
 }

@@ -1,0 +1,45 @@
+// Messages from parts, where {fmt} is not at hand: the denoising library has no dependency but Vulkan.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace limpid {
+
+namespace detail {
+
+std::string numberText(double value);
+std::string numberText(float value);
+template <typename T>
+std::string argumentText(const T& value) {
+    if constexpr (std::convertible_to<const T&, std::string_view>)
+        return std::string(std::string_view(value));
+    else if constexpr (std::same_as<T, bool>)
+        return value ? "true" : "false";
+    else if constexpr (std::same_as<T, char>)
+        return std::string(1, value);
+    else if constexpr (std::floating_point<T>)
+        return numberText(value);
+    else
+        return std::to_string(value);
+}
+
+/// `pattern` with its "{}" replaced, in turn, by `arguments`.
+std::string replacePlaceholders(std::string_view pattern, const std::vector<std::string>& arguments);
+
+}  // namespace detail
+
+/// formatText("{} of {}", 1, "two") is "1 of two". There are no other placeholders than {}. Numbers have as
+/// few digits as tell them apart from all others of their type.
+template <typename... Args>
+std::string formatText(std::string_view pattern, const Args&... args) {
+    return detail::replacePlaceholders(pattern, {detail::argumentText(args)...});
+}
+
+/// "a, b, c".
+std::string joinText(const std::vector<std::string>& parts, std::string_view separator = ", ");
+
+}  // namespace limpid

@@ -1,0 +1,264 @@
+// The C interface (limpid/denoise.h): devices, denoisers, parameters.
+#include <new>
+
+#include "denoise/api/c_guard.h"
+#include "denoise/api/c_handles.h"
+#include "denoise/stages/output/output.h"
+
+using namespace limpid;
+using namespace limpid::denoise;
+
+namespace {
+
+thread_local std::string lastError;
+
+constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+MessageCallback callbackOf(limpid_message_callback message, void* user) {
+    if (!message) return {};
+    return [message, user](MessageLevel level, const std::string& text) {
+        message(user, static_cast<limpid_message_level>(level), text.c_str());
+    };
+}
+
+}  // namespace
+
+namespace limpid::denoise {
+
+limpid_result resultOfException() noexcept {
+    const auto say = [](const char* text, limpid_result result) noexcept {
+        try {
+            lastError = text;
+        } catch (...) {
+            lastError.clear();
+        }
+        return result;
+    };
+    try {
+        throw;
+    } catch (const gpu::DeviceLost& error) {
+        return say(error.what(), LIMPID_ERROR_DEVICE_LOST);
+    } catch (const gpu::OutOfMemory& error) {
+        return say(error.what(), LIMPID_ERROR_OUT_OF_MEMORY);
+    } catch (const gpu::Unsupported& error) {
+        return say(error.what(), LIMPID_ERROR_UNSUPPORTED);
+    } catch (const UsageError& error) {
+        return say(error.what(), LIMPID_ERROR_INVALID_ARGUMENT);
+    } catch (const std::bad_alloc&) {
+        return say("out of host memory", LIMPID_ERROR_OUT_OF_MEMORY);
+    } catch (const std::exception& error) {
+        return say(error.what(), LIMPID_ERROR_FAILED);
+    } catch (...) {
+        return say("unknown failure", LIMPID_ERROR_FAILED);
+    }
+}
+
+gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc) {
+    return {.framesInFlight = desc.frames_in_flight == 0 ? 2 : desc.frames_in_flight,
+            .prefix = desc.name ? desc.name : "limpid/",
+            .timestamps = desc.timings != 0};
+}
+
+gpu::ImageHandle& imageOf(IngestImages& images, size_t input) {
+    gpu::ImageHandle IngestImages::*const members[] = {&IngestImages::radiance,
+                                                       &IngestImages::specular,
+                                                       &IngestImages::emission,
+                                                       &IngestImages::albedo,
+                                                       &IngestImages::albedoSpecular,
+                                                       &IngestImages::normal,
+                                                       &IngestImages::depth,
+                                                       &IngestImages::motion,
+                                                       &IngestImages::previousNormal,
+                                                       &IngestImages::reflectionMotion,
+                                                       &IngestImages::id};
+    if (input >= std::size(members)) throw UsageError(formatText("there is no input {}", input));
+    return images.*members[input];
+}
+
+void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images) {
+    const auto require = [](gpu::ImageHandle image, limpid_input input) {
+        if (!image) throw UsageError(formatText("the input '{}' is missing", inputName(input)));
+    };
+    require(images.radiance, LIMPID_INPUT_RADIANCE);
+    require(images.normal, LIMPID_INPUT_NORMAL);
+    require(images.depth, LIMPID_INPUT_DEPTH);
+    if (desc.signals == 2) require(images.specular, LIMPID_INPUT_SPECULAR);
+}
+
+void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
+                    const InstanceSettings& settings, gpu::Backing filters) {
+    const gpu::Extent extent{desc.width, desc.height};
+    constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
+    graph.beginFrame();
+    IngestImages images;
+    for (size_t input = 0; input <= LIMPID_INPUT_ID; ++input) {
+        const bool unsignedInput = input == LIMPID_INPUT_ID;
+        imageOf(images, input) =
+            graph.import(formatText("input/{}", inputName(input)),
+                         unsignedInput ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent, nowhere);
+    }
+    limpid_camera camera{};
+    for (auto* matrix :
+         {&camera.view, &camera.projection, &camera.previous_view, &camera.previous_projection})
+        std::copy(std::begin(identity), std::end(identity), *matrix);
+    const InstanceOutputs outputs =
+        recordFrame(graph, desc, settings, images, ingestParams(desc, camera, true), filters, true);
+    for (const gpu::Format format : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float}) {
+        const bool half = format == gpu::Format::RGBA16Float;
+        output(graph, half ? "half" : "float", outputs.color,
+               graph.import(half ? "output/half" : "output/float", format, extent, nowhere));
+    }
+}
+
+}  // namespace limpid::denoise
+
+limpid_denoiser::limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& wanted)
+    : device(on.device), adopted(on.adopted), desc(wanted), graph(graphOptions(wanted)) {
+    desc.name = nullptr;  // the caller's string: the graph has its own
+    gpu::FrameGraph dry;
+    recordDryFrame(dry, desc, settings, gpu::filterBacking(*device));
+    dry.prepare(*device);
+}
+
+bool limpid_denoiser::startsAnew(bool reset) {
+    if (reset) {
+        graph.resetHistories();
+        hasPrevious = false;
+    }
+    return !hasPrevious;
+}
+
+extern "C" {
+
+uint32_t limpid_version(void) {
+    return 10000 * LIMPID_VERSION_MAJOR + 100 * LIMPID_VERSION_MINOR + LIMPID_VERSION_PATCH;
+}
+
+const char* limpid_last_error(void) {
+    return lastError.c_str();
+}
+
+limpid_result limpid_device_create(const limpid_device_desc* desc, limpid_device** device) {
+    return guarded([&] {
+        required(device, "device") = nullptr;
+        const limpid_device_desc d = desc ? wholeStruct(desc, "limpid_device_desc") : limpid_device_desc{};
+        gpu::DeviceOptions options;
+        options.select = d.select ? d.select : "";
+        options.validation = d.validation != 0;
+        options.readsEnvironment = false;
+        options.messages = callbackOf(d.message, d.message_user);
+        *device = new limpid_device{std::make_shared<gpu::Device>(options), false};
+    });
+}
+
+void limpid_device_destroy(limpid_device* device) {
+    delete device;
+}
+
+const char* limpid_device_name(const limpid_device* device) {
+    return device ? device->device->info().name.c_str() : "";
+}
+
+limpid_result limpid_device_pipeline_cache(const limpid_device* device, void* data, size_t* size) {
+    return guarded([&] {
+        const std::vector<std::byte> bytes = required(device, "device").device->pipelineCacheData();
+        size_t& count = required(size, "size");
+        count = data ? std::min(count, bytes.size()) : bytes.size();
+        if (data) std::memcpy(data, bytes.data(), count);
+    });
+}
+
+limpid_result limpid_device_load_pipeline_cache(limpid_device* device, const void* data, size_t size) {
+    return guarded([&] {
+        required(device, "device");
+        if (size != 0) required(static_cast<const char*>(data), "data");
+        device->device->loadPipelineCache({static_cast<const std::byte*>(data), size});
+    });
+}
+
+limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
+                                     limpid_denoiser** denoiser) {
+    return guarded([&] {
+        required(denoiser, "denoiser") = nullptr;
+        const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
+        check(d);
+        *denoiser = new limpid_denoiser(required(device, "device"), d);
+    });
+}
+
+void limpid_denoiser_destroy(limpid_denoiser* denoiser) {
+    delete denoiser;
+}
+
+limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t for_gpu, uint64_t* bytes) {
+    return guarded([&] {
+        const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
+        check(d);
+        gpu::FrameGraph dry;
+        recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image);
+        required(bytes, "bytes") = dry.imageBytes();
+    });
+}
+
+limpid_result limpid_denoiser_resize(limpid_denoiser* denoiser, uint32_t width, uint32_t height) {
+    return guarded([&] {
+        limpid_denoiser_desc d = required(denoiser, "denoiser").desc;
+        d.width = width;
+        d.height = height;
+        check(d);
+        denoiser->desc = d;
+        denoiser->startsAnew(true);
+    });
+}
+
+limpid_result limpid_denoiser_reset(limpid_denoiser* denoiser) {
+    return guarded([&] { required(denoiser, "denoiser").startsAnew(true); });
+}
+
+limpid_result limpid_method_parameter(limpid_method method, uint32_t index, limpid_parameter* parameter) {
+    return guarded([&] {
+        const std::vector<InstanceParameter>& all = parametersOf(method);
+        if (index >= all.size()) throw UsageError(formatText("the method has {} parameters", all.size()));
+        const InstanceParameter& p = all[index];
+        const ParamValue& value = p.info.defaultValue;
+        required(parameter, "parameter") = {p.name.c_str(),
+                                            std::holds_alternative<bool>(value)  ? LIMPID_PARAMETER_BOOL
+                                            : std::holds_alternative<int>(value) ? LIMPID_PARAMETER_INT
+                                                                                 : LIMPID_PARAMETER_FLOAT,
+                                            std::visit([](auto v) { return static_cast<double>(v); }, value),
+                                            p.info.minimum,
+                                            p.info.maximum,
+                                            p.info.unit.c_str(),
+                                            p.info.help.c_str()};
+    });
+}
+
+limpid_result limpid_denoiser_set(limpid_denoiser* denoiser, const char* name, double value) {
+    return guarded([&] {
+        required(denoiser, "denoiser");
+        setParameter(denoiser->settings, denoiser->desc.method, &required(name, "name"), value);
+    });
+}
+
+limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, const char* name, double* value) {
+    return guarded([&] {
+        required(denoiser, "denoiser");
+        required(value, "value") =
+            parameter(denoiser->settings, denoiser->desc.method, &required(name, "name"));
+    });
+}
+
+limpid_result limpid_denoiser_timings(limpid_denoiser* denoiser, limpid_timing* timings, uint32_t* count) {
+    return guarded([&] {
+        limpid_denoiser& d = required(denoiser, "denoiser");
+        uint32_t& n = required(count, "count");
+        std::vector<gpu::PassTime> latest = d.graph.passTimes(*d.device);
+        if (!latest.empty()) d.times = std::move(latest);
+        const auto all = static_cast<uint32_t>(d.times.size());
+        n = timings ? std::min(n, all) : all;
+        for (uint32_t i = 0; timings && i < n; ++i)
+            timings[i] = {d.times[i].name.c_str(), d.times[i].milliseconds};
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,107 @@
+// The C interface's frames in host memory.
+#include <cmath>
+
+#include "denoise/api/c_guard.h"
+#include "denoise/api/c_handles.h"
+
+using namespace limpid;
+using namespace limpid::denoise;
+
+namespace {
+
+/// Strides in bytes, with their defaults.
+struct Layout {
+    size_t pixel, row;
+};
+
+template <typename HostImage>
+Layout layoutOf(const HostImage& image, uint32_t width, const char* name, uint32_t fewest) {
+    if (image.components < fewest || image.components > 4)
+        throw UsageError(formatText("the image '{}' has {} components: {} to 4 are possible", name,
+                                    image.components, fewest));
+    const size_t pixel = image.pixel_stride ? image.pixel_stride : image.components * sizeof(float);
+    return {pixel, image.row_stride ? image.row_stride : width * pixel};
+}
+
+/// Four components a pixel: those that are not there are 0.
+std::vector<float> readPixels(const limpid_host_image& image, uint32_t width, uint32_t height,
+                              const char* name) {
+    const Layout layout = layoutOf(image, width, name, 1);
+    std::vector<float> pixels(size_t{4} * width * height);
+    const auto* bytes = reinterpret_cast<const std::byte*>(image.data);
+    for (size_t y = 0; y < height; ++y)
+        for (size_t x = 0; x < width; ++x)
+            std::memcpy(&pixels[4 * (y * width + x)], bytes + y * layout.row + x * layout.pixel,
+                        image.components * sizeof(float));
+    return pixels;
+}
+
+std::vector<uint32_t> toUnsigned(const std::vector<float>& pixels) {
+    std::vector<uint32_t> result;
+    result.reserve(pixels.size());
+    for (const float value : pixels)
+        result.push_back(value >= 0.0f && value < 4294967040.0f ? static_cast<uint32_t>(value) : 0);
+    return result;
+}
+
+void writePixels(const limpid_host_output& image, const std::vector<float>& pixels, uint32_t width,
+                 uint32_t height, const char* name) {
+    const Layout layout = layoutOf(image, width, name, 3);
+    auto* bytes = reinterpret_cast<std::byte*>(image.data);
+    for (size_t y = 0; y < height; ++y)
+        for (size_t x = 0; x < width; ++x)
+            std::memcpy(bytes + y * layout.row + x * layout.pixel, &pixels[4 * (y * width + x)],
+                        image.components * sizeof(float));
+}
+
+IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
+                          const limpid_host_frame& frame) {
+    const gpu::Extent extent{desc.width, desc.height};
+    IngestImages images;
+    for (size_t input = 0; input < LIMPID_INPUT_MAX; ++input) {
+        if (!frame.inputs[input].data) continue;
+        gpu::ImageHandle& handle = imageOf(images, input);
+        const std::string name = std::string("input/") + inputName(input);
+        const std::vector<float> pixels =
+            readPixels(frame.inputs[input], desc.width, desc.height, inputName(input));
+        const bool isId = input == LIMPID_INPUT_ID;
+        handle = graph.transient(name, isId ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent);
+        if (isId)
+            graph.upload(handle, gpu::bytesOf(toUnsigned(pixels)));
+        else
+            graph.upload(handle, gpu::bytesOf(pixels));
+    }
+    requireInputs(desc, images);
+    return images;
+}
+
+}  // namespace
+
+extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const limpid_host_frame* given) {
+    return guarded([&] {
+        limpid_denoiser& d = required(denoiser, "denoiser");
+        const limpid_host_frame frame = wholeStruct(given, "limpid_host_frame");
+        if (d.adopted) throw UsageError("the device is the caller's: record frames with limpid_record()");
+        const bool hasPrevious = !d.startsAnew(frame.reset != 0);
+        const IngestParams params = ingestParams(d.desc, frame.camera, hasPrevious);
+        const limpid_host_output* wanted = frame.outputs;
+        const bool signalsToo = wanted[LIMPID_OUTPUT_RADIANCE].data || wanted[LIMPID_OUTPUT_SPECULAR].data;
+        d.graph.beginFrame();
+        const IngestImages images = uploadInputs(d.graph, d.desc, frame);
+        const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
+                                                    gpu::filterBacking(*d.device), signalsToo);
+        const gpu::ImageHandle made[] = {outputs.color, outputs.radiance, outputs.specular};
+        const char* const names[] = {"color", "radiance", "specular"};
+        for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i)
+            if (wanted[i].data && (i >= std::size(made) || !made[i]))
+                throw UsageError(formatText("the method has no output {}",
+                                            i < std::size(names) ? names[i] : "of this number"));
+        d.graph.execute(*d.device);
+        d.finish();
+        for (size_t i = 0; i < std::size(made); ++i) {
+            if (!wanted[i].data) continue;
+            writePixels(wanted[i], d.graph.downloadFloat(*d.device, made[i]), d.desc.width, d.desc.height,
+                        names[i]);
+        }
+    });
+}

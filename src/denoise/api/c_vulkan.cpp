@@ -1,0 +1,231 @@
+// The C interface inside Vulkan programs (limpid/denoise_vulkan.h).
+#include <array>
+
+#include "denoise/api/c_guard.h"
+#include "denoise/api/c_handles.h"
+#include "denoise/stages/output/output.h"
+#include "gpu/vulkan/adopted_device.h"
+#include "limpid/denoise_vulkan.h"
+
+using namespace limpid;
+using namespace limpid::denoise;
+
+namespace {
+
+/// A flag that Limpid needs, in the structs of a chain that have it.
+struct NeededFeature {
+    const char* name;
+    VkBool32* (*place)(VkBaseOutStructure* link);
+};
+
+const NeededFeature needed[] = {
+    {"synchronization2",
+     [](VkBaseOutStructure* link) -> VkBool32* {
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceVulkan13Features*>(link)->synchronization2;
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceSynchronization2Features*>(link)->synchronization2;
+         return nullptr;
+     }},
+    {"maintenance4",
+     [](VkBaseOutStructure* link) -> VkBool32* {
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceVulkan13Features*>(link)->maintenance4;
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceMaintenance4Features*>(link)->maintenance4;
+         return nullptr;
+     }},
+    {"scalarBlockLayout",
+     [](VkBaseOutStructure* link) -> VkBool32* {
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceVulkan12Features*>(link)->scalarBlockLayout;
+         if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES)
+             return &reinterpret_cast<VkPhysicalDeviceScalarBlockLayoutFeatures*>(link)->scalarBlockLayout;
+         return nullptr;
+     }},
+};
+
+VkBool32* findPlace(VkPhysicalDeviceFeatures2* features, const NeededFeature& feature) {
+    for (auto* link = reinterpret_cast<VkBaseOutStructure*>(features); link; link = link->pNext)
+        if (VkBool32* const place = feature.place(link)) return place;
+    throw UsageError(formatText("the chain has no struct with the feature {}", feature.name));
+}
+
+gpu::MemoryHooks hooksOf(const limpid_vulkan_device_desc& desc) {
+    if (!desc.allocate && !desc.free) return {};
+    if (!desc.allocate || !desc.free) throw UsageError("`allocate` and `free` come together, or not at all");
+    // limpid_vulkan_memory and MemoryHooks::Block are the same struct under two names.
+    static_assert(sizeof(limpid_vulkan_memory) == sizeof(gpu::MemoryHooks::Block));
+    gpu::MemoryHooks hooks;
+    hooks.user = desc.memory_user;
+    hooks.allocate = reinterpret_cast<decltype(hooks.allocate)>(desc.allocate);
+    hooks.free = reinterpret_cast<decltype(hooks.free)>(desc.free);
+    return hooks;
+}
+
+VkImageAspectFlags aspectsOf(VkFormat format) {
+    switch (format) {
+        case VK_FORMAT_D16_UNORM:
+        case VK_FORMAT_X8_D24_UNORM_PACK32:
+        case VK_FORMAT_D32_SFLOAT:
+            return VK_IMAGE_ASPECT_DEPTH_BIT;
+        case VK_FORMAT_D16_UNORM_S8_UINT:
+        case VK_FORMAT_D24_UNORM_S8_UINT:
+        case VK_FORMAT_D32_SFLOAT_S8_UINT:
+            // A barrier must name both.
+            return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+        default:
+            return VK_IMAGE_ASPECT_COLOR_BIT;
+    }
+}
+
+gpu::ForeignImage foreign(const limpid_vulkan_image& image, const char* name) {
+    if (image.view == VK_NULL_HANDLE) throw UsageError(formatText("the image '{}' has no view", name));
+    return {.image = reinterpret_cast<uint64_t>(image.image),
+            .view = reinterpret_cast<uint64_t>(image.view),
+            .aspects = aspectsOf(image.format),
+            .layoutBefore = image.layout,
+            .layoutAfter = image.layout_after,
+            .stagesBefore = image.stages_before,
+            .accessBefore = image.access_before,
+            .stagesAfter = image.stages_after,
+            .accessAfter = image.access_after};
+}
+
+IngestImages importInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
+                          const limpid_vulkan_frame& frame) {
+    IngestImages images;
+    for (size_t input = 0; input < LIMPID_INPUT_MAX; ++input) {
+        if (frame.inputs[input].image == VK_NULL_HANDLE) continue;
+        gpu::ImageHandle& handle = imageOf(images, input);
+        gpu::ForeignImage image = foreign(frame.inputs[input], inputName(input));
+        if (image.layoutBefore == VK_IMAGE_LAYOUT_UNDEFINED)
+            image.layoutBefore = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        const bool isId = input == LIMPID_INPUT_ID;
+        handle = graph.import(std::string("input/") + inputName(input),
+                              isId ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float,
+                              {desc.width, desc.height}, image);
+    }
+    requireInputs(desc, images);
+    return images;
+}
+
+gpu::Format outputFormat(VkFormat format, const char* name) {
+    if (format == VK_FORMAT_R16G16B16A16_SFLOAT) return gpu::Format::RGBA16Float;
+    if (format == VK_FORMAT_R32G32B32A32_SFLOAT) return gpu::Format::RGBA32Float;
+    throw UsageError(
+        formatText("the output '{}' is of VkFormat {}: it must be VK_FORMAT_R16G16B16A16_SFLOAT or "
+                   "VK_FORMAT_R32G32B32A32_SFLOAT",
+                   name, static_cast<int>(format)));
+}
+
+constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
+
+/// What is wanted of a frame, and goes where.
+void recordOutputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const limpid_vulkan_frame& frame,
+                   const InstanceOutputs& made, bool forReal) {
+    const std::array<gpu::ImageHandle, 3> pictures{made.color, made.radiance, made.specular};
+    for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i) {
+        const limpid_vulkan_image& image = frame.outputs[i];
+        if (image.image == VK_NULL_HANDLE) continue;
+        if (i >= pictures.size() || !pictures[i])
+            throw UsageError(formatText("the method has no output {}",
+                                        i < pictures.size() ? outputNames[i] : "of this number"));
+        const gpu::Format format = outputFormat(image.format, outputNames[i]);
+        const gpu::Extent extent{desc.width, desc.height};
+        gpu::ForeignImage target = foreign(image, outputNames[i]);
+        if (target.layoutAfter == VK_IMAGE_LAYOUT_UNDEFINED) target.layoutAfter = VK_IMAGE_LAYOUT_GENERAL;
+        const std::string name = std::string("output/") + outputNames[i];
+        output(graph, outputNames[i], pictures[i],
+               forReal ? graph.import(name, format, extent, target) : graph.transient(name, format, extent));
+    }
+}
+
+bool wantsSignals(const limpid_vulkan_frame& frame) {
+    return frame.outputs[LIMPID_OUTPUT_RADIANCE].image != VK_NULL_HANDLE ||
+           frame.outputs[LIMPID_OUTPUT_SPECULAR].image != VK_NULL_HANDLE;
+}
+
+limpid_denoiser& forRecording(limpid_denoiser* denoiser, VkCommandBuffer commands) {
+    if (!commands) throw UsageError("commands is NULL");
+    limpid_denoiser& d = required(denoiser, "denoiser");
+    if (!d.adopted) throw UsageError("the device is Limpid's own: use limpid_denoise_host()");
+    return d;
+}
+
+}  // namespace
+
+extern "C" {
+
+limpid_result limpid_vulkan_enable_features(VkPhysicalDeviceFeatures2* features) {
+    return guarded([&] {
+        required(features, "features");
+        std::vector<VkBool32*> places;
+        for (const NeededFeature& feature : needed) places.push_back(findPlace(features, feature));
+        for (VkBool32* const place : places) *place = VK_TRUE;
+        features->features.shaderStorageImageExtendedFormats = VK_TRUE;
+    });
+}
+
+limpid_result limpid_device_adopt(const limpid_vulkan_device_desc* desc, limpid_device** device) {
+    return guarded([&] {
+        required(device, "device") = nullptr;
+        const limpid_vulkan_device_desc d = wholeStruct(desc, "limpid_vulkan_device_desc");
+        if (!d.instance || !d.physical_device || !d.device || !d.get_instance_proc_addr)
+            throw UsageError("instance, physical_device, device and get_instance_proc_addr must be set");
+        gpu::AdoptedDevice adopted;
+        adopted.getInstanceProcAddr = d.get_instance_proc_addr;
+        adopted.instance = d.instance;
+        adopted.physicalDevice = d.physical_device;
+        adopted.device = d.device;
+        adopted.queueFamily = d.queue_family;
+        adopted.debugUtils = d.debug_utils != 0;
+        adopted.memory = hooksOf(d);
+        if (d.message)
+            adopted.messages = [message = d.message, user = d.message_user](MessageLevel level,
+                                                                            const std::string& text) {
+                message(user, static_cast<limpid_message_level>(level), text.c_str());
+            };
+        *device = new limpid_device{std::make_shared<gpu::Device>(adopted), true};
+    });
+}
+
+limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
+                            const limpid_vulkan_frame* given) {
+    return guarded([&] {
+        limpid_denoiser& d = forRecording(denoiser, commands);
+        const limpid_vulkan_frame frame = wholeStruct(given, "limpid_vulkan_frame");
+        const bool hasPrevious = !d.startsAnew(frame.reset != 0);
+        const IngestParams params = ingestParams(d.desc, frame.camera, hasPrevious);
+        d.graph.beginFrame();
+        const IngestImages images = importInputs(d.graph, d.desc, frame);
+        const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
+                                                    gpu::filterBacking(*d.device), wantsSignals(frame));
+        recordOutputs(d.graph, d.desc, frame, outputs, true);
+        d.graph.record(*d.device, commands);
+        d.finish();
+    });
+}
+
+limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands,
+                             const limpid_vulkan_frame* given) {
+    return guarded([&] {
+        limpid_denoiser& d = forRecording(denoiser, commands);
+        const limpid_vulkan_frame frame = wholeStruct(given, "limpid_vulkan_frame");
+        limpid_denoiser_desc few = d.desc;
+        few.width = std::min(few.width, 16u);
+        few.height = std::min(few.height, 16u);
+        auto graph = std::make_unique<gpu::FrameGraph>(
+            gpu::GraphOptions{.framesInFlight = 1, .prefix = "limpid/warm up/", .timestamps = false});
+        graph->beginFrame();
+        const IngestImages images = importInputs(*graph, few, frame);
+        const InstanceOutputs outputs =
+            recordFrame(*graph, few, d.settings, images, ingestParams(few, frame.camera, true),
+                        gpu::filterBacking(*d.device), wantsSignals(frame));
+        recordOutputs(*graph, few, frame, outputs, false);
+        graph->record(*d.device, commands);
+        d.warmUps.push_back(std::move(graph));
+    });
+}
+
+}  // extern "C"

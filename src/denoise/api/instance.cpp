@@ -1,0 +1,174 @@
+#include "denoise/api/instance.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "base/text/format.h"
+#include "denoise/api/camera_matrices.h"
+#include "denoise/stages/compose/compose.h"
+
+namespace limpid::denoise {
+namespace {
+
+/// Calls `visit(table, settings)` for each group that the method heeds.
+template <typename Settings, typename Visit>
+void forEachGroup(Settings& settings, limpid_method method, const Visit& visit) {
+    if (method == LIMPID_METHOD_SVGF) {
+        visit(svgfParams(), settings.svgf);
+    } else {
+        visit(historyParams(), settings.history);
+        if (method == LIMPID_METHOD_ATROUS) visit(atrousParams(), settings.atrous);
+    }
+    visit(taaParams(), settings.taa);
+}
+
+std::vector<InstanceParameter> listParameters(limpid_method method) {
+    std::vector<InstanceParameter> all;
+    InstanceSettings settings;
+    forEachGroup(settings, method, [&](const auto& table, auto&) {
+        for (const ParamInfo& info : table.infos()) all.push_back({table.group() + "." + info.name, info});
+    });
+    // limpid_denoiser_desc::signals says it.
+    std::erase_if(all, [](const InstanceParameter& p) { return p.name == "svgf.separate"; });
+    return all;
+}
+
+void checkEnum(const char* what, int value, int last) {
+    if (value < 0 || value > last) throw UsageError(formatText("{}: {} is none of its values", what, value));
+}
+
+bool isParameter(const std::string& group, const std::string& parameter, std::string_view name) {
+    return name.size() == group.size() + 1 + parameter.size() && name.starts_with(group) &&
+           name[group.size()] == '.' && name.ends_with(parameter);
+}
+
+[[noreturn]] void failUnknown(std::string_view name) {
+    throw UsageError(formatText("the method has no parameter '{}'", name));
+}
+
+}  // namespace
+
+const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
+    static const std::array<std::vector<InstanceParameter>, 3> all{listParameters(LIMPID_METHOD_SVGF),
+                                                                   listParameters(LIMPID_METHOD_ATROUS),
+                                                                   listParameters(LIMPID_METHOD_TEMPORAL)};
+    checkEnum("method", method, LIMPID_METHOD_TEMPORAL);
+    return all[static_cast<size_t>(method)];
+}
+
+void setParameter(InstanceSettings& settings, limpid_method method, std::string_view name, double value) {
+    bool found = false;
+    forEachGroup(settings, method, [&](const auto& table, auto& group) {
+        for (const ParamInfo& info : table.infos()) {
+            if (found || !isParameter(table.group(), info.name, name)) continue;
+            found = true;
+            if (!(value >= info.minimum && value <= info.maximum))
+                throw UsageError(formatText("{}: {} is outside its range {} to {}", name, value, info.minimum,
+                                            info.maximum));
+            const bool isFloat = std::holds_alternative<float>(info.defaultValue);
+            const std::string text = isFloat ? formatText("{}", static_cast<float>(value))
+                                             : formatText("{}", static_cast<int>(value));
+            table.set(group, info.name, text);
+        }
+    });
+    if (!found) failUnknown(name);
+}
+
+double parameter(const InstanceSettings& settings, limpid_method method, std::string_view name) {
+    std::optional<double> result;
+    forEachGroup(settings, method, [&](const auto& table, const auto& group) {
+        for (size_t i = 0; i < table.infos().size(); ++i) {
+            if (!isParameter(table.group(), table.infos()[i].name, name)) continue;
+            result = std::visit([](auto value) { return static_cast<double>(value); }, table.get(group, i));
+        }
+    });
+    if (!result) failUnknown(name);
+    return *result;
+}
+
+void check(const limpid_denoiser_desc& desc) {
+    checkEnum("method", desc.method, LIMPID_METHOD_TEMPORAL);
+    checkEnum("normal_encoding", desc.normal_encoding, LIMPID_NORMAL_OCTAHEDRAL_UNORM);
+    checkEnum("normal_space", desc.normal_space, LIMPID_SPACE_VIEW);
+    checkEnum("depth", desc.depth, LIMPID_DEPTH_DEVICE);
+    checkEnum("motion_unit", desc.motion_unit, LIMPID_MOTION_NDC);
+    checkEnum("motion_direction", desc.motion_direction, LIMPID_MOTION_FROM_PREVIOUS);
+    checkEnum("motion_depth", desc.motion_depth, LIMPID_MOTION_DISTANCE);
+    checkEnum("clip_y", desc.clip_y, LIMPID_CLIP_Y_UP);
+    if (desc.signals > 2) throw UsageError(formatText("signals: there are 1 or 2, not {}", desc.signals));
+    if (desc.width == 0 || desc.height == 0 || desc.width > 32768 || desc.height > 32768)
+        throw UsageError(
+            formatText("images of {} x {} pixels: each side has 1 to 32768", desc.width, desc.height));
+    if (desc.frames_in_flight > 8)
+        throw UsageError(formatText("frames_in_flight: at most 8, not {}", desc.frames_in_flight));
+}
+
+IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious) {
+    const bool yUp = desc.clip_y == LIMPID_CLIP_Y_UP;
+    const CameraMatrices now = cameraFromMatrices(camera.view, camera.projection, yUp, desc.height);
+    const CameraMatrices before =
+        hasPrevious ? cameraFromMatrices(camera.previous_view, camera.previous_projection, yUp, desc.height)
+                    : now;
+    IngestParams params{};
+    params.camera = now.params;
+    params.previousCamera = before.params;
+    params.previousClipX = before.clip[0];
+    params.previousClipY = before.clip[1];
+    params.previousClipW = before.clip[2];
+    params.deviceDepth = now.deviceDepth;
+    params.viewX = now.axes[0];
+    params.viewY = now.axes[1];
+    params.viewZ = now.axes[2];
+    const float direction = desc.motion_direction == LIMPID_MOTION_TO_PREVIOUS ? 1.0f : -1.0f;
+    const auto width = static_cast<float>(desc.width), height = static_cast<float>(desc.height);
+    params.motionToPixels = {direction, direction};
+    if (desc.motion_unit == LIMPID_MOTION_UV) params.motionToPixels = {direction * width, direction * height};
+    if (desc.motion_unit == LIMPID_MOTION_NDC)
+        params.motionToPixels = {0.5f * direction * width, (yUp ? -0.5f : 0.5f) * direction * height};
+    params.motionToDistance = desc.motion_depth == LIMPID_MOTION_DISTANCE ? direction : 0.0f;
+    params.farDepth = desc.far_depth > 0.0f ? desc.far_depth : 1e9f;
+    params.jitter = {camera.jitter[0], camera.jitter[1]};
+    params.width = desc.width;
+    params.height = desc.height;
+    params.normalEncoding = static_cast<uint>(desc.normal_encoding);
+    params.normalInView = desc.normal_space == LIMPID_SPACE_VIEW ? 1u : 0u;
+    params.depthKind = static_cast<uint>(desc.depth);
+    params.reversed = now.reversed ? 1u : 0u;
+    params.hasPrevious = hasPrevious ? 1u : 0u;
+    params.twoSignals = desc.signals == 2 ? 1u : 0u;
+    return params;
+}
+
+InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
+                            const InstanceSettings& settings, const IngestImages& images,
+                            const IngestParams& params, gpu::Backing filters, bool signalsToo) {
+    IngestImages used = images;
+    if (desc.demodulated) used.albedo = used.albedoSpecular = {};
+    DenoiserInput input = ingest(graph, used, params);
+    input.filters = filters;
+    InstanceOutputs outputs;
+    if (desc.method == LIMPID_METHOD_SVGF) {
+        SvgfSettings svgf = settings.svgf;
+        svgf.separate = desc.signals == 2;
+        const SvgfImages filtered = signalsToo ? filterSvgfSignals(graph, input, svgf)
+                                               : SvgfImages{filterSvgf(graph, input, svgf), {}, {}};
+        outputs = {filtered.beauty, filtered.diffuse, filtered.specular};
+    } else {
+        const HistoryImages history = trackHistory(graph, input, settings.history);
+        outputs.color = desc.method == LIMPID_METHOD_ATROUS
+                            ? filterAtrous(graph, input, {history.color, {}}, settings.atrous)
+                            : compose(graph, history.color, input.emission, history.cases, false);
+    }
+    outputs.color = antialias(graph, input, outputs.color, settings.taa);
+    return outputs;
+}
+
+const char* inputName(size_t input) {
+    constexpr std::array<const char*, 11> names{
+        "radiance", "specular",        "emission",          "albedo", "albedo_specular", "normal", "depth",
+        "motion",   "previous_normal", "reflection_motion", "id"};
+    return names.at(input);
+}
+
+}  // namespace limpid::denoise

@@ -1,0 +1,235 @@
+// The C interface with frames in host memory: the same picture as the denoisers inside, and what it refuses.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "denoise/api/denoiser.h"
+#include "limpid/denoise.h"
+#include "tests/denoise/denoise_fixture.h"
+#include "tests/embed/synthetic_camera.h"
+
+namespace limpid::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr uint32_t width = 48, height = 27;
+
+class HostFramesTest : public DenoiseTest {
+  protected:
+    void SetUp() override {
+        DenoiseTest::SetUp();
+        if (IsSkipped()) return;
+        const std::string select = wantedDevice();
+        limpid_device_desc desc = {sizeof desc};
+        desc.select = select.c_str();
+        ASSERT_EQ(limpid_device_create(&desc, &device_), LIMPID_OK) << limpid_last_error();
+    }
+    void TearDown() override {
+        limpid_denoiser_destroy(denoiser_);
+        limpid_device_destroy(device_);
+        DenoiseTest::TearDown();
+    }
+
+    void create(limpid_method method, uint32_t signals = 2) {
+        limpid_denoiser_desc desc = {sizeof desc};
+        desc.method = method;
+        desc.width = width;
+        desc.height = height;
+        desc.signals = signals;
+        desc.motion_depth = LIMPID_MOTION_DISTANCE;
+        ASSERT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_OK) << limpid_last_error();
+    }
+
+    limpid_device* device_ = nullptr;
+    limpid_denoiser* denoiser_ = nullptr;
+};
+
+limpid_host_image imageOf(const std::vector<float>& pixels) {
+    return {pixels.data(), 3, 4 * sizeof(float), 0};
+}
+
+/// What a SyntheticScene's frame is for other programs. `depths` keeps the distances.
+limpid_host_frame hostFrame(const HostFrame& frame, int number, std::vector<float>& depths,
+                            std::vector<float>& ids, std::vector<float>& result) {
+    limpid_host_frame given = {sizeof given};
+    given.inputs[LIMPID_INPUT_RADIANCE] = imageOf(frame.diffuse);
+    given.inputs[LIMPID_INPUT_SPECULAR] = imageOf(frame.specular);
+    given.inputs[LIMPID_INPUT_EMISSION] = imageOf(frame.emission);
+    given.inputs[LIMPID_INPUT_ALBEDO] = imageOf(frame.albedo);
+    given.inputs[LIMPID_INPUT_ALBEDO_SPECULAR] = imageOf(frame.albedoSpecular);
+    given.inputs[LIMPID_INPUT_NORMAL] = imageOf(frame.normal);
+    given.inputs[LIMPID_INPUT_MOTION] = imageOf(frame.motion);
+    given.inputs[LIMPID_INPUT_PREVIOUS_NORMAL] = imageOf(frame.previousNormal);
+    depths.resize(frame.pixelCount());
+    ids.resize(frame.pixelCount());
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        depths[p] = frame.depth[4 * p + 1] > 0.0f ? frame.depth[4 * p] / frame.depth[4 * p + 1] : 0.0f;
+        ids[p] = static_cast<float>(frame.ids[2 * p] == UINT32_MAX ? 0 : frame.ids[2 * p]);
+    }
+    given.inputs[LIMPID_INPUT_DEPTH] = {depths.data(), 1, 0, 0};
+    given.inputs[LIMPID_INPUT_ID] = {ids.data(), 1, 0, 0};
+    result.assign(4 * frame.pixelCount(), -1.0f);
+    given.outputs[LIMPID_OUTPUT_COLOR] = {result.data(), 4, 0, 0};
+    given.camera = matricesOf(frame.camera, frame.camera);
+    (void)number;
+    return given;
+}
+
+/// Frames whose motion is valid or 0 as a whole, as the interface has them.
+HostFrame embeddable(const SyntheticScene& scene, int number) {
+    HostFrame frame = scene.frame(number, width, height, 1);
+    std::fill(frame.reflectionMotion.begin(), frame.reflectionMotion.end(), 0.0f);
+    return frame;
+}
+
+double rmsDifference(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += (double{a[i]} - b[i]) * (double{a[i]} - b[i]);
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
+    create(LIMPID_METHOD_SVGF);
+    const SyntheticScene scene({.objectMoves = true});
+    std::vector<float> depths, ids, result, inside;
+    for (int number = 0; number < 6; ++number) {
+        const HostFrame frame = embeddable(scene, number);
+        const limpid_host_frame given = hostFrame(frame, number, depths, ids, result);
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        filters_ = gpu::filterBacking(device());
+        inside = denoise(*denoise::findDenoiser("svgf"), frame);
+    }
+    // Cameras go through matrices, and frames that see nothing have other fillings: rounding.
+    EXPECT_LT(rmsDifference(result, inside), 2e-3);
+    const std::vector<float> truth = scene.truth(5, width, height);
+    EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
+}
+
+TEST_F(HostFramesTest, SignalsAddUpToThePicture) {
+    create(LIMPID_METHOD_SVGF);
+    const SyntheticScene scene({});
+    std::vector<float> depths, ids, color;
+    std::vector<float> radiance(3 * width * height), specular(4 * width * height);
+    const HostFrame frame = embeddable(scene, 0);
+    limpid_host_frame given = hostFrame(frame, 0, depths, ids, color);
+    given.outputs[LIMPID_OUTPUT_RADIANCE] = {radiance.data(), 3, 0, 0};
+    given.outputs[LIMPID_OUTPUT_SPECULAR] = {specular.data(), 4, 0, 0};
+    ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+    for (size_t p = 0; p < frame.pixelCount(); ++p)
+        for (size_t c = 0; c < 3; ++c)
+            ASSERT_NEAR(color[4 * p + c],
+                        radiance[3 * p + c] + specular[4 * p + c] + frame.emission[4 * p + c],
+                        1e-4f * (1.0f + color[4 * p + c]));
+}
+
+TEST_F(HostFramesTest, AResetForgetsThePast) {
+    create(LIMPID_METHOD_TEMPORAL);
+    const SyntheticScene scene({});
+    std::vector<float> depths, ids, first, later;
+    const HostFrame frame = embeddable(scene, 0);
+    limpid_host_frame given = hostFrame(frame, 0, depths, ids, first);
+    ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+    const HostFrame other = scene.frame(0, width, height, 2);
+    given = hostFrame(other, 0, depths, ids, later);
+    ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK);
+    given = hostFrame(frame, 0, depths, ids, later);
+    given.reset = 1;
+    ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK);
+    EXPECT_EQ(first, later);
+}
+
+TEST_F(HostFramesTest, EveryMethodRunsAndListsItsParameters) {
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL}) {
+        create(method, 1);
+        limpid_parameter p;
+        uint32_t count = 0;
+        for (; limpid_method_parameter(method, count, &p) == LIMPID_OK; ++count) {
+            double value = -1;
+            EXPECT_EQ(limpid_denoiser_get(denoiser_, p.name, &value), LIMPID_OK) << p.name;
+            EXPECT_NEAR(value, p.default_value, 1e-6 * std::abs(p.default_value)) << p.name;
+            EXPECT_EQ(limpid_denoiser_set(denoiser_, p.name, p.default_value), LIMPID_OK)
+                << limpid_last_error();
+            EXPECT_EQ(limpid_denoiser_set(denoiser_, p.name, p.maximum * 2 + 1),
+                      LIMPID_ERROR_INVALID_ARGUMENT);
+            EXPECT_GT(std::strlen(p.help), 0u);
+        }
+        EXPECT_GT(count, 5u);
+        const SyntheticScene scene({});
+        std::vector<float> depths, ids, result;
+        limpid_host_frame given = hostFrame(embeddable(scene, 0), 0, depths, ids, result);
+        const HostFrame frame = embeddable(scene, 0);
+        given = hostFrame(frame, 0, depths, ids, result);
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        for (const float value : result) ASSERT_TRUE(std::isfinite(value));
+        limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+    }
+}
+
+TEST_F(HostFramesTest, SaysWhatIsMissing) {
+    create(LIMPID_METHOD_SVGF);
+    const SyntheticScene scene({});
+    std::vector<float> depths, ids, result;
+    const HostFrame frame = embeddable(scene, 0);
+    limpid_host_frame given = hostFrame(frame, 0, depths, ids, result);
+    given.inputs[LIMPID_INPUT_SPECULAR].data = nullptr;
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("'specular' is missing"));
+    given = hostFrame(frame, 0, depths, ids, result);
+    given.camera.projection[0] = NAN;
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("matrix of the camera"));
+    given.size = 3;
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(limpid_denoise_host(nullptr, &given), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(limpid_denoise_host(denoiser_, nullptr), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(limpid_denoiser_set(denoiser_, "svgf.nothing", 1), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("svgf.nothing"));
+    given = hostFrame(frame, 0, depths, ids, result);
+    EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+}
+
+TEST_F(HostFramesTest, RefusesImpossibleDescriptions) {
+    limpid_denoiser_desc desc = {sizeof desc};
+    EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+    desc.width = desc.height = 8;
+    desc.method = static_cast<limpid_method>(77);
+    EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(denoiser_, nullptr);
+    limpid_device_desc none = {sizeof none};
+    none.select = "no such device";
+    limpid_device* device = nullptr;
+    EXPECT_EQ(limpid_device_create(&none, &device), LIMPID_ERROR_UNSUPPORTED);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("no such device"));
+}
+
+/// A struct of a later version: longer, and zero where we do not look.
+TEST_F(HostFramesTest, StructsMayGrow) {
+    struct Later {
+        limpid_denoiser_desc desc;
+        uint64_t more;
+    } later = {};
+    later.desc.size = sizeof later;
+    later.desc.width = later.desc.height = 8;
+    ASSERT_EQ(limpid_denoiser_create(device_, &later.desc, &denoiser_), LIMPID_OK) << limpid_last_error();
+    limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
+    later.more = 1;
+    EXPECT_EQ(limpid_denoiser_create(device_, &later.desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("later version"));
+}
+
+TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
+    limpid_denoiser_desc desc = {sizeof desc};
+    desc.width = 640;
+    desc.height = 360;
+    uint64_t one = 0, two = 0;
+    ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &one), LIMPID_OK);
+    desc.signals = 2;
+    ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &two), LIMPID_OK);
+    EXPECT_GT(one, uint64_t{640} * 360 * 100);
+    EXPECT_GT(two, one);
+}
+
+}  // namespace
+}  // namespace limpid::test

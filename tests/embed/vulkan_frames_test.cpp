@@ -1,0 +1,313 @@
+// The C interface inside a Vulkan program: on its device, in its command buffers. The program is played by a
+// device of the tests, whose validation layer watches both.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+
+#include "gpu/vulkan/device_impl.h"
+#include "gpu/vulkan/memory/image.h"
+#include "limpid/denoise_vulkan.h"
+#include "tests/denoise/denoise_fixture.h"
+#include "tests/embed/synthetic_camera.h"
+
+namespace limpid::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr uint32_t width = 40, height = 24;
+
+/// Images of one frame on the program's device, and the frame as limpid_record() takes it.
+struct ProgramFrame {
+    gpu::FrameGraph graph;  ///< keeps the images
+    limpid_vulkan_frame frame = {sizeof frame};
+    gpu::ImageHandle color;
+};
+
+class VulkanFramesTest : public DenoiseTest {
+  protected:
+    void SetUp() override {
+        DenoiseTest::SetUp();
+        if (IsSkipped()) return;
+        ASSERT_EQ(adopt({}), LIMPID_OK) << limpid_last_error();
+    }
+    void TearDown() override {
+        if (!IsSkipped()) device().waitIdle();
+        for (limpid_denoiser* denoiser : denoisers_) limpid_denoiser_destroy(denoiser);
+        limpid_device_destroy(adopted_);
+        DenoiseTest::TearDown();
+    }
+
+    const gpu::Context& program() { return *device().impl().context; }
+
+    limpid_result adopt(limpid_vulkan_device_desc desc) {
+        limpid_device_destroy(std::exchange(adopted_, nullptr));
+        desc.size = sizeof desc;
+        desc.instance = program().instance();
+        desc.physical_device = program().physicalDevice();
+        desc.device = program().device();
+        desc.queue_family = program().queueFamily();
+        desc.get_instance_proc_addr = gpu::systemLoader();
+        desc.debug_utils = program().hasDebugUtils();
+        return limpid_device_adopt(&desc, &adopted_);
+    }
+
+    limpid_denoiser* create(limpid_denoiser_desc desc = {}) {
+        desc.size = sizeof desc;
+        if (desc.width == 0) desc.width = width, desc.height = height;
+        desc.signals = 2;
+        desc.motion_depth = LIMPID_MOTION_DISTANCE;
+        limpid_denoiser* denoiser = nullptr;
+        EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &denoiser), LIMPID_OK) << limpid_last_error();
+        denoisers_.push_back(denoiser);
+        return denoiser;
+    }
+
+    limpid_vulkan_image imageOf(ProgramFrame& f, gpu::ImageHandle handle, VkFormat format) {
+        const gpu::Image& image = f.graph.imageOnDevice(device(), handle);
+        limpid_vulkan_image result = {};
+        result.image = image.image.get();
+        result.view = image.view.get();
+        result.format = format;
+        result.layout = VK_IMAGE_LAYOUT_GENERAL;
+        result.stages_before = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        result.access_before = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        return result;
+    }
+
+    /// `number`: of the sequence. The images are on the device when this returns.
+    std::unique_ptr<ProgramFrame> upload(const SyntheticScene& scene, int number,
+                                         gpu::Extent extent = {width, height}) {
+        auto f = std::make_unique<ProgramFrame>();
+        const HostFrame host = scene.frame(number, extent.width, extent.height, 1);
+        std::vector<float> depths(host.pixelCount());
+        std::vector<uint32_t> ids(host.pixelCount());
+        for (size_t p = 0; p < host.pixelCount(); ++p) {
+            depths[p] = host.depth[4 * p + 1] > 0.0f ? host.depth[4 * p] / host.depth[4 * p + 1] : 0.0f;
+            ids[p] = host.ids[2 * p];
+        }
+        f->graph.beginFrame();
+        std::map<limpid_input, gpu::ImageHandle> inputs;
+        const auto add = [&](limpid_input input, gpu::Format format, std::span<const std::byte> pixels) {
+            inputs[input] = f->graph.transient("program/" + std::to_string(input), format, extent);
+            f->graph.upload(inputs[input], pixels);
+        };
+        constexpr auto color = gpu::Format::RGBA32Float;
+        add(LIMPID_INPUT_RADIANCE, color, gpu::bytesOf(host.diffuse));
+        add(LIMPID_INPUT_SPECULAR, color, gpu::bytesOf(host.specular));
+        add(LIMPID_INPUT_EMISSION, color, gpu::bytesOf(host.emission));
+        add(LIMPID_INPUT_ALBEDO, color, gpu::bytesOf(host.albedo));
+        add(LIMPID_INPUT_ALBEDO_SPECULAR, color, gpu::bytesOf(host.albedoSpecular));
+        add(LIMPID_INPUT_NORMAL, color, gpu::bytesOf(host.normal));
+        add(LIMPID_INPUT_DEPTH, gpu::Format::R32Float, gpu::bytesOf(depths));
+        add(LIMPID_INPUT_MOTION, color, gpu::bytesOf(host.motion));
+        add(LIMPID_INPUT_PREVIOUS_NORMAL, color, gpu::bytesOf(host.previousNormal));
+        add(LIMPID_INPUT_ID, gpu::Format::R32Uint, gpu::bytesOf(ids));
+        f->color = f->graph.transient("program/color", color, extent);
+        f->graph.upload(f->color, gpu::bytesOf(host.diffuse));
+        f->graph.execute(device());
+        for (const auto& [input, handle] : inputs)
+            f->frame.inputs[input] = imageOf(*f, handle, VK_FORMAT_R32G32B32A32_SFLOAT);
+        limpid_vulkan_image& output = f->frame.outputs[LIMPID_OUTPUT_COLOR];
+        output = imageOf(*f, f->color, VK_FORMAT_R32G32B32A32_SFLOAT);
+        output.layout_after = VK_IMAGE_LAYOUT_GENERAL;
+        output.stages_after = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        output.access_after = VK_ACCESS_2_TRANSFER_READ_BIT;
+        f->frame.camera = matricesOf(host.camera, host.camera);
+        return f;
+    }
+
+    /// Records by `record` into a command buffer of the program's, submits it and waits.
+    void run(const std::function<void(VkCommandBuffer)>& record) { device().impl().transfer().run(record); }
+
+    std::vector<float> pixels(ProgramFrame& f) { return f.graph.downloadFloat(device(), f.color); }
+
+    std::vector<float> denoiseSequence(limpid_denoiser* denoiser, const SyntheticScene& scene, int frames) {
+        std::vector<float> last;
+        for (int number = 0; number < frames; ++number) {
+            const auto f = upload(scene, number);
+            run([&](VkCommandBuffer commands) {
+                EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+            });
+            last = pixels(*f);
+        }
+        return last;
+    }
+
+    limpid_device* adopted_ = nullptr;
+    std::vector<limpid_denoiser*> denoisers_;
+};
+
+const SyntheticOptions movingObject{.objectMoves = true};
+
+TEST_F(VulkanFramesTest, CleansFrames) {
+    const SyntheticScene scene(movingObject);
+    const std::vector<float> clean = denoiseSequence(create(), scene, 6);
+    const std::vector<float> truth = scene.truth(5, width, height);
+    const HostFrame noisy = scene.frame(5, width, height, 1);
+    double before = 0, after = 0;
+    for (size_t i = 0; i < clean.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const double n = noisy.diffuse[i] + noisy.specular[i] + noisy.emission[i];
+        before += (n - truth[i]) * (n - truth[i]);
+        after += (clean[i] - truth[i]) * (clean[i] - truth[i]);
+    }
+    EXPECT_LT(after, 0.2 * before);
+}
+
+TEST_F(VulkanFramesTest, TwoDenoisersShareACommandBuffer) {
+    const SyntheticScene first(movingObject), second({});
+    const std::vector<float> alone = denoiseSequence(create(), first, 3),
+                             alone2 = denoiseSequence(create(), second, 3);
+    limpid_denoiser_desc named = {};
+    named.name = "second/";
+    limpid_denoiser *a = create(), *b = create(named);
+    std::vector<float> together, together2;
+    for (int number = 0; number < 3; ++number) {
+        const auto f = upload(first, number), g = upload(second, number);
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_record(a, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+            EXPECT_EQ(limpid_record(b, commands, &g->frame), LIMPID_OK) << limpid_last_error();
+        });
+        together = pixels(*f);
+        together2 = pixels(*g);
+    }
+    EXPECT_EQ(alone, together);
+    EXPECT_EQ(alone2, together2);
+}
+
+/// Several frames in one submission: nothing that one uses is touched by the next.
+TEST_F(VulkanFramesTest, ThreeFramesAreInFlight) {
+    const SyntheticScene scene(movingObject);
+    const std::vector<float> oneByOne = denoiseSequence(create(), scene, 6);
+    limpid_denoiser_desc desc = {};
+    desc.frames_in_flight = 3;
+    limpid_denoiser* denoiser = create(desc);
+    std::vector<float> last;
+    for (int number = 0; number < 6; number += 3) {
+        std::vector<std::unique_ptr<ProgramFrame>> frames;
+        for (int i = 0; i < 3; ++i) frames.push_back(upload(scene, number + i));
+        run([&](VkCommandBuffer commands) {
+            for (const auto& f : frames)
+                EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+        });
+        last = pixels(*frames.back());
+    }
+    EXPECT_EQ(oneByOne, last);
+}
+
+TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
+    limpid_denoiser* denoiser = create();
+    size_t size = 0;
+    ASSERT_EQ(limpid_device_pipeline_cache(adopted_, nullptr, &size), LIMPID_OK);
+    std::vector<char> bytes(size);
+    ASSERT_EQ(limpid_device_pipeline_cache(adopted_, bytes.data(), &size), LIMPID_OK);
+    // Pipelines exist: it is too late.
+    EXPECT_NE(limpid_device_load_pipeline_cache(adopted_, bytes.data(), size), LIMPID_OK);
+    const SyntheticScene scene({});
+    const auto f = upload(scene, 0);
+    run([&](VkCommandBuffer commands) {
+        EXPECT_EQ(limpid_warm_up(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+    });
+    const std::vector<float> warm = denoiseSequence(denoiser, scene, 1);
+    EXPECT_EQ(warm, denoiseSequence(create(), scene, 1));
+}
+
+TEST_F(VulkanFramesTest, DamagedPipelineCachesAreIgnored) {
+    const std::string garbage(1000, 'x');
+    EXPECT_EQ(limpid_device_load_pipeline_cache(adopted_, garbage.data(), garbage.size()), LIMPID_OK)
+        << limpid_last_error();
+    create();
+}
+
+TEST_F(VulkanFramesTest, FollowsANewSize) {
+    limpid_denoiser* denoiser = create();
+    const SyntheticScene scene({});
+    denoiseSequence(denoiser, scene, 2);
+    constexpr gpu::Extent other{33, 17};
+    ASSERT_EQ(limpid_denoiser_resize(denoiser, other.width, other.height), LIMPID_OK) << limpid_last_error();
+    std::vector<float> resized;
+    for (int number = 0; number < 2; ++number) {
+        const auto f = upload(scene, number, other);
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+        });
+        resized = pixels(*f);
+    }
+    for (const float value : resized) ASSERT_TRUE(std::isfinite(value));
+    EXPECT_EQ(limpid_denoiser_resize(denoiser, 0, 5), LIMPID_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(VulkanFramesTest, TakesMemoryFromTheCaller) {
+    struct Heap {
+        const gpu::Context* context;
+        int blocks = 0, freed = 0;
+    } heap{&program()};
+    limpid_vulkan_device_desc desc = {};
+    desc.memory_user = &heap;
+    desc.allocate = [](void* user, const VkMemoryRequirements* requirements, VkMemoryPropertyFlags properties,
+                       const char*, limpid_vulkan_memory* block) {
+        auto& from = *static_cast<Heap*>(user);
+        VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+        info.allocationSize = requirements->size;
+        const auto& types = from.context->memoryProperties();
+        while (!(requirements->memoryTypeBits >> info.memoryTypeIndex & 1) ||
+               (types.memoryTypes[info.memoryTypeIndex].propertyFlags & properties) != properties)
+            ++info.memoryTypeIndex;
+        const gpu::DeviceFunctions& vk = from.context->vk();
+        const VkResult result = vk.AllocateMemory(vk.device, &info, nullptr, &block->memory);
+        if (result == VK_SUCCESS && (properties & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT))
+            vk.MapMemory(vk.device, block->memory, 0, VK_WHOLE_SIZE, 0, &block->mapped);
+        ++from.blocks;
+        return result;
+    };
+    desc.free = [](void* user, const limpid_vulkan_memory* block) {
+        auto& from = *static_cast<Heap*>(user);
+        from.context->vk().FreeMemory(from.context->device(), block->memory, nullptr);
+        ++from.freed;
+    };
+    ASSERT_EQ(adopt(desc), LIMPID_OK) << limpid_last_error();
+    const SyntheticScene scene(movingObject);
+    const std::vector<float> picture = denoiseSequence(create(), scene, 2);
+    EXPECT_GT(heap.blocks, 10);
+    limpid_denoiser_destroy(std::exchange(denoisers_.back(), nullptr));
+    limpid_device_destroy(std::exchange(adopted_, nullptr));
+    EXPECT_EQ(heap.freed, heap.blocks);
+    ASSERT_EQ(adopt({}), LIMPID_OK);
+    EXPECT_EQ(picture, denoiseSequence(create(), scene, 2));
+}
+
+TEST_F(VulkanFramesTest, SaysWhatIsWrong) {
+    limpid_denoiser* denoiser = create();
+    const SyntheticScene scene({});
+    const auto f = upload(scene, 0);
+    run([&](VkCommandBuffer commands) {
+        EXPECT_EQ(limpid_record(denoiser, nullptr, &f->frame), LIMPID_ERROR_INVALID_ARGUMENT);
+        limpid_vulkan_frame bad = f->frame;
+        bad.inputs[LIMPID_INPUT_DEPTH].image = VK_NULL_HANDLE;
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("'depth' is missing"));
+        bad = f->frame;
+        bad.outputs[LIMPID_OUTPUT_COLOR].format = VK_FORMAT_R8G8B8A8_UNORM;
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+        EXPECT_THAT(limpid_last_error(), HasSubstr("'color' is of VkFormat"));
+        bad = f->frame;
+        bad.inputs[LIMPID_INPUT_NORMAL].view = VK_NULL_HANDLE;
+        EXPECT_EQ(limpid_record(denoiser, commands, &bad), LIMPID_ERROR_INVALID_ARGUMENT);
+    });
+    limpid_host_frame host = {sizeof host};
+    EXPECT_EQ(limpid_denoise_host(denoiser, &host), LIMPID_ERROR_INVALID_ARGUMENT);
+    VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    EXPECT_EQ(limpid_vulkan_enable_features(&features), LIMPID_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(limpid_last_error(), HasSubstr("synchronization2"));
+    VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    features.pNext = &v12;
+    v12.pNext = &v13;
+    EXPECT_EQ(limpid_vulkan_enable_features(&features), LIMPID_OK) << limpid_last_error();
+    EXPECT_TRUE(v12.scalarBlockLayout && v13.synchronization2 && v13.maintenance4);
+}
+
+}  // namespace
+}  // namespace limpid::test
