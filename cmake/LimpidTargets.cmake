@@ -88,34 +88,104 @@ function(limpid_program NAME)
   limpid_use_pch(${NAME} limpid_pch)
 endfunction()
 
-# limpid_shaders(TARGET a/b.comp ...): compiles shaders below the current folder and embeds each in TARGET as
-# `limpid::shaders::b_comp` (gpu/graph/shader.h: ShaderCode), declared in the generated header "b.comp.h".
-# -g and no -O: the names that the frame graph binds by must survive.
+# What embedded shaders go through. Not -O: it inlines every call and unrolls loops, which makes them larger (atrous_level
+# 25 times) and leaves drivers, which do both where it helps their device, nothing to decide. Nothing here changes what is
+# computed with floats.
+set(LIMPID_SPIRV_PASSES
+  --eliminate-dead-functions --eliminate-local-single-block --eliminate-local-single-store
+  --eliminate-dead-code-aggressive --scalar-replacement=100 --convert-local-access-chains --ssa-rewrite
+  --eliminate-dead-code-aggressive --redundancy-elimination --eliminate-dead-code-aggressive --merge-blocks)
+
+# limpid_shaders(TARGET a/b.comp ... [WORDS_ONLY c.vert ...] [UNOPTIMISED a/b.comp ...]): compiles shaders below the current
+# folder and embeds each in TARGET as `limpid::shaders::b_comp` (gpu/graph/shader.h: ShaderCode), declared in the generated
+# header "b.comp.h". Of those after WORDS_ONLY, which the frame graph cannot use, only the SPIR-V is embedded
+# (std::span<const uint32_t>); of those after UNOPTIMISED, names of others, the SPIR-V is stripped, and not optimised.
+#
+# glslc -g without -O writes shaders/b.comp.spv, which has the names that the frame graph binds by; limpid_reflect reads
+# these, and what spirv-opt makes of the file is embedded.
 function(limpid_shaders TARGET)
+  cmake_parse_arguments(ARG "" "" "WORDS_ONLY;UNOPTIMISED" ${ARGN})
   set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   file(MAKE_DIRECTORY ${GENERATED})
-  file(RELATIVE_PATH FOLDER ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
-  foreach(SOURCE ${ARGN})
-    get_filename_component(FILE ${SOURCE} NAME)
-    string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
-    set(SHADER_SYMBOL ${SYMBOL})
-    set(SHADER_FILE ${FILE})
-    set(SHADER_NAME ${FOLDER}/${SOURCE})
-    set(SHADER_WORDS ${GENERATED}/${FILE}.inc)
-    configure_file(${PROJECT_SOURCE_DIR}/cmake/shader.h.in ${GENERATED}/${FILE}.h @ONLY)
-    configure_file(${PROJECT_SOURCE_DIR}/cmake/shader.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
-    add_custom_command(
-      OUTPUT ${SHADER_WORDS}
-      COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -mfmt=num -MD -MF ${SHADER_WORDS}.d -I ${PROJECT_SOURCE_DIR}/src
-              -o ${SHADER_WORDS} ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
-      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
-      DEPFILE ${SHADER_WORDS}.d
-      VERBATIM)
-    set_source_files_properties(${GENERATED}/${FILE}.cpp PROPERTIES
-      OBJECT_DEPENDS ${SHADER_WORDS} SKIP_PRECOMPILE_HEADERS ON)
-    target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.cpp)
+  foreach(SOURCE ${ARG_UNOPTIMISED})
+    if(NOT SOURCE IN_LIST ARG_UNPARSED_ARGUMENTS AND NOT SOURCE IN_LIST ARG_WORDS_ONLY)
+      message(FATAL_ERROR "limpid_shaders: ${SOURCE} is not one of the shaders of ${TARGET}")
+    endif()
+  endforeach()
+  foreach(SOURCE ${ARG_UNPARSED_ARGUMENTS} ${ARG_WORDS_ONLY})
+    set(PASSES ${LIMPID_SPIRV_PASSES})
+    if(SOURCE IN_LIST ARG_UNOPTIMISED)
+      set(PASSES "")
+    endif()
+    if(SOURCE IN_LIST ARG_WORDS_ONLY)
+      limpid_shader(${TARGET} ${SOURCE} ${GENERATED} shader_words "${PASSES}")
+    else()
+      limpid_shader(${TARGET} ${SOURCE} ${GENERATED} shader "${PASSES}")
+    endif()
   endforeach()
   target_include_directories(${TARGET} PUBLIC ${GENERATED})
+endfunction()
+
+# limpid_shader(TARGET SOURCE GENERATED KIND PASSES): one of them. KIND names the templates (cmake/KIND.h.in).
+function(limpid_shader TARGET SOURCE GENERATED KIND PASSES)
+  get_filename_component(FILE ${SOURCE} NAME)
+  string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
+  file(RELATIVE_PATH FOLDER ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  set(SHADER_SYMBOL ${SYMBOL})
+  set(SHADER_FILE ${FILE})
+  set(SHADER_NAME ${FOLDER}/${SOURCE})
+  set(SHADER_TABLE ${GENERATED}/${FILE}.inc)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${KIND}.h.in ${GENERATED}/${FILE}.h @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${KIND}.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
+  set(NAMED ${GENERATED}/${FILE}.spv)
+  set(EMBEDDED ${GENERATED}/${FILE}.embedded.spv)
+  set(REFLECT limpid_reflect ${SHADER_NAME} ${NAMED} ${EMBEDDED} ${SHADER_TABLE})
+  if(KIND STREQUAL shader_words)
+    set(REFLECT limpid_reflect --words ${EMBEDDED} ${SHADER_TABLE})
+  endif()
+  add_custom_command(
+    OUTPUT ${NAMED}
+    COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -MD -MF ${NAMED}.d -I ${PROJECT_SOURCE_DIR}/src
+            -o ${NAMED} ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
+    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
+    DEPFILE ${NAMED}.d
+    VERBATIM)
+  add_custom_command(
+    OUTPUT ${SHADER_TABLE}
+    BYPRODUCTS ${EMBEDDED}
+    COMMAND ${SPIRV_OPT} --target-env=vulkan1.3 --scalar-block-layout ${PASSES} --strip-debug ${NAMED} -o ${EMBEDDED}
+    COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${EMBEDDED}
+    COMMAND ${REFLECT}
+    DEPENDS ${NAMED} limpid_reflect
+    VERBATIM)
+  set_source_files_properties(${GENERATED}/${FILE}.cpp PROPERTIES
+    OBJECT_DEPENDS ${SHADER_TABLE} SKIP_PRECOMPILE_HEADERS ON)
+  target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.cpp)
+  if(KIND STREQUAL shader)
+    set_property(TARGET ${TARGET} APPEND PROPERTY LIMPID_SHADERS "${FILE}")
+  endif()
+  set_property(TARGET ${TARGET} PROPERTY LIMPID_SHADER_FOLDER ${GENERATED})
+endfunction()
+
+# limpid_shader_list(TARGET LIBRARY ...): adds to TARGET a list of all shaders of the libraries with the SPIR-V that they were
+# made of: `limpid::shaders::listed()`, in the generated header "shader_list.h". For tests.
+function(limpid_shader_list TARGET)
+  set(SHADER_INCLUDES "")
+  set(SHADER_ROWS "")
+  foreach(LIBRARY ${ARGN})
+    get_target_property(FOLDER ${LIBRARY} LIMPID_SHADER_FOLDER)
+    get_target_property(FILES ${LIBRARY} LIMPID_SHADERS)
+    foreach(FILE ${FILES})
+      string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
+      string(APPEND SHADER_INCLUDES "#include \"${FILE}.h\"\n")
+      string(APPEND SHADER_ROWS "    {&${SYMBOL}, \"${FOLDER}/${FILE}.spv\"},\n")
+    endforeach()
+  endforeach()
+  set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_shaders)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/shader_list.h.in ${GENERATED}/shader_list.h @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/shader_list.cpp.in ${GENERATED}/shader_list.cpp @ONLY)
+  target_sources(${TARGET} PRIVATE ${GENERATED}/shader_list.cpp)
+  target_include_directories(${TARGET} PRIVATE ${GENERATED})
 endfunction()
 
 # limpid_text(TARGET a.html ...): embeds files of the current folder in TARGET as `limpid::embedded::a_html`

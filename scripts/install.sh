@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
     build-essential cmake ninja-build pkg-config ca-certificates
-    libvulkan-dev glslc libspirv-cross-c-shared-dev
+    libvulkan-dev glslc spirv-tools libspirv-cross-c-shared-dev
     libglm-dev libfmt-dev libspdlog-dev libtbb-dev nlohmann-json3-dev libcli11-dev
     libopenexr-dev zlib1g-dev libstb-dev libpng-dev libturbojpeg0-dev libmeshoptimizer-dev libdraco-dev libdnnl-dev libglfw3-dev libimgui-dev
     libgtest-dev libgmock-dev

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "command_line.h"
+#include "gpu/reflect/reflect.h"
 
 namespace limpid::viewer {
 namespace {
@@ -74,7 +75,7 @@ std::optional<ShaderReload::Time> ShaderReload::savedAt(const std::string& name)
     return latest;
 }
 
-/// As CMake has it compiled (cmake/LimpidTargets.cmake).
+/// As CMake has it compiled (cmake/LimpidTargets.cmake), and neither optimised nor stripped after.
 std::vector<uint32_t> ShaderReload::compile(const std::string& name) const {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> binary(std::tmpfile(), std::fclose);
     if (!binary) throw Error("no temporary file can be made");
@@ -116,10 +117,10 @@ std::optional<ShaderReload::Result> ShaderReload::poll(const std::vector<gpu::Sh
         for (const gpu::ShaderCode& code : used) {
             const std::string name(code.name);
             if (!wanted.contains(name) || made.contains(name)) continue;
-            std::vector<uint32_t> words = compile(name);
-            if (!sameInterface(gpu::reflect({name, words}), gpu::reflect(code)))
+            std::shared_ptr<const gpu::ShaderCode> compiled = gpu::reflect(name, compile(name));
+            if (!sameInterface(compiled->reflection, code.reflection))
                 throw Error(name + " declares other bindings, constants or sizes: build Limpid anew");
-            made[name] = std::move(words);
+            made[name] = std::move(compiled);
         }
     } catch (const Error& fault) {
         return Result{0, fault.what()};

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <iterator>
 
+#include "accumulate.comp.h"
 #include "base/error.h"
 
 namespace limpid::viewer {
@@ -25,6 +28,68 @@ TEST(ShaderReload, WithoutAFolderNothingIsWatched) {
     EXPECT_FALSE(reload.watches());
     EXPECT_FALSE(reload.poll({}));
     EXPECT_THROW(ShaderReload("/no/such/folder"), InputError);
+}
+
+/// A copy of one shader's sources to be written in.
+class ShaderReloadInAFolder : public testing::Test {
+  protected:
+    void SetUp() override {
+        const fs::path source = fs::path(LIMPID_SOURCE_DIR) / "src/passes/accumulate";
+        fs::create_directories(folder / "passes/accumulate");
+        for (const char* name : {"accumulate.comp", "accumulate_params.h"})
+            fs::copy_file(source / name, folder / "passes/accumulate" / name,
+                          fs::copy_options::overwrite_existing);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    /// Saves the shader with `from` replaced, as if `hours` from now, so that it is newer than the last time.
+    void save(const std::string& from, const std::string& to, int hours) const {
+        const fs::path file = folder / "passes/accumulate/accumulate.comp";
+        std::ifstream in(file);
+        std::string text{std::istreambuf_iterator<char>(in), {}};
+        const size_t at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        std::ofstream(file) << text.replace(at, from.size(), to);
+        fs::last_write_time(file, fs::file_time_type::clock::now() + std::chrono::hours(hours));
+    }
+
+    const fs::path folder =
+        fs::path(testing::TempDir()) /
+        (std::string("limpid_reload_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    const std::vector<gpu::ShaderCode> used{shaders::accumulate_comp};
+};
+
+TEST_F(ShaderReloadInAFolder, CompilesAndReflectsWhatIsSaved) {
+    ShaderReload reload(folder);
+    EXPECT_FALSE(reload.poll(used)) << "nothing is saved yet";
+    save("imageStore(after, at, mean)", "imageStore(after, at, mean + 1.0)", 1);
+    const auto result = reload.poll(used);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->fault, "");
+    EXPECT_EQ(result->compiled, 1);
+    const auto made = reload.replacements().find(shaders::accumulate_comp.name);
+    ASSERT_NE(made, reload.replacements().end());
+    EXPECT_TRUE(sameInterface(made->second->reflection, shaders::accumulate_comp.reflection));
+    EXPECT_NE(made->second->hash, shaders::accumulate_comp.hash);
+    EXPECT_FALSE(reload.poll(used)) << "nothing is saved since";
+}
+
+TEST_F(ShaderReloadInAFolder, RefusesAnotherInterface) {
+    ShaderReload reload(folder);
+    save("binding = 3, rgba32f", "binding = 4, rgba32f", 1);
+    const auto result = reload.poll(used);
+    ASSERT_TRUE(result);
+    EXPECT_NE(result->fault.find("declares other bindings"), std::string::npos) << result->fault;
+    EXPECT_TRUE(reload.replacements().empty());
+}
+
+TEST_F(ShaderReloadInAFolder, SaysWhatReflectionRefuses) {
+    ShaderReload reload(folder);
+    save("binding = 3, rgba32f", "binding = 3, rgba16", 1);
+    const auto result = reload.poll(used);
+    ASSERT_TRUE(result);
+    EXPECT_NE(result->fault.find("'after' needs one of the formats"), std::string::npos) << result->fault;
+    EXPECT_TRUE(reload.replacements().empty());
 }
 
 }  // namespace

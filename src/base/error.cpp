@@ -4,8 +4,6 @@
 
 namespace limpid {
 
-Error::Error(const std::string& message, ExitCode code) : std::runtime_error(message), code_(code) {}
-
 UsageError::UsageError(const std::string& message) : Error(terminalText(message), ExitCode::Usage) {}
 
 InputError::InputError(const std::filesystem::path& file, const std::string& fault)

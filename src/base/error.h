@@ -13,7 +13,9 @@ enum class ExitCode { Done = 0, Failed = 1, Usage = 2, BadInput = 3 };
 /// Base of every exception that Limpid throws on purpose; what() is a sentence for the user.
 class Error : public std::runtime_error {
   public:
-    explicit Error(const std::string& message, ExitCode code = ExitCode::Failed);
+    // Inline: tools of the build throw it without linking limpid::base.
+    explicit Error(const std::string& message, ExitCode code = ExitCode::Failed)
+        : std::runtime_error(message), code_(code) {}
     ExitCode code() const { return code_; }
 
   private:

@@ -3,7 +3,8 @@
 #include "gpu/graph/frame_graph.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -24,44 +25,35 @@ uint32_t generation(uint64_t frame) {
     return static_cast<uint32_t>(frame % generations);
 }
 
-bool sameWords(const std::vector<uint32_t>& a, std::span<const uint32_t> b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), b.size_bytes()) == 0;
-}
+using CodePointer = std::shared_ptr<const ShaderCode>;
 
-bool sameCode(const Shader& shader, const std::vector<ShaderCode>& codes) {
-    return std::ranges::equal(shader.stages, codes, [](const Shader::Stage& stage, const ShaderCode& code) {
-        return sameWords(stage.words, code.words);
+bool sameCode(const Shader& shader, std::span<const CodePointer> codes) {
+    return std::ranges::equal(shader.stages, codes, [](const ShaderCode& stage, const CodePointer& code) {
+        return stage.hash == code->hash && stage.words.size() == code->words.size();
     });
 }
 
 constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, ShaderStage::Miss,
                                                ShaderStage::ClosestHit, ShaderStage::AnyHit};
 
-/// FNV-1a, word by word.
-uint64_t hashOf(std::span<const uint32_t> words, uint64_t before) {
-    uint64_t hash = before == 0 ? 0xCBF29CE484222325u : before;
-    for (const uint32_t word : words) hash = (hash ^ word) * 0x100000001B3u;
-    return hash;
-}
-
 /// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
-Shader makeShader(const std::vector<ShaderCode>& codes) {
-    Shader shader;
-    shader.name = codes[0].name;
+std::shared_ptr<const Shader> makeShader(std::span<const CodePointer> codes) {
+    const auto shader = std::make_shared<Shader>();
+    shader->name = codes[0]->name;
+    shader->reflection = codes[0]->reflection;
     for (size_t i = 0; i < codes.size(); ++i) {
-        const ShaderCode& code = codes[i];
-        ShaderReflection reflection = reflect(code);
+        const ShaderCode& code = *codes[i];
         const ShaderStage wanted = codes.size() == 1 ? ShaderStage::Compute : rayStages[i];
-        if (reflection.stage != wanted)
+        if (code.reflection.stage != wanted)
             throw Error(formatText("shader '{}' is of another stage than its use", code.name));
-        shader.stages.push_back(
-            {reflection.stage, {code.words.begin(), code.words.end()}, std::string(code.name)});
-        if (i == 0) {
-            shader.reflection = std::move(reflection);
-        } else {
-            merge(shader.reflection, reflection, code.name);
-        }
-        shader.hash = hashOf(code.words, shader.hash);
+        shader->stages.push_back(code);
+        shader->hash = shader->hash * 0x100000001B3u ^ code.hash;
+        if (codes[i].use_count() != 0) shader->owners.push_back(codes[i]);
+        if (codes.size() > 1) merge(shader->merged, code.reflection, code.name);
+    }
+    if (codes.size() > 1) {
+        shader->reflection.bindings = shader->merged.bindings;
+        shader->reflection.constants = shader->merged.constants;
     }
     return shader;
 }
@@ -125,18 +117,22 @@ uint32_t FrameGraph::Impl::indexOf(ImageHandle handle) const {
     return index;
 }
 
-/// Compares the code itself: the viewer may load changed code under the same name, even at the same address.
-std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code, const RayShaders* rays) {
-    std::vector<ShaderCode> codes{code};
-    if (rays) codes.insert(codes.end(), {rays->miss, rays->closestHit, rays->anyHit});
-    for (ShaderCode& used : codes) {
-        if (!replacements) break;
-        const auto replacement = replacements->find(used.name);
-        if (replacement != replacements->end()) used.words = replacement->second;
+std::shared_ptr<const ShaderCode> FrameGraph::Impl::replaced(const ShaderCode& code) const {
+    if (replacements) {
+        const auto found = replacements->find(code.name);
+        if (found != replacements->end()) return found->second;
     }
+    return {CodePointer(), &code};
+}
+
+/// Compares the code itself: the viewer may load changed code under the same name.
+std::shared_ptr<const Shader> FrameGraph::Impl::shaderOf(const ShaderCode& code, const RayShaders* rays) {
+    std::array<CodePointer, rayStages.size()> all{replaced(code)};
+    if (rays) all = {all[0], replaced(rays->miss), replaced(rays->closestHit), replaced(rays->anyHit)};
+    const std::span<const CodePointer> codes = std::span(all).first(rays ? all.size() : 1);
     const auto found = shaders.find(code.name);
     if (found != shaders.end() && sameCode(*found->second, codes)) return found->second;
-    const auto shader = std::make_shared<const Shader>(makeShader(codes));
+    const std::shared_ptr<const Shader> shader = makeShader(codes);
     shaders.insert_or_assign(std::string(code.name), shader);
     return shader;
 }
@@ -148,7 +144,7 @@ void FrameGraph::setReplacements(const ShaderReplacements* replacements) {
 std::vector<ShaderCode> FrameGraph::usedShaders() const {
     std::vector<ShaderCode> codes;
     for (const auto& [name, shader] : impl_->shaders)
-        for (const Shader::Stage& stage : shader->stages) codes.push_back({stage.name, stage.words});
+        codes.insert(codes.end(), shader->stages.begin(), shader->stages.end());
     return codes;
 }
 

@@ -103,6 +103,7 @@ struct RayShaders {
     const ShaderCode& anyHit;
 };
 
+/// What `shader` and `rays` view is static, as in embedded shaders: pipelines keep it.
 struct Dispatch {
     std::string_view pass;     ///< "technique/step": shown by the profiler and named on the command line
     const ShaderCode& shader;  ///< compute; ray generation if `rays` is set

@@ -13,15 +13,13 @@ class FrameExecutor;
 /// A compute shader, or the shaders of a ray-tracing pipeline with ray generation first, and what they
 /// declare together; kept as long as a frame or a pipeline uses it.
 struct Shader {
-    uint64_t hash = 0;  ///< of all stages' code
-    struct Stage {
-        ShaderStage stage{};
-        std::vector<uint32_t> words;
-        std::string name;
-    };
+    uint64_t hash = 0;  ///< of all stages; equal: the same shader
+    using Stage = ShaderCode;
     std::string name;  ///< of the first stage
     std::vector<Stage> stages;
     ShaderReflection reflection;
+    MergedDeclarations merged;                              ///< of several stages: what `reflection` views
+    std::vector<std::shared_ptr<const ShaderCode>> owners;  ///< of replacements: what they view
 
     bool tracesRays() const { return reflection.stage == ShaderStage::RayGeneration; }
 };
@@ -143,6 +141,8 @@ struct FrameGraph::Impl {
     /// Index of a handle of this frame; throws Error if it is empty or of another frame.
     uint32_t indexOf(ImageHandle handle) const;
     std::shared_ptr<const Shader> shaderOf(const ShaderCode& code, const RayShaders* rays);
+    /// What replaces the code, or else, without an owner, the code itself.
+    std::shared_ptr<const ShaderCode> replaced(const ShaderCode& code) const;
     /// Finds what the pass, which comes next, has to wait for; then notes what it touches.
     void noteAccesses(RecordedPass& pass, std::span<const Access> accesses);
     FrameExecutor& executorFor(Device& device);

@@ -411,11 +411,17 @@ TEST(FrameGraph, NeedsABegunFrame) {
     EXPECT_THAT(faultOf([&] { graph.assumeExecuted(); }), HasSubstr("has been executed"));
 }
 
-TEST(FrameGraph, ChangedShaderCodeUnderTheSameNameIsReflectedAnew) {
+/// A shader under another's name.
+ShaderCode renamed(ShaderCode code) {
+    code.name = "demo";
+    return code;
+}
+
+TEST(FrameGraph, ChangedShaderCodeUnderTheSameNameIsAnotherShader) {
     FrameGraph graph;
     graph.beginFrame();
-    const ShaderCode before{"demo", shaders::test_increment_comp.words};
-    const ShaderCode after{"demo", shaders::test_unused_comp.words};
+    const ShaderCode before = renamed(shaders::test_increment_comp);
+    const ShaderCode after = renamed(shaders::test_unused_comp);
     const ImageHandle a = graph.transient("a", rgba, small);
     EXPECT_THAT(
         faultOf([&] {
@@ -427,6 +433,27 @@ TEST(FrameGraph, ChangedShaderCodeUnderTheSameNameIsReflectedAnew) {
             graph.dispatch({.pass = "p", .shader = after, .bindings = {{"result", a}}, .extent = small});
         }),
         HasSubstr("'unused': nothing is bound"));
+}
+
+TEST(FrameGraph, KeepsAReplacementAsLongAsItIsUsed) {
+    FrameGraph graph;
+    ShaderReplacements replacements;
+    const auto replacement = std::make_shared<const ShaderCode>(renamed(shaders::test_unused_comp));
+    replacements["demo"] = replacement;
+    graph.setReplacements(&replacements);
+    graph.beginFrame();
+    const ImageHandle a = graph.transient("a", rgba, small);
+    const auto record = [&] {
+        const ShaderCode code = renamed(shaders::test_increment_comp);
+        graph.dispatch({.pass = "p", .shader = code, .bindings = {{"result", a}}, .extent = small});
+    };
+    EXPECT_THAT(faultOf(record), HasSubstr("'unused': nothing is bound"));
+    ASSERT_EQ(graph.usedShaders().size(), 1u);
+    EXPECT_EQ(graph.usedShaders()[0].words.data(), shaders::test_unused_comp.words.data());
+    replacements.clear();
+    EXPECT_EQ(replacement.use_count(), 2) << "the shader that was made of it lives";
+    EXPECT_THAT(faultOf(record), HasSubstr("'result': the shader declares no such variable"));
+    EXPECT_EQ(replacement.use_count(), 1);
 }
 
 }  // namespace

@@ -1,360 +1,56 @@
 #include "gpu/graph/shader.h"
 
-#include <spirv_cross/spirv_cross_c.h>
-
 #include <algorithm>
-#include <memory>
-#include <optional>
 
 #include "base/error.h"
 #include "base/text/format.h"
-#include "gpu/graph/spirv_declarations.h"
 
 namespace limpid::gpu {
-namespace {
-
-struct ContextDeleter {
-    void operator()(spvc_context context) const { spvc_context_destroy(context); }
-};
-
-std::optional<Format> toFormat(SpvImageFormat format) {
-    switch (format) {
-        case SpvImageFormatR32f:
-            return Format::R32Float;
-        case SpvImageFormatR32ui:
-            return Format::R32Uint;
-        case SpvImageFormatRg32f:
-            return Format::RG32Float;
-        case SpvImageFormatRg32ui:
-            return Format::RG32Uint;
-        case SpvImageFormatRgba32f:
-            return Format::RGBA32Float;
-        case SpvImageFormatRgba32ui:
-            return Format::RGBA32Uint;
-        case SpvImageFormatRgba16f:
-            return Format::RGBA16Float;
-        case SpvImageFormatRgba8:
-            return Format::RGBA8Unorm;
-        default:
-            return std::nullopt;
-    }
-}
-
-/// One run of SPIRV-Cross over one shader.
-class Reflector {
-  public:
-    explicit Reflector(const ShaderCode& code);
-    ShaderReflection run();
-
-  private:
-    using List = std::span<const spvc_reflected_resource>;
-
-    [[noreturn]] void fail(const std::string& fault) const;
-    void check(spvc_result result) const;
-    List list(spvc_resource_type type) const;
-    void refuse(spvc_resource_type type, std::string_view what) const;
-
-    ShaderBinding common(const spvc_reflected_resource& resource, std::string name) const;
-    std::string blockName(const spvc_reflected_resource& resource) const;
-    ShaderBinding image(const spvc_reflected_resource& resource) const;
-    ShaderBinding storageBuffer(const spvc_reflected_resource& resource) const;
-    ShaderBinding uniformBlock(const spvc_reflected_resource& resource) const;
-    bool everyMemberHas(const spvc_reflected_resource& resource, SpvDecoration decoration) const;
-    void checkNumbers(const ShaderReflection& reflection) const;
-    void readConstants(ShaderReflection& reflection) const;
-    void readWorkgroupSize(ShaderReflection& reflection) const;
-
-    ShaderStage stageOf(SpvExecutionModel model) const;
-    ShaderBinding accelerationStructure(const spvc_reflected_resource& resource) const;
-    ShaderBinding sampledImage(const spvc_reflected_resource& resource) const;
-
-    const ShaderCode& code_;
-    ShaderStage stage_{};
-    std::unique_ptr<spvc_context_s, ContextDeleter> context_;
-    spvc_compiler compiler_ = nullptr;
-    spvc_resources resources_ = nullptr;
-};
-
-Reflector::Reflector(const ShaderCode& code) : code_(code) {
-    spvc_context context = nullptr;
-    if (spvc_context_create(&context) != SPVC_SUCCESS) fail("SPIRV-Cross ran out of memory");
-    context_.reset(context);
-    spvc_parsed_ir ir = nullptr;
-    const std::vector<uint32_t> words = withoutCooperativeMatrices(code.words);
-    check(spvc_context_parse_spirv(context, words.data(), words.size(), &ir));
-    check(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
-                                       &compiler_));
-    stage_ = stageOf(spvc_compiler_get_execution_model(compiler_));
-    check(spvc_compiler_create_shader_resources(compiler_, &resources_));
-}
-
-void Reflector::fail(const std::string& fault) const {
-    throw Error(formatText("shader '{}': {}", code_.name, fault));
-}
-
-void Reflector::check(spvc_result result) const {
-    if (result == SPVC_SUCCESS) return;
-    fail(formatText("SPIRV-Cross cannot read it: {}", spvc_context_get_last_error_string(context_.get())));
-}
-
-Reflector::List Reflector::list(spvc_resource_type type) const {
-    const spvc_reflected_resource* first = nullptr;
-    size_t count = 0;
-    check(spvc_resources_get_resource_list_for_type(resources_, type, &first, &count));
-    return {first, count};
-}
-
-void Reflector::refuse(spvc_resource_type type, std::string_view what) const {
-    const List found = list(type);
-    if (!found.empty()) fail(formatText("variable '{}': Limpid has no {}", found[0].name, what));
-}
-
-/// What every kind of resource has: the number, the set, no array.
-ShaderBinding Reflector::common(const spvc_reflected_resource& resource, std::string name) const {
-    ShaderBinding result;
-    result.name = std::move(name);
-    if (result.name.empty()) fail("a variable has no name (was the SPIR-V stripped or optimised?)");
-    if (spvc_compiler_get_decoration(compiler_, resource.id, SpvDecorationDescriptorSet) != 0) {
-        fail(formatText("variable '{}': only descriptor set 0 is supported", result.name));
-    }
-    if (!spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationBinding)) {
-        fail(formatText("variable '{}' has no layout(binding = ...)", result.name));
-    }
-    result.binding = spvc_compiler_get_decoration(compiler_, resource.id, SpvDecorationBinding);
-    if (spvc_type_get_num_array_dimensions(spvc_compiler_get_type_handle(compiler_, resource.type_id)) != 0) {
-        fail(formatText("variable '{}': arrays of resources are not supported", result.name));
-    }
-    result.readable = !spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationNonReadable);
-    result.writable = !spvc_compiler_has_decoration(compiler_, resource.id, SpvDecorationNonWritable);
-    return result;
-}
-
-std::string Reflector::blockName(const spvc_reflected_resource& resource) const {
-    const std::string instance = spvc_compiler_get_name(compiler_, resource.id);
-    return instance.empty() ? spvc_compiler_get_name(compiler_, resource.base_type_id) : instance;
-}
-
-ShaderBinding Reflector::image(const spvc_reflected_resource& resource) const {
-    ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
-    const spvc_type type = spvc_compiler_get_type_handle(compiler_, resource.type_id);
-    const SpvDim dimension = spvc_type_get_image_dimension(type);
-    if (dimension == SpvDimBuffer) {
-        result.kind = BindingKind::StorageTexelBuffer;
-    } else if (dimension == SpvDim2D && !spvc_type_get_image_arrayed(type) &&
-               !spvc_type_get_image_multisampled(type)) {
-        result.kind = BindingKind::StorageImage;
-    } else {
-        fail(formatText("variable '{}': images are two-dimensional or buffers here", result.name));
-    }
-    const std::optional<Format> format = toFormat(spvc_type_get_image_storage_format(type));
-    if (!format) {
-        fail(formatText(
-            "variable '{}' needs one of the formats r32f, r32ui, rg32f, rg32ui, rgba32f, rgba32ui, "
-            "rgba16f, rgba8",
-            result.name));
-    }
-    result.format = *format;
-    return result;
-}
-
-/// texture2D and utexture2D. What is read has no declared format, only floats or unsigned integers as
-/// components.
-ShaderBinding Reflector::sampledImage(const spvc_reflected_resource& resource) const {
-    ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
-    result.kind = BindingKind::SampledImage;
-    result.readable = true;
-    result.writable = false;
-    const spvc_type type = spvc_compiler_get_type_handle(compiler_, resource.type_id);
-    if (spvc_type_get_image_dimension(type) != SpvDim2D || spvc_type_get_image_arrayed(type) ||
-        spvc_type_get_image_multisampled(type))
-        fail(formatText("variable '{}': sampled images are two-dimensional here", result.name));
-    const spvc_type component =
-        spvc_compiler_get_type_handle(compiler_, spvc_type_get_image_sampled_type(type));
-    const spvc_basetype base = spvc_type_get_basetype(component);
-    if (base != SPVC_BASETYPE_FP32 && base != SPVC_BASETYPE_UINT32)
-        fail(formatText("variable '{}': sampled images have floats or unsigned integers here", result.name));
-    result.format = base == SPVC_BASETYPE_FP32 ? Format::RGBA32Float : Format::RGBA32Uint;
-    return result;
-}
-
-ShaderBinding Reflector::accelerationStructure(const spvc_reflected_resource& resource) const {
-    ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
-    result.kind = BindingKind::AccelerationStructure;
-    result.readable = true;
-    result.writable = false;
-    return result;
-}
-
-ShaderStage Reflector::stageOf(SpvExecutionModel model) const {
-    switch (model) {
-        case SpvExecutionModelGLCompute:
-            return ShaderStage::Compute;
-        case SpvExecutionModelRayGenerationKHR:
-            return ShaderStage::RayGeneration;
-        case SpvExecutionModelMissKHR:
-            return ShaderStage::Miss;
-        case SpvExecutionModelClosestHitKHR:
-            return ShaderStage::ClosestHit;
-        case SpvExecutionModelAnyHitKHR:
-            return ShaderStage::AnyHit;
-        default:
-            fail("is of a stage that Limpid does not use");
-    }
-}
-
-bool Reflector::everyMemberHas(const spvc_reflected_resource& resource, SpvDecoration decoration) const {
-    const spvc_type type = spvc_compiler_get_type_handle(compiler_, resource.base_type_id);
-    const unsigned members = spvc_type_get_num_member_types(type);
-    for (unsigned i = 0; i < members; ++i) {
-        if (!spvc_compiler_has_member_decoration(compiler_, resource.base_type_id, i, decoration))
-            return false;
-    }
-    return members > 0;
-}
-
-/// A block's readonly and writeonly stand on its members, not on the variable.
-ShaderBinding Reflector::storageBuffer(const spvc_reflected_resource& resource) const {
-    ShaderBinding result = common(resource, blockName(resource));
-    result.kind = BindingKind::StorageBuffer;
-    if (everyMemberHas(resource, SpvDecorationNonReadable)) result.readable = false;
-    if (everyMemberHas(resource, SpvDecorationNonWritable)) result.writable = false;
-    return result;
-}
-
-ShaderBinding Reflector::uniformBlock(const spvc_reflected_resource& resource) const {
-    ShaderBinding result = common(resource, blockName(resource));
-    result.kind = BindingKind::UniformBuffer;
-    result.writable = false;
-    const spvc_type type = spvc_compiler_get_type_handle(compiler_, resource.base_type_id);
-    size_t size = 0;
-    check(spvc_compiler_get_declared_struct_size(compiler_, type, &size));
-    result.blockSize = static_cast<uint32_t>(size);
-    return result;
-}
-
-void Reflector::checkNumbers(const ShaderReflection& reflection) const {
-    for (size_t i = 1; i < reflection.bindings.size(); ++i) {
-        const ShaderBinding& a = reflection.bindings[i - 1];
-        const ShaderBinding& b = reflection.bindings[i];
-        if (a.binding == b.binding) {
-            fail(formatText("variables '{}' and '{}' share binding {}", a.name, b.name, a.binding));
-        }
-    }
-}
-
-void Reflector::readConstants(ShaderReflection& reflection) const {
-    const spvc_specialization_constant* constants = nullptr;
-    size_t count = 0;
-    check(spvc_compiler_get_specialization_constants(compiler_, &constants, &count));
-    for (const spvc_specialization_constant& constant : std::span(constants, count)) {
-        const std::string name = spvc_compiler_get_name(compiler_, constant.id);
-        if (name.empty()) continue;  // made by the compiler for layout(local_size_x_id = ...)
-        const spvc_constant handle = spvc_compiler_get_constant_handle(compiler_, constant.id);
-        const spvc_type type = spvc_compiler_get_type_handle(compiler_, spvc_constant_get_type(handle));
-        const bool isBool = spvc_type_get_basetype(type) == SPVC_BASETYPE_BOOLEAN;
-        if (!isBool && spvc_type_get_bit_width(type) != 32) {
-            fail(formatText("constant '{}' has no 32 bits", name));
-        }
-        const auto sameId = [&](const ShaderConstant& other) { return other.id == constant.constant_id; };
-        if (const auto other = std::ranges::find_if(reflection.constants, sameId);
-            other != reflection.constants.end()) {
-            fail(formatText("constants '{}' and '{}' share id {}", other->name, name, other->id));
-        }
-        reflection.constants.push_back({name, constant.constant_id});
-    }
-}
-
-void Reflector::readWorkgroupSize(ShaderReflection& reflection) const {
-    std::array<spvc_specialization_constant, 3> ids{};
-    spvc_compiler_get_work_group_size_specialization_constants(compiler_, &ids[0], &ids[1], &ids[2]);
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        if (ids[axis].id == 0) {
-            reflection.workgroupSize[axis] = spvc_compiler_get_execution_mode_argument_by_index(
-                compiler_, SpvExecutionModeLocalSize, axis);
-        } else {
-            const spvc_constant constant = spvc_compiler_get_constant_handle(compiler_, ids[axis].id);
-            reflection.workgroupSize[axis] = spvc_constant_get_scalar_u32(constant, 0, 0);
-            reflection.workgroupSizeIds[axis] = ids[axis].constant_id;
-        }
-        if (reflection.workgroupSize[axis] == 0) fail("its workgroup size cannot be read");
-    }
-}
-
-ShaderReflection Reflector::run() {
-    refuse(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE, "images with samplers");
-    refuse(SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS, "samplers");
-    refuse(SPVC_RESOURCE_TYPE_PUSH_CONSTANT, "push constants");
-    refuse(SPVC_RESOURCE_TYPE_ATOMIC_COUNTER, "atomic counters");
-    ShaderReflection reflection;
-    reflection.stage = stage_;
-    for (const auto& r : list(SPVC_RESOURCE_TYPE_ACCELERATION_STRUCTURE))
-        reflection.bindings.push_back(accelerationStructure(r));
-    for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_IMAGE)) reflection.bindings.push_back(image(r));
-    for (const auto& r : list(SPVC_RESOURCE_TYPE_SEPARATE_IMAGE))
-        reflection.bindings.push_back(sampledImage(r));
-    for (const auto& r : list(SPVC_RESOURCE_TYPE_STORAGE_BUFFER))
-        reflection.bindings.push_back(storageBuffer(r));
-    const List uniforms = list(SPVC_RESOURCE_TYPE_UNIFORM_BUFFER);
-    for (const auto& r : uniforms) reflection.bindings.push_back(uniformBlock(r));
-    if (uniforms.size() > 1) fail("it has more than one uniform block");
-    std::ranges::sort(reflection.bindings, {}, &ShaderBinding::binding);
-    checkNumbers(reflection);
-    readConstants(reflection);
-    if (stage_ == ShaderStage::Compute) readWorkgroupSize(reflection);
-    return reflection;
-}
-
-}  // namespace
 
 const ShaderBinding* ShaderReflection::find(std::string_view name) const {
     const auto found = std::ranges::find(bindings, name, &ShaderBinding::name);
     return found == bindings.end() ? nullptr : &*found;
 }
 
-ShaderReflection reflect(const ShaderCode& code) {
-    return Reflector(code).run();
-}
-
 bool sameInterface(const ShaderReflection& a, const ShaderReflection& b) {
-    const auto sameBinding = [](const ShaderBinding& x, const ShaderBinding& y) {
-        return x.name == y.name && x.binding == y.binding && x.kind == y.kind && x.format == y.format &&
-               x.readable == y.readable && x.writable == y.writable && x.blockSize == y.blockSize;
-    };
-    const auto sameConstant = [](const ShaderConstant& x, const ShaderConstant& y) {
-        return x.name == y.name && x.id == y.id;
-    };
     return a.stage == b.stage && a.workgroupSize == b.workgroupSize &&
-           a.workgroupSizeIds == b.workgroupSizeIds &&
-           std::ranges::equal(a.bindings, b.bindings, sameBinding) &&
-           std::ranges::equal(a.constants, b.constants, sameConstant);
+           a.workgroupSizeIds == b.workgroupSizeIds && std::ranges::equal(a.bindings, b.bindings) &&
+           std::ranges::equal(a.constants, b.constants);
 }
 
-void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other) {
-    const auto fail = [&](const std::string& name) {
-        throw Error(
-            formatText("shader '{}' declares '{}' otherwise than the shader that calls it", other, name));
-    };
-    for (const ShaderBinding& b : from.bindings) {
-        const auto same = [&](const ShaderBinding& a) { return a.name == b.name || a.binding == b.binding; };
-        const auto found = std::ranges::find_if(into.bindings, same);
-        if (found == into.bindings.end()) {
-            into.bindings.push_back(b);
-            continue;
-        }
-        if (found->name != b.name || found->binding != b.binding || found->kind != b.kind ||
-            found->format != b.format || found->blockSize != b.blockSize) {
-            fail(b.name);
-        }
-        found->readable |= b.readable;
-        found->writable |= b.writable;
+namespace {
+
+[[noreturn]] void failToMerge(std::string_view shader, std::string_view name) {
+    throw Error(
+        formatText("shader '{}' declares '{}' otherwise than the shader that calls it", shader, name));
+}
+
+void mergeBinding(std::vector<ShaderBinding>& into, const ShaderBinding& b, std::string_view shader) {
+    const auto same = [&](const ShaderBinding& a) { return a.name == b.name || a.binding == b.binding; };
+    const auto found = std::ranges::find_if(into, same);
+    if (found == into.end()) {
+        into.push_back(b);
+        return;
     }
+    if (found->name != b.name || found->binding != b.binding || found->kind != b.kind ||
+        found->format != b.format || found->blockSize != b.blockSize) {
+        failToMerge(shader, b.name);
+    }
+    found->readable |= b.readable;
+    found->writable |= b.writable;
+}
+
+}  // namespace
+
+void merge(MergedDeclarations& into, const ShaderReflection& stage, std::string_view shader) {
+    for (const ShaderBinding& binding : stage.bindings) mergeBinding(into.bindings, binding, shader);
     std::ranges::sort(into.bindings, {}, &ShaderBinding::binding);
-    for (const ShaderConstant& b : from.constants) {
-        const auto found = std::ranges::find(into.constants, b.name, &ShaderConstant::name);
+    for (const ShaderConstant& constant : stage.constants) {
+        const auto found = std::ranges::find(into.constants, constant.name, &ShaderConstant::name);
         if (found == into.constants.end()) {
-            into.constants.push_back(b);
-        } else if (found->id != b.id) {
-            fail(b.name);
+            into.constants.push_back(constant);
+        } else if (found->id != constant.id) {
+            failToMerge(shader, constant.name);
         }
     }
 }

@@ -1,22 +1,18 @@
-// Shaders as data: their SPIR-V and what reflection says of it. Needs no device.
+// Shaders as data: their SPIR-V and what reflection says of it. Needs neither a device nor SPIRV-Cross: the
+// tables are made at build time (src/gpu/reflect).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace limpid::gpu {
-
-/// SPIR-V embedded at build time by limpid_shaders() (cmake/LimpidTargets.cmake).
-struct ShaderCode {
-    std::string_view name;  ///< path of the source below src/, for messages
-    std::span<const uint32_t> words;
-};
 
 enum class ShaderStage { Compute, RayGeneration, Miss, ClosestHit, AnyHit };
 
@@ -51,25 +47,30 @@ std::span<const Format> allFormats();
 
 /// One resource that the shader declares, named as in GLSL.
 struct ShaderBinding {
-    std::string name;
+    std::string_view name;
     uint32_t binding = 0;
     BindingKind kind = BindingKind::StorageImage;
     Format format = Format::RGBA32Float;  ///< of images and texel buffers
     bool readable = true;                 ///< false if declared `writeonly`
     bool writable = true;                 ///< false if declared `readonly`
     uint32_t blockSize = 0;               ///< bytes, of a uniform buffer
+
+    bool operator==(const ShaderBinding&) const = default;
 };
 
 /// A specialisation constant: layout(constant_id = id) const T name = ...;
 struct ShaderConstant {
-    std::string name;
+    std::string_view name;
     uint32_t id = 0;
+
+    bool operator==(const ShaderConstant&) const = default;
 };
 
+/// What a shader declares, used or not. A view: of static tables, or of what else owns names and lists.
 struct ShaderReflection {
     ShaderStage stage = ShaderStage::Compute;
-    std::vector<ShaderBinding> bindings;  ///< descriptor set 0 only; another set is an error
-    std::vector<ShaderConstant> constants;
+    std::span<const ShaderBinding> bindings;  ///< of descriptor set 0, in the order of their numbers
+    std::span<const ShaderConstant> constants;
     std::array<uint32_t, 3> workgroupSize{};  ///< of compute shaders
     /// The constant ids of layout(local_size_x_id = ...); noConstant where the size is fixed.
     std::array<uint32_t, 3> workgroupSizeIds{noConstant, noConstant, noConstant};
@@ -78,21 +79,30 @@ struct ShaderReflection {
     const ShaderBinding* find(std::string_view name) const;
 };
 
-/// Reads the bindings of a shader with SPIRV-Cross: all that the SPIR-V declares, used or not (glslc
-/// without -O keeps unused ones), in the order of their binding numbers. A buffer block is named by its
-/// instance, or by the block if it has none. Constants that have no GLSL name are left out. Throws Error
-/// naming the shader if it uses what Limpid does not (samplers, push constants, arrays of resources,
-/// another set than 0, an unlisted format, several uniform blocks, two variables at one binding).
-ShaderReflection reflect(const ShaderCode& code);
+/// One shader. limpid_shaders() (cmake/LimpidTargets.cmake) embeds it as a constant of static lifetime, its
+/// SPIR-V optimised and stripped, with the reflection of what glslc wrote. A view, like ShaderReflection.
+struct ShaderCode {
+    std::string_view name;  ///< path of the source below src/, for messages
+    std::span<const uint32_t> words;
+    ShaderReflection reflection;
+    uint64_t hash = 0;  ///< of words and reflection; equal: the same shader
+};
 
 /// Whether code that binds and dispatches the one can do so with the other.
 bool sameInterface(const ShaderReflection& a, const ShaderReflection& b);
 
-/// SPIR-V by the names of the shaders that it takes the place of.
-using ShaderReplacements = std::map<std::string, std::vector<uint32_t>, std::less<>>;
+/// Shaders by the names of those that they take the place of. Each pointer owns all that its ShaderCode
+/// views.
+using ShaderReplacements = std::map<std::string, std::shared_ptr<const ShaderCode>, std::less<>>;
 
-/// What several stages of one pipeline declare together. Throws Error naming `other` if the two disagree
-/// about a binding or a constant.
-void merge(ShaderReflection& into, const ShaderReflection& from, std::string_view other);
+/// What several stages of one pipeline declare together, bindings in the order of their numbers.
+struct MergedDeclarations {
+    std::vector<ShaderBinding> bindings;
+    std::vector<ShaderConstant> constants;
+};
+
+/// Adds what a stage declares. Throws Error naming `shader`, which the stage is from, if it and those before
+/// it disagree about a binding or a constant.
+void merge(MergedDeclarations& into, const ShaderReflection& stage, std::string_view shader);
 
 }  // namespace limpid::gpu

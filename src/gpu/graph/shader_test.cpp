@@ -4,121 +4,99 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "test_accumulate.comp.h"
-#include "test_array.comp.h"
-#include "test_buffers.comp.h"
-#include "test_fill.comp.h"
-#include "test_formats.comp.h"
+#include "gpu/vulkan/memory/format.h"
 #include "test_group_size.comp.h"
-#include "test_increment.comp.h"
-#include "test_push.comp.h"
-#include "test_rgba16.comp.h"
-#include "test_sampled.comp.h"
 #include "test_scale.comp.h"
-#include "test_set1.comp.h"
-#include "test_two_blocks.comp.h"
-#include "test_unused.comp.h"
 
 namespace limpid::gpu {
 namespace {
 
 using testing::HasSubstr;
 
-std::string faultOf(const ShaderCode& code) {
+TEST(EmbeddedShader, HasItsTable) {
+    const ShaderCode& code = shaders::test_scale_comp;
+    EXPECT_EQ(code.name, "gpu/tests/shaders/test_scale.comp");
+    const ShaderBinding* source = code.reflection.find("source");
+    ASSERT_TRUE(source);
+    EXPECT_TRUE(source->readable && !source->writable);
+    EXPECT_EQ(code.reflection.find("nothing"), nullptr);
+    EXPECT_EQ(code.reflection.constants.size(), 3u);
+    EXPECT_EQ(shaders::test_group_size_comp.reflection.workgroupSizeIds[1], 1u);
+    EXPECT_NE(code.hash, shaders::test_group_size_comp.hash);
+}
+
+// Tables must be fit for constants.
+constexpr ShaderBinding image{"image", 0, BindingKind::StorageImage, Format::R32Float, true, false, 0};
+constexpr ShaderBinding block{"params", 2, BindingKind::UniformBuffer, Format::RGBA32Float, true, false, 16};
+constexpr ShaderConstant constant{"count", 3};
+constexpr ShaderReflection first{ShaderStage::RayGeneration, {&block, 1}, {&constant, 1}};
+static_assert(first.bindings[0].name == "params");
+
+ShaderReflection declaring(const ShaderBinding& binding) {
+    return {ShaderStage::Miss, {&binding, 1}, {}};
+}
+
+std::string faultOfMerging(const ShaderReflection& a, const ShaderReflection& b) {
+    MergedDeclarations merged;
+    merge(merged, a, "one");
     try {
-        reflect(code);
+        merge(merged, b, "other");
     } catch (const Error& error) {
         return error.what();
     }
     return "no error";
 }
 
-TEST(Reflection, ReadsImagesAndTheirQualifiers) {
-    const ShaderReflection reflection = reflect(shaders::test_scale_comp);
-    ASSERT_EQ(reflection.bindings.size(), 2u);
-    const ShaderBinding* source = reflection.find("source");
-    const ShaderBinding* result = reflection.find("result");
-    ASSERT_TRUE(source && result);
-    EXPECT_TRUE(source->readable && !source->writable);
-    EXPECT_TRUE(!result->readable && result->writable);
-    EXPECT_EQ(source->kind, BindingKind::StorageImage);
-    EXPECT_EQ(result->binding, 1u);
-    EXPECT_EQ(reflection.find("nothing"), nullptr);
-    const ShaderReflection both = reflect(shaders::test_increment_comp);
-    EXPECT_TRUE(both.bindings.at(0).readable && both.bindings.at(0).writable);
+TEST(Merge, ListsWhatEachStageDeclaresByNumber) {
+    MergedDeclarations merged;
+    merge(merged, first, "one");
+    merge(merged, declaring(image), "other");
+    EXPECT_THAT(merged.bindings, testing::ElementsAre(image, block));
+    EXPECT_THAT(merged.constants, testing::ElementsAre(constant));
 }
 
-TEST(Reflection, ReadsEveryFormat) {
-    const ShaderReflection reflection = reflect(shaders::test_formats_comp);
-    ASSERT_EQ(reflection.bindings.size(), allFormats().size());
-    for (size_t i = 0; i < reflection.bindings.size(); ++i) {
-        EXPECT_EQ(reflection.bindings[i].format, allFormats()[i]) << reflection.bindings[i].name;
-    }
+TEST(Merge, OneBindingReadsAndWritesWhatAnyStageDoes) {
+    ShaderBinding written = image;
+    written.readable = false;
+    written.writable = true;
+    MergedDeclarations merged;
+    merge(merged, declaring(image), "one");
+    merge(merged, declaring(written), "other");
+    ASSERT_EQ(merged.bindings.size(), 1u);
+    EXPECT_TRUE(merged.bindings[0].readable && merged.bindings[0].writable);
 }
 
-TEST(Reflection, NamesBuffersByInstanceOrBlockAndReadsTheirQualifiers) {
-    const ShaderReflection reflection = reflect(shaders::test_buffers_comp);
-    const auto expect = [&](const char* name, BindingKind kind, bool readable, bool writable) {
-        const ShaderBinding* binding = reflection.find(name);
-        ASSERT_TRUE(binding) << name;
-        EXPECT_EQ(binding->kind, kind) << name;
-        EXPECT_EQ(binding->readable, readable) << name;
-        EXPECT_EQ(binding->writable, writable) << name;
+TEST(Merge, RefusesStagesThatDisagree) {
+    const auto fault = [](auto ShaderBinding::*member, auto value) {
+        ShaderBinding changed = block;
+        changed.*member = value;
+        return faultOfMerging(first, declaring(changed));
     };
-    ASSERT_EQ(reflection.bindings.size(), 5u);
-    expect("texels", BindingKind::StorageTexelBuffer, true, false);
-    expect("indices", BindingKind::StorageTexelBuffer, true, false);
-    expect("offsets", BindingKind::StorageBuffer, true, false);
-    expect("counter", BindingKind::StorageBuffer, true, true);
-    expect("Sums", BindingKind::StorageBuffer, false, true);
-    EXPECT_EQ(reflection.find("indices")->format, Format::R32Uint);
-    EXPECT_EQ(reflection.workgroupSize, (std::array<uint32_t, 3>{64, 1, 1}));
+    EXPECT_EQ(faultOfMerging(first, first), "no error");
+    const auto refused = HasSubstr("shader 'other' declares 'params' otherwise");
+    EXPECT_THAT(fault(&ShaderBinding::binding, 1u), refused);
+    EXPECT_THAT(fault(&ShaderBinding::kind, BindingKind::StorageBuffer), refused);
+    EXPECT_THAT(fault(&ShaderBinding::blockSize, 20u), refused);
+    EXPECT_THAT(fault(&ShaderBinding::name, "other"), HasSubstr("declares 'other' otherwise"));
+    const ShaderConstant moved{"count", 4};
+    EXPECT_THAT(faultOfMerging(first, {ShaderStage::Miss, {}, {&moved, 1}}),
+                HasSubstr("declares 'count' otherwise"));
 }
 
-TEST(Reflection, ReadsTheUniformBlocksSizeInScalarLayout) {
-    const ShaderReflection reflection = reflect(shaders::test_fill_comp);
-    const ShaderBinding* params = reflection.find("params");
-    ASSERT_TRUE(params);
-    EXPECT_EQ(params->kind, BindingKind::UniformBuffer);
-    EXPECT_EQ(params->blockSize, 28u);
-}
-
-TEST(Reflection, ReadsConstants) {
-    const ShaderReflection reflection = reflect(shaders::test_scale_comp);
-    ASSERT_EQ(reflection.constants.size(), 3u);
-    for (const ShaderConstant& constant : reflection.constants) {
-        const uint32_t id = constant.name == "factor" ? 3 : constant.name == "bias" ? 5 : 7;
-        EXPECT_EQ(constant.id, id) << constant.name;
-    }
-}
-
-TEST(Reflection, ReadsAWorkgroupSizeOfConstants) {
-    const ShaderReflection reflection = reflect(shaders::test_group_size_comp);
-    EXPECT_EQ(reflection.workgroupSize, (std::array<uint32_t, 3>{8, 4, 1}));
-    EXPECT_EQ(reflection.workgroupSizeIds, (std::array<uint32_t, 3>{0, 1, ShaderReflection::noConstant}));
-    ASSERT_EQ(reflection.constants.size(), 2u);
-    EXPECT_EQ(reflect(shaders::test_fill_comp).workgroupSize, (std::array<uint32_t, 3>{8, 8, 1}));
-}
-
-TEST(Reflection, ListsUnusedVariables) {
-    EXPECT_TRUE(reflect(shaders::test_unused_comp).find("unused"));
-}
-
-TEST(Reflection, RefusesWhatLimpidDoesNotUse) {
-    EXPECT_THAT(faultOf(shaders::test_sampled_comp),
-                HasSubstr("'picture': Limpid has no images with samplers"));
-    EXPECT_THAT(faultOf(shaders::test_sampled_comp), HasSubstr("gpu/tests/shaders/test_sampled.comp"));
-    EXPECT_THAT(faultOf(shaders::test_set1_comp), HasSubstr("'result': only descriptor set 0"));
-    EXPECT_THAT(faultOf(shaders::test_array_comp), HasSubstr("'results': arrays of resources"));
-    EXPECT_THAT(faultOf(shaders::test_push_comp), HasSubstr("push constants"));
-    EXPECT_THAT(faultOf(shaders::test_rgba16_comp), HasSubstr("'result' needs one of the formats"));
-    EXPECT_THAT(faultOf(shaders::test_two_blocks_comp), HasSubstr("more than one uniform block"));
-}
-
-TEST(Reflection, RefusesWhatIsNoSpirV) {
-    const uint32_t words[] = {1, 2, 3, 4, 5, 6};
-    EXPECT_THAT(faultOf({"broken", words}), HasSubstr("'broken': SPIRV-Cross cannot read it"));
-    EXPECT_THAT(faultOf({"empty", {}}), HasSubstr("'empty': SPIRV-Cross cannot read it"));
+TEST(SameInterface, ComparesEveryFact) {
+    EXPECT_TRUE(sameInterface(first, first));
+    ShaderReflection other = first;
+    other.stage = ShaderStage::Miss;
+    EXPECT_FALSE(sameInterface(first, other));
+    other = first;
+    other.constants = {};
+    EXPECT_FALSE(sameInterface(first, other));
+    other = first;
+    other.bindings = {&image, 1};
+    EXPECT_FALSE(sameInterface(first, other));
+    other = first;
+    other.workgroupSize[0] = 8;
+    EXPECT_FALSE(sameInterface(first, other));
 }
 
 TEST(Formats, AreConsistent) {

@@ -17,10 +17,10 @@ struct Push {
     uint32_t texture[2];
 };
 
-UniqueShaderModule makeModule(const Context& context, const ShaderCode& code) {
+UniqueShaderModule makeModule(const Context& context, std::span<const uint32_t> words) {
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    info.codeSize = code.words.size_bytes();
-    info.pCode = code.words.data();
+    info.codeSize = words.size_bytes();
+    info.pCode = words.data();
     VkShaderModule module = VK_NULL_HANDLE;
     LIMPID_VK(context.vk().CreateShaderModule(context.device(), &info, nullptr, &module));
     return {context.vk(), module};

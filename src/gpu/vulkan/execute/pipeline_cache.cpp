@@ -209,7 +209,7 @@ PipelineCache::Layouts PipelineCache::makeLayouts(const Shader& shader) const {
 UniqueSetLayout PipelineCache::makeSetLayout(const Shader& shader) const {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     VkShaderStageFlags stages = 0;
-    for (const Shader::Stage& stage : shader.stages) stages |= stageFlag(stage.stage);
+    for (const Shader::Stage& stage : shader.stages) stages |= stageFlag(stage.reflection.stage);
     for (const ShaderBinding& binding : shader.reflection.bindings) {
         bindings.push_back({binding.binding, descriptorType(binding.kind), 1, stages, nullptr});
     }
@@ -275,7 +275,7 @@ PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch
     for (size_t i = 0; i < shader.stages.size(); ++i) {
         VkPipelineShaderStageCreateInfo& stage = stages.emplace_back();
         stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stage.stage = stageFlag(shader.stages[i].stage);
+        stage.stage = stageFlag(shader.stages[i].reflection.stage);
         stage.module = layouts.modules[i].get();
         stage.pName = "main";
         stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;

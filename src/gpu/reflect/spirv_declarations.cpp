@@ -1,4 +1,4 @@
-#include "gpu/graph/spirv_declarations.h"
+#include "gpu/reflect/spirv_declarations.h"
 
 #include <algorithm>
 #include <set>
