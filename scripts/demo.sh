@@ -12,11 +12,11 @@ build/release/limpid bench quality --scene builtin:cornell --scene builtin:corne
     --frames 24 --first 20 --reference-spp 256 --out out --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench quality --scene builtin:cornell-spheres --width 240 --height 136 --first 0 --frames 1 --spp 32 \
-    --reference-spp 512 --pipeline atrous --pipeline svgf --pipeline kpcn --out out/network | tee out/network.txt
+    --reference-spp 512 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
 echo
 build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 320 --height 180 \
     --spp 512 --out out | tee out/convergence.txt
 echo
-echo "Denoised: out/quality.*.png (noisy, history, a-trous, SVGF, reference, side by side); the table: out/quality.txt; a page to look around in: out/quality.html"
+echo "Denoised: out/quality.*.png (noisy, temporal, a-trous, SVGF, reference, side by side); the table: out/quality.txt; a page to look around in: out/quality.html"
 echo "One frame of 32 samples, and the network: out/network/*.png (noisy, a-trous, SVGF, KPCN, reference); the table: out/network.txt"
 echo "Converged: out/*spp.png (tone-mapped) and out/*spp.exr (linear); the table: out/convergence.txt"

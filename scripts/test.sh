@@ -7,9 +7,9 @@ scripts/build.sh release -DLIMPID_TESTS=ON "$@"
 [ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
 ctest --preset release --parallel "$(nproc)"
 
-echo "== the pipeline tracer, on a software driver that has ray-tracing pipelines"
+echo "== the hardware tracer, on a software driver that has ray-tracing pipelines"
 if icd=$(scripts/lavapipe25.sh); then
-    LIMPID_TEST_CASES='*/pipeline*:TracersTest*' VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -LE python
+    LIMPID_TEST_CASES='*/hardware*:TracersTest*' VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -LE python
 else
-    echo "NOTE: NOT TESTED here: the pipeline tracer."
+    echo "NOTE: NOT TESTED here: the hardware tracer."
 fi

@@ -9,6 +9,8 @@
 #include "base/files/frame_pattern.h"
 #include "base/log.h"
 #include "cli/options/device_options.h"
+#include "cli/options/former_options.h"
+#include "cli/options/pipeline_options.h"
 #include "cli/render/picture_output.h"
 #include "cli/render/render_job.h"
 #include "commands.h"
@@ -29,21 +31,17 @@ namespace fs = std::filesystem;
 using image::LayeredImage;
 
 struct DenoiseOptions {
-    std::string input, output, method, exposure = "auto", dump, weights;
+    std::string input, output, denoiser, exposure = "auto", dump, weights;
     std::vector<std::string> presets, assignments;
     DeviceChoice device;
     bool json = false;
 };
 
-/// That of --method, else of --preset.
-const denoise::Denoiser& chosenMethod(const DenoiseOptions& o) {
-    std::string names;
-    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names += " " + std::string(denoiser.name);
-    if (!o.method.empty() && !denoise::findDenoiser(o.method))
-        throw UsageError("--method: there is no '" + o.method + "'; the methods are" + names);
-    const Pipeline pipeline = pipelineFor(o.presets, o.method, "path");
-    if (!pipeline.denoiser) throw UsageError("--method is missing; the methods are" + names);
-    return *pipeline.denoiser;
+/// That of --denoiser, else of --preset.
+const denoise::Denoiser& chosenDenoiser(const DenoiseOptions& o) {
+    const Pipeline pipeline = pipelineFor(o.presets, {.integrator = {}, .denoiser = o.denoiser}, {});
+    if (pipeline.denoiser) return *pipeline.denoiser;
+    throw UsageError("--denoiser is missing; it is one of " + listOfDenoisers());
 }
 
 denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
@@ -85,7 +83,7 @@ std::vector<float> surfaces(const LayeredImage& file) {
 
 void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
            const std::vector<float>& beauty) {
-    const LayeredImage result = withBeauty(std::move(file), beauty, chosenMethod(o).name);
+    const LayeredImage result = withBeauty(std::move(file), beauty, chosenDenoiser(o).name);
     if (isExr(path)) return image::writeExr(path, result);
     const image::Image picture = result.get("", "RGB");
     const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture, surfaces(result)));
@@ -102,14 +100,14 @@ void warnOfLacking(const std::vector<std::string>& lacking) {
 
 struct DenoiseSummary {
     int frames = 0;
-    denoise::HistoryCounts history;
+    denoise::DisocclusionCounts disocclusion;
     std::map<std::string, double> lastFrame;
 };
 
 DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
-    const denoise::Denoiser& method = chosenMethod(o);
-    denoise::DenoiserSettings settings = settingsOf(o);
-    loadNetwork(device, &method, o.weights, settings);
+    const denoise::Denoiser& method = chosenDenoiser(o);
+    const denoise::DenoiserSettings settings = settingsOf(o);
+    const denoise::DenoiserNetworks networks = loadNetworks(device, &method, o.weights, settings);
     const FramePattern input(o.input), output(o.output);
     const std::vector<int> frames = framesOf(input, output);
     Progress progress("frames", frames.size());
@@ -125,14 +123,16 @@ DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
         graph.beginFrame();
         denoise::DenoiserInput images = denoise::upload(graph, host);
         images.filters = gpu::filterBacking(device);
-        const denoise::DenoiserOutput denoised = method.record(graph, images, settings);
+        const denoise::DenoiserOutput denoised = method.record(graph, images, settings, networks);
         graph.execute(device);
         write(o, result, std::move(file), graph.downloadFloat(device, denoised.beauty));
         if (!o.dump.empty()) writeDump(result, imagesOfPass(graph, device, o.dump));
-        if (denoised.cases) summary.history = denoise::countCases(graph.downloadUint(device, denoised.cases));
-        if (summary.history.rejected > 0)
+        if (denoised.disocclusion)
+            summary.disocclusion =
+                denoise::countDisocclusion(graph.downloadUint(device, denoised.disocclusion));
+        if (summary.disocclusion.rejected > 0)
             log::warn("{}: {} pixels are NaN or infinite and were left out", name.string(),
-                      summary.history.rejected);
+                      summary.disocclusion.rejected);
         summary.lastFrame = sumByName(graph.passTimes(device));
         progress.show(static_cast<uint64_t>(++summary.frames));
     }
@@ -142,19 +142,19 @@ DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
 void denoiseFiles(const DenoiseOptions& o) {
     parseExposure(o.exposure);
     checkPictureOutput(FramePattern(o.output).format(0), false);
-    chosenMethod(o);
+    chosenDenoiser(o);
     settingsOf(o);
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     const DenoiseSummary summary = denoiseFrames(o, *device);
     if (o.json) {
         const nlohmann::json object{{"output", o.output},
-                                    {"method", chosenMethod(o).name},
+                                    {"denoiser", chosenDenoiser(o).name},
                                     {"device", device->info().name},
                                     {"frames", summary.frames},
                                     {"last_frame_ms", summary.lastFrame}};
         fmt::print("{}\n", jsonText(object));
     } else {
-        log::info("{} frames by {}, on {}", summary.frames, chosenMethod(o).name, device->info().name);
+        log::info("{} frames by {}, on {}", summary.frames, chosenDenoiser(o).name, device->info().name);
     }
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
@@ -170,9 +170,9 @@ void addDenoiseCommand(CLI::App& app) {
         ->required();
     command->add_option("-o,--output", o->output, "EXR (all layers of the input, beauty replaced) or PNG")
         ->required();
-    std::string names;
-    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names += " " + std::string(denoiser.name);
-    command->add_option("--method", o->method, "One of" + names + "; needed unless --preset names it");
+    command->add_option("--denoiser", o->denoiser,
+                        "What cleans them: " + listOfDenoisers() + "; needed unless --preset names it");
+    refuseMethodOption(*command);
     command->add_option(
         "--preset", o->presets,
         "A denoiser as a paper or a course has it; 'limpid info' lists them; other options win");

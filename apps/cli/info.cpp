@@ -1,5 +1,5 @@
-// limpid info: devices with features and limits, pipelines, built-in scenes, every parameter; or what a scene
-// holds.
+// limpid info: devices with features and limits, integrators, denoisers, built-in scenes, every parameter; or
+// what a scene holds.
 #include <fmt/format.h>
 
 #include <memory>
@@ -62,7 +62,8 @@ json presetsJson() {
     for (const Preset& preset : presets()) {
         list.push_back({{"name", preset.name},
                         {"help", preset.help},
-                        {"pipelines", preset.pipelines},
+                        {"integrators", preset.integrators},
+                        {"denoisers", preset.denoisers},
                         {"jitter", toString(preset.jitter)},
                         {"progressive", preset.progressive},
                         {"parameters", preset.assignments}});
@@ -70,10 +71,19 @@ json presetsJson() {
     return list;
 }
 
-json pipelinesJson() {
+json integratorsJson() {
     json list = json::array();
-    for (const Pipeline& pipeline : pipelines())
-        list.push_back({{"name", pipeline.name()}, {"help", pipeline.help()}});
+    for (const Integrator integrator : integrators())
+        list.push_back({{"name", nameOf(integrator)},
+                        {"help", helpOf(integrator)},
+                        {"can_be_denoised", canBeDenoised(integrator)}});
+    return list;
+}
+
+json denoisersJson() {
+    json list = json::array();
+    for (const denoise::Denoiser& denoiser : denoise::denoisers())
+        list.push_back({{"name", denoiser.name}, {"help", denoiser.help}});
     return list;
 }
 
@@ -91,7 +101,7 @@ void printDevice(const gpu::DeviceInfo& device) {
                static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
     if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);
     fmt::print("   {:<40} {}\n", "--tracer auto", scene::toString(scene::automaticTracer(device)));
-    fmt::print("   {:<40} {}\n", "--pipeline kpcn", denoise::toString(denoise::kpcnPrecision(device, true)));
+    fmt::print("   {:<40} {}\n", "--denoiser kpcn", denoise::toString(denoise::kpcnPrecision(device, true)));
     for (const auto& [name, present] : device.features)
         fmt::print("   {:<40} {}\n", name, present ? "yes" : "no");
     for (const auto& [name, value] : device.limits) fmt::print("   {:<40} {}\n", name, value);
@@ -102,12 +112,16 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
     if (devices.empty())
         fmt::print("none; the Debian package mesa-vulkan-drivers has one that runs on any CPU\n");
     for (const gpu::DeviceInfo& device : devices) printDevice(device);
-    fmt::print("\nPipelines (--pipeline)\n");
-    for (const Pipeline& pipeline : pipelines()) fmt::print("{:<10} {}\n", pipeline.name(), pipeline.help());
+    fmt::print("\nIntegrators (--integrator)\n");
+    for (const Integrator integrator : integrators())
+        fmt::print("{:<10} {}\n", nameOf(integrator), helpOf(integrator));
+    fmt::print("\nDenoisers (--denoiser), of path, direct and ao\n{:<10} the integrator alone\n", "none");
+    for (const denoise::Denoiser& denoiser : denoise::denoisers())
+        fmt::print("{:<10} {}\n", denoiser.name, denoiser.help);
     fmt::print(
         "\nTracers (--tracer)\n"
         "compute   our own tree in a compute shader; every device\n"
-        "pipeline  the driver's ray-tracing pipeline; devices with VK_KHR_ray_tracing_pipeline\n\nBuilt-in "
+        "hardware  the driver's ray-tracing pipeline; devices with VK_KHR_ray_tracing_pipeline\n\nBuilt-in "
         "scenes\n");
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
         fmt::print("{:<28} {}\n", "builtin:" + info.name, info.help);
@@ -123,9 +137,10 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
     }
     fmt::print("\nPresets (--preset)\n");
     for (const Preset& preset : presets()) {
-        fmt::print("{}\n   {}\n   --pipeline {} --jitter {}{} --set {}\n", preset.name, preset.help,
-                   fmt::join(preset.pipelines, " or "), toString(preset.jitter),
-                   preset.progressive ? " --progressive" : "", fmt::join(preset.assignments, " --set "));
+        fmt::print("{}\n   {}\n   --integrator {} --denoiser {} --jitter {}{} --set {}\n", preset.name,
+                   preset.help, fmt::join(preset.integrators, " or "), fmt::join(preset.denoisers, " or "),
+                   toString(preset.jitter), preset.progressive ? " --progressive" : "",
+                   fmt::join(preset.assignments, " --set "));
     }
 }
 
@@ -133,7 +148,8 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
 
 void addInfoCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "info", "List devices, pipelines, built-in scenes and every parameter; or what a scene holds");
+        "info",
+        "List devices, integrators, denoisers, built-in scenes and every parameter; or what a scene holds");
     auto asJson = std::make_shared<bool>(false);
     auto scene = std::make_shared<std::string>();
     command->add_option("SCENE", *scene,
@@ -143,10 +159,15 @@ void addInfoCommand(CLI::App& app) {
         if (!scene->empty()) return printSceneInfo(*scene, *asJson);
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();
         if (!*asJson) return printText(devices);
-        const json object{{"version", LIMPID_VERSION},      {"devices", devicesJson(devices)},
-                          {"pipelines", pipelinesJson()},   {"tracers", {"compute", "pipeline"}},
-                          {"scenes", scenesJson()},         {"layers", layerNames()},
-                          {"parameters", parametersJson()}, {"presets", presetsJson()}};
+        const json object{{"version", LIMPID_VERSION},
+                          {"devices", devicesJson(devices)},
+                          {"integrators", integratorsJson()},
+                          {"denoisers", denoisersJson()},
+                          {"tracers", {"compute", "hardware"}},
+                          {"scenes", scenesJson()},
+                          {"layers", layerNames()},
+                          {"parameters", parametersJson()},
+                          {"presets", presetsJson()}};
         fmt::print("{}\n", jsonText(object));
     });
 }

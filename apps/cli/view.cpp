@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "cli/options/device_options.h"
+#include "cli/options/pipeline_options.h"
 #include "cli/options/scene_options.h"
 #include "commands.h"
 #include "renderer/frame/parameters.h"
@@ -23,7 +24,7 @@ namespace {
 struct ViewOptions {
     SceneChoice scene;
     DeviceChoice device;
-    std::optional<std::string> pipeline;
+    PipelineChoice pipeline;
     bool preview = false;
     std::optional<uint32_t> samples;
     std::optional<uint64_t> maxSamples;
@@ -61,8 +62,7 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
     settings.maxSamples = o.maxSamples.value_or(settings.maxSamples);
     settings.shrink = o.shrink.value_or(settings.shrink);
     settings.render.extent = {o.width, o.height};
-    settings.render.pipeline =
-        pipelineFor(o.presets, o.pipeline.value_or(""), settings.render.pipeline.name());
+    settings.render.pipeline = pipelineFor(o.presets, o.pipeline, settings.render.pipeline);
     settings.render.seed = o.seed;
     if (!o.scene.camera.empty()) settings.startCamera = "--camera " + viewer::quoted(o.scene.camera);
     if (!o.scene.eye.empty()) settings.startCamera += eyeOptions(o.scene);
@@ -99,11 +99,11 @@ void run([[maybe_unused]] const ViewOptions& o) {
 }  // namespace
 
 void addViewCommand(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("view", "A window to fly through a scene, with every pipeline and parameter");
+    CLI::App* command = app.add_subcommand(
+        "view", "A window to fly through a scene, with every integrator, denoiser and parameter");
     auto o = std::make_shared<ViewOptions>();
     addSceneOptions(*command, o->scene);
-    command->add_option("--pipeline", o->pipeline, "What makes the picture (the last one; at first path)");
+    addPipelineOptions(*command, o->pipeline, "the last one; at first path", "the last one; at first none");
     command->add_flag("--preview", o->preview,
                       "Start with the fast preview: first hits, shaded by a light at the camera");
     command->add_option("--preset", o->presets,
@@ -119,7 +119,8 @@ void addViewCommand(CLI::App& app) {
         ->check(CLI::Range(1, 1 << 20));
     command->add_option(
         "--settings", o->settings,
-        "File that keeps pipeline and parameters from one time to the next, under what this command line "
+        "File that keeps integrator, denoiser and parameters from one time to the next, under what this "
+        "command line "
         "says; "
         "default: limpid/view.json in $XDG_CONFIG_HOME or ~/.config; 'none': nothing is kept");
     command->add_option("--seed", o->seed, "Another seed, other noise (0)");

@@ -186,8 +186,8 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     };
     settings.seed = 0;
     // Beyond a quarter of the reference's samples its own noise would be what is measured.
-    const uint64_t most = std::max<uint64_t>(o.referenceSamples / 4, 1);
-    for (uint64_t samples = 1; samples <= most; samples *= 4) {
+    const uint64_t maxSamples = std::max<uint64_t>(o.referenceSamples / 4, 1);
+    for (uint64_t samples = 1; samples <= maxSamples; samples *= 4) {
         ProgressiveStill still(device, *loaded.gpu, samples);
         const Picture noisy = renderPicture(still, camera, settings, samples);
         add(noisy, image::compare(beautyOf(noisy.layers), truth, stops).psnr);

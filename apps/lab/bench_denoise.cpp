@@ -1,5 +1,5 @@
-// limpid bench denoise: milliseconds of every pass of a pipeline, and how near its memory traffic comes to
-// what the device can do.
+// limpid bench denoise: milliseconds of every pass of an integrator and a denoiser, and how near its memory
+// traffic comes to what the device can do.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "bench_copy.comp.h"
 #include "cli/json_text.h"
+#include "cli/options/pipeline_options.h"
 #include "lab/bench.h"
 #include "lab/bench_scene.h"
 #include "renderer/frame/network_file.h"
@@ -25,7 +26,8 @@ using nlohmann::json;
 struct DenoiseBench {
     DeviceChoice device;
     SceneChoice scene{.scene = "builtin:cornell"};
-    std::string cameraPath = "shake", pipeline;
+    std::string cameraPath = "shake";
+    PipelineChoice pipeline;
     std::vector<std::string> presets, assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
@@ -33,7 +35,7 @@ struct DenoiseBench {
 };
 
 Pipeline pipelineOf(const DenoiseBench& o) {
-    return pipelineFor(o.presets, o.pipeline, "atrous");
+    return pipelineFor(o.presets, o.pipeline, parsePipeline("path", "atrous"));
 }
 
 /// Bytes per second of a copy between images larger than any cache.
@@ -67,7 +69,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
-    loadNetwork(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
+    settings.networks = loadNetworks(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
     std::optional<gpu::Backing> filters;
     if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
@@ -80,20 +82,20 @@ void run(const DenoiseBench& o) {
     json passes = json::array();
     if (!o.json) {
         fmt::print("{}, {}x{}, {}, {} frames; a copy moves {:.1f} GB/s\n{:<24}{:>12}{:>12}{:>10}{:>10}\n",
-                   device->info().name, o.width, o.height, pipelineOf(o).name(), o.frames, limit * 1e-9,
-                   "pass", "ms median", "ms least", "MB", "GB/s");
+                   device->info().name, o.width, o.height, pipelineOf(o).title(), o.frames, limit * 1e-9,
+                   "pass", "ms median", "ms min", "MB", "GB/s");
     }
     for (auto& [name, cost] : measure(*device, o)) {
         const double ms = median(cost.milliseconds);
-        const double least = *std::ranges::min_element(cost.milliseconds);
+        const double minimum = *std::ranges::min_element(cost.milliseconds);
         const double rate = static_cast<double>(cost.bytes) / (ms * 1e-3);
         passes.push_back({{"pass", name},
                           {"ms_median", ms},
-                          {"ms_minimum", least},
+                          {"ms_minimum", minimum},
                           {"image_bytes", cost.bytes},
                           {"bytes_per_second", rate}});
         if (o.json) continue;
-        fmt::print("{:<24}{:>12.4f}{:>12.4f}{:>10.1f}{:>10.1f}\n", name, ms, least,
+        fmt::print("{:<24}{:>12.4f}{:>12.4f}{:>10.1f}{:>10.1f}\n", name, ms, minimum,
                    static_cast<double>(cost.bytes) * 1e-6, rate * 1e-9);
     }
     if (!o.json) return;
@@ -101,7 +103,8 @@ void run(const DenoiseBench& o) {
                       {"driver", device->info().driver},
                       {"scene", o.scene.scene},
                       {"camera_path", o.cameraPath},
-                      {"pipeline", pipelineOf(o).name()},
+                      {"integrator", nameOf(pipelineOf(o).integrator)},
+                      {"denoiser", nameOf(pipelineOf(o).denoiser)},
                       {"width", o.width},
                       {"height", o.height},
                       {"frames", o.frames},
@@ -114,12 +117,12 @@ void run(const DenoiseBench& o) {
 
 void addDenoiseBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
-        "denoise", "Milliseconds of every pass of a pipeline under a moving camera, and the bytes it moves");
+        "denoise", "Milliseconds of every pass of a frame under a moving camera, and the bytes it moves");
     auto o = std::make_shared<DenoiseBench>();
     command->add_option("--scene", o->scene.scene, "Scene (builtin:cornell)");
     command->add_option("--env", o->scene.environment, "Environment map, .hdr or .exr, lat-long");
     command->add_option("--camera-path", o->cameraPath, "A JSON file, or orbit, dolly or shake (shake)");
-    command->add_option("--pipeline", o->pipeline, "Pipeline (the preset's, or atrous)");
+    addPipelineOptions(*command, o->pipeline, "path, or the preset's", "atrous, or the preset's");
     command->add_option("--preset", o->presets,
                         "All that a paper, a course or a tutorial says; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");

@@ -111,7 +111,7 @@ struct Row {
 RenderSettings settingsOf(const KpcnBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
-    settings.pipeline = parsePipeline("kpcn");
+    settings.pipeline = parsePipeline("path", "kpcn");
     settings.jitter = Jitter::Off;
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings;
@@ -120,7 +120,7 @@ RenderSettings settingsOf(const KpcnBench& o) {
 std::vector<Row> measure(gpu::Device& device, const KpcnBench& o, RenderSettings& settings) {
     const auto file =
         o.weights.empty() ? shippedWeights(settings.denoisers.kpcn) : std::filesystem::path(o.weights);
-    loadNetwork(device, settings.pipeline.denoiser, file, settings.denoisers);
+    settings.networks = loadNetworks(device, settings.pipeline.denoiser, file, settings.denoisers);
     const std::map<std::string, double> operations = operationsByPass(denoise::readKpcnWeights(file));
     BenchScene scene(device, chosenTracer(o.device, device), {.scene = o.scene});
     std::vector<Row> rows;
@@ -164,7 +164,7 @@ void run(const KpcnBench& o) {
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
     RenderSettings settings = settingsOf(o);
     const std::vector<Row> rows = measure(*device, o, settings);
-    const std::string_view precision = denoise::toString(settings.denoisers.kpcn.network->precision());
+    const std::string_view precision = denoise::toString(settings.networks.kpcn->precision());
     const Yardsticks yardsticks{productRate(*device, o.productSize), convolutionRate(*device, o)};
     if (!o.json) return print(o, *device, rows, precision, yardsticks);
     json passes = json::array();

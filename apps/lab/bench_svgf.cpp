@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int mostLevels = 8;
+constexpr int maxLevels = 8;
 
 struct SvgfBench {
     DeviceChoice device;
@@ -70,7 +70,7 @@ Stages stagesOf(const std::map<std::string, PassCost>& costs) {
 RenderSettings settingsOf(const SvgfBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
-    settings.pipeline = pipelineFor(o.presets, "svgf", "");
+    settings.pipeline = pipelineFor(o.presets, {"path", "svgf"}, {});
     settings.jitter = Jitter::Off;
     for (const std::string& preset : o.presets) applyPreset(settings, preset);
     for (const std::string& text : o.assignments) assign(settings, text);
@@ -100,7 +100,7 @@ std::vector<OfScene> measureScenes(gpu::Device& device, const SvgfBench& o) {
 std::vector<Stages> measureLevels(BenchScene& scene, const SvgfBench& o) {
     std::vector<Stages> result;
     RenderSettings settings = settingsOf(o);
-    for (int levels = 1; levels <= mostLevels; ++levels) {
+    for (int levels = 1; levels <= maxLevels; ++levels) {
         settings.denoisers.svgf.levels = levels;
         result.push_back(stagesOf(scene.measure(settings, o.warmup, o.frames)));
     }

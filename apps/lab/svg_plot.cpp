@@ -39,9 +39,10 @@ std::string text(double x, double y, const char* anchor, const std::string& what
                        escaped(what));
 }
 
-/// 1, 2 or 5 times a power of ten: some five of them reach `most`.
-double niceStep(double most) {
-    const double rough = std::max(most, 1e-12) / 5.0, power = std::pow(10.0, std::floor(std::log10(rough)));
+/// 1, 2 or 5 times a power of ten: some five of them reach `largest`.
+double niceStep(double largest) {
+    const double rough = std::max(largest, 1e-12) / 5.0,
+                 power = std::pow(10.0, std::floor(std::log10(rough)));
     for (const double factor : {1.0, 2.0, 5.0}) {
         if (factor * power >= rough) return factor * power;
     }
@@ -52,29 +53,29 @@ double niceStep(double most) {
 class Frame {
   public:
     Frame(const PlotAxes& axes, const std::vector<PlotLine>& lines) : axes_(axes) {
-        leastX_ = mostX_ = along(lines.front().points.front().x);
+        minX_ = maxX_ = along(lines.front().points.front().x);
         for (const PlotLine& line : lines) {
             for (const PlotPoint& point : line.points) {
-                leastX_ = std::min(leastX_, along(point.x));
-                mostX_ = std::max(mostX_, along(point.x));
-                mostY_ = std::max(mostY_, point.y);
+                minX_ = std::min(minX_, along(point.x));
+                maxX_ = std::max(maxX_, along(point.x));
+                maxY_ = std::max(maxY_, point.y);
             }
         }
-        if (mostX_ == leastX_) mostX_ = leastX_ + 1.0;
-        step_ = niceStep(mostY_);
-        mostY_ = step_ * std::ceil(mostY_ / step_ + 1e-9);
+        if (maxX_ == minX_) maxX_ = minX_ + 1.0;
+        step_ = niceStep(maxY_);
+        maxY_ = step_ * std::ceil(maxY_ / step_ + 1e-9);
     }
 
     static constexpr double height = 400.0, bottom = height - 60.0;
 
     double x(double value) const {
-        return left + (along(value) - leastX_) / (mostX_ - leastX_) * (width - left - right);
+        return left + (along(value) - minX_) / (maxX_ - minX_) * (width - left - right);
     }
-    double y(double value) const { return bottom - value / mostY_ * (bottom - top); }
+    double y(double value) const { return bottom - value / maxY_ * (bottom - top); }
 
     std::string drawn(const std::vector<PlotPoint>& points) const {
         std::string svg;
-        for (double value = 0.0; value <= mostY_ * (1.0 + 1e-9); value += step_) {
+        for (double value = 0.0; value <= maxY_ * (1.0 + 1e-9); value += step_) {
             svg += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#ddd\"/>\n", left, y(value),
                                width - right);
             svg += text(left - 8, y(value) + 4, "end", fmt::format("{:.4g}", value));
@@ -90,7 +91,7 @@ class Frame {
     std::vector<double> marks(const std::vector<PlotPoint>& points) const {
         std::vector<double> result;
         if (axes_.logarithmicX) {
-            for (double power = std::ceil(leastX_); power <= mostX_; power += 1.0)
+            for (double power = std::ceil(minX_); power <= maxX_; power += 1.0)
                 result.push_back(std::pow(10.0, power));
         } else {
             for (const PlotPoint& point : points) result.push_back(point.x);
@@ -101,7 +102,7 @@ class Frame {
     double along(double value) const { return axes_.logarithmicX ? std::log10(value) : value; }
 
     const PlotAxes& axes_;
-    double leastX_ = 0.0, mostX_ = 0.0, mostY_ = 0.0, step_ = 1.0;
+    double minX_ = 0.0, maxX_ = 0.0, maxY_ = 0.0, step_ = 1.0;
 };
 
 std::string lineOf(const Frame& frame, const PlotLine& line, const char* color) {
@@ -121,12 +122,12 @@ std::string lineOf(const Frame& frame, const PlotLine& line, const char* color) 
 std::string barPlot(const std::string& title, const std::string& unit, const std::vector<Bar>& bars) {
     constexpr double row = 26.0, names = 190.0, values = 90.0;
     const double height = top + row * static_cast<double>(bars.size()) + 16.0;
-    double most = 1e-12;
-    for (const Bar& bar : bars) most = std::max(most, bar.value);
+    double largest = 1e-12;
+    for (const Bar& bar : bars) largest = std::max(largest, bar.value);
     std::string svg = head(title, height);
     double y = top;
     for (const Bar& bar : bars) {
-        const double length = bar.value / most * (width - names - values);
+        const double length = bar.value / largest * (width - names - values);
         svg += text(names - 8, y + 15, "end", bar.name);
         svg += fmt::format("<rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/>\n",
                            names, y, length, row - 6, colors[0]);

@@ -53,9 +53,9 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     const uint64_t frames = accumulates ? 1 : playback.frames();
     result.text = "limpid render " + quoted(frame.source.scene);
     result.text += sourceOptions(frame.source);
-    result.text += fmt::format(" --pipeline {} --width {} --height {} --seed {} --jitter {} --spp {}",
-                               s.pipeline.name(), s.extent.width, s.extent.height, s.seed, toString(s.jitter),
-                               accumulates ? frame.samplesInMean : frame.samples);
+    result.text += fmt::format(" {} --width {} --height {} --seed {} --jitter {} --spp {}",
+                               s.pipeline.options(), s.extent.width, s.extent.height, s.seed,
+                               toString(s.jitter), accumulates ? frame.samplesInMean : frame.samples);
     if (accumulates) result.text += " --progressive";
     if (s.layers) result.text += " --aov all";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
@@ -76,7 +76,7 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
         result.needsPath = true;
         result.text += " --camera-path " + quoted(pathFile);
     }
-    if (!frame.weights.empty() && s.pipeline.denoiser && s.pipeline.denoiser->network)
+    if (!frame.weights.empty() && s.pipeline.usesNetwork())
         result.text += " --weights " + quoted(frame.weights);
     for (const std::string& text : assignmentsOf(s)) result.text += " --set " + text;
     result.text += (frames > 1 ? " -o frame.%04d.exr" : " -o frame.exr");

@@ -16,7 +16,7 @@ struct ShownFrame {
     std::string weights;  ///< of networks; empty: those that come along
     RenderSettings settings;
     uint32_t samples = 1;        ///< per pixel and frame
-    uint64_t samplesInMean = 0;  ///< of pipelines that accumulate
+    uint64_t samplesInMean = 0;  ///< without a denoiser
     std::string camera;          ///< its options, as "--camera 2"; empty: as `playback` has it
     float fovDegrees = 45.0f;
 };

@@ -38,7 +38,7 @@ class CommandLineTest : public testing::Test {
 
 TEST_F(CommandLineTest, AStillHasItsCameraAndSamples) {
     frames(12, false);
-    EXPECT_THAT(text(), HasSubstr("render 'my scene.glb' --pipeline path"));
+    EXPECT_THAT(text(), HasSubstr("render 'my scene.glb' --integrator path --denoiser none"));
     EXPECT_THAT(text(), HasSubstr("--spp 24 --progressive"));
     EXPECT_THAT(text(), HasSubstr("--eye 0.1,1,2 --target 0,0,-1"));
     EXPECT_THAT(text(), HasSubstr("-o frame.exr"));
@@ -59,9 +59,10 @@ TEST_F(CommandLineTest, LightsAndLayersAreSaid) {
 }
 
 TEST_F(CommandLineTest, HistoriesNeedAllFrames) {
-    frame_.settings.pipeline = parsePipeline("svgf");
+    frame_.settings.pipeline = parsePipeline("path", "svgf");
     assign(frame_.settings, "svgf.levels=3");
     frames(12, true);
+    EXPECT_THAT(text(), HasSubstr("--integrator path --denoiser svgf"));
     EXPECT_THAT(text(), HasSubstr("--frames 12"));
     EXPECT_THAT(text(), HasSubstr("--camera-path flown.json"));
     EXPECT_THAT(text(), HasSubstr("--spp 2"));
@@ -72,7 +73,7 @@ TEST_F(CommandLineTest, HistoriesNeedAllFrames) {
 }
 
 TEST_F(CommandLineTest, WhatCannotBeMadeAgainSaysWhy) {
-    frame_.settings.pipeline = parsePipeline("svgf");
+    frame_.settings.pipeline = parsePipeline("path", "svgf");
     frame_.clip = "walk";
     playback_.playing = true;
     frames(3, false);

@@ -1,4 +1,4 @@
-// A picture that is rendered on and on: one pipeline and its settings, frame after frame.
+// A picture that is rendered on and on: one integrator, denoiser and settings, frame after frame.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Networks that pipelines of the window need, as far as they are on the device.
+// Networks that denoisers of the window need, as far as they are on the device.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,8 @@ class Networks {
   private:
     gpu::Device& device_;
     std::filesystem::path weights_;
-    denoise::DenoiserSettings loaded_;
+    denoise::KpcnSettings loadedFor_;
+    denoise::DenoiserNetworks networks_;
 };
 
 }  // namespace limpid::viewer

@@ -3,7 +3,7 @@
 namespace limpid::viewer {
 namespace {
 
-constexpr size_t mostCameras = 36000;  // twenty minutes at 30 frames a second
+constexpr size_t maxCameras = 36000;  // twenty minutes at 30 frames a second
 
 bool samePlace(const scene::CameraKey& a, const scene::CameraKey& b) {
     return a.eye == b.eye && a.target == b.target && a.up == b.up && a.verticalFov == b.verticalFov;
@@ -44,7 +44,7 @@ void Playback::advance(const CameraParams& params, const scene::CameraKey& camer
     if (frames_ > 0 && !wentOn_) playedAll_ = false;
     if (frames_ > 0 && !samePlace(lastCamera_, camera)) stoodStill_ = false;
     lastCamera_ = camera;
-    if (cameras_.size() == frames_ && frames_ < mostCameras) {
+    if (cameras_.size() == frames_ && frames_ < maxCameras) {
         cameras_.push_back(camera);
         cameras_.back().time = start_ + static_cast<double>(frames_) / framesPerSecond;
     } else {

@@ -47,7 +47,7 @@ constexpr int restlessPictures = 4;      ///< drawn after the last event: until 
 constexpr double betweenTimes = 0.25;    ///< seconds; reading the passes' times waits for the device
 constexpr double betweenSources = 0.5;   ///< seconds between looks at the shaders' files
 constexpr double messageSeconds = 20.0;
-constexpr uint64_t leastFramesOfADevice = 30;  ///< lost sooner, it would be lost again
+constexpr uint64_t minFramesOfADevice = 30;  ///< lost sooner, it would be lost again
 constexpr const char* pathFile = "flown.json";
 constexpr const char* lightFile = "lights.json";
 
@@ -58,10 +58,9 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
 
 /// What keeps a window answering.
 int shrinkFor(const gpu::Device& device, gpu::Extent window) {
-    constexpr uint64_t mostPixels = 300'000;
+    constexpr uint64_t maxPixels = 300'000;
     int shrink = 0;
-    while (device.isCpu() && shrink < 3 &&
-           (uint64_t{window.width} * window.height >> 2 * shrink) > mostPixels)
+    while (device.isCpu() && shrink < 3 && (uint64_t{window.width} * window.height >> 2 * shrink) > maxPixels)
         ++shrink;
     return shrink;
 }
@@ -568,7 +567,7 @@ ViewSettings Viewer::settingsNow() const {
 Viewer::Standing Viewer::standing() const {
     Standing now{panel_, rig_.home(), rig_.hand(), scene::clipChoice(stage_->scene()), playback_.time()};
     now.panel.asked = {};
-    now.panel.render.denoisers.kpcn.network.reset();  // lies on the device
+    now.panel.render.networks = {};  // they lie on the device
     return now;
 }
 
@@ -672,7 +671,7 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
         try {
             return viewer->run();
         } catch (const gpu::DeviceLost& fault) {
-            if (viewer->rendered() < leastFramesOfADevice) throw;
+            if (viewer->rendered() < minFramesOfADevice) throw;
             log::error("{}; setting everything up anew", fault.what());
         }
         viewer = afterLoss(device, tracer, load, std::move(viewer));

@@ -1,4 +1,4 @@
-// `limpid view`: a scene in a window, to fly through; every pipeline, every parameter.
+// `limpid view`: a scene in a window, to fly through; every integrator, denoiser and parameter.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct ViewSettings {
     std::string animation;         ///< clip by name or number, or "all"; empty: the first one
     RenderSettings render;         ///< its extent is the window's
     std::optional<Jitter> jitter;  ///< empty: as the pipeline needs it
-    bool preview = false;          ///< it starts with the pipeline `preview` instead of the chosen one
+    bool preview = false;          ///< it starts with the integrator `preview` instead of the chosen one
     uint32_t samples = 1;          ///< per pixel and frame
     /// Frames in which nothing changes, times samples; then nothing is computed until something does.
     uint64_t maxSamples = 4096;

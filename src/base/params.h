@@ -60,9 +60,9 @@ class ParamTable {
 
     /// What the window's slider of the parameter added last runs over, where usefulSpan() does not suit it.
     /// `smallest`: of a logarithmic one from 0 on.
-    ParamTable& slider(double least, double most, SliderScale scale = SliderScale::Linear,
+    ParamTable& slider(double min, double max, SliderScale scale = SliderScale::Linear,
                        double smallest = 0.0) {
-        infos_.back().slider = {least, most, scale, smallest};
+        infos_.back().slider = {min, max, scale, smallest};
         return *this;
     }
 

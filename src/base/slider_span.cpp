@@ -18,7 +18,7 @@ double roundedToDigits(double value) {
 
 /// Of the logarithmic part.
 double firstOf(const SliderSpan& span) {
-    return span.least > 0.0 ? span.least : span.smallest;
+    return span.min > 0.0 ? span.min : span.smallest;
 }
 
 }  // namespace
@@ -36,30 +36,30 @@ SliderSpan usefulSpan(double minimum, double maximum, double initial, bool whole
     const double middle = initial > 0.0 ? initial : 1.0;
     SliderSpan span{minimum, std::min(maximum, decades * middle), SliderScale::Logarithmic};
     if (minimum > 0.0)
-        span.least = std::max(minimum, middle / decades);
+        span.min = std::max(minimum, middle / decades);
     else
         span.smallest = middle / decades;
     return span;
 }
 
 double sliderPosition(const SliderSpan& span, double value) {
-    const double inside = std::clamp(value, span.least, span.most);
-    if (span.scale == SliderScale::Linear) return (inside - span.least) / (span.most - span.least);
-    const double start = span.least > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
+    const double inside = std::clamp(value, span.min, span.max);
+    if (span.scale == SliderScale::Linear) return (inside - span.min) / (span.max - span.min);
+    const double start = span.min > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
     if (inside < first) return 0.0;
-    return start + (1.0 - start) * std::log(inside / first) / std::log(span.most / first);
+    return start + (1.0 - start) * std::log(inside / first) / std::log(span.max / first);
 }
 
 double sliderValue(const SliderSpan& span, double position) {
-    if (position <= 0.0) return span.least;
-    if (position >= 1.0) return span.most;
-    double value = span.least + position * (span.most - span.least);
+    if (position <= 0.0) return span.min;
+    if (position >= 1.0) return span.max;
+    double value = span.min + position * (span.max - span.min);
     if (span.scale == SliderScale::Logarithmic) {
-        const double start = span.least > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
-        if (position < start) return span.least;
-        value = first * std::pow(span.most / first, (position - start) / (1.0 - start));
+        const double start = span.min > 0.0 ? 0.0 : zeroShare, first = firstOf(span);
+        if (position < start) return span.min;
+        value = first * std::pow(span.max / first, (position - start) / (1.0 - start));
     }
-    return std::clamp(roundedToDigits(value), span.least, span.most);
+    return std::clamp(roundedToDigits(value), span.min, span.max);
 }
 
 }  // namespace limpid

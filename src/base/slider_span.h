@@ -6,7 +6,7 @@ namespace limpid {
 enum class SliderScale { Linear, Logarithmic };
 
 struct SliderSpan {
-    double least = 0.0, most = 1.0;  ///< inside the range; other values of the range are typed
+    double min = 0.0, max = 1.0;  ///< inside the range; other values of the range are typed
     SliderScale scale = SliderScale::Linear;
     double smallest = 0.0;  ///< of a logarithmic one from 0 on: the least value above 0
 };

@@ -12,14 +12,14 @@ void dispatchTraced(gpu::FrameGraph& graph, const scene::GpuScene& scene, std::s
     bindings.insert(bindings.end(), images.begin(), images.end());
     std::vector<gpu::ConstantValue> allConstants = scene.constants();
     allConstants.insert(allConstants.end(), constants.begin(), constants.end());
-    const bool pipeline = scene.tracer() == scene::Tracer::Pipeline;
+    const bool hardware = scene.tracer() == scene::Tracer::Hardware;
     graph.dispatch({.pass = pass,
-                    .shader = pipeline ? shaders.rayGeneration : shaders.compute,
+                    .shader = hardware ? shaders.rayGeneration : shaders.compute,
                     .bindings = std::move(bindings),
                     .params = params,
                     .constants = std::move(allConstants),
                     .extent = extent,
-                    .rays = pipeline ? &rayShaders() : nullptr});
+                    .rays = hardware ? &rayShaders() : nullptr});
 }
 
 }  // namespace limpid

@@ -69,7 +69,7 @@ TEST_F(CliClipTest, WritesEveryFormat) {
 TEST_F(CliClipTest, ColoursAreThoseOfThePictures) {
     // Of even size and with little noise: halved colours of noisy pixels leave the range and are clamped.
     const std::string render =
-        "render builtin:cornell-moving --width 64 --height 36 --spp 64 --device cpu --pipeline path "
+        "render builtin:cornell-moving --width 64 --height 36 --spp 64 --device cpu --integrator path "
         "--exposure 1 "
         "--frames 1 -o ";
     ASSERT_EQ(run(render + path("a.mp4")).code, 0);

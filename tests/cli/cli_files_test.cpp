@@ -74,13 +74,13 @@ TEST_F(CliFilesTest, PipesAndDevicesAreNoInputsAndNoOutputs) {
     expectSoon("render builtin:cornell --env " + pipe("p.hdr") + out, 3, fault);
     expectSoon("render builtin:cornell --env " + pipe("p.exr") + out, 3, fault);
     expectSoon("render builtin:cornell --camera-path " + pipe("p.json") + out, 3, fault);
-    expectSoon("render builtin:cornell --pipeline kpcn --weights " + pipe("p.safetensors") + out, 3, fault);
+    expectSoon("render builtin:cornell --denoiser kpcn --weights " + pipe("p.safetensors") + out, 3, fault);
     expectSoon("render builtin:cornell --resume --checkpoint " + pipe("p.ck") + out, 3, fault);
     expectSoon("compare " + path("p.exr") + " " + path("p.exr"), 3, fault);
     expectSoon("compare /dev/zero /dev/zero", 3, fault);
     expectSoon("merge " + pipe("p.sums") + " -o " + path("a.png"), 3, fault);
     pipe("f.0000.exr");
-    expectSoon("denoise " + path("f.%04d.exr") + " --method svgf --device cpu -o " + path("g.%04d.exr"), 3,
+    expectSoon("denoise " + path("f.%04d.exr") + " --denoiser svgf --device cpu -o " + path("g.%04d.exr"), 3,
                fault);
     expectSoon("render builtin:cornell -o " + path("p.exr") + tiny, 1, fault);
     EXPECT_TRUE(fs::is_fifo(folder_ / "p.exr"));

@@ -27,7 +27,7 @@ class CliKpcnTest : public CliTest {
 TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
     mustRun("render builtin:cornell -o " + path("noisy.exr") + larger + "--spp 32 --jitter off --aov all");
     mustRun("render builtin:cornell -o " + path("truth.exr") + larger + "--spp 1024 --seed 3 --jitter off");
-    mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn");
+    mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --denoiser kpcn");
     const image::Image truth = pictureOf("truth.exr");
     const double noisy = image::relMse(pictureOf("noisy.exr"), truth);
     EXPECT_LT(image::relMse(pictureOf("clean.exr"), truth), 0.15 * noisy);
@@ -46,7 +46,7 @@ TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
     const std::string scene = "render builtin:lab-disocclusion" + std::string(small) + "-o ";
     mustRun(scene + path("truth.exr") + " --spp 192 --samples-per-launch 4 --seed 3");
     const auto psnrOf = [&](const std::string& more) {
-        mustRun(scene + path("own.exr") + " --pipeline kpcn" + more);
+        mustRun(scene + path("own.exr") + " --denoiser kpcn" + more);
         return image::psnr(image::displayEncode(pictureOf("own.exr"), 0.0f),
                            image::displayEncode(pictureOf("truth.exr"), 0.0f));
     };
@@ -64,12 +64,12 @@ TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
         const std::string errors = "--set kpcn.errors=2";
         mustRun("render builtin:cornell -o " + path("noisy.exr") + small + samples +
                 "--jitter off --aov all");
-        mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn " +
-                errors + smallWeights);
+        mustRun("denoise " + path("noisy.exr") + " -o " + path("clean.exr") +
+                " --device cpu --denoiser kpcn " + errors + smallWeights);
         mustRun("render builtin:cornell -o " + path("own.exr") + small + samples +
-                "--jitter off --pipeline kpcn " + errors + smallWeights);
+                "--jitter off --denoiser kpcn " + errors + smallWeights);
         mustRun("denoise " + path("noisy.exr") + " -o " + path("free.exr") +
-                " --device cpu --method kpcn --set kpcn.errors=0" + smallWeights);
+                " --device cpu --denoiser kpcn --set kpcn.errors=0" + smallWeights);
         const image::Image clean = pictureOf("clean.exr"), own = pictureOf("own.exr");
         for (size_t i = 0; i < own.pixels.size(); ++i)
             ASSERT_NEAR(clean.pixels[i], own.pixels[i], 2e-3f * own.pixels[i] + 1e-4f) << samples << i;
@@ -82,7 +82,7 @@ TEST_F(CliKpcnTest, MissingLayersAreNamed) {
     mustRun("render builtin:cornell -o " + path("noisy.exr") + small +
             "--spp 2 --aov diffuse,specular,emission,albedo,normal,depth");
     const Result result =
-        run("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --method kpcn");
+        run("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --denoiser kpcn");
     EXPECT_EQ(result.code, 3);
     EXPECT_THAT(
         result.output,
@@ -92,7 +92,7 @@ TEST_F(CliKpcnTest, MissingLayersAreNamed) {
 
 TEST_F(CliKpcnTest, BadWeightsAreRefused) {
     const std::string render =
-        "render builtin:cornell -o " + path("own.exr") + small + "--pipeline kpcn --weights ";
+        "render builtin:cornell -o " + path("own.exr") + small + "--denoiser kpcn --weights ";
     put("weights", "not weights at all");
     for (const std::string& file : {path("weights"), path("none")}) {
         const Result result = run(render + file);
@@ -100,13 +100,13 @@ TEST_F(CliKpcnTest, BadWeightsAreRefused) {
         EXPECT_THAT(result.output, HasSubstr(file));
     }
     const Result result =
-        run("render builtin:cornell -o " + path("own.exr") + small + "--pipeline svgf" + smallWeights);
+        run("render builtin:cornell -o " + path("own.exr") + small + "--denoiser svgf" + smallWeights);
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("only kpcn"));
 }
 
 TEST_F(CliKpcnTest, InfoSaysHowItRuns) {
-    EXPECT_THAT(run("info").output, HasSubstr("--pipeline kpcn"));
+    EXPECT_THAT(run("info").output, HasSubstr("--denoiser kpcn"));
     EXPECT_THAT(run("info --json").output, HasSubstr("\"kpcn\": \""));
 }
 

@@ -39,7 +39,7 @@ class CliQualityTest : public CliTest {
 };
 
 TEST_F(CliQualityTest, KeptReferencesGiveTheSameNumbersAndDamagedOnesAreRefused) {
-    const std::string kept = "--pipeline history --reference-folder " + path("kept");
+    const std::string kept = "--denoiser temporal --reference-folder " + path("kept");
     json first = numbers(kept);
     const std::vector<fs::path> files = filesIn("kept");
     ASSERT_EQ(files.size(), 3u) << "one for each compared frame, and no temporary";
@@ -68,7 +68,7 @@ TEST_F(CliQualityTest, KeptReferencesGiveTheSameNumbersAndDamagedOnesAreRefused)
 TEST_F(CliQualityTest, AFoldersScenesAreMeasuredAndBadOnesSkippedLoudly) {
     fs::create_directories(folder_ / "scenes/bad");
     put("scenes/bad/bad.gltf", "no JSON");
-    const std::string folder = "--pipeline history --scenes-folder " + path("scenes");
+    const std::string folder = "--denoiser temporal --scenes-folder " + path("scenes");
     expect(options(folder), 1, "SKIPPED: bad: ");
     const Result result = run(options(
         folder + " --quick --scene builtin:cornell --scene builtin:heavy --report " + path("page.html")));
@@ -83,14 +83,14 @@ TEST_F(CliQualityTest, AFoldersScenesAreMeasuredAndBadOnesSkippedLoudly) {
 TEST_F(CliQualityTest, ScenesOfOneNameAreToldApart) {
     put("cornell-2.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const Result result =
-        run(options("--pipeline history --scene builtin:cornell --scene builtin:cornell --scene " +
+        run(options("--denoiser temporal --scene builtin:cornell --scene builtin:cornell --scene " +
                     path("cornell-2.obj") + " --out " + path("pictures")));
     EXPECT_EQ(result.code, 0) << result.output;
     EXPECT_EQ(filesIn("pictures").size(), 3u);
 }
 
 TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {
-    expect(options("--pipeline nothing"), 2, "nothing");
+    expect(options("--denoiser nothing"), 2, "nothing");
     expect(options("--report " + path("none/page.html")), 1, "does not exist");
     expect(options("--scenes-folder " + path("none")), 3, "cannot be read");
     fs::create_directories(folder_ / "empty");
@@ -102,13 +102,14 @@ TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {
     put("file", "");
     for (const char* option : {"--out ", "--reference-folder "})
         expect(options(option + path("file")), 1, "cannot be made");
-    expect(options("--pipeline ao"), 2, "--pipeline ao does not denoise");
+    expect(options("--denoiser none"), 2, "--denoiser none: it is scored anyway");
+    expect(options("--integrator gbuffer --denoiser svgf"), 2, "--integrator gbuffer takes no denoiser");
     for (const char* frames : {"--first 61", "--frames 16", "--lab --first 36", "--quick --frames 6"})
         expect(std::string("bench quality --device cpu ") + frames, 2, "cornell: of ");
 }
 
 TEST_F(CliQualityTest, TheSlidersDividerMovesInABrowser) {
-    const Result made = run(options("--report " + path("page.html") + " --lab --quick --pipeline history"));
+    const Result made = run(options("--report " + path("page.html") + " --lab --quick --denoiser temporal"));
     ASSERT_EQ(made.code, 0) << made.output;
     for (const char* part : {"best in", "many-lights (reference: 16 samples, "})
         EXPECT_NE(made.output.find(part), std::string::npos) << made.output;

@@ -206,22 +206,23 @@ TEST(QualityReport, APageIntoNoFolderIsAnError) {
     EXPECT_THROW(writeQualityPage("/no such folder/page.html", runOf()), OutputError);
 }
 
-std::vector<std::string> pipelinesOf(const MethodChoice& choice) {
+std::vector<std::string> denoisersOf(const MethodChoice& choice) {
     std::vector<std::string> names;
     for (const QualityMethod& method : methodsOf(choice, {}))
         names.emplace_back(method.settings.pipeline.denoiser->name);
     return names;
 }
 
-TEST(QualityMethods, AVariantIsOfThePipelineWhoseParametersItNames) {
-    EXPECT_THAT(pipelinesOf({{"history", "svgf", "kpcn"},
-                             {"svgf.levels=1", "history.normal=0.5", "pathtrace.max_depth=2",
+TEST(QualityMethods, AVariantIsOfTheDenoiserWhoseParametersItNames) {
+    EXPECT_THAT(denoisersOf({{"temporal", "svgf", "kpcn"},
+                             {"svgf.levels=1", "temporal.normal=0.5", "pathtrace.max_depth=2",
                               "preset=svgf-paper", "pathtrace.max_depth=2,svgf.levels=2"}}),
-                ElementsAre("history", "svgf", "kpcn", "svgf", "history", "kpcn", "svgf", "svgf"));
-    EXPECT_THAT(pipelinesOf({{"history", "atrous", "svgf"}, {"preset=history-tracking-course,taa.frames=2"}}),
-                ElementsAre("history", "atrous", "svgf", "atrous"));
-    EXPECT_THAT(pipelinesOf({{"atrous"}, {"history.normal=0.5"}}), ElementsAre("atrous", "atrous"))
-        << "which has no parameters of a pipeline of that name, but those of history tracking";
+                ElementsAre("temporal", "svgf", "kpcn", "svgf", "temporal", "kpcn", "svgf", "svgf"));
+    EXPECT_THAT(
+        denoisersOf({{"temporal", "atrous", "svgf"}, {"preset=history-tracking-course,taa.frames=2"}}),
+        ElementsAre("temporal", "atrous", "svgf", "atrous"));
+    EXPECT_THAT(denoisersOf({{"atrous"}, {"temporal.normal=0.5"}}), ElementsAre("atrous", "atrous"))
+        << "which has no parameters of a denoiser of that name, but those of temporal accumulation";
     const auto methods = methodsOf({{"svgf"}, {"svgf.levels=1,svgf.wide=on"}}, {});
     EXPECT_EQ(methods[1].name, "svgf.levels=1,svgf.wide=on");
     EXPECT_EQ(methods[1].settings.denoisers.svgf.levels, 1);
@@ -230,7 +231,7 @@ TEST(QualityMethods, AVariantIsOfThePipelineWhoseParametersItNames) {
 }
 
 TEST(QualityMethods, StepsAreOfSvgfWhateverElseIsCompared) {
-    const auto names = pipelinesOf({.pipelines = {"history"}, .variants = {}, .steps = true});
+    const auto names = denoisersOf({.denoisers = {"temporal"}, .variants = {}, .steps = true});
     EXPECT_GT(names.size(), 10u);
     EXPECT_EQ(std::ranges::count(names, "svgf"), static_cast<long>(names.size()) - 1);
 }

@@ -63,7 +63,7 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
     const SyntheticScene scene(c.options);
     const HostFrame frame = scene.frame(5, c.columns, c.rows, 3);
     DenoiserSettings settings;
-    settings.atrous = {.history = false,
+    settings.atrous = {.temporal = false,
                        .levels = 5,
                        .normalFactor = c.normalFactor,
                        .depthFactor = c.depthFactor,
@@ -112,7 +112,7 @@ class AtrousTest : public DenoiseTest {};
 TEST_F(AtrousTest, LevelsAreAsManyAsAskedForAndNoneLeavesThePicture) {
     const HostFrame frame = SyntheticScene({}).frame(0, 64, 36, 1);
     DenoiserSettings settings;
-    settings.atrous.history = false;
+    settings.atrous.temporal = false;
     settings.atrous.levels = 0;
     const std::vector<float> picture = denoise(*denoise::findDenoiser("atrous"), frame, settings);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {

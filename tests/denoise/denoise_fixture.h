@@ -7,7 +7,7 @@
 #include "denoise/api/denoiser.h"
 #include "tests/gpu/gpu_fixture.h"
 #include "tests/oracle/double_atrous.h"
-#include "tests/oracle/double_history.h"
+#include "tests/oracle/double_temporal.h"
 #include "tests/oracle/synthetic_frames.h"
 
 namespace limpid::test {
@@ -44,13 +44,14 @@ class DenoiseTest : public GpuTest {
         graph_.beginFrame();
         denoise::DenoiserInput input = denoise::upload(graph_, frame);
         input.filters = filters_;
-        output_ = method.record(graph_, input, settings);
+        output_ = method.record(graph_, input, settings, networks_);
         graph_.execute(device());
         return graph_.downloadFloat(device(), output_.beauty);
     }
 
     gpu::FrameGraph graph_;
     denoise::DenoiserOutput output_;
+    denoise::DenoiserNetworks networks_;
     gpu::Backing filters_ = gpu::Backing::Image;
 };
 

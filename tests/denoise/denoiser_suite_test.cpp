@@ -134,14 +134,15 @@ std::vector<std::string> numbersOf(const ParamInfo& info) {
         const double between = std::min(std::ceil(info.minimum) + 1.0, 0.5 * (info.minimum + info.maximum));
         return {fmt::format("{}", info.minimum), fmt::format("{}", between), fmt::format("{}", info.maximum)};
     }
-    const int least = static_cast<int>(info.minimum), most = static_cast<int>(info.maximum);
-    return {std::to_string(least), std::to_string(std::min(least + 1, most)), std::to_string(most)};
+    const int min = static_cast<int>(info.minimum), max = static_cast<int>(info.maximum);
+    return {std::to_string(min), std::to_string(std::min(min + 1, max)), std::to_string(max)};
 }
 
 /// What must be set besides for a parameter to matter.
 std::vector<std::string> neededFor(const std::string& parameter) {
-    if (parameter == "history.grey" || parameter == "history.grey_misses") return {"history.grey_restart=on"};
-    if (parameter == "history.identity") return {"history.depth=1e6", "history.normal=-1"};
+    if (parameter == "temporal.grey" || parameter == "temporal.grey_misses")
+        return {"temporal.grey_restart=on"};
+    if (parameter == "temporal.identity") return {"temporal.depth=1e6", "temporal.normal=-1"};
     return {};
 }
 
@@ -178,7 +179,7 @@ TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
     const SyntheticScene scene(moving);
     const std::vector<float> plain = denoiseSequence(scene);
     for (const Preset& preset : presets()) {
-        if (!preset.isFor(parsePipeline(GetParam()))) continue;
+        if (!preset.isFor(parsePipeline("path", GetParam()))) continue;
         RenderSettings settings;
         applyPreset(settings, preset.name);
         const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);
@@ -186,6 +187,9 @@ TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
         EXPECT_NE(picture, plain) << preset.name;
     }
 }
+
+/// dB of PSNR over the noisy frames, after 24 of them.
+constexpr double minGain = 8.0;
 
 TEST_P(DenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {
     for (const SyntheticOptions& options : {SyntheticOptions{}, moving}) {
@@ -199,7 +203,7 @@ TEST_P(DenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {
         const std::vector<float> truth = scene.truth(count - 1, columns, rows);
         const double gain = psnrOf(picture, truth) - psnrOf(noisy, truth);
         RecordProperty(options.cameraMoves ? "gain_moving_dB" : "gain_still_dB", std::to_string(gain));
-        EXPECT_GE(gain, method().leastGain) << (options.cameraMoves ? "moving" : "still");
+        EXPECT_GE(gain, minGain) << (options.cameraMoves ? "moving" : "still");
     }
 }
 

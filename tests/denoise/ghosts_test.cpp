@@ -56,7 +56,7 @@ class GhostsTest : public SequenceTest {
     /// The wall is the still thing that the moving ones uncover most of.
     Regions regions() {
         std::vector<std::vector<uint32_t>> seen;
-        denoised(parsePipeline("history"), 1, [&](const std::vector<uint32_t>& ids) {
+        denoised(parsePipeline("path", "temporal"), 1, [&](const std::vector<uint32_t>& ids) {
             std::vector<uint32_t> instances(pixels);
             for (size_t p = 0; p < pixels; ++p) instances[p] = ids[2 * p];
             seen.push_back(instances);
@@ -116,7 +116,7 @@ TEST_F(GhostsTest, WhereAnObjectHasBeenThePictureIsAsRightAsElsewhere) {
         if (method.network) continue;  // without a past there are no ghosts
         std::vector<std::vector<float>> pictures;
         for (uint32_t seed = 1; seed <= seeds; ++seed)
-            pictures.push_back(denoised({Pipeline::Kind::Denoised, &method}, seed, [](const auto&) {}));
+            pictures.push_back(denoised({Integrator::Path, &method}, seed, [](const auto&) {}));
         const double swept = squaredBias(pictures, truth, found.swept);
         const double elsewhere = squaredBias(pictures, truth, found.elsewhere);
         log::info("{}: squared bias {:.3e} where the object was ({} pixels), {:.3e} elsewhere ({})",

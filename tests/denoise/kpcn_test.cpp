@@ -126,12 +126,13 @@ class KpcnTest : public DenoiseTest {
   protected:
     static const denoise::Denoiser& method() { return *denoise::findDenoiser("kpcn"); }
 
+    /// Takes the network from now on.
     DenoiserSettings settingsWith(const KpcnWeights& weights, KpcnPrecision precision, int tile = 512) {
         DenoiserSettings settings;
         settings.kpcn.standardErrors = 0.0f;  // the network alone
         settings.kpcn.levels = 0;
         settings.kpcn.tile = tile;
-        settings.kpcn.network = std::make_shared<KpcnNetwork>(device(), weights, precision);
+        networks_.kpcn = std::make_shared<KpcnNetwork>(device(), weights, precision);
         return settings;
     }
     /// With all that comes after the network.
@@ -453,7 +454,7 @@ TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
     graph.beginFrame();
     denoise::DenoiserInput input = denoise::upload(graph, frontalPlane(300, 200));
     const size_t first = graph.passes().size();
-    method().record(graph, input, settings);
+    method().record(graph, input, settings, networks_);
     // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
     // bytes, twice, light of 16 and faces of 4. Of the picture: distances, two sides, three levels of each
     // (the fourth would be too wide), beauty; and the largest of 38x25, 5x4 and 1.
@@ -465,7 +466,7 @@ TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
 TEST_F(KpcnTest, WithoutANetworkItSaysSo) {
     graph_.beginFrame();
     const denoise::DenoiserInput input = denoise::upload(graph_, frontalPlane(8, 8));
-    EXPECT_THROW(method().record(graph_, input, {}), Error);
+    EXPECT_THROW(method().record(graph_, input, {}, {}), Error);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST_F(LagTest, SvgfHasFollowedALightWithinEightFrames) {
     std::vector<double> mean(end - stop);
     for (uint32_t seed = 1; seed <= seeds; ++seed) {
         RenderSettings chosen = settings(seed);
-        chosen.pipeline = parsePipeline("svgf");
+        chosen.pipeline = parsePipeline("path", "svgf");
         const std::vector<double> one = errors(chosen, truth);
         for (size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / seeds;
     }

@@ -262,9 +262,9 @@ class MirroredPictureTest : public SequenceTest {
         }
     }
 
-    Flip flipOf(const std::string& pipeline) {
+    Flip flipOf(const std::string& denoiser) {
         RenderSettings chosen = settings();
-        chosen.pipeline = parsePipeline(pipeline);
+        chosen.pipeline = parsePipeline("path", denoiser);
         FrameRenderer renderer(device(), *gpuScene_, chosen, 1);
         Flip flip;
         for (uint64_t frame = 0; frame <= judged.back(); ++frame) {

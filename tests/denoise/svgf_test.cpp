@@ -28,8 +28,8 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .antilag = double{s.antilag},
             .antilagNoise = double{s.antilagNoise},
             .antilagPixel = double{s.antilagPixel},
-            .alphaShown = double{s.alphaShown},
-            .shownNoise = double{s.shownNoise},
+            .stabilisationAlpha = double{s.stabilisationAlpha},
+            .stabilisationNoise = double{s.stabilisationNoise},
             .phiColor = double{s.phiColor},
             .phiNormal = double{s.phiNormal},
             .phiDepth = double{s.phiDepth},
@@ -48,7 +48,7 @@ struct Case {
     int resizeAt = -1;     ///< from this frame on the picture is smaller
     int jumpAt = -1;       ///< from this frame on the light is three times as bright
     bool hasNans = false;  ///< and infinities, in radiance and albedo
-    int mixesFrom = 0;     ///< until this frame filtered light is shown as it is
+    int mixesFrom = 0;     ///< until this frame filtered light is not stabilised
 };
 
 SvgfSettings preset(const char* name) {
@@ -77,23 +77,22 @@ std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
 /// What the steps up to that of young pixels' variance stored.
 struct Stored {
     std::vector<dvec4> color, moments;
-    std::vector<double> tiles;     ///< none without anti-lag
-    std::vector<dvec4> shownPast;  ///< none if filtered light is shown as it is
+    std::vector<double> tiles;      ///< none without anti-lag
+    std::vector<dvec4> stablePast;  ///< none if filtered light is not stabilised
 };
 
-constexpr double halfRounding = 1e-3, leastHalf = 1e-7, floatRounding = 1e-5;
+constexpr double halfRounding = 1e-3, minHalf = 1e-7, floatRounding = 1e-5;
 
 /// `error` bounds what float32 makes of the difference of moments whose root is taken, then it is a half.
 bool isDeviation(double value, double expected, double error) {
     const double square = expected * expected;
     const double least = std::sqrt(std::max(square - error, 0.0)), most = std::sqrt(square + error);
-    return value >= least * (1.0 - halfRounding) - leastHalf &&
-           value <= most * (1.0 + halfRounding) + leastHalf;
+    return value >= least * (1.0 - halfRounding) - minHalf && value <= most * (1.0 + halfRounding) + minHalf;
 }
 
 /// 2^-16 of a pixel or so, by which float32's position may be off, explains 1e-4 of the slope.
 dvec4 toleranceOf(const dvec4& expected, const dvec4& slope, const dvec4& operands, double relative) {
-    return relative * glm::abs(expected) + 1e-4 * slope + 1e-6 * operands + leastHalf;
+    return relative * glm::abs(expected) + 1e-4 * slope + 1e-6 * operands + minHalf;
 }
 
 bool isNear(const dvec4& value, const dvec4& expected, const dvec4& slope, const dvec4& operands,
@@ -105,7 +104,7 @@ bool isNear(const dvec4& value, const dvec4& expected, const dvec4& slope, const
     return true;
 }
 
-std::string shown(const dvec4& v) {
+std::string textOf(const dvec4& v) {
     std::string result;
     for (int c = 0; c < 4; ++c) result += std::to_string(v[c]) + ' ';
     return result;
@@ -131,7 +130,7 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is);
     void compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
                        const Stored& is, std::vector<std::vector<dvec4>>& colors);
-    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+    bool stabilises() const { return settings_.stabilisationAlpha < 1.0f && settings_.levels > 0; }
 
     SvgfSettings settings_;
     DoubleSvgfParams params_;
@@ -187,7 +186,7 @@ Stored SvgfPassTest::stored(const Signal& signal) {
     const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
     if (images.size() != 1) throw Error("the variance of young pixels is not one image");
     result.color = download(images[0]);
-    if (mixesShown()) result.shownPast = download("svgf/reproject " + signal.name, "shown past");
+    if (stabilises()) result.stablePast = download("svgf/reproject " + signal.name, "stable past");
     return result;
 }
 
@@ -214,8 +213,8 @@ std::vector<bool> SvgfPassTest::compareAccumulated(const SvgfAccumulated& expect
         const bool agrees =
             isNear(is.color[p], expected.color[p], pixel.colorSlope, pixel.colorOperands, halfRounding, 3) &&
             isNear(m, expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding, 4) &&
-            (!mixesShown() || isNear(is.shownPast[p], expected.shownPast[p], pixel.shownPastSlope,
-                                     expected.shownPast[p], halfRounding, 4));
+            (!stabilises() || isNear(is.stablePast[p], expected.stablePast[p], pixel.stablePastSlope,
+                                     expected.stablePast[p], halfRounding, 4));
         wrong += !agrees;
         leftOut[p] = !agrees;
         EXPECT_TRUE(agrees || !pixel.rejected) << "too few to be let off, pixel " << p;
@@ -263,7 +262,8 @@ void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surf
     }
 }
 
-/// Appends what every level stored to `colors`, which holds the first one's input. The last one's is shown.
+/// Appends what every level stored to `colors`, which holds the first one's input. The last one's is
+/// stabilised.
 void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
                                  const Stored& is, std::vector<std::vector<dvec4>>& colors) {
     for (int i = 0; i < settings_.levels; ++i) {
@@ -272,14 +272,15 @@ void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& sur
         ASSERT_EQ(images.size(), 1u) << pass;
         std::vector<dvec4> expected =
             svgfLevel(frame, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
-        if (mixesShown() && i + 1 == settings_.levels) {
+        if (stabilises() && i + 1 == settings_.levels) {
             for (size_t p = 0; p < frame.pixelCount(); ++p)
-                expected[p] = dvec4(svgfShown(expected[p], is.shownPast[p], params_), expected[p].w);
+                expected[p] = dvec4(svgfStable(expected[p], is.stablePast[p], params_), expected[p].w);
         }
         colors.push_back(download(images[0]));
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             ASSERT_TRUE(isNear(colors.back()[p], expected[p], dvec4(0.0), dvec4(0.0), halfRounding, 4))
-                << pass << " pixel " << p << ": " << shown(colors.back()[p]) << " and " << shown(expected[p]);
+                << pass << " pixel " << p << ": " << textOf(colors.back()[p]) << " and "
+                << textOf(expected[p]);
         }
     }
 }
@@ -303,14 +304,14 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         const auto fedBack = static_cast<size_t>(std::min(settings_.historyLevel, settings_.levels));
         before_[signal.name] = {frame.width, frame.height,
                                 seen,        colors[fedBack],
-                                is.moments,  mixesShown() ? colors.back() : std::vector<dvec4>()};
+                                is.moments,  stabilises() ? colors.back() : std::vector<dvec4>()};
         filtered.push_back({signal.signal, colors.back()});
     }
     const std::vector<dvec4> beauty = download(output_.beauty);
     const std::vector<dvec4> expected = svgfModulate(frame, filtered, settings_.demodulate);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         ASSERT_TRUE(isNear(beauty[p], expected[p], dvec4(0.0), dvec4(0.0), floatRounding, 4))
-            << "modulate, pixel " << p << ": " << shown(beauty[p]) << " and " << shown(expected[p]);
+            << "modulate, pixel " << p << ": " << textOf(beauty[p]) << " and " << textOf(expected[p]);
     }
 }
 
@@ -318,9 +319,9 @@ TEST_P(SvgfPassTest, EveryPassAgreesWithTheFormulasInDouble) {
     const denoise::Denoiser* const method = denoise::findDenoiser("svgf");
     ASSERT_NE(method, nullptr);
     const Case& c = std::get<0>(GetParam());
-    const float alphaShown = settings_.alphaShown;
+    const float stabilisationAlpha = settings_.stabilisationAlpha;
     for (int number = 0; number < c.frames; ++number) {
-        settings_.alphaShown = number < c.mixesFrom ? 1.0f : alphaShown;
+        settings_.stabilisationAlpha = number < c.mixesFrom ? 1.0f : stabilisationAlpha;
         params_ = inDouble(settings_);
         DenoiserSettings settings;
         settings.svgf = settings_;
@@ -362,11 +363,12 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"Fast", moving, {.alpha = 0.6f, .alphaMoments = 0.5f, .alphaFast = 0.9f, .levels = 1}},
             Case{"Noiseless", {.cameraMoves = true, .noise = false}, {}},
             Case{"NoReflections", moving, {.reflections = false, .levels = 1}},
-            Case{"ShownAsFiltered", moving, {.alphaShown = 1.0f, .levels = 2}},
-            Case{"ShownAndFedBack", moving, {.shownNoise = 2.0f, .levels = 2, .historyLevel = 2}},
+            Case{"NotStabilised", moving, {.stabilisationAlpha = 1.0f, .levels = 2}},
+            Case{
+                "StabilisedAndFedBack", moving, {.stabilisationNoise = 2.0f, .levels = 2, .historyLevel = 2}},
             Case{.name = "MixedLater",
                  .options = moving,
-                 .settings = {.shownNoise = 9.0f, .levels = 1},
+                 .settings = {.stabilisationNoise = 9.0f, .levels = 1},
                  .mixesFrom = 3},
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},

@@ -46,9 +46,9 @@ bool isNear(const dvec3& value, const dvec3& expected, const dvec3& tolerance) {
 
 /// What the next frame starts from.
 bool isStored(const dvec4& stored, const TaaPixel& expected) {
-    constexpr double rounding = 1e-3, leastHalf = 1e-7, largestHalf = 65504.0;
+    constexpr double rounding = 1e-3, minHalf = 1e-7, largestHalf = 65504.0;
     return isNear(dvec3(stored), glm::min(expected.mean, dvec3(largestHalf)),
-                  toleranceOf(expected) + rounding * expected.mean + leastHalf) &&
+                  toleranceOf(expected) + rounding * expected.mean + minHalf) &&
            std::abs(stored.w - expected.frames) <= rounding * expected.frames;
 }
 

@@ -1,6 +1,6 @@
-// Every pipeline with every denoiser, tracer and kind of memory, in pictures of a few pixels: not whether the
-// picture is right (other tests say that), but that every pass runs with the sanitizers and the validation
-// layer watching.
+// Every integrator with every denoiser, tracer and kind of memory, in pictures of a few pixels: not whether
+// the picture is right (other tests say that), but that every pass runs with the sanitizers and the
+// validation layer watching.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
     void SetUp() override {
         GpuTest::SetUp();
         if (IsSkipped()) return;
-        if (GetParam().tracer == scene::Tracer::Pipeline && !device().info().rayTracing) {
+        if (GetParam().tracer == scene::Tracer::Hardware && !device().info().rayTracing) {
             GTEST_SKIP() << "NOT TESTED: " << device().info().name
                          << " has no ray-tracing pipelines; scripts/lavapipe25.sh fetches a driver that has.";
         }
@@ -73,7 +73,7 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
         EXPECT_TRUE(std::ranges::all_of(beauty, [](float v) { return std::isfinite(v); }));
         EXPECT_TRUE(std::ranges::any_of(beauty, [](float v) { return v > 0.0f; }));
         renderer.counters();
-        renderer.historyCounts();
+        renderer.disocclusionCounts();
         renderer.motion();
         renderer.denoisingBytes();
         std::set<std::string> passes;
@@ -95,17 +95,18 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
 
 TEST_P(EveryPassTest, Runs) {
     for (const Pipeline& pipeline : pipelines()) {
-        SCOPED_TRACE(pipeline.name());
+        if (pipeline.integrator == Integrator::Direct) continue;  // the passes of paths
+        SCOPED_TRACE(pipeline.title());
         RenderSettings settings;
         settings.pipeline = pipeline;
         settings.layers = true;
         settings.pathtrace.maxDepth = 3;
         std::vector<denoise::KpcnPrecision> precisions{denoise::KpcnPrecision::Float};
-        const bool network = pipeline.denoiser && pipeline.denoiser->network;
+        const bool network = pipeline.usesNetwork();
         const denoise::KpcnPrecision fastest = denoise::kpcnPrecision(device().info(), true);
         if (network && fastest != precisions.front()) precisions.push_back(fastest);
         for (const denoise::KpcnPrecision precision : precisions) {
-            if (network) settings.denoisers.kpcn.network = this->network(precision);
+            if (network) settings.networks.kpcn = this->network(precision);
             for (const gpu::Extent extent : {gpu::Extent{17, 9}, {5, 12}}) {
                 settings.extent = extent;
                 settings.jitter = extent.width == 17 ? Jitter::Pixel : Jitter::Frame;
@@ -114,8 +115,8 @@ TEST_P(EveryPassTest, Runs) {
             }
         }
     }
-    for (const char* part : {"gbuffer", "ambient_occlusion", "accumulate", "pathtrace", "deform", "tonemap",
-                             "history", "atrous", "svgf", "kpcn", "taa", "compose"}) {
+    for (const char* part : {"gbuffer", "ambient_occlusion", "accumulate/", "pathtrace", "deform", "tonemap",
+                             "temporal", "atrous", "svgf", "kpcn", "taa", "compose"}) {
         EXPECT_TRUE(std::ranges::any_of(
             run_, [&](const std::string& pass) { return pass.find(part) != std::string::npos; }))
             << part << " did not run";
@@ -125,7 +126,7 @@ TEST_P(EveryPassTest, Runs) {
 INSTANTIATE_TEST_SUITE_P(Ways, EveryPassTest,
                          testing::Values(Way{scene::Tracer::Compute, gpu::Backing::Image},
                                          Way{scene::Tracer::Compute, gpu::Backing::Buffer},
-                                         Way{scene::Tracer::Pipeline, gpu::Backing::Image}),
+                                         Way{scene::Tracer::Hardware, gpu::Backing::Image}),
                          nameOf);
 
 }  // namespace

@@ -19,10 +19,10 @@ using scene::Scene;
 
 class LiveLightsTest : public RenderTest {
   protected:
-    static RenderSettings small(const char* pipeline) {
+    static RenderSettings small(const Pipeline& pipeline) {
         RenderSettings settings;
         settings.extent = {24, 16};
-        settings.pipeline = parsePipeline(pipeline);
+        settings.pipeline = pipeline;
         return settings;
     }
     /// The box with its ceiling, a lamp, a sun and an environment.
@@ -58,7 +58,8 @@ class LiveLightsTest : public RenderTest {
 };
 
 TEST_F(LiveLightsTest, AChangedSceneIsTheSceneBuiltSo) {
-    for (const char* pipeline : {"path", "gbuffer", "svgf"}) {
+    for (const Pipeline& pipeline :
+         {parsePipeline("path"), parsePipeline("gbuffer"), parsePipeline("path", "svgf")}) {
         Scene scene = litScene();
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene onDevice(device(), data);
@@ -81,17 +82,17 @@ TEST_F(LiveLightsTest, AChangedSceneIsTheSceneBuiltSo) {
         change(after, before);
         FrameRenderer next(device(), onDevice, settings, 4);
         const std::vector<float> relit = picture(next, moment);
-        EXPECT_NE(relit, start) << pipeline;
+        EXPECT_NE(relit, start) << pipeline.title();
 
         scene::GpuScene anew(device(), scene::buildSceneData(scene));
         Moment still;
         still.camera = moment.camera;
         FrameRenderer other(device(), anew, settings, 4);
-        EXPECT_EQ(picture(other, still), relit) << pipeline;
+        EXPECT_EQ(picture(other, still), relit) << pipeline.title();
 
         change(before, after);
         FrameRenderer last(device(), onDevice, settings, 4);
-        EXPECT_EQ(picture(last, moment), start) << pipeline;
+        EXPECT_EQ(picture(last, moment), start) << pipeline.title();
     }
 }
 
@@ -101,7 +102,7 @@ TEST_F(LiveLightsTest, TheMeanStartsAnew) {
     const scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene onDevice(device(), data);
     scene::LiveLights live(scene, data);
-    const RenderSettings settings = small("path");
+    const RenderSettings settings = small({});
     FrameRenderer renderer(device(), onDevice, settings, 2);
     Moment moment;
     moment.camera = camera(scene, settings);
@@ -123,7 +124,7 @@ TEST_F(LiveLightsTest, ChangesWhileThingsMove) {
     const scene::SceneData data = scene::buildSceneData(scene);
     scene::LiveLights live(scene, data);
     scene::SceneAnimator animator(scene, data);
-    const RenderSettings settings = small("path");
+    const RenderSettings settings = small({});
     const std::vector<LightControl> before = scene::lightControlsOf(scene);
     scene::applyLightControls(scene, changed(before), before);
     live.update(scene);
@@ -184,7 +185,7 @@ TEST_F(LiveLightsTest, ThePreviewShowsColoursWithoutAnyLight) {
     scene::PunctualLight off;
     off.intensity = vec3(0.0f);
     scene.lights = {off};
-    RenderSettings settings = small("preview");
+    RenderSettings settings = small(parsePipeline("preview"));
     settings.jitter = Jitter::Off;
     scene::GpuScene onDevice(device(), scene::buildSceneData(scene));
     FrameRenderer renderer(device(), onDevice, settings, 1);

@@ -11,16 +11,19 @@ constexpr double pi64 = std::numbers::pi;
 
 class KnownAnswerTest : public RenderTest {
   protected:
-    static void checkFurnace(Renderer& renderer, float albedo, int depth, int rouletteDepth) {
+    static void checkFurnace(Renderer& renderer, float albedo, int depth, int rouletteDepth,
+                             Integrator integrator = Integrator::Path) {
         RenderSettings settings;
+        settings.pipeline.integrator = integrator;
         settings.extent = {24, 24};
         settings.samplesPerLaunch = 64;
         settings.pathtrace.maxDepth = depth;
         settings.pathtrace.rouletteDepth = rouletteDepth;
         const Rendered picture = renderer(settings, 512);
-        const double expected = (1.0 - std::pow(double{albedo}, depth + 1)) / (1.0 - double{albedo});
-        const std::string how =
-            fmt::format("albedo {} depth {} roulette from {}", albedo, depth, rouletteDepth);
+        const int bounces = integrator == Integrator::Direct ? std::min(depth, 1) : depth;
+        const double expected = (1.0 - std::pow(double{albedo}, bounces + 1)) / (1.0 - double{albedo});
+        const std::string how = fmt::format("{}, albedo {} depth {} roulette from {}", nameOf(integrator),
+                                            albedo, depth, rouletteDepth);
         const double mean = meanOfRed(picture);
         fmt::print("furnace, {}: {:.5f}, exactly {:.5f} ({:+.3f} %)\n", how, mean, expected,
                    100 * (mean / expected - 1));
@@ -71,6 +74,34 @@ TEST_F(KnownAnswerTest, Furnace) {
         checkFurnace(renderer, albedo, 4, 0);
         checkFurnace(renderer, albedo, 0, 0);
     }
+}
+
+/// Emission, and light of one bounce, however many are allowed.
+TEST_F(KnownAnswerTest, FurnaceOfDirectLight) {
+    Renderer renderer(device(), scene::furnaceScene(0.8f));
+    for (const int depth : {0, 1, 8}) checkFurnace(renderer, 0.8f, depth, 3, Integrator::Direct);
+}
+
+/// A point light's, exactly; what the floor reflects onto the wall and back is missing.
+TEST_F(KnownAnswerTest, DirectLightHasNoSecondBounce) {
+    scene::Scene scene = viewedFloor();
+    scene::MeshBuilder wall("wall");
+    wall.quad({-10, 0, -3}, {10, 0, -3}, {10, 6, -3}, {-10, 6, -3});
+    addMesh(scene, wall.take(), lambertian(vec3(0.9f)));
+    scene::PunctualLight light;
+    light.position = {0.3f, 1.5f, -0.2f};
+    light.intensity = vec3(7.0f);
+    scene.lights = {light};
+    const auto direct = [&](const dvec3& p) {
+        const dvec3 d = dvec3(light.position) - p;
+        const double d2 = glm::dot(d, d);
+        return double{0.6f} / pi64 * 7.0 * d.y / std::sqrt(d2) / d2;
+    };
+    RenderSettings settings = centred(16, 16, 8);
+    const double all = meanOfRed(render(scene, settings, 64));
+    settings.pipeline.integrator = Integrator::Direct;
+    checkFloor(scene, settings, 1, 5e-3, direct, "direct light");
+    EXPECT_GT(all, 1.1 * meanOfRed(render(scene, settings, 1)));
 }
 
 TEST_F(KnownAnswerTest, PointLightWithAndWithoutRange) {

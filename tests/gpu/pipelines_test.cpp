@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/frame/parameters.h"
@@ -21,10 +22,10 @@ Scene prepared(Scene scene) {
     return scene;
 }
 
-RenderSettings settingsFor(const char* pipeline, uint32_t width, uint32_t height) {
+RenderSettings settingsFor(const Pipeline& pipeline, uint32_t width, uint32_t height) {
     RenderSettings settings;
     settings.extent = {width, height};
-    settings.pipeline = parsePipeline(pipeline);
+    settings.pipeline = pipeline;
     settings.jitter = Jitter::Off;
     return settings;
 }
@@ -63,11 +64,11 @@ void expectEqual(const std::vector<float>& values, const std::vector<float>& exp
     }
 }
 
-TEST_F(PipelinesTest, HistoryOfAStillCameraIsTheProgressiveMeanOfTheSameSamples) {
+TEST_F(PipelinesTest, TemporalAccumulationOfAStillCameraIsTheProgressiveMeanOfTheSameSamples) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
-    RenderSettings settings = settingsFor("history", 96, 54);
-    assign(settings, "history.max_history=0");
+    RenderSettings settings = settingsFor(parsePipeline("path", "temporal"), 96, 54);
+    assign(settings, "temporal.max_history=0");
     constexpr uint64_t frames = 48;
     FrameRenderer renderer(device(), gpuScene, settings, 1);
     for (uint64_t frame = 0; frame < frames; ++frame) renderer.render(still(scene, settings, frame));
@@ -87,7 +88,7 @@ TEST_F(PipelinesTest, HistoryOfAStillCameraIsTheProgressiveMeanOfTheSameSamples)
 TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
     const Scene scene = prepared(scene::cornellScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
-    RenderSettings settings = settingsFor("history", 48, 27);
+    RenderSettings settings = settingsFor(parsePipeline("path", "temporal"), 48, 27);
     settings.samplesPerLaunch = 3;
     settings.layers = true;
     FrameRenderer renderer(device(), gpuScene, settings, 8);
@@ -110,14 +111,96 @@ TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
         expectEqual(layers.*layer, expected.*layer, 1e-6f);
 }
 
+/// What the denoiser is given adds up to what the integrator alone shows, with the guides of the first hit.
+TEST_F(PipelinesTest, ADenoiserIsGivenTheAmbientOcclusionOfTheFrame) {
+    Scene scene = floorScene(vec3(0.3f));
+    scene::MeshBuilder wall("wall");
+    wall.quad({-2, 0, -3}, {2, 0, -3}, {2, 1.5f, -3}, {-2, 1.5f, -3});
+    addMesh(scene, wall.take(), lambertian(vec3(0.9f)));
+    scene.cameras = {scene::lookAt({0, 1, 2}, {0, 1, -3}, {0, 1, 0}, 1.0f)};
+    scene = prepared(scene);
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const int rays : {3, 40}) {  // in one dispatch and in several
+        for (const uint32_t samples : {1u, 5u}) {
+            RenderSettings settings = settingsFor(parsePipeline("ao", "svgf"), 32, 24);
+            settings.ambientOcclusion.rays = rays;
+            settings.jitter = Jitter::Pixel;
+            settings.layers = true;
+            FrameRenderer denoised(device(), gpuScene, settings, samples);
+            denoised.render(still(scene, settings, 0));
+            const RenderedLayers given = denoised.download();
+            settings.pipeline.denoiser = nullptr;
+            FrameRenderer alone(device(), gpuScene, settings, samples);
+            alone.render(still(scene, settings, 0));
+            const RenderedLayers expected = alone.download();
+            std::vector<float> sum = given.diffuse;
+            size_t misses = 0;
+            for (size_t i = 0; i < sum.size(); ++i) {
+                sum[i] += given.emission[i] + given.specular[i];
+                misses += given.emission[i] > 0.0f ? 1 : 0;
+                if (i % 4 < 3) {
+                    EXPECT_NEAR(given.albedo[i], given.depth[i - i % 4 + 1], 1e-6f);
+                }
+            }
+            EXPECT_GT(misses, 100u);
+            expectEqual(sum, expected.beauty, 1e-6f);
+            EXPECT_EQ(given.ids, expected.ids);
+            for (const auto layer :
+                 {&RenderedLayers::normal, &RenderedLayers::depth, &RenderedLayers::motion})
+                expectEqual(given.*layer, expected.*layer, 1e-6f);
+            EXPECT_EQ(denoised.counters().rays, alone.counters().rays);
+        }
+    }
+}
+
+TEST_F(PipelinesTest, AmbientOcclusionAndDirectLightAreNearerToTheTruthDenoised) {
+    const Scene scene = prepared(scene::cornellSpheresScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const char* integrator : {"ao", "direct"}) {
+        RenderSettings settings = settingsFor(parsePipeline(integrator), 96, 54);
+        settings.samplesPerLaunch = 4;
+        ProgressiveStill mean(device(), gpuScene, 512);
+        settings.seed = 1;
+        mean.update(camera(scene, settings), settings);
+        while (mean.launch()) continue;
+        const image::Image truth = image::displayEncode(beautyOf(mean.download()), 0.0f);
+        settings.seed = 2;
+        const auto psnrOf = [&](const char* denoiser, uint64_t frames) {
+            settings.pipeline = parsePipeline(integrator, denoiser);
+            FrameRenderer renderer(device(), gpuScene, settings, 1);
+            for (uint64_t frame = 0; frame < frames; ++frame) renderer.render(still(scene, settings, frame));
+            return image::psnr(image::displayEncode(beautyOf(renderer.download()), 0.0f), truth);
+        };
+        const double noisy = psnrOf("none", 1);
+        for (const char* denoiser : {"temporal", "atrous", "svgf"}) {
+            const double clean = psnrOf(denoiser, 8);
+            fmt::print("{}: {:.2f} dB noisy, {:.2f} after 8 frames of {}\n", integrator, noisy, clean,
+                       denoiser);
+            EXPECT_GT(clean, noisy + 5.0) << integrator << ", " << denoiser;
+        }
+    }
+}
+
+/// A denoiser's histories of ambient occlusion are of one radius; paths do not care.
+TEST_F(PipelinesTest, HistoriesStartAnewWhereTheIntegratorsParametersChange) {
+    const Scene scene = prepared(scene::cornellScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const char* integrator : {"ao", "path"}) {
+        RenderSettings settings = settingsFor(parsePipeline(integrator, "svgf"), 16, 12);
+        FrameRenderer renderer(device(), gpuScene, settings, 1);
+        renderer.render(still(scene, settings, 0));
+        assign(settings, "ao.radius=0.5");
+        EXPECT_EQ(renderer.setSettings(settings), integrator == std::string("ao"));
+    }
+}
+
 /// Of each pipeline, each in a frame of several samples: only the very first goes through the centre.
 TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.denoiser && pipeline.denoiser->network) continue;  // cli_kpcn_test.cpp
-        RenderSettings settings = settingsFor("path", 24, 16);
-        settings.pipeline = pipeline;
+        if (pipeline.usesNetwork()) continue;  // cli_kpcn_test.cpp
+        RenderSettings settings = settingsFor(pipeline, 24, 16);
         settings.layers = true;
         const auto depths = [&](Jitter jitter, uint32_t samples, uint32_t perLaunch) {
             settings.jitter = jitter;
@@ -127,12 +210,12 @@ TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
             return renderer.download().depth;
         };
         const std::vector<float> centres = depths(Jitter::Off, 4, 1);
-        EXPECT_NE(depths(Jitter::Pixel, 4, 1), centres) << pipeline.name();
-        EXPECT_NE(depths(Jitter::Pixel, 4, 2), centres) << pipeline.name();
+        EXPECT_NE(depths(Jitter::Pixel, 4, 1), centres) << pipeline.title();
+        EXPECT_NE(depths(Jitter::Pixel, 4, 2), centres) << pipeline.title();
         const std::vector<float> halton = depths(Jitter::Frame, 4, 1);
-        EXPECT_NE(halton, centres) << pipeline.name();
+        EXPECT_NE(halton, centres) << pipeline.title();
         expectEqual(depths(Jitter::Frame, 4, 3), halton, 1e-5f);  // whatever the launches
-        EXPECT_EQ(depths(Jitter::Pixel, 1, 1), depths(Jitter::Off, 1, 1)) << pipeline.name();
+        EXPECT_EQ(depths(Jitter::Pixel, 1, 1), depths(Jitter::Off, 1, 1)) << pipeline.title();
     }
 }
 
@@ -140,11 +223,10 @@ TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.denoiser && pipeline.denoiser->network) continue;  // traces as the others that denoise
-        if (pipeline.kind == Pipeline::Kind::Preview) continue;         // nothing random after the first hit
-        RenderSettings settings =
-            settingsFor("path", 24, 16);  // no jitter: of what comes after the first hit
-        settings.pipeline = pipeline;
+        if (pipeline.usesNetwork()) continue;                      // traces as with other denoisers
+        if (pipeline.integrator == Integrator::Preview) continue;  // nothing random after the first hit
+        // No jitter: of what comes after the first hit.
+        RenderSettings settings = settingsFor(pipeline, 24, 16);
         const auto picture = [&](bool tea) {
             settings.pathtrace.samplerTea = tea;
             FrameRenderer renderer(device(), gpuScene, settings, 1);
@@ -152,8 +234,8 @@ TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
             const RenderedLayers layers = renderer.download();
             return beautyOf(layers).pixels;
         };
-        EXPECT_NE(picture(true), picture(false)) << pipeline.name();
-        EXPECT_EQ(picture(true), picture(true)) << pipeline.name();
+        EXPECT_NE(picture(true), picture(false)) << pipeline.title();
+        EXPECT_EQ(picture(true), picture(true)) << pipeline.title();
     }
 }
 
@@ -161,7 +243,7 @@ TEST_F(PipelinesTest, AccumulationGoesOnUntilAnythingChanges) {
     const Scene scene = prepared(scene::cornellScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     for (const char* pipeline : {"ao", "gbuffer"}) {
-        RenderSettings settings = settingsFor(pipeline, 40, 30);
+        RenderSettings settings = settingsFor(parsePipeline(pipeline), 40, 30);
         settings.jitter = Jitter::Pixel;
         FrameRenderer renderer(device(), gpuScene, settings, 2);
         const auto samplesAfter = [&](const Moment& moment) {
@@ -211,8 +293,8 @@ TEST_F(PipelinesTest, TheScaleOfTheSceneDoesNotMatter) {
     lamp.intensity = vec3(0.05f);
     scene.lights.push_back(lamp);
     const Scene plain = prepared(scene);
-    for (const char* pipeline : {"history", "atrous"}) {
-        const RenderSettings settings = settingsFor(pipeline, 160, 90);
+    for (const char* denoiser : {"temporal", "atrous"}) {
+        const RenderSettings settings = settingsFor(parsePipeline("path", denoiser), 160, 90);
         const std::vector<float> expected = orbit(plain, settings, 10);
         for (const float scale : {0.5f, 1024.0f}) {
             const std::vector<float> picture = orbit(prepared(scaled(scene, scale)), settings, 10);
@@ -227,8 +309,8 @@ TEST_F(PipelinesTest, TheScaleOfTheSceneDoesNotMatter) {
             const auto kept = static_cast<size_t>(0.999 * static_cast<double>(changes.size()));
             double sum = 0.0;
             for (size_t i = 0; i < kept; ++i) sum += changes[i];
-            EXPECT_LT(sum / static_cast<double>(kept), 1e-3) << pipeline << " at scale " << scale;
-            RecordProperty(std::string(pipeline) + "_change_" + std::to_string(scale),
+            EXPECT_LT(sum / static_cast<double>(kept), 1e-3) << denoiser << " at scale " << scale;
+            RecordProperty(std::string(denoiser) + "_change_" + std::to_string(scale),
                            std::to_string(sum / static_cast<double>(kept)));
         }
     }
@@ -241,24 +323,25 @@ TEST_F(PipelinesTest, EachTellsWhichPixelsSeeASurface) {
     scene.environment = {4, 2, std::vector<vec3>(8, vec3(30.0f))};
     const scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(device(), data);
-    for (const char* pipeline : {"path", "gbuffer", "svgf"}) {
+    for (const Pipeline& pipeline :
+         {parsePipeline("path"), parsePipeline("gbuffer"), parsePipeline("path", "svgf")}) {
         for (const bool layers : {false, true}) {
-            if (layers && std::string_view(pipeline) != "path") continue;
+            if (layers && pipeline != Pipeline{}) continue;
             RenderSettings settings = settingsFor(pipeline, 16, 16);
             settings.layers = layers;
             FrameRenderer renderer(device(), gpuScene, settings, 1);
             for (uint64_t frame = 0; frame < 2; ++frame) renderer.render(still(scene, settings, frame));
             const RenderedLayers pictures = renderer.download();
             const std::vector<float> share = surfaceShare(pictures);
-            ASSERT_EQ(share.size(), 256u) << pipeline;
+            ASSERT_EQ(share.size(), 256u) << pipeline.title();
             // The floor ends 10 m away, a little below the horizon.
             for (size_t p = 0; p < share.size(); ++p) {
                 if (p / 16 == 8) continue;
-                EXPECT_EQ(share[p], p / 16 < 8 ? 0.0f : 1.0f) << pipeline << ", pixel " << p;
+                EXPECT_EQ(share[p], p / 16 < 8 ? 0.0f : 1.0f) << pipeline.title() << ", pixel " << p;
             }
             EXPECT_GT(image::autoExposure(beautyOf(pictures), share),
                       image::autoExposure(beautyOf(pictures)) + 0.3f)
-                << pipeline;
+                << pipeline.title();
         }
     }
 }

@@ -89,13 +89,13 @@ class TraceTest : public GpuTest, public testing::WithParamInterface<scene::Trac
         const auto count = static_cast<uint32_t>(rays.size());
         const uint32_t params[] = {scene.params().rootNode, count, seed};
         const gpu::Buffer buffer = upload("rays", rays);
-        const bool pipeline = scene.tracer() == scene::Tracer::Pipeline;
-        const Job job{.shader = pipeline ? shaders::trace_test_rgen : shaders::trace_test_comp,
+        const bool hardware = scene.tracer() == scene::Tracer::Hardware;
+        const Job job{.shader = hardware ? shaders::trace_test_rgen : shaders::trace_test_comp,
                       .scene = &scene,
                       .buffers = {{"rays", &buffer}},
                       .params = gpu::paramsOf(params),
                       .count = count,
-                      .rays = pipeline ? &rayShaders() : nullptr};
+                      .rays = hardware ? &rayShaders() : nullptr};
         return run<TestHit>(job, count);
     }
 
@@ -117,6 +117,6 @@ inline std::string nameOfTracer(const testing::TestParamInfo<scene::TraceOptions
 inline const std::array<scene::TraceOptions, 2> computeTracers{
     scene::TraceOptions{scene::Tracer::Compute, true}, scene::TraceOptions{scene::Tracer::Compute, false}};
 inline const std::array<scene::TraceOptions, 3> allTracers{computeTracers[0], computeTracers[1],
-                                                           scene::TraceOptions{scene::Tracer::Pipeline, {}}};
+                                                           scene::TraceOptions{scene::Tracer::Hardware, {}}};
 
 }  // namespace limpid::test

@@ -50,7 +50,7 @@ class TracersTest : public RenderTest {
         if (frame > 0) scene::chooseClip(scene, "");
         const RenderSettings settings = settingsOf(160, 90);
         const RenderedLayers a = picture(scene, scene::Tracer::Compute, settings, frame);
-        const RenderedLayers b = picture(scene, scene::Tracer::Pipeline, settings, frame);
+        const RenderedLayers b = picture(scene, scene::Tracer::Hardware, settings, frame);
         size_t same = 0, bright = 0;
         const size_t pixels = a.beauty.size() / 4;
         for (size_t p = 0; p < pixels; ++p) {
@@ -95,7 +95,7 @@ class TracersTest : public RenderTest {
         constexpr uint32_t batches = 64;
         const RenderSettings settings = settingsOf(width, height);
         const Moments a = moments(scene, scene::Tracer::Compute, settings, 1, batches);
-        const Moments b = moments(scene, scene::Tracer::Pipeline, settings, 10001, batches);
+        const Moments b = moments(scene, scene::Tracer::Hardware, settings, 10001, batches);
         constexpr double n = batches;
         size_t far = 0, judged = 0;
         double sumOfZ = 0.0;

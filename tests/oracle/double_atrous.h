@@ -30,7 +30,7 @@ struct Demodulated {
     AtrousGeometry geometry;
 };
 
-/// C, and 1: what is filtered with `atrous.history=off`.
+/// C, and 1: what is filtered with `atrous.temporal=off`.
 std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
 
 /// Nothing is rounded. `mean`: of the history, with its count, or scatteredLight().

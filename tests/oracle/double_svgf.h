@@ -17,7 +17,7 @@ struct DoubleSvgfParams {
     bool relative = true, search = true;
     bool reflections = true;
     double antilag = 2.0, antilagNoise = 3.0, antilagPixel = 1e9;
-    double alphaShown = 0.5, shownNoise = 1.0;
+    double stabilisationAlpha = 0.5, stabilisationNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     int blurLevels = 1;
     bool boost = true, wide = true, position = false;
@@ -43,7 +43,8 @@ struct SvgfHistory {
     SvgfSurfaces surfaces;
     std::vector<dvec4> color;    ///< c; the fourth is not read
     std::vector<dvec4> moments;  ///< m1, m2, f, N
-    std::vector<dvec4> shown;  ///< of step 7; the fourth is not read. None at all if nothing was shown so far
+    std::vector<dvec4>
+        stable;  ///< of step 7; the fourth is not read. None at all if nothing was stabilised so far
 };
 
 struct SvgfPixel {
@@ -53,14 +54,14 @@ struct SvgfPixel {
     /// A decision was so close that float32 may take the other one: compare nothing here.
     bool doubtful = false;
     /// By how much the results change at most if the back-projected position s is off by one pixel.
-    dvec4 colorSlope{0.0}, momentsSlope{0.0}, shownPastSlope{0.0};
+    dvec4 colorSlope{0.0}, momentsSlope{0.0}, stablePastSlope{0.0};
     /// The magnitude of what was averaged: what rounding is relative to.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
 /// c' with sigma, the moments, and h with b.
 struct SvgfAccumulated {
-    std::vector<dvec4> color, moments, shownPast;
+    std::vector<dvec4> color, moments, stablePast;
     std::vector<SvgfPixel> pixels;
 };
 
@@ -119,7 +120,7 @@ std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
 /// Step 7 for one pixel that sees something. `color`: c with sigma; `past`: h with b.
-dvec3 svgfShown(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);
+dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);
 
 /// Step 8, of what step 7 made; alpha 1.
 struct SvgfFiltered {

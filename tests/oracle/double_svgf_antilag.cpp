@@ -11,9 +11,9 @@ namespace {
 constexpr double largestHalf = 65504.0;
 constexpr size_t tileEdge = 8;
 /// Frames in a history from which on it counts: two, but for rounding.
-constexpr double leastLength = 1.5;
+constexpr double minLength = 1.5;
 /// Of which a pixel takes notice.
-constexpr double leastLag = 0.1;
+constexpr double minLag = 0.1;
 /// Of float32, relative, of one operation and of a sum of 64 numbers.
 constexpr double rounding = 0x1p-24, sumRounding = 64 * rounding;
 
@@ -40,8 +40,8 @@ struct TileSums {
     bool doubtful = false;
 
     void add(const dvec4& m, const dvec4& errors, const DoubleSvgfParams& params) {
-        doubtful = doubtful || std::abs(m.w - leastLength) <= errors.w;
-        if (m.w < leastLength) return;
+        doubtful = doubtful || std::abs(m.w - minLength) <= errors.w;
+        if (m.w < minLength) return;
         const double k = svgfSteadyShare(params), v = k * std::max(m.y - m.x * m.x, 0.0);
         const double vError =
             k * (errors.y + 2.0 * std::abs(m.x) * errors.x + errors.x * errors.x + 4.0 * rounding * m.y);
@@ -49,9 +49,9 @@ struct TileSums {
         const double differenceError = errors.z + errors.x + rounding * (std::abs(m.z) + std::abs(m.x));
         // It is the median of the difference and both bounds: it moves no further than the one that moves
         // most.
-        const double mostError = params.antilagPixel * rootError(v, vError);
+        const double maxError = params.antilagPixel * rootError(v, vError);
         lag.add(glm::clamp(m.z - m.x, -most, most),
-                std::min(std::max(differenceError, mostError), 2.0 * (most + mostError)));
+                std::min(std::max(differenceError, maxError), 2.0 * (most + maxError)));
         variance.add(v, vError);
         size.add(std::max(m.z, m.x), std::max(errors.z, errors.x));
     }
@@ -152,8 +152,8 @@ void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double lag = lagAt(frame, tiles, p);
         const SvgfSample sample = svgfSample(frame, signal, p, params.demodulate);
-        accumulated.pixels[p].doubtful |= std::abs(lag - leastLag) < 1e-6;
-        if (lag < leastLag || sample.rejected || accumulated.moments[p].w <= 1.0) continue;
+        accumulated.pixels[p].doubtful |= std::abs(lag - minLag) < 1e-6;
+        if (lag < minLag || sample.rejected || accumulated.moments[p].w <= 1.0) continue;
         shorten(p, lag, sample.x, params, accumulated);
     }
 }

@@ -116,31 +116,31 @@ TEST_F(SvgfByHand, AntiLagLeavesWhatHasNoHistory) {
     EXPECT_EQ(accumulate().moments[middle], dvec4(0));
 }
 
-TEST_F(SvgfByHand, WhatWasShownIsFollowed) {
-    EXPECT_EQ(accumulate().shownPast[middle], dvec4(0, 0, 0, 1)) << "nothing so far";
-    before.shown.assign(25, dvec4(4, 5, 6, nan));
-    before.shown[12] = before.shown[17] = dvec4(8, 5, 6, nan);  // both of weight 3/8
-    EXPECT_LT(glm::distance(accumulate().shownPast[middle], dvec4(7, 5, 6, 0.5)), 1e-6);
-    params.alphaShown = 0.1;  // of the third frame
-    EXPECT_NEAR(accumulate().shownPast[middle].w, 1.0 / 3, 1e-6);
+TEST_F(SvgfByHand, StableLightIsFollowed) {
+    EXPECT_EQ(accumulate().stablePast[middle], dvec4(0, 0, 0, 1)) << "nothing so far";
+    before.stable.assign(25, dvec4(4, 5, 6, nan));
+    before.stable[12] = before.stable[17] = dvec4(8, 5, 6, nan);  // both of weight 3/8
+    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec4(7, 5, 6, 0.5)), 1e-6);
+    params.stabilisationAlpha = 0.1;  // of the third frame
+    EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6);
     tiles[0] = 1.0;
-    EXPECT_NEAR(accumulate().shownPast[middle].w, 1.0 / 3, 1e-6) << "anti-lag leaves it alone";
+    EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6) << "anti-lag leaves it alone";
     frame.diffuse[4 * middle] = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(accumulate().shownPast[middle].w, 0.5) << "of two frames";
+    EXPECT_EQ(accumulate().stablePast[middle].w, 0.5) << "of two frames";
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
-    EXPECT_EQ(accumulate().shownPast[middle], dvec4(0, 0, 0, 1));
+    EXPECT_EQ(accumulate().stablePast[middle], dvec4(0, 0, 0, 1));
 }
 
-TEST_F(SvgfByHand, ShownIsAMeanWithWhatWas) {
-    params.shownNoise = 2.0;
+TEST_F(SvgfByHand, StableLightIsAMeanWithWhatWas) {
+    params.stabilisationNoise = 2.0;
     const dvec4 color(1, 1, 1, 0.25), past(1.4, 1.4, 1.4, 0.25);
-    EXPECT_LT(glm::distance(svgfShown(color, past, params), dvec3(1.3)), 1e-9);
-    params.shownNoise = 0.5;  // 0.125 and the floor's 0.001 of 0.4
-    EXPECT_LT(glm::distance(svgfShown(color, past, params), dvec3(1 + 0.75 * 0.126)), 1e-9);
-    params.shownNoise = 0.0;
-    EXPECT_LT(glm::distance(svgfShown(color, past, params), dvec3(1.00075)), 1e-9);
-    EXPECT_EQ(svgfShown(color, dvec4(9, 9, 9, 1), params), dvec3(1));
-    EXPECT_EQ(svgfShown(dvec4(0), dvec4(0), params), dvec3(0));
+    EXPECT_LT(glm::distance(svgfStable(color, past, params), dvec3(1.3)), 1e-9);
+    params.stabilisationNoise = 0.5;  // 0.125 and the floor's 0.001 of 0.4
+    EXPECT_LT(glm::distance(svgfStable(color, past, params), dvec3(1 + 0.75 * 0.126)), 1e-9);
+    params.stabilisationNoise = 0.0;
+    EXPECT_LT(glm::distance(svgfStable(color, past, params), dvec3(1.00075)), 1e-9);
+    EXPECT_EQ(svgfStable(color, dvec4(9, 9, 9, 1), params), dvec3(1));
+    EXPECT_EQ(svgfStable(dvec4(0), dvec4(0), params), dvec3(0));
 }
 
 TEST_F(SvgfByHand, Signals) {

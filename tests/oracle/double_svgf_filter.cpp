@@ -9,11 +9,11 @@
 namespace limpid::test {
 namespace {
 
-constexpr double leastCosine = 0.05;  // steeper surfaces have this one's slope
+constexpr double minCosine = 0.05;  // steeper surfaces have this one's slope
 constexpr double youngFrames = 4.0;
 constexpr double largestHalf = 65504.0;
 /// Sums of weights below this may be lost in float32.
-constexpr double leastWeights = 1e-30;
+constexpr double minWeights = 1e-30;
 
 /// The picture's pixels by their coordinates, and the weights that surfaces give them.
 class Neighbours {
@@ -148,7 +148,7 @@ Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vec
         found = true;
     });
     if (!found) return {0.0, 0.0};
-    if (weights < leastWeights) return {0.0, std::numeric_limits<double>::infinity()};
+    if (weights < minWeights) return {0.0, std::numeric_limits<double>::infinity()};
     const dvec2 mean = sum / weights;
     // As many roundings as there are neighbours. Without the centre, whose weight is 1, the others may all be
     // small, and then the rounding of their exponents counts too.
@@ -165,7 +165,7 @@ dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, 
     const dvec3 toBelow = -2.0 * dvec3(camera.up) / static_cast<double>(frame.height);
     const dvec3 v = orthographic ? dvec3(camera.forward) : DoubleFrame(frame).ray(p);
     double t = glm::dot(normal, v);
-    const double least = leastCosine * glm::length(v);
+    const double least = minCosine * glm::length(v);
     if (std::abs(t) < least) t = t < 0.0 ? -least : least;
     const auto along = [&](const dvec3& pixel) {
         const double turned = -glm::dot(normal, pixel) / t;

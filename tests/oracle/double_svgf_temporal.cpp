@@ -63,12 +63,12 @@ class Accumulator {
 
   private:
     struct Old {
-        Resampled color, moments, shown;
+        Resampled color, moments, stable;
     };
     std::optional<dvec3> reflectionMotion(size_t p) const;
     Reprojection reproject(size_t p, SvgfPixel& pixel) const;
     Old find(size_t p, SvgfPixel& pixel) const;
-    dvec4 shownPast(const Old& old, double frames) const;
+    dvec4 stablePast(const Old& old, double frames) const;
     void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
@@ -118,7 +118,7 @@ Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     if (found.failure != 0) return {};
     return {resample(found, [&](size_t q) { return previous_.color[q]; }),
             resample(found, [&](size_t q) { return previous_.moments[q]; }), resample(found, [&](size_t q) {
-                return previous_.shown.empty() ? dvec4(0.0) : previous_.shown[q];
+                return previous_.stable.empty() ? dvec4(0.0) : previous_.stable[q];
             })};
 }
 
@@ -154,9 +154,9 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
 }
 
 /// h with b.
-dvec4 Accumulator::shownPast(const Old& old, double frames) const {
-    if (previous_.shown.empty()) return {0.0, 0.0, 0.0, 1.0};
-    return {dvec3(old.shown.mean), std::max(params_.alphaShown, 1.0 / std::max(frames, 1.0))};
+dvec4 Accumulator::stablePast(const Old& old, double frames) const {
+    if (previous_.stable.empty()) return {0.0, 0.0, 0.0, 1.0};
+    return {dvec3(old.stable.mean), std::max(params_.stabilisationAlpha, 1.0 / std::max(frames, 1.0))};
 }
 
 void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
@@ -167,7 +167,7 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     pixel.rejected = sample.rejected;
     if (pixel.failure == 1) {
         color = dvec4(sample.x, -1.0);
-        result.shownPast[p] = dvec4(0.0, 0.0, 0.0, 1.0);
+        result.stablePast[p] = dvec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
     if (sample.rejected) {
@@ -178,10 +178,10 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     } else {
         update(sample.x, old, color, moments, pixel);
     }
-    result.shownPast[p] = shownPast(old, moments.w);
+    result.stablePast[p] = stablePast(old, moments.w);
     const double length = std::max(moments.w, 1.0);
-    if (!previous_.shown.empty())
-        pixel.shownPastSlope = dvec4(dvec3(old.shown.slope), pixel.momentsSlope.w / (length * length));
+    if (!previous_.stable.empty())
+        pixel.stablePastSlope = dvec4(dvec3(old.stable.slope), pixel.momentsSlope.w / (length * length));
     color = glm::clamp(color, -largestHalf, largestHalf);
     color.w =
         std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
@@ -233,9 +233,10 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
     return result;
 }
 
-dvec3 svgfShown(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params) {
+dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params) {
     const dvec3 c(color), h(past);
-    const double tolerated = params.shownNoise * std::max(color.w, 0.0) + 0.001 * std::abs(luminance(c));
+    const double tolerated =
+        params.stabilisationNoise * std::max(color.w, 0.0) + 0.001 * std::abs(luminance(c));
     const double change = std::abs(luminance(h) - luminance(c));
     const double trust = change > tolerated ? tolerated / change : 1.0;
     return c + (1.0 - past.w) * trust * (h - c);

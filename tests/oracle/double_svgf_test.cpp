@@ -262,7 +262,7 @@ TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
         };
         outside += exceeds(dvec4(dvec3(a.color[p]), 0.0), dvec4(dvec3(b.color[p]), 0.0), pixel.colorSlope) ||
                    exceeds(a.moments[p], b.moments[p], pixel.momentsSlope) ||
-                   exceeds(a.shownPast[p], b.shownPast[p], pixel.shownPastSlope);
+                   exceeds(a.stablePast[p], b.stablePast[p], pixel.stablePastSlope);
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
     // Where s passes a pixel's centre, taps that the slope does not know come in.

@@ -10,7 +10,7 @@
 namespace limpid::test {
 namespace {
 
-constexpr double deviations = 1.25, leastDistance = 1e-6;
+constexpr double deviations = 1.25, minDistance = 1e-6;
 /// Pixels. Several times the error of s in float32, an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
 /// Of encoded values, which are below 1 in magnitude: several operations' worth.
@@ -28,7 +28,7 @@ std::array<double, 4> catmullRom(double t) {
 
 /// Step 3. `error` is added to what the components may differ by.
 dvec3 clip(const dvec3& h, const Around& around, double error) {
-    const dvec3 most = glm::max(deviations * around.deviation, dvec3(leastDistance)) + error;
+    const dvec3 most = glm::max(deviations * around.deviation, dvec3(minDistance)) + error;
     const dvec3 e = glm::abs(h - around.mean) / most;
     return around.mean + (h - around.mean) / std::max({e.x, e.y, e.z, 1.0});
 }

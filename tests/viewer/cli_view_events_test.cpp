@@ -12,13 +12,13 @@ using testing::HasSubstr;
 
 class ViewEventsTest : public ViewTest {};
 
-/// A mean that was left for another pipeline begins anew.
+/// A mean that was left for a denoiser begins anew.
 TEST_F(ViewEventsTest, AMeanOfBeforeIsNotTakenUp) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 5");
     const std::string start = viewer.settledPicture();
-    viewer.choose("pipeline", "svgf");
+    viewer.choose("denoiser", "svgf");
     viewer.settledPicture();
-    viewer.choose("pipeline", "path");
+    viewer.choose("denoiser", "none");
     EXPECT_EQ(viewer.settledPicture(), start);
     EXPECT_EQ(viewer.fact("samples"), "5");
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
@@ -50,11 +50,21 @@ TEST_F(ViewEventsTest, EveryParameterChangesAndGoesBack) {
 TEST_F(ViewEventsTest, PicturesChangeAndComeBack) {
     DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 4");
     const std::string start = viewer.settledPicture();
-    for (const std::string pipeline : {"gbuffer", "ao", "atrous", "svgf"}) {
-        viewer.choose("pipeline", pipeline);
-        EXPECT_NE(viewer.settledPicture(), start) << pipeline;
+    for (const std::string integrator : {"gbuffer", "direct", "ao"}) {
+        viewer.choose("integrator", integrator);
+        EXPECT_NE(viewer.settledPicture(), start) << integrator;
     }
-    viewer.choose("pipeline", "path");
+    const std::string occlusion = viewer.settledPicture();
+    for (const std::string denoiser : {"atrous", "svgf"}) {
+        viewer.choose("denoiser", denoiser);
+        EXPECT_NE(viewer.settledPicture(), occlusion) << denoiser;
+    }
+    viewer.choose("integrator", "gbuffer");
+    viewer.waitFor("no denoiser", [&] { return viewer.value("denoiser") == "none"; });
+    viewer.choose("denoiser", "svgf");
+    viewer.waitFor("paths", [&] { return viewer.value("integrator") == "path"; });
+    EXPECT_NE(viewer.settledPicture(), start);
+    viewer.choose("denoiser", "none");
     EXPECT_EQ(viewer.settledPicture(), start);
     for (const std::string name : {"seed", "time, s", "field of view"}) {
         change(viewer, name);
@@ -72,7 +82,7 @@ TEST_F(ViewEventsTest, PicturesChangeAndComeBack) {
 }
 
 TEST_F(ViewEventsTest, PassesShowTheirImages) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --pipeline svgf");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --denoiser svgf");
     viewer.settledPicture();
     open(viewer, "passes");
     const std::string pass = "pass svgf/reproject diffuse";
@@ -84,7 +94,7 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
     change(viewer, "false color");
     viewer.xdotool("mousemove 430 850");
     viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
-    viewer.choose("pipeline", "path");  // which has no such pass
+    viewer.choose("denoiser", "none");  // which has no such pass
     viewer.settledPicture();
     EXPECT_FALSE(viewer.controls().contains("image"));
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
@@ -93,7 +103,7 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
 TEST_F(ViewEventsTest, SettingsAreKept) {
     {
         DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3");
-        viewer.choose("pipeline", "atrous");
+        viewer.choose("denoiser", "atrous");
         open(viewer, "atrous");
         change(viewer, "atrous.levels");
         EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
@@ -101,8 +111,8 @@ TEST_F(ViewEventsTest, SettingsAreKept) {
     const std::string kept = get("kept.json");
     EXPECT_THAT(kept, HasSubstr("atrous.levels="));
     DrivenViewer viewer(folder_, "builtin:cornell");
-    EXPECT_EQ(viewer.value("pipeline"), "atrous");
-    EXPECT_EQ(viewer.value("most samples"), "3");
+    EXPECT_EQ(viewer.value("denoiser"), "atrous");
+    EXPECT_EQ(viewer.value("max samples"), "3");
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
     EXPECT_EQ(get("kept.json"), kept);
 }
@@ -138,10 +148,10 @@ TEST_F(ViewEventsTest, WhatCannotBeOpenedLeavesTheOldScene) {
 }
 
 TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
-    for (const std::string pipeline : {"path", "svgf"}) {
+    for (const std::string denoiser : {"none", "svgf"}) {
         std::string command;
         {
-            DrivenViewer viewer(folder_, "builtin:cornell --max-spp 12 --seed 5 --pipeline " + pipeline +
+            DrivenViewer viewer(folder_, "builtin:cornell --max-spp 12 --seed 5 --denoiser " + denoiser +
                                              " --screenshot shown.exr");
             viewer.xdotool(
                 "mousemove 420 1000 mousedown 1 mousemove 430 1004 sleep 0.1 mousemove 437 1011 sleep 0.2 "
@@ -165,7 +175,7 @@ TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
         EXPECT_EQ(image::readPicture(folder_ / "shown.exr").linear.pixels,
                   image::readPicture(last).linear.pixels)
             << command;
-        EXPECT_EQ(command.find("--camera-path") != std::string::npos, pipeline == "svgf");
+        EXPECT_EQ(command.find("--camera-path") != std::string::npos, denoiser == "svgf");
     }
 }
 

@@ -28,7 +28,7 @@ class ViewToolsTest : public ViewTest {
         }
         return to;
     }
-    /// In the world; of the gbuffer pipeline.
+    /// In the world; of the integrator gbuffer.
     static std::vector<double> positionUnderMouse(const DrivenViewer& viewer) {
         viewer.xdotool("key p");
         viewer.waitFor("values", [&] { return !viewer.fact("values").empty(); });
@@ -65,7 +65,7 @@ class ViewToolsTest : public ViewTest {
 };
 
 TEST_F(ViewToolsTest, ComparesWithAReference) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 6 --pipeline svgf");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 6 --denoiser svgf");
     viewer.choose("compare with", "reference");
     viewer.waitFor("the reference", [&] { return viewer.controls().contains("reference samples"); });
     viewer.press("reference samples", 0.3);
@@ -79,14 +79,14 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
     const std::string one = viewer.settledPicture();  // the screenshot is of the picture alone
 
     viewer.xdotool("mousemove 440 1600 sleep 0.2 key Tab");
-    viewer.waitFor("the panel to go", [&] { return !viewer.controls().contains("pipeline"); });
+    viewer.waitFor("the panel to go", [&] { return !viewer.controls().contains("integrator"); });
     const Control divider = viewer.at("divider");
     const auto from = std::to_string(static_cast<int>(0.5f * (divider.left + divider.right)));
     viewer.xdotool("mousemove " + from +
                    " 1600 sleep 0.2 mousedown 1 sleep 0.2 mousemove 440 1600 sleep 0.2 mouseup 1");
     viewer.waitFor("the divider", [&] { return viewer.value("divider") > divider.value; });
     viewer.xdotool("key Tab");
-    viewer.waitFor("the panel", [&] { return viewer.controls().contains("pipeline"); });
+    viewer.waitFor("the panel", [&] { return viewer.controls().contains("integrator"); });
     EXPECT_EQ(viewer.settledPicture(), one) << "the divider must not move the camera";
 
     viewer.choose("compare with", "atrous");
@@ -99,7 +99,7 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
 
 /// Two renderers share a scene whose parts move.
 TEST_F(ViewToolsTest, FindsNoDifferenceToItself) {
-    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --pipeline svgf");
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --denoiser svgf");
     viewer.choose("compare with", "svgf");
     viewer.click("playing");
     viewer.click("reset");
@@ -160,7 +160,7 @@ TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
     };
     const auto hidePanel = [&](bool hidden) {
         viewer.xdotool("mousemove 200 800 sleep 0.2 key Tab");
-        viewer.waitFor("the panel", [&] { return viewer.controls().contains("pipeline") != hidden; });
+        viewer.waitFor("the panel", [&] { return viewer.controls().contains("integrator") != hidden; });
         std::this_thread::sleep_for(std::chrono::seconds(1));
     };
     hidePanel(true);
@@ -188,7 +188,7 @@ TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
 TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
     DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 2");
     viewer.choose("jitter", "off");
-    for (const char* name : {"most samples", "seed", "exposure, stops", "time, s", "field of view"})
+    for (const char* name : {"max samples", "seed", "exposure, stops", "time, s", "field of view"})
         change(viewer, name);
     open(viewer, "light");
     viewer.click("light.background of its own");
@@ -229,7 +229,7 @@ TEST_F(ViewToolsTest, LightsChangeWithoutLoadingTheScene) {
     EXPECT_EQ(viewer.fact("scenes"), "1");
 
     // While the clip plays, with histories that go on.
-    viewer.choose("pipeline", "svgf");
+    viewer.choose("denoiser", "svgf");
     viewer.click("playing");
     viewer.waitFor("frames", [&] { return viewer.number("frames") > 10; });
     for (const char* state : {"off", "on"}) {
@@ -315,10 +315,10 @@ TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
               image::readPicture(path("limpid.exr")).linear.pixels);
 
     viewer.click("preview");
-    viewer.waitFor("the preview", [&] { return viewer.value("pipeline") == "preview"; });
+    viewer.waitFor("the preview", [&] { return viewer.value("integrator") == "preview"; });
     EXPECT_NE(viewer.settledPicture(), rolled);
     viewer.xdotool("mousemove 440 1690 key v");
-    viewer.waitFor("the picture", [&] { return viewer.value("pipeline") == "path"; });
+    viewer.waitFor("the picture", [&] { return viewer.value("integrator") == "path"; });
     EXPECT_EQ(viewer.settledPicture(), rolled);
 
     open(viewer, "ao");
@@ -369,7 +369,7 @@ TEST_F(ViewToolsTest, SeesEverything) {
 }
 
 TEST_F(ViewToolsTest, TheMagnifierTheArrowsAndTheProbe) {
-    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --pipeline svgf");
+    DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --denoiser svgf");
     viewer.click("magnifier");
     viewer.click("arrows");
     viewer.choose("compare with", "path");
@@ -387,7 +387,7 @@ TEST_F(ViewToolsTest, TheMagnifierTheArrowsAndTheProbe) {
 }
 
 TEST_F(ViewToolsTest, LooksAtWhatIsClickedTwice) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2 --pipeline gbuffer");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2 --integrator gbuffer");
     viewer.settledPicture();
     viewer.xdotool("mousemove 420 1000 sleep 0.3");
     const std::vector<double> clicked = positionUnderMouse(viewer);
@@ -482,11 +482,11 @@ TEST_F(ViewToolsTest, FilesAreDroppedOnIt) {
 }
 
 TEST_F(ViewToolsTest, GoesOnWhenTheDeviceIsLost) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 4000 --lose-device 100 --pipeline atrous");
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 4000 --lose-device 100 --denoiser atrous");
     viewer.waitFor("the loss",
                    [&] { return viewer.get("log").find("setting everything up anew") != std::string::npos; });
     viewer.waitFor("a new window", [&] { return viewer.fact("fault").find("lost") != std::string::npos; });
-    EXPECT_EQ(viewer.value("pipeline"), "atrous");
+    EXPECT_EQ(viewer.value("denoiser"), "atrous");
     viewer.findWindow();
     viewer.click("running");
     viewer.settledPicture();

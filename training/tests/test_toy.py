@@ -37,7 +37,7 @@ class ToyTest(unittest.TestCase):
         view = ("render", "builtin:cornell", *size, "--jitter", "off", "--float")
         self.limpid(*view, "-o", "noisy.exr", "--spp", "4", "--aov", "all")
         self.limpid(*view, "-o", "truth.exr", "--spp", "512", "--seed", "1")
-        self.limpid("denoise", "noisy.exr", "-o", "clean.exr", "--method", "kpcn", "--weights", "toy.safetensors")
+        self.limpid("denoise", "noisy.exr", "-o", "clean.exr", "--denoiser", "kpcn", "--weights", "toy.safetensors")
         self.assertLess(self.rel_mse("clean.exr"), 0.5 * self.rel_mse("noisy.exr"))
 
 

@@ -5,11 +5,21 @@
 
 namespace limpid::cli {
 
+namespace {
+
+std::string faultOfTracer(const std::string& name) {
+    if (name == "auto" || name == "compute" || name == "hardware") return "";
+    if (name == "pipeline") return "--tracer pipeline is now --tracer hardware";
+    return "there is no tracer '" + name + "'; the tracers are auto compute hardware";
+}
+
+}  // namespace
+
 void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
     command.add_option("--device", choice.device.select,
                        "Device by name, index, or 'cpu'; default: the best one");
-    command.add_option("--tracer", choice.tracer, "How rays are traced: auto (default), compute or pipeline")
-        ->check(CLI::IsMember({"auto", "compute", "pipeline"}));
+    command.add_option("--tracer", choice.tracer, "How rays are traced: auto (default), compute or hardware")
+        ->check(CLI::Validator(faultOfTracer, "auto|compute|hardware"));
     choice.device.messages = log::write;
     command.add_flag("--validation", choice.device.validation, "Run under the Vulkan validation layer; slow");
 }
@@ -22,10 +32,10 @@ scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device
     if (choice.tracer == "auto") return scene::automaticTracer(device.info());
     if (choice.tracer == "compute") return scene::Tracer::Compute;
     if (!device.info().rayTracing) {
-        throw UsageError("--tracer pipeline: " + device.info().name +
+        throw UsageError("--tracer hardware: " + device.info().name +
                          " has no ray-tracing pipelines; --tracer compute runs on every device");
     }
-    return scene::Tracer::Pipeline;
+    return scene::Tracer::Hardware;
 }
 
 }  // namespace limpid::cli

@@ -100,17 +100,14 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
             "Where in its pixel a ray goes: pixel, frame or off (the centre); default: pixel, but off with "
             "denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
-    std::string names;
-    for (const Pipeline& pipeline : pipelines()) names += " " + std::string(pipeline.name());
-    command.add_option("--pipeline", o.pipeline,
-                       "What makes the picture; path (default, but for --preset), or one of" + names);
+    addPipelineOptions(command, o.pipeline, "path, or the preset's", "none, or the preset's");
     command.add_option("--preset", o.presets,
                        "All that a paper, a course or a tutorial says, as svgf-paper; 'limpid info' lists "
                        "them; other options win");
     command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
     command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
     command.add_flag("--progressive", o.progressive,
-                     "Of --pipeline path: the mean as the window keeps it, launch after launch in single "
+                     "Without a denoiser: the mean as the window keeps it, launch after launch in single "
                      "precision; not with --resume, "
                      "--shard and --time-limit");
     command.add_option("--exposure", o.exposure,
@@ -124,7 +121,11 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
 }
 
 Pipeline pipelineOf(const RenderOptions& o) {
-    return pipelineFor(o.presets, o.pipeline, "path");
+    return pipelineFor(o.presets, o.pipeline, {});
+}
+
+bool hasIndependentFrames(const Pipeline& pipeline) {
+    return !pipeline.denoiser && !pipeline.takesOneSampleALaunch();
 }
 
 bool isProgressive(const RenderOptions& o) {
@@ -153,7 +154,7 @@ uint64_t samplesOf(const RenderOptions& o) {
     if (o.samples > 0) return o.samples;
     const Pipeline pipeline = pipelineOf(o);
     if (pipeline.accumulates()) return 64;
-    return pipeline.denoiser->network ? 32 : 1;
+    return pipeline.usesNetwork() ? 32 : 1;
 }
 
 bool writesSums(const RenderOptions& o) {
@@ -167,8 +168,7 @@ std::vector<std::string> chosenLayers(const RenderOptions& o) {
     const std::vector<std::string> chosen = parseLayers(o.layers);
     for (const std::string& name : chosen) {
         if (std::ranges::find(possible, name) == possible.end())
-            throw UsageError("--aov: the pipeline '" + std::string(pipeline.name()) + "' has no layer '" +
-                             name + "'");
+            throw UsageError("--aov: " + pipeline.options() + " has no layer '" + name + "'");
     }
     std::vector<std::string> layers;
     std::ranges::copy_if(possible, std::back_inserter(layers), [&](const std::string& name) {
@@ -181,10 +181,11 @@ void checkRenderOptions(const RenderOptions& o) {
     const Pipeline pipeline = pipelineOf(o);
     if (o.progressive && isLongRender(o.longRender))
         throw UsageError("--progressive: not with --checkpoint, --resume, --shard and --time-limit");
-    if (pipeline != Pipeline{} && isLongRender(o.longRender)) {
+    if (!hasIndependentFrames(pipeline) && isLongRender(o.longRender)) {
         throw UsageError(
-            "--checkpoint, --resume, --shard and --time-limit are for --pipeline path: the frames of '" +
-            std::string(pipeline.name()) + "' build on each other");
+            "--checkpoint, --resume, --shard and --time-limit are for --integrator path or direct and "
+            "--denoiser none: the frames of " +
+            pipeline.options() + " build on each other");
     }
     if (!pipeline.accumulates() && samplesOf(o) > 65536)
         throw UsageError("--spp: a frame that is denoised takes 65536 samples at most");

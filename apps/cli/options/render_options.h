@@ -7,6 +7,7 @@
 
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
+#include "cli/options/pipeline_options.h"
 #include "cli/options/scene_options.h"
 #include "cli/options/sequence_options.h"
 #include "renderer/frame/settings.h"
@@ -24,8 +25,8 @@ struct RenderOptions {
     uint32_t samplesPerLaunch = 1;
     uint32_t seed = 0;
     int maxDepth = -1;  // -1: the parameter's own default
-    std::string pipeline, sampler, jitter, exposure = "auto", layers, dump,
-                                           weights;  ///< "": as the preset says
+    PipelineChoice pipeline;
+    std::string sampler, jitter, exposure = "auto", layers, dump, weights;  ///< "": as the preset says
     std::vector<std::string> presets, assignments;
     bool progressive = false, floatExr = false, json = false;
 };
@@ -35,8 +36,10 @@ void addRenderOptions(CLI::App& command, RenderOptions& options);
 /// Throws UsageError or OutputError if the options contradict each other, or name what there is not.
 void checkRenderOptions(const RenderOptions& options);
 
-/// That of --pipeline, else of --preset, else `path`.
+/// That of --integrator and --denoiser, else of --preset, else the path tracer alone.
 Pipeline pipelineOf(const RenderOptions& options);
+/// Each is made of its own samples and nothing else, in any order and by any process.
+bool hasIndependentFrames(const Pipeline& pipeline);
 /// Asked for, or by a preset where nothing speaks against it.
 bool isProgressive(const RenderOptions& options);
 RenderSettings settingsOf(const RenderOptions& options);

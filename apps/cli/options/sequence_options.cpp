@@ -16,7 +16,7 @@ namespace {
 constexpr double builtinPathSeconds = 10.0;
 /// A built-in path has 60 keys a second.
 constexpr double longestBuiltinPath = 1e5;
-constexpr int mostFrames = 1000000;
+constexpr int maxFrames = 1000000;
 
 /// Whether the output has room for several frames: a name with a number, or a clip.
 bool holdsFrames(const FramePattern& output) {
@@ -27,12 +27,12 @@ bool holdsFrames(const FramePattern& output) {
 int framesUntil(double seconds, const SequenceTiming& timing) {
     const double frames =
         std::floor(std::max(seconds - timing.start, 0.0) * timing.framesPerSecond + 1e-6) + 1.0;
-    if (frames <= mostFrames) return static_cast<int>(frames);
+    if (frames <= maxFrames) return static_cast<int>(frames);
     throw UsageError(
         fmt::format("the animation and the camera path last {:g} s, which is {:g} frames at {:g} a second, "
                     "more than {}: choose "
                     "--frames",
-                    seconds, frames, timing.framesPerSecond, mostFrames));
+                    seconds, frames, timing.framesPerSecond, maxFrames));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
     command
         .add_option("--frames", choice.frames,
                     "Frames; then OUTPUT holds %04d. Default: all of the animation")
-        ->check(CLI::Range(1, mostFrames));
+        ->check(CLI::Range(1, maxFrames));
     command.add_option("--fps", choice.timing.framesPerSecond, "Frames per second (30)")
         ->check(CLI::Range(1e-3, 1e6));
     command.add_option("--time", choice.timing.start, "Seconds: the time of the first frame (0)")

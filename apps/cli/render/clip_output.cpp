@@ -228,13 +228,13 @@ int ClipWriter::wait() {
 }
 
 std::string ClipWriter::lastWords() const {
-    constexpr off_t most = 600;
+    constexpr off_t maxBytes = 600;
     const off_t size = std::max<off_t>(::lseek(faults_, 0, SEEK_END), 0);
-    std::string text(static_cast<size_t>(std::min(size, most)), '\0');
+    std::string text(static_cast<size_t>(std::min(size, maxBytes)), '\0');
     const ssize_t got = ::pread(faults_, text.data(), text.size(), size - static_cast<off_t>(text.size()));
     text.resize(static_cast<size_t>(std::max<ssize_t>(got, 0)));
     // Whole lines only, and no empty one at the end.
-    if (size > most) text.erase(0, text.find('\n') + 1);
+    if (size > maxBytes) text.erase(0, text.find('\n') + 1);
     text.erase(text.find_last_not_of(" \r\n") + 1);
     return text;
 }

@@ -49,7 +49,7 @@ double since(Clock::time_point start) {
 }
 
 void renderFrames(const RenderJob& job, RenderSummary& summary) {
-    if (job.settings.pipeline == Pipeline{} && !isProgressive(job.options)) {
+    if (hasIndependentFrames(job.settings.pipeline) && !isProgressive(job.options)) {
         renderIndependentFrames(job, summary);
     } else {
         renderSuccessiveFrames(job, summary);
@@ -90,11 +90,10 @@ void render(const RenderOptions& o) {
 
     const Clock::time_point uploadStart = Clock::now();
     const std::unique_ptr<gpu::Device> device = openDevice(o.device);
-    if (settings.pipeline.denoiser && settings.pipeline.denoiser->network &&
-        samplesOf(o) < leastNetworkSamples)
+    if (settings.pipeline.usesNetwork() && samplesOf(o) < minNetworkSamples)
         log::warn("{} learnt from frames of 32 samples; {} tell it little", settings.pipeline.denoiser->name,
                   samplesOf(o));
-    loadNetwork(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
+    settings.networks = loadNetworks(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);

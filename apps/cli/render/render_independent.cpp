@@ -1,4 +1,4 @@
-// limpid render with --pipeline path: stills and sequences whose frames stand alone.
+// limpid render by the path tracer without a denoiser: stills and sequences whose frames stand alone.
 #include "base/files/file.h"
 #include "base/log.h"
 #include "cli/progress.h"

@@ -37,7 +37,7 @@ void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& forma
 /// `path`: each frame is a mean of its own; block by block, so that it can be stopped, resumed and shared
 /// out.
 void renderIndependentFrames(const RenderJob& job, RenderSummary& summary);
-/// The other pipelines: frames in order, each built on the one before.
+/// All others: frames in order, each built on the one before.
 void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary);
 
 /// The images that --dump names, beside `output`.

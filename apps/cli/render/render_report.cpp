@@ -11,7 +11,7 @@
 namespace limpid::cli {
 namespace {
 
-nlohmann::json historyJson(const denoise::HistoryCounts& counts) {
+nlohmann::json disocclusionJson(const denoise::DisocclusionCounts& counts) {
     return {{"nothing_hit", counts.nothingHit},
             {"off_screen", counts.offScreen},
             {"no_valid_tap", counts.noValidTap},
@@ -57,7 +57,8 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
         return;
     }
     nlohmann::json object{{"output", o.output},
-                          {"pipeline", pipelineOf(o).name()},
+                          {"integrator", nameOf(pipelineOf(o).integrator)},
+                          {"denoiser", nameOf(pipelineOf(o).denoiser)},
                           {"device", device.info().name},
                           {"tracer", scene::toString(gpuScene.tracer())},
                           {"width", o.width},
@@ -78,7 +79,7 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
                           {"last_frame_ms", s.lastFrame},
                           {"validation_messages", device.validationMessages()}};
     if (!s.medians.empty()) object["median_ms"] = s.medians;
-    if (s.history) object["history"] = historyJson(*s.history);
+    if (s.disocclusion) object["disocclusion"] = disocclusionJson(*s.disocclusion);
     fmt::print("{}\n", jsonText(object));
 }
 

@@ -7,7 +7,7 @@
 
 #include "cli/options/render_options.h"
 #include "cli/pass_times.h"
-#include "denoise/methods/history/history.h"
+#include "denoise/methods/temporal/temporal.h"
 #include "gpu/vulkan/device.h"
 #include "renderer/long/accumulation.h"
 #include "scene/device/gpu_scene.h"
@@ -28,9 +28,9 @@ struct RenderSummary {
     bool complete = false;
     SampleCounts counts;  ///< of this run
     Timings timings;
-    std::map<std::string, double> lastFrame;        ///< milliseconds by pass, of the last launch
-    std::map<std::string, double> medians;          ///< ... over all frames; empty with `path`
-    std::optional<denoise::HistoryCounts> history;  ///< of the last frame
+    std::map<std::string, double> lastFrame;                  ///< milliseconds by pass, of the last launch
+    std::map<std::string, double> medians;                    ///< ... over all frames; empty with `path`
+    std::optional<denoise::DisocclusionCounts> disocclusion;  ///< of the last frame
 };
 
 /// Warns of what was lost and of what is still to be done, then reports.

@@ -1,4 +1,4 @@
-// limpid render with the pipelines that go from frame to frame.
+// limpid render where frames build on each other: denoisers, and means that are kept on the device.
 #include "base/log.h"
 #include "cli/progress.h"
 #include "cli/render/picture_output.h"
@@ -16,7 +16,8 @@ std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t fra
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
     return {{"limpid.version", LIMPID_VERSION},
             {"limpid.scene", std::filesystem::path(job.options.scene.scene).filename().string()},
-            {"limpid.pipeline", std::string(job.settings.pipeline.name())},
+            {"limpid.integrator", std::string(nameOf(job.settings.pipeline.integrator))},
+            {"limpid.denoiser", std::string(nameOf(job.settings.pipeline.denoiser))},
             {"limpid.samples", std::to_string(samples)},
             {"limpid.seed", std::to_string(job.settings.seed)},
             {"limpid.device", job.device.info().name},
@@ -52,7 +53,7 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
     summary.timings.renderSeconds = std::chrono::duration<double>(Clock::now() - start).count();
     const RenderCounters counters = renderer.counters();
     summary.counts = {.rays = counters.rays, .rejected = counters.rejected};
-    if (!job.settings.pipeline.accumulates()) summary.history = renderer.historyCounts();
+    if (!job.settings.pipeline.accumulates()) summary.disocclusion = renderer.disocclusionCounts();
 }
 
 }  // namespace limpid::cli

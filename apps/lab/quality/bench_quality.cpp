@@ -107,7 +107,7 @@ struct Truth {
     float exposure;  ///< Stops.
 };
 
-/// Runs a pipeline; with `noisy`, its input is scored too, into there.
+/// Runs a denoiser; with `noisy`, its input is scored too, into there.
 MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Extent extent,
                       const QualityFrames& frames, const Truth& truth, MethodQuality* noisy) {
     Judge judge(truth.references, frames.first, truth.exposure);
@@ -140,7 +140,8 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     std::vector<std::optional<float>> measured;
     for (const Reference& reference : references)
         measured.push_back(image::measuredExposure(reference.picture));
-    quality.exposure = image::sequenceExposure(measured);
+    if (methods.front().settings.pipeline.needsExposure())
+        quality.exposure = image::sequenceExposure(measured);
     quality.referencePsnr = ownPsnr(references, quality.exposure);
     quality.reference = references.back().picture;
     quality.methods.emplace_back().name = "noisy";

@@ -1,4 +1,4 @@
-// What `limpid bench quality` measures: pipelines on a moving sequence against converged references of the
+// What `limpid bench quality` measures: denoisers on a moving sequence against converged references of the
 // same frames.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace limpid::cli {
 
-/// The noisy frames, or what a pipeline made of them.
+/// The noisy frames, or what a denoiser made of them.
 struct MethodQuality {
     std::string name;
     std::vector<image::FrameScores> scores;

@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "cli/command_text.h"
 #include "cli/json_text.h"
+#include "cli/options/former_options.h"
 #include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "lab/bench.h"
@@ -35,8 +36,8 @@ struct QualityOptions {
     DeviceChoice device;
     MethodChoice methods;
     std::vector<std::string> scenes, presets, assignments;
-    std::string environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder, referenceFolder,
-                             weights;
+    std::string integrator, environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder,
+                                         referenceFolder, weights;
     uint32_t width = 640, height = 360, samples = 1;
     std::optional<uint64_t> referenceSamples;  ///< of every sequence, in place of its own
     std::optional<uint64_t> first, frames;     ///< likewise
@@ -47,7 +48,9 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
     common.layers = true;  // the noisy frames are judged too
-    for (const std::string& pipeline : o.methods.pipelines) pipelineFor(o.presets, pipeline, "");
+    for (const std::string& denoiser : o.methods.denoisers)
+        common.pipeline.integrator =
+            pipelineFor(o.presets, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
     for (const std::string& preset : o.presets) applyPreset(common, preset);
     common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // as the references
     for (const std::string& text : o.assignments) assign(common, text);
@@ -150,7 +153,8 @@ std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions
     std::vector<QualityMethod> methods = methodsOf(o);
     for (QualityMethod& method : methods) {
         const denoise::Denoiser* const denoiser = method.settings.pipeline.denoiser;
-        if (denoiser->network) loadNetwork(device, denoiser, o.weights, method.settings.denoisers);
+        if (denoiser->network)
+            method.settings.networks = loadNetworks(device, denoiser, o.weights, method.settings.denoisers);
     }
     return methods;
 }
@@ -248,15 +252,16 @@ void complete(QualityOptions& o, const CLI::App& command) {
         if (o.scenes.empty() && o.scenesFolder.empty()) o.lab = true;
     }
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
-    if (!o.methods.pipelines.empty()) return;
+    if (!o.methods.denoisers.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
         const bool fits = std::ranges::all_of(o.presets, [&](const std::string& preset) {
-            return findPreset(preset).isFor({Pipeline::Kind::Denoised, &denoiser});
+            const std::vector<std::string>& names = findPreset(preset).denoisers;
+            return std::ranges::find(names, denoiser.name) != names.end();
         });
-        if (fits && (!denoiser.network || o.samples >= leastNetworkSamples))
-            o.methods.pipelines.emplace_back(denoiser.name);
+        if (fits && (!denoiser.network || o.samples >= minNetworkSamples))
+            o.methods.denoisers.emplace_back(denoiser.name);
     }
-    if (o.methods.pipelines.empty())
+    if (o.methods.denoisers.empty())
         throw UsageError("--preset: no denoiser is left that all of them are for");
 }
 
@@ -298,15 +303,17 @@ void addQualityBench(CLI::App& bench) {
         "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
     addSequenceOptions(*command, o);
-    command->add_option("--pipeline", o->methods.pipelines,
-                        "Pipelines that denoise (repeatable; all of them, kpcn from --spp 8 on)");
+    command->add_option("--integrator", o->integrator, "What is denoised: path (default), direct or ao");
+    command->add_option("--denoiser", o->methods.denoisers,
+                        "Denoisers (repeatable; all of them, kpcn from --spp 8 on)");
+    refusePipelineOption(*command);
     command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
     command->add_option("--preset", o->presets,
                         "A denoiser as a paper or a course has it; 'limpid info' lists them");
     command->add_option("--set", o->assignments, "A parameter: group.name=value");
     command->add_option(
         "--variant", o->methods.variants,
-        "A pipeline once more with these of its parameters, or preset=NAME, by commas; the last "
+        "A denoiser once more with these of its parameters, or preset=NAME, by commas; the last "
         "one if they are of none (repeatable)");
     command->add_flag("--steps", o->methods.steps,
                       "SVGF's presets, and SVGF without each step beyond its paper and with former defaults");

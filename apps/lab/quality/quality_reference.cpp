@@ -34,7 +34,7 @@ class ReferenceRenderer {
         : first_(device, scene, samples / 2),
           second_(device, scene, samples - samples / 2),
           settings_(settings) {
-        settings_.pipeline = {};
+        settings_.pipeline.denoiser = nullptr;
         settings_.samplesPerLaunch = 64;
         settings_.layers = true;
         if (settings_.jitter == Jitter::Frame) settings_.jitter = Jitter::Pixel;
@@ -77,9 +77,14 @@ uint64_t identityOf(const ReferenceFiles& files, const Sequence& sequence, const
     hash.addValue(moment.camera);
     hash.addValue(moment.previousCamera.value_or(moment.camera));
     hash.addValue(uint32_t{moment.previousCamera.has_value()});
-    const ParamTable<PathtraceSettings>& table = pathtraceParams();
-    for (size_t i = 0; i < table.infos().size(); ++i)
-        hash.add(toString(table.get(settings.pathtrace, i)) + "\n");
+    const auto addParameters = [&](const auto& table, const auto& values) {
+        for (size_t i = 0; i < table.infos().size(); ++i) hash.add(toString(table.get(values, i)) + "\n");
+    };
+    addParameters(pathtraceParams(), settings.pathsTraced());
+    if (settings.pipeline.integrator == Integrator::AmbientOcclusion) {
+        hash.add("ambient occlusion\n");
+        addParameters(ambientOcclusionParams(), settings.ambientOcclusion);
+    }
     if (settings.jitter != Jitter::Off) hash.add("means over the pixels\n");
     return hash.value();
 }

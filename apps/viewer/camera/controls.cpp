@@ -13,7 +13,7 @@
 namespace limpid::viewer {
 namespace {
 
-constexpr float mostOfAVector = 1e9f;
+constexpr float maxOfAVector = 1e9f;
 
 /// ImGui's slider over positions from 0 to 1 that shows the value as its text: the scale is ours, and a
 /// number that is typed (Ctrl and a click) is the value itself, which may lie outside the slider's span.
@@ -79,7 +79,7 @@ bool Controls::vector(const char* name, vec3& value, float speed) {
         float number = value[i];
         ImGui::SetNextItemWidth(width);
         ImGui::PushID(i);
-        if (ImGui::DragFloat("##", &number, speed, -mostOfAVector, mostOfAVector, "%.5g",
+        if (ImGui::DragFloat("##", &number, speed, -maxOfAVector, maxOfAVector, "%.5g",
                              ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_AlwaysClamp) &&
             std::isfinite(number)) {
             value[i] = number;
@@ -107,9 +107,9 @@ bool Controls::tree(const char* name) {
 }
 
 bool Controls::color(const char* name, vec3& value) {
-    const float most = std::max({value.r, value.g, value.b, 1e-20f});
+    const float peak = std::max({value.r, value.g, value.b, 1e-20f});
     vec3 shown;
-    for (int i = 0; i < 3; ++i) shown[i] = image::srgbEncode(value[i] / most);
+    for (int i = 0; i < 3; ++i) shown[i] = image::srgbEncode(value[i] / peak);
     const bool changed = ImGui::ColorEdit3(name, &shown.x, ImGuiColorEditFlags_None);
     note(name, fmt::format("{} {} {}", value.r, value.g, value.b));
     if (!changed) return false;
@@ -117,7 +117,7 @@ bool Controls::color(const char* name, vec3& value) {
     for (int i = 0; i < 3; ++i) picked[i] = image::srgbDecode(std::clamp(shown[i], 0.0f, 1.0f));
     const float largest = std::max({picked.r, picked.g, picked.b});
     if (largest <= 0.0f) return false;
-    value = most / largest * picked;
+    value = peak / largest * picked;
     return true;
 }
 

@@ -13,9 +13,8 @@ namespace limpid::viewer {
 struct Range {
     double minimum, maximum;
     SliderSpan slider;
-    Range(double least, double most)
-        : minimum(least), maximum(most), slider{least, most, SliderScale::Linear, 0.0} {}
-    Range(double least, double most, const SliderSpan& span) : minimum(least), maximum(most), slider(span) {}
+    Range(double min, double max) : minimum(min), maximum(max), slider{min, max, SliderScale::Linear, 0.0} {}
+    Range(double min, double max, const SliderSpan& span) : minimum(min), maximum(max), slider(span) {}
 };
 
 struct DrawnControl {

@@ -11,24 +11,30 @@ namespace limpid::viewer {
 
 std::vector<std::string> comparisonNames() {
     std::vector<std::string> names{"nothing"};
-    for (const Pipeline& pipeline : pipelines()) names.emplace_back(pipeline.name());
+    for (const Integrator integrator : integrators()) names.emplace_back(nameOf(integrator));
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names.emplace_back(denoiser.name);
     names.emplace_back("reference");
     return names;
 }
 
 bool ComparisonChoice::isReference() const {
-    return with == static_cast<int>(pipelines().size()) + 1;
+    return with == static_cast<int>(integrators().size() + denoise::denoisers().size()) + 1;
 }
 
 RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSettings& settings) {
     RenderSettings other = settings;
+    if (!canBeDenoised(other.pipeline.integrator)) other.pipeline.integrator = Integrator::Path;
     if (choice.isReference()) {
-        other.pipeline = {};
+        other.pipeline.denoiser = nullptr;
         ++other.seed;
         if (other.jitter == Jitter::Frame) other.jitter = Jitter::Pixel;
         return other;
     }
-    other.pipeline = pipelines().at(static_cast<size_t>(choice.with) - 1);
+    const size_t index = static_cast<size_t>(choice.with) - 1;
+    if (index < integrators().size())
+        other.pipeline = {integrators()[index]};
+    else
+        other.pipeline.denoiser = &denoise::denoisers()[index - integrators().size()];
     return other;
 }
 

@@ -1,4 +1,5 @@
-// What the picture is compared with: another pipeline on the same frames, or a reference that converges.
+// What the picture is compared with: another integrator or denoiser on the same frames, or a reference that
+// converges.
 #pragma once
 
 #include <future>
@@ -9,7 +10,7 @@
 
 namespace limpid::viewer {
 
-/// The choices: nothing, the pipelines, the reference.
+/// The choices: nothing, each integrator alone, each denoiser on what is shown, the reference.
 std::vector<std::string> comparisonNames();
 
 struct ComparisonChoice {
@@ -20,7 +21,8 @@ struct ComparisonChoice {
     bool isReference() const;
 };
 
-/// Of what is compared with a picture made by `settings`. A reference has other random numbers, and goes
+/// Of what is compared with a picture made by `settings`. A denoiser gets the picture's integrator, or paths
+/// where that takes none, and a reference is the mean of the same. It has other random numbers, and goes
 /// through the pixels' centres where the picture does.
 RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSettings& settings);
 

@@ -7,26 +7,40 @@
 namespace limpid::viewer {
 namespace {
 
-TEST(Comparison, AReferenceIsThePathTracerWithOtherNumbers) {
+TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
     ComparisonChoice choice;
     choice.with = static_cast<int>(comparisonNames().size()) - 1;
     ASSERT_TRUE(choice.isReference());
     RenderSettings settings;
-    settings.pipeline = parsePipeline("svgf");
+    settings.pipeline = parsePipeline("path", "svgf");
     settings.jitter = Jitter::Off;
     settings.seed = 7;
     RenderSettings other = comparisonSettings(choice, settings);
-    EXPECT_EQ(other.pipeline.name(), "path");
+    EXPECT_EQ(other.pipeline, Pipeline{});
     EXPECT_EQ(other.jitter, Jitter::Off);
     EXPECT_EQ(other.seed, 8u);
     settings.jitter = Jitter::Frame;
     EXPECT_EQ(comparisonSettings(choice, settings).jitter, Jitter::Pixel);
+    settings.pipeline = parsePipeline("ao", "svgf");
+    EXPECT_EQ(comparisonSettings(choice, settings).pipeline, parsePipeline("ao"));
+    settings.pipeline = parsePipeline("gbuffer");
+    EXPECT_EQ(comparisonSettings(choice, settings).pipeline, Pipeline{});
 }
 
-TEST(Comparison, EveryPipelineCanBeChosen) {
+TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
     const std::vector<std::string> names = comparisonNames();
-    for (size_t i = 1; i + 1 < names.size(); ++i)
-        EXPECT_EQ(comparisonSettings({.with = static_cast<int>(i)}, {}).pipeline.name(), names[i]);
+    ASSERT_EQ(names.size(), 2 + integrators().size() + denoise::denoisers().size());
+    RenderSettings settings;
+    settings.pipeline = parsePipeline("ao", "atrous");
+    for (size_t i = 1; i + 1 < names.size(); ++i) {
+        const Pipeline chosen = comparisonSettings({.with = static_cast<int>(i)}, settings).pipeline;
+        EXPECT_EQ(chosen,
+                  denoise::findDenoiser(names[i]) ? parsePipeline("ao", names[i]) : parsePipeline(names[i]));
+    }
+    settings.pipeline = parsePipeline("preview");
+    const int last = static_cast<int>(names.size()) - 2;
+    EXPECT_EQ(comparisonSettings({.with = last}, settings).pipeline,
+              parsePipeline("path", names.at(names.size() - 2)));
 }
 
 TEST(LiveScores, AreThoseOfTheDisplayedPictures) {

@@ -136,7 +136,7 @@ bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main) {
     if (wanted != inspected_) {
         try {
             images_ = main.renderer().dump(panel.pass);
-        } catch (const UsageError&) {  // of another pipeline
+        } catch (const UsageError&) {  // of another integrator or denoiser
             panel.pass.clear();
             return false;
         }
@@ -218,8 +218,7 @@ void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, Li
         const gpu::Pane whole = panes.front();
         const auto both = splitPanes(whole, other->pane(), picture, panel.divider);
         panes.assign(both.begin(), both.end());
-        drawDivider(inspects ? facts.images[static_cast<size_t>(panel.image)]
-                             : std::string(panel.render.pipeline.name()),
+        drawDivider(inspects ? facts.images[static_cast<size_t>(panel.image)] : panel.render.pipeline.title(),
                     panel, facts);
     }
     if (panel.magnifier) drawMagnifier(panes, picture);

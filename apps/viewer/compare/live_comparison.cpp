@@ -35,13 +35,13 @@ bool LiveComparison::mustRender(const PanelState& panel, const CameraParams& cam
 void LiveComparison::render(Stage& stage, const PanelState& panel, Moment moment, bool alone) {
     const RenderSettings now = settingsOfComparison(panel, networks_);
     if (other_.differs(now, panel.samples)) other_.noteChange();
-    const std::string pipeline = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
-    if (std::exchange(pipeline_, pipeline) != pipeline) scores_.clear();
+    const std::string choice = comparisonNames()[static_cast<size_t>(panel.comparison.with)];
+    if (std::exchange(choice_, choice) != choice) scores_.clear();
     if (alone) moment.number = numbersAlone + other_.framesOfSame();
     other_.prepare(stage, now, panel.samples, now.pipeline.needsExposure() ? panel.exposure : 0.0f);
     other_.render(std::move(moment));
     ++frames_;
-    name_ = pipeline;
+    name_ = choice;
     if (other_.accumulates()) name_ += fmt::format(", {} samples", other_.samples());
 }
 

@@ -41,7 +41,7 @@ class LiveComparison {
   private:
     LiveRender other_;
     LiveScores scores_;
-    std::string pipeline_, name_;
+    std::string choice_, name_;
     const Networks& networks_;
     uint64_t frames_ = 0;                           ///< ever
     std::tuple<uint64_t, uint64_t, float> scored_;  ///< both numbers of frames and the exposure, of the last

@@ -7,7 +7,7 @@ namespace limpid::viewer {
 namespace {
 
 constexpr float spacing = 32.0f;
-constexpr float leastPixels = 0.25f;
+constexpr float minPixels = 0.25f;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::vector<Arrow> motionArrows(const image::Image& motion, float windowWidth, f
                            row = std::min(static_cast<uint32_t>(y / scale.y), motion.height - 1);
             if (motion.components > 3 && motion.at(column, row, 3) <= 0.0f) continue;
             const vec2 back(motion.at(column, row, 0), motion.at(column, row, 1));
-            if (!std::isfinite(back.x) || !std::isfinite(back.y) || glm::length(back) < leastPixels) continue;
+            if (!std::isfinite(back.x) || !std::isfinite(back.y) || glm::length(back) < minPixels) continue;
             arrows.push_back({vec2(x, y) + back * scale, vec2(x, y)});
         }
     }

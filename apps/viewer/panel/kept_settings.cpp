@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 void restore(const json& kept, ViewSettings& settings) {
-    settings.render.pipeline = parsePipeline(kept.at("pipeline").get<std::string>());
+    settings.render.pipeline =
+        parsePipeline(kept.at("integrator").get<std::string>(), kept.at("denoiser").get<std::string>());
     settings.samples = std::clamp(kept.at("samples").get<uint32_t>(), 1u, 64u);
     settings.maxSamples = std::max<uint64_t>(kept.at("max_samples").get<uint64_t>(), 1);
     settings.shrink = std::clamp(kept.at("shrink").get<int>(), -1, 3);
@@ -48,7 +49,8 @@ void restoreSettings(const fs::path& file, ViewSettings& settings) {
 void keepSettings(const fs::path& file, const ViewSettings& settings) {
     if (file.empty()) return;
     makeFolder(fs::absolute(file).parent_path());
-    const json kept{{"pipeline", settings.render.pipeline.name()},
+    const json kept{{"integrator", nameOf(settings.render.pipeline.integrator)},
+                    {"denoiser", nameOf(settings.render.pipeline.denoiser)},
                     {"samples", settings.samples},
                     {"max_samples", settings.maxSamples},
                     {"shrink", settings.shrink},

@@ -10,8 +10,9 @@ namespace limpid::viewer {
 /// limpid/view.json in $XDG_CONFIG_HOME, or in ~/.config; empty where there is neither.
 std::filesystem::path keptSettingsFile();
 
-/// Pipeline, samples, resolution and every parameter, into `settings`. A file that is missing, damaged or of
-/// another version is nothing: what it says and Limpid does not know is left out, with a warning.
+/// Integrator, denoiser, samples, resolution and every parameter, into `settings`. A file that is missing,
+/// damaged or of another version is nothing: what it says and Limpid does not know is left out, with a
+/// warning.
 void restoreSettings(const std::filesystem::path& file, ViewSettings& settings);
 
 /// Throws OutputError.

@@ -21,7 +21,7 @@ class KeptSettingsTest : public testing::Test {
 
 TEST_F(KeptSettingsTest, WhatIsKeptComesBack) {
     ViewSettings settings;
-    settings.render.pipeline = parsePipeline("svgf");
+    settings.render.pipeline = parsePipeline("ao", "svgf");
     settings.samples = 3;
     settings.maxSamples = 77;
     settings.shrink = 2;
@@ -41,10 +41,12 @@ TEST_F(KeptSettingsTest, WhatIsNotThereOrDamagedIsNothing) {
     restoreSettings(file_, restored);
     restoreSettings({}, restored);
     keepSettings(file_, restored);
-    for (const char* text :
-         {"", "{", "{}", "[1]", R"({"pipeline": "none"})",
-          R"({"pipeline": "path", "samples": -1, "max_samples": 1, "shrink": 0, "parameters": []})",
-          R"({"pipeline": "path", "samples": 1, "max_samples": 1, "shrink": 0, "parameters": ["x.y=1"]})"}) {
+    for (
+        const char* text :
+        {"", "{", "{}", "[1]", R"({"integrator": "none", "denoiser": "none"})",
+         R"({"integrator": "gbuffer", "denoiser": "svgf"})",
+         R"({"integrator": "path", "denoiser": "none", "samples": -1, "max_samples": 1, "shrink": 0, "parameters": []})",
+         R"({"integrator": "path", "denoiser": "none", "samples": 1, "max_samples": 1, "shrink": 0, "parameters": ["x.y=1"]})"}) {
         std::ofstream(file_) << text;
         EXPECT_NO_THROW(restoreSettings(file_, restored)) << text;
         EXPECT_EQ(restored.render, RenderSettings{}) << text;

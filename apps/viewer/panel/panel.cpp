@@ -46,32 +46,56 @@ void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& cont
     controls.setGroup("");
 }
 
-void drawPipelines(PanelState& state, Controls& controls) {
-    RenderSettings& settings = state.render;
+/// One that takes no denoiser goes without.
+void drawIntegrators(Pipeline& chosen, Controls& controls) {
+    const std::vector<Integrator>& all = integrators();
     std::vector<std::string> names;
-    int chosen = 0;
-    for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline == settings.pipeline) chosen = static_cast<int>(names.size());
-        names.emplace_back(pipeline.name());
+    for (const Integrator integrator : all) names.emplace_back(nameOf(integrator));
+    auto index = static_cast<int>(std::ranges::find(all, chosen.integrator) - all.begin());
+    if (controls.choice("integrator", names, index)) {
+        chosen.integrator = all[static_cast<size_t>(index)];
+        if (!canBeDenoised(chosen.integrator)) chosen.denoiser = nullptr;
     }
-    if (controls.choice("pipeline", names, chosen)) {
-        if (!state.isPreview()) state.pipelineBefore = settings.pipeline;
-        settings.pipeline = pipelines()[static_cast<size_t>(chosen)];
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(helpOf(chosen.integrator)).c_str());
+}
+
+/// Paths come with it where the integrator takes none.
+void drawDenoisers(Pipeline& chosen, Controls& controls) {
+    std::vector<std::string> names;
+    int index = 0;
+    for (const std::string_view name : denoiserNames()) {
+        if (name == nameOf(chosen.denoiser)) index = static_cast<int>(names.size());
+        names.emplace_back(name);
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(settings.pipeline.help()).c_str());
+    if (controls.choice("denoiser", names, index)) {
+        chosen.denoiser = parseDenoiser(names[static_cast<size_t>(index)]);
+        if (chosen.denoiser && !canBeDenoised(chosen.integrator)) chosen.integrator = Integrator::Path;
+    }
+    if (ImGui::IsItemHovered() && chosen.denoiser)
+        ImGui::SetTooltip("%s", std::string(chosen.denoiser->help).c_str());
+}
+
+void drawPipelines(PanelState& state, Controls& controls) {
+    Pipeline chosen = state.render.pipeline;
+    drawIntegrators(chosen, controls);
+    drawDenoisers(chosen, controls);
+    if (chosen != state.render.pipeline) {
+        if (!state.isPreview()) state.pipelineBefore = state.render.pipeline;
+        state.render.pipeline = chosen;
+    }
     bool preview = state.isPreview();
     if (controls.checkbox("preview", preview)) state.setPreview(preview);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("first hits, shaded by a light at the camera: fast, for finding one's way (V)");
 }
 
-/// A press takes all that the preset says, its pipeline too.
+/// A press takes all that the preset says, its integrator and denoiser too.
 void drawPresets(PanelState& state, Controls& controls) {
     if (!controls.header("presets")) return;
     for (const Preset& preset : presets()) {
         if (controls.button(preset.name.c_str())) {
             const bool fits = preset.isFor(state.render.pipeline);
-            if (!fits) state.render.pipeline = parsePipeline(preset.pipelines.front());
+            if (!fits) state.render.pipeline = preset.pipeline();
             applyPreset(state.render, preset.name);
             state.jitter = jitterChoice(preset.jitter, state.render.pipeline);
         }
@@ -97,9 +121,9 @@ void drawInspector(PanelState& state, const PanelFacts& facts, Controls& control
 }
 
 void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {
-    const float most = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
+    const float largest = track.values().empty() ? 1.0f : *std::ranges::max_element(track.values());
     ImGui::PlotLines(name, track.values().data(), static_cast<int>(track.values().size()), 0, text, 0.0f,
-                     1.1f * most, size);
+                     1.1f * largest, size);
 }
 
 /// A click on one shows its images, another one the picture again.
@@ -148,7 +172,7 @@ void drawLooking(PanelState& state, Controls& controls) {
     controls.checkbox("magnifier", state.magnifier);
     ImGui::SameLine();
     controls.checkbox("arrows", state.arrows);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, of pipelines that denoise");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, with a denoiser");
 }
 
 void drawSampling(PanelState& state, Controls& controls) {
@@ -156,7 +180,7 @@ void drawSampling(PanelState& state, Controls& controls) {
     int samples = static_cast<int>(state.samples), seed = static_cast<int>(state.render.seed);
     if (controls.slider("samples a frame", samples, {1, 64, {1, 64, SliderScale::Logarithmic}}))
         state.samples = static_cast<uint32_t>(samples);
-    controls.slider("most samples", state.maxSamples, {1, 1 << 20, {1, 1 << 20, SliderScale::Logarithmic}});
+    controls.slider("max samples", state.maxSamples, {1, 1 << 20, {1, 1 << 20, SliderScale::Logarithmic}});
     if (controls.slider("seed", seed, {0, 0x7fffffff, {0, 1000}}))
         state.render.seed = static_cast<uint32_t>(seed);
     controls.choice("jitter", {"as the pipeline needs it", "pixel", "frame", "off"}, state.jitter);

@@ -66,12 +66,12 @@ struct PanelState {
     bool shown = true;
     PanelRequests asked;
 
-    bool isPreview() const { return render.pipeline.kind == Pipeline::Kind::Preview; }
-    /// The pipeline `preview`, or the one of before.
+    bool isPreview() const { return render.pipeline.integrator == Integrator::Preview; }
+    /// The integrator `preview`, or what was before it.
     void setPreview(bool on) {
         if (on == isPreview()) return;
         if (on) pipelineBefore = render.pipeline;
-        render.pipeline = on ? Pipeline{Pipeline::Kind::Preview} : pipelineBefore;
+        render.pipeline = on ? Pipeline{Integrator::Preview} : pipelineBefore;
     }
     Pipeline pipelineBefore;  ///< `preview`
 };

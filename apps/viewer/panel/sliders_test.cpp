@@ -26,13 +26,13 @@ void forEachSlider(const Function& function) {
 TEST(Sliders, RunInsideTheRangeAndHoldTheDefault) {
     forEachSlider([](const ParamInfo& info) {
         const SliderSpan& span = info.slider;
-        EXPECT_LT(span.least, span.most);
-        EXPECT_GE(span.least, info.minimum);
-        EXPECT_LE(span.most, info.maximum);
+        EXPECT_LT(span.min, span.max);
+        EXPECT_GE(span.min, info.minimum);
+        EXPECT_LE(span.max, info.maximum);
         // A float lies beside what it stands for.
         const double initial = numberOf(info.defaultValue);
-        EXPECT_GE(initial, span.least * (1.0 - 1e-6));
-        EXPECT_LE(initial, span.most * (1.0 + 1e-6));
+        EXPECT_GE(initial, span.min * (1.0 - 1e-6));
+        EXPECT_LE(initial, span.max * (1.0 + 1e-6));
     });
 }
 
@@ -51,16 +51,16 @@ TEST(Sliders, OverManyDecadesAreLogarithmic) {
         const SliderSpan& span = info.slider;
         const bool logarithmic = span.scale == SliderScale::Logarithmic;
         const double initial = numberOf(info.defaultValue);
-        if (span.least > 0.0 && span.most > 100.0 * span.least) {
+        if (span.min > 0.0 && span.max > 100.0 * span.min) {
             EXPECT_TRUE(logarithmic);
         }
-        if (initial > 0.0 && span.most > 100.0 * initial) {
+        if (initial > 0.0 && span.max > 100.0 * initial) {
             EXPECT_TRUE(logarithmic);
         }
         if (logarithmic) {
-            EXPECT_GT(span.least > 0.0 ? span.least : span.smallest, 0.0);
+            EXPECT_GT(span.min > 0.0 ? span.min : span.smallest, 0.0);
         }
-        EXPECT_LE(span.most, 1e5 * std::max(span.least > 0.0 ? span.least : span.smallest, 1e-3))
+        EXPECT_LE(span.max, 1e5 * std::max(span.min > 0.0 ? span.min : span.smallest, 1e-3))
             << "more than five decades are no slider";
     });
 }
@@ -71,8 +71,7 @@ TEST(Sliders, ChangeTheValueWhereverTheyAreMoved) {
         double before = sliderValue(info.slider, 0.0);
         for (int tenth = 1; tenth <= 10; ++tenth) {
             double value = sliderValue(info.slider, 0.1 * tenth);
-            if (std::holds_alternative<int>(info.defaultValue) &&
-                info.slider.most - info.slider.least >= 10.0)
+            if (std::holds_alternative<int>(info.defaultValue) && info.slider.max - info.slider.min >= 10.0)
                 value = std::round(value);
             EXPECT_GT(value, before - 1e-12);
             if (!std::holds_alternative<int>(info.defaultValue)) {

@@ -15,7 +15,7 @@ bool due(Clock::time_point& last, double seconds) {
 }
 
 void Track::add(float value) {
-    if (values_.size() == most) values_.erase(values_.begin());
+    if (values_.size() == maxValues) values_.erase(values_.begin());
     values_.push_back(value);
 }
 

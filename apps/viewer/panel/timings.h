@@ -18,7 +18,7 @@ bool due(Clock::time_point& last, double seconds);
 /// The last values, oldest first.
 class Track {
   public:
-    static constexpr size_t most = 120;
+    static constexpr size_t maxValues = 120;
     void add(float value);
     const std::vector<float>& values() const { return values_; }
     float last() const { return values_.empty() ? 0.0f : values_.back(); }

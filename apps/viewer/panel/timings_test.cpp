@@ -21,8 +21,8 @@ TEST(Timings, PassesOfOneNameAddUpInTheFramesOrder) {
 TEST(Timings, TheOldestAreForgotten) {
     Track track;
     for (int i = 0; i < 500; ++i) track.add(static_cast<float>(i));
-    EXPECT_EQ(track.values().size(), Track::most);
-    EXPECT_EQ(track.values().front(), 500.0f - static_cast<float>(Track::most));
+    EXPECT_EQ(track.values().size(), Track::maxValues);
+    EXPECT_EQ(track.values().front(), 500.0f - static_cast<float>(Track::maxValues));
     EXPECT_EQ(track.last(), 499.0f);
 }
 

@@ -79,11 +79,11 @@ std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
 }
 
 fs::path linkTarget(const fs::path& path) {
-    constexpr int mostLinks = 40;  // as the kernel's own limit
+    constexpr int maxLinks = 40;  // as the kernel's own limit
     fs::path target = path;
     std::error_code fault;
     for (int links = 0; fs::is_symlink(fs::symlink_status(target, fault)); ++links) {
-        if (links == mostLinks) throw OutputError(path, "is a symbolic link in a circle of them");
+        if (links == maxLinks) throw OutputError(path, "is a symbolic link in a circle of them");
         const fs::path next = fs::read_symlink(target, fault);
         if (fault) throw OutputError(path, "is a symbolic link that cannot be read: " + fault.message());
         target = next.is_absolute() ? next : folderOf(target) / next;

@@ -85,8 +85,8 @@ void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images)
     if (desc.signals == 2) require(images.specular, LIMPID_INPUT_SPECULAR);
 }
 
-void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
-                    const InstanceSettings& settings, gpu::Backing filters) {
+void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
+                    gpu::Backing filters) {
     const gpu::Extent extent{desc.width, desc.height};
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();

@@ -25,7 +25,7 @@ struct limpid_denoiser {
     std::shared_ptr<limpid::gpu::Device> device;
     bool adopted;
     limpid_denoiser_desc desc;
-    limpid::denoise::InstanceSettings settings;
+    limpid::denoise::FilterSettings settings;
     limpid::gpu::FrameGraph graph;
     bool hasPrevious = false;                  ///< a frame has been recorded since the last cut
     std::vector<limpid::gpu::PassTime> times;  ///< that limpid_denoiser_timings() told last
@@ -38,8 +38,8 @@ namespace limpid::denoise {
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 
 /// Records a frame of inputs that do not exist: what prepare() and memory need to know.
-void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
-                    const InstanceSettings& settings, gpu::Backing filters);
+void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
+                    gpu::Backing filters);
 
 /// Throws UsageError if an input that the method needs is not there.
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images);

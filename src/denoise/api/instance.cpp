@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/text/format.h"
 #include "denoise/api/camera_matrices.h"
-#include "denoise/stages/compose/compose.h"
 
 namespace limpid::denoise {
 namespace {
@@ -17,7 +16,7 @@ void forEachGroup(Settings& settings, limpid_method method, const Visit& visit) 
     if (method == LIMPID_METHOD_SVGF) {
         visit(svgfParams(), settings.svgf);
     } else {
-        visit(historyParams(), settings.history);
+        visit(temporalParams(), settings.temporal);
         if (method == LIMPID_METHOD_ATROUS) visit(atrousParams(), settings.atrous);
     }
     visit(taaParams(), settings.taa);
@@ -25,7 +24,7 @@ void forEachGroup(Settings& settings, limpid_method method, const Visit& visit) 
 
 std::vector<InstanceParameter> listParameters(limpid_method method) {
     std::vector<InstanceParameter> all;
-    InstanceSettings settings;
+    FilterSettings settings;
     forEachGroup(settings, method, [&](const auto& table, auto&) {
         for (const ParamInfo& info : table.infos()) all.push_back({table.group() + "." + info.name, info});
     });
@@ -57,7 +56,7 @@ const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
     return all[static_cast<size_t>(method)];
 }
 
-void setParameter(InstanceSettings& settings, limpid_method method, std::string_view name, double value) {
+void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value) {
     bool found = false;
     forEachGroup(settings, method, [&](const auto& table, auto& group) {
         for (const ParamInfo& info : table.infos()) {
@@ -75,7 +74,7 @@ void setParameter(InstanceSettings& settings, limpid_method method, std::string_
     if (!found) failUnknown(name);
 }
 
-double parameter(const InstanceSettings& settings, limpid_method method, std::string_view name) {
+double parameter(const FilterSettings& settings, limpid_method method, std::string_view name) {
     std::optional<double> result;
     forEachGroup(settings, method, [&](const auto& table, const auto& group) {
         for (size_t i = 0; i < table.infos().size(); ++i) {
@@ -141,27 +140,19 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
 }
 
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
-                            const InstanceSettings& settings, const IngestImages& images,
+                            const FilterSettings& settings, const IngestImages& images,
                             const IngestParams& params, gpu::Backing filters, bool signalsToo) {
-    IngestImages used = images;
-    if (desc.demodulated) used.albedo = used.albedoSpecular = {};
-    DenoiserInput input = ingest(graph, used, params);
+    IngestImages taken = images;
+    if (desc.demodulated) taken.albedo = taken.albedoSpecular = {};
+    DenoiserInput input = ingest(graph, taken, params);
     input.filters = filters;
-    InstanceOutputs outputs;
-    if (desc.method == LIMPID_METHOD_SVGF) {
-        SvgfSettings svgf = settings.svgf;
-        svgf.separate = desc.signals == 2;
-        const SvgfImages filtered = signalsToo ? filterSvgfSignals(graph, input, svgf)
-                                               : SvgfImages{filterSvgf(graph, input, svgf), {}, {}};
-        outputs = {filtered.beauty, filtered.diffuse, filtered.specular};
-    } else {
-        const HistoryImages history = trackHistory(graph, input, settings.history);
-        outputs.color = desc.method == LIMPID_METHOD_ATROUS
-                            ? filterAtrous(graph, input, {history.color, {}}, settings.atrous)
-                            : compose(graph, history.color, input.emission, history.cases, false);
-    }
-    outputs.color = antialias(graph, input, outputs.color, settings.taa);
-    return outputs;
+    FilterSettings used = settings;
+    used.svgf.separate = desc.signals == 2;
+    if (desc.method == LIMPID_METHOD_TEMPORAL) return {recordTemporal(graph, input, used).beauty, {}, {}};
+    if (desc.method == LIMPID_METHOD_ATROUS) return {recordAtrous(graph, input, used).beauty, {}, {}};
+    if (!signalsToo) return {recordSvgf(graph, input, used).beauty, {}, {}};
+    const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);
+    return {antialias(graph, input, filtered.beauty, used.taa), filtered.diffuse, filtered.specular};
 }
 
 const char* inputName(size_t input) {

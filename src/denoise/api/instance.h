@@ -5,22 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "denoise/methods/atrous/atrous.h"
-#include "denoise/methods/history/history.h"
-#include "denoise/methods/svgf/svgf.h"
+#include "denoise/methods/recipes.h"
 #include "denoise/stages/ingest/ingest.h"
-#include "denoise/stages/taa/taa.h"
 #include "limpid/denoise.h"
 
 namespace limpid::denoise {
-
-/// Of all methods; a method heeds its own.
-struct InstanceSettings {
-    HistorySettings history;
-    AtrousSettings atrous;
-    SvgfSettings svgf;
-    TaaSettings taa;
-};
 
 /// What a frame leaves, rgba32f; empty where the method has none.
 struct InstanceOutputs {
@@ -35,8 +24,8 @@ struct InstanceParameter {
 const std::vector<InstanceParameter>& parametersOf(limpid_method method);
 
 /// Throws UsageError if there is none of this name, or the value is outside its range.
-void setParameter(InstanceSettings& settings, limpid_method method, std::string_view name, double value);
-double parameter(const InstanceSettings& settings, limpid_method method, std::string_view name);
+void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value);
+double parameter(const FilterSettings& settings, limpid_method method, std::string_view name);
 
 /// Throws Error if a value is none of its enumeration, or the size is 0.
 void check(const limpid_denoiser_desc& desc);
@@ -47,7 +36,7 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
 
 /// Records a frame, needs no device. `outputs`: which are wanted, by limpid_output.
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
-                            const InstanceSettings& settings, const IngestImages& images,
+                            const FilterSettings& settings, const IngestImages& images,
                             const IngestParams& params, gpu::Backing filters, bool signalsToo);
 
 /// The name of an input, for messages and debuggers: "radiance".

@@ -31,7 +31,7 @@ using gpu::Format;
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
-constexpr uint32_t leastSamplesForErrors = 8;
+constexpr uint32_t minSamplesForErrors = 8;
 constexpr const char* sideNames[] = {"diffuse", "specular"};
 constexpr uint32_t reach = KPCN_TAPS / 2;
 constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
@@ -88,9 +88,9 @@ const Shaders& shadersOf(KpcnPrecision precision) {
     }
 }
 
-/// The largest number up to `most` that divides `count`.
-uint32_t divisor(uint32_t count, uint32_t most) {
-    for (uint32_t d = most; d > 1; --d) {
+/// The largest number up to `max` that divides `count`.
+uint32_t divisor(uint32_t count, uint32_t max) {
+    for (uint32_t d = max; d > 1; --d) {
         if (count % d == 0) return d;
     }
     return 1;
@@ -107,10 +107,11 @@ struct Tile {
 
 class Recorder {
   public:
-    Recorder(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings)
+    Recorder(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings,
+             const KpcnNetwork& network)
         : graph_(graph),
           input_(input),
-          network_(*settings.network),
+          network_(network),
           shaders_(shadersOf(network_.precision())),
           settings_(settings),
           picture_(graph.extent(input.depth)) {
@@ -148,18 +149,18 @@ class Recorder {
   private:
     /// Even parts of the picture, at most `wanted` pixels along an edge and what the device's buffers hold.
     Extent tileSize(uint32_t wanted) const {
-        const auto part = [&](uint32_t length, uint32_t most) {
-            const uint32_t even = divideUp(length, divideUp(length, most));
+        const auto part = [&](uint32_t length, uint32_t max) {
+            const uint32_t even = divideUp(length, divideUp(length, max));
             return std::min(divideUp(even, alignment) * alignment, divideUp(length, alignment) * alignment);
         };
-        uint32_t most = std::max(divideUp(wanted, alignment) * alignment, alignment);
+        uint32_t edge = std::max(divideUp(wanted, alignment) * alignment, alignment);
         while (true) {
-            const Extent tile{part(picture_.width, most), part(picture_.height, most)};
+            const Extent tile{part(picture_.width, edge), part(picture_.height, edge)};
             const uint64_t bytes = uint64_t{bufferSize(tile.width, picture_.width)} *
                                    bufferSize(tile.height, picture_.height) * network_.slabs() *
                                    texelsOfSlab * shaders_.texelBytes;
-            if (bytes <= network_.mostBytes() || most == alignment) return tile;
-            most -= alignment;
+            if (bytes <= network_.maxBytes() || edge == alignment) return tile;
+            edge -= alignment;
         }
     }
 
@@ -314,14 +315,14 @@ class Recorder {
     }
 
     void dispatchLayer(const std::string& pass, const gpu::ShaderCode& shader,
-                       const KpcnNetwork::Layer& layer, const KpcnRegion& where, uint32_t mostTiles,
+                       const KpcnNetwork::Layer& layer, const KpcnRegion& where, uint32_t maxTiles,
                        std::vector<gpu::Binding> bindings) {
         const KpcnLayerParams params{where,         layer.inputSlabs,       layer.outputTiles,
                                      layer.weights, network_.kernelWidth(), network_.facing()};
         bindings.push_back({"weights", &network_.weights()});
         std::vector<gpu::ConstantValue> constants;
         if (network_.precision() == KpcnPrecision::Matrices)
-            constants.push_back({"TILES", divisor(layer.outputTiles, mostTiles)});
+            constants.push_back({"TILES", divisor(layer.outputTiles, maxTiles)});
         graph_.dispatch({.pass = pass,
                          .shader = shader,
                          .bindings = std::move(bindings),
@@ -335,7 +336,7 @@ class Recorder {
         // Few samples say little about their error: a light that all of them missed has none.
         const KpcnComposeParams params{
             static_cast<int>(picture_.width), static_cast<int>(picture_.height), ofMean(),
-            input_.samples >= leastSamplesForErrors ? settings_.standardErrors : 0.0f};
+            input_.samples >= minSamplesForErrors ? settings_.standardErrors : 0.0f};
         graph_.dispatch({.pass = "kpcn/compose",
                          .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
                          .bindings = {{"diffuse", clean[0]},
@@ -397,9 +398,9 @@ const ParamTable<KpcnSettings>& kpcnParams() {
     return table;
 }
 
-ImageHandle filterKpcn(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings) {
-    if (!settings.network) throw Error("kpcn has no network: KpcnSettings::network must be set");
-    return Recorder(graph, input, settings).run();
+ImageHandle filterKpcn(FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings,
+                       const KpcnNetwork& network) {
+    return Recorder(graph, input, settings, network).run();
 }
 
 }  // namespace limpid::denoise

@@ -59,8 +59,8 @@ inline float exponential(float x) {
 /// Where a part's surfaces face.
 class Faces {
   public:
-    /// `least`: KpcnWeights::facing.
-    Faces(std::span<const uint32_t> packed, float least) : least_(least) {
+    /// `minCosine`: KpcnWeights::facing.
+    Faces(std::span<const uint32_t> packed, float minCosine) : minCosine_(minCosine) {
         for (size_t c = 0; c < components_.size(); ++c) {
             components_[c].resize(packed.size());
             for (size_t i = 0; i < packed.size(); ++i)
@@ -76,13 +76,13 @@ class Faces {
         for (size_t x = begin; x < end; ++x) {
             const float cosine =
                 p[a + x] * p[b + x] + q[a + x] * q[b + x] + r[a + x] * r[b + x] + s[a + x] * s[b + x];
-            logits[x] = cosine >= least_ ? logits[x] : noLogit;
+            logits[x] = cosine >= minCosine_ ? logits[x] : noLogit;
         }
     }
 
   private:
     std::array<std::vector<float>, 4> components_;
-    float least_;
+    float minCosine_;
 };
 
 /// The means of one row of pixels; as if one after the other, all pixels of the row are under way at once.

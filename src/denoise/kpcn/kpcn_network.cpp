@@ -35,11 +35,11 @@ void pack(const KpcnLayer& layer, bool hidden, std::vector<float>& packed) {
 }
 
 uint64_t largestBuffer(const gpu::Device& device) {
-    uint64_t most = device.maxBufferBytes();
+    uint64_t max = device.maxBufferBytes();
     for (const auto& [name, value] : device.info().limits) {
-        if (name == "maxStorageBufferRange") most = std::min(most, value);
+        if (name == "maxStorageBufferRange") max = std::min(max, value);
     }
-    return most;
+    return max;
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ KpcnNetwork::KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPr
       kernelWidth_(weights.kernelWidth),
       slabs_(KPCN_INPUT_SLABS),
       facing_(weights.facing),
-      mostBytes_(largestBuffer(device)) {
+      maxBytes_(largestBuffer(device)) {
     std::vector<float> packed;
     for (size_t side = 0; side < 2; ++side) {
         for (const KpcnLayer& layer : weights.sides[side]) {

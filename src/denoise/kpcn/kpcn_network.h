@@ -47,13 +47,13 @@ class KpcnNetwork {
     /// Of hidden layers and inputs, the most.
     uint32_t slabs() const { return slabs_; }
     /// Bytes that one buffer may have on the device.
-    uint64_t mostBytes() const { return mostBytes_; }
+    uint64_t maxBytes() const { return maxBytes_; }
 
   private:
     KpcnPrecision precision_;
     uint32_t kernelWidth_, slabs_;
     float facing_;
-    uint64_t mostBytes_;
+    uint64_t maxBytes_;
     std::array<std::vector<Layer>, 2> layers_;
     gpu::Buffer buffer_;
     std::unique_ptr<KpcnHost> host_;

@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr uint32_t mostHidden = 64, mostChannels = 1024, widestKernel = 31;
+constexpr uint32_t maxHidden = 64, maxChannels = 1024, widestKernel = 31;
 constexpr float largestHalf = 65504.0f;
-constexpr float leastFacing = -2.0f;
+constexpr float minFacing = -2.0f;
 
 struct Shape {
     uint32_t hidden, channels, width;
@@ -58,13 +58,13 @@ class Reader {
         if (kind == file_.metadata.end() || kind->second != "kpcn" || text == file_.metadata.end())
             fail("holds no KPCN weights (training/limpid_training/export.py writes such files)");
         const json shape = json::parse(text->second, nullptr, false);
-        const auto number = [&](const char* name, uint32_t most) {
+        const auto number = [&](const char* name, uint32_t max) {
             if (!shape.is_object() || !shape.contains(name) || !shape[name].is_number_unsigned() ||
-                shape[name].get<uint64_t>() < 1 || shape[name].get<uint64_t>() > most)
-                fail(fmt::format("its metadata limpid.shape has no '{}' from 1 to {}", name, most));
+                shape[name].get<uint64_t>() < 1 || shape[name].get<uint64_t>() > max)
+                fail(fmt::format("its metadata limpid.shape has no '{}' from 1 to {}", name, max));
             return shape[name].get<uint32_t>();
         };
-        const Shape result{number("hidden", mostHidden), number("channels", mostChannels),
+        const Shape result{number("hidden", maxHidden), number("channels", maxChannels),
                            number("width", widestKernel), readFacing(shape)};
         if (result.width % 2 == 0) fail("its kernels have no centre: limpid.shape has an even 'width'");
         return result;
@@ -74,8 +74,8 @@ class Reader {
     float readFacing(const json& shape) const {
         if (!shape.contains("facing")) return KpcnWeights{}.facing;
         const json& facing = shape["facing"];
-        if (!facing.is_number() || !(facing.get<float>() >= leastFacing && facing.get<float>() <= 1.0f))
-            fail(fmt::format("its metadata limpid.shape has no 'facing' from {} to 1", leastFacing));
+        if (!facing.is_number() || !(facing.get<float>() >= minFacing && facing.get<float>() <= 1.0f))
+            fail(fmt::format("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
         return facing.get<float>();
     }
 

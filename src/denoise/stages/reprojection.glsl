@@ -1,5 +1,5 @@
 // Where a pixel's surface point was in the previous frame, and how near something there must be to be the same point.
-// docs/denoising.md, "History tracking", steps 1 to 3.
+// docs/denoising.md, "Temporal accumulation", steps 1 to 3.
 #ifndef LIMPID_REPROJECTION_GLSL
 #define LIMPID_REPROJECTION_GLSL
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float depthTolerance = 0.1f;         // of the expected distance
 constexpr float normalTolerance = 0.7071068f;  // cosine of 45 degrees
-constexpr float leastShare = 0.01f;            // under this, what is left of the four pixels says nothing
+constexpr float minShare = 0.01f;              // under this, what is left of the four pixels says nothing
 
 size_t clampedIndex(int64_t x, int64_t y, uint32_t width, uint32_t height) {
     x = std::clamp<int64_t>(x, 0, int64_t{width} - 1);
@@ -89,7 +89,7 @@ void keepSameSurface(Reprojection::Source& source, const std::array<size_t, 4>& 
         if (source.shares[k] > 0.0f && !test.same(pixel, previous[k])) source.shares[k] = 0.0f;
         sum += source.shares[k];
     }
-    const float scale = sum >= leastShare ? 1.0f / sum : 0.0f;
+    const float scale = sum >= minShare ? 1.0f / sum : 0.0f;
     for (float& share : source.shares) share *= scale;
 }
 

@@ -1,9 +1,11 @@
 #include "passes/ambient_occlusion/ambient_occlusion.h"
 
 #include <algorithm>
+#include <string>
 
 #include "ambient_occlusion.comp.h"
 #include "ambient_occlusion.rgen.h"
+#include "ambient_occlusion_signal.comp.h"
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
 #include "passes/traced_dispatch.h"
 
@@ -14,6 +16,12 @@ namespace {
 /// thousand. More rays would be lost without a word.
 constexpr uint32_t maxRaysPerDispatch = 32;
 constexpr float unlimited = 1e30f;  ///< INFINITE_DISTANCE of shaders/trace/trace.glsl
+
+/// Of the dispatch that begins with this ray; the last one has the pass's own name.
+std::string passName(uint32_t firstRay, uint32_t rays) {
+    const bool last = rays - firstRay <= maxRaysPerDispatch;
+    return last ? "ambient_occlusion" : "ambient_occlusion/" + std::to_string(firstRay);
+}
 
 }  // namespace
 
@@ -31,9 +39,20 @@ const ParamTable<AmbientOcclusionSettings>& ambientOcclusionParams() {
     return table;
 }
 
+std::vector<gpu::ImageHandle> makeAmbientOcclusionImages(gpu::FrameGraph& graph,
+                                                         const AmbientOcclusionSettings& settings,
+                                                         gpu::Extent extent) {
+    const auto rays = static_cast<uint32_t>(settings.rays);
+    std::vector<gpu::ImageHandle> images;
+    for (uint32_t first = 0; first < rays; first += maxRaysPerDispatch)
+        images.push_back(graph.transient(passName(first, rays), gpu::Format::RGBA32Float, extent));
+    return images;
+}
+
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
-                                  const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer) {
+                                  const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer,
+                                  std::span<const gpu::ImageHandle> into) {
     const gpu::Extent extent = graph.extent(gbuffer.position);
     const auto rays = static_cast<uint32_t>(settings.rays);
     AmbientOcclusionParams params{};
@@ -45,23 +64,47 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
     params.reach = settings.radius > 0.0f ? settings.radius * params.scene.sceneRadius : unlimited;
     // The first dispatch does not read `before`, but something must be bound.
     gpu::ImageHandle open = gbuffer.position;
-    for (uint32_t first = 0; first < rays; first += params.rays) {
-        params.firstRay = first;
-        params.rays = std::min(rays - first, maxRaysPerDispatch);
-        const bool last = first + params.rays == rays;
-        params.divisor = last ? static_cast<float>(rays) : 1.0f;
-        const std::string name = last ? "ambient_occlusion" : "ambient_occlusion/" + std::to_string(first);
-        const gpu::ImageHandle after = graph.transient(name, gpu::Format::RGBA32Float, extent);
-        dispatchTraced(graph, scene, name, {shaders::ambient_occlusion_comp, shaders::ambient_occlusion_rgen},
+    for (const gpu::ImageHandle after : into) {
+        params.rays = std::min(rays - params.firstRay, maxRaysPerDispatch);
+        params.divisor = params.firstRay + params.rays == rays ? static_cast<float>(rays) : 1.0f;
+        dispatchTraced(graph, scene, passName(params.firstRay, rays),
+                       {shaders::ambient_occlusion_comp, shaders::ambient_occlusion_rgen},
                        {{"position", gbuffer.position},
                         {"geometricNormal", gbuffer.geometricNormal},
                         {"normal", gbuffer.normal},
                         {"before", open},
                         {"openness", after}},
                        gpu::paramsOf(params), {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}}, extent);
+        params.firstRay += params.rays;
         open = after;
     }
     return open;
+}
+
+gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                                  const AmbientOcclusionSettings& settings,
+                                  const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer) {
+    return ambientOcclusion(graph, scene, settings, launch, gbuffer,
+                            makeAmbientOcclusionImages(graph, settings, graph.extent(gbuffer.position)));
+}
+
+void ambientOcclusionSignal(gpu::FrameGraph& graph, gpu::ImageHandle openness, gpu::ImageHandle depth,
+                            const AmbientOcclusionSignal& into) {
+    const gpu::Extent extent = graph.extent(openness);
+    const AmbientOcclusionSignalParams params{extent.width, extent.height};
+    graph.dispatch({.pass = "ambient_occlusion/signal",
+                    .shader = shaders::ambient_occlusion_signal_comp,
+                    .bindings = {{"openness", openness},
+                                 {"depth", depth},
+                                 {"diffuse", into.diffuse},
+                                 {"specular", into.specular},
+                                 {"emission", into.emission},
+                                 {"albedo", into.albedo},
+                                 {"albedoSpecular", into.albedoSpecular},
+                                 {"reflectionMotion", into.reflectionMotion}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
 }
 
 }  // namespace limpid

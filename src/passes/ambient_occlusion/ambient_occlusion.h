@@ -1,6 +1,9 @@
 // The ambient-occlusion pass: how open the surroundings of each point of a G-buffer are.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "base/params.h"
 #include "gpu/graph/frame_graph.h"
 #include "passes/gbuffer/gbuffer.h"
@@ -28,5 +31,25 @@ struct AmbientOcclusionLaunch {
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
                                   const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer);
+/// ... into images made before, for frames of several launches. The last of them has the result, the others
+/// are of the rays before.
+gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
+                                  const AmbientOcclusionSettings& settings,
+                                  const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer,
+                                  std::span<const gpu::ImageHandle> into);
+std::vector<gpu::ImageHandle> makeAmbientOcclusionImages(gpu::FrameGraph& graph,
+                                                         const AmbientOcclusionSettings& settings,
+                                                         gpu::Extent extent);
+
+/// Ambient occlusion as light that denoisers can clean: rgba32f images that the caller makes.
+struct AmbientOcclusionSignal {
+    gpu::ImageHandle diffuse;                                     ///< the open share; 0 where nothing is seen
+    gpu::ImageHandle albedo;                                      ///< 1; 0 where nothing is seen
+    gpu::ImageHandle emission;                                    ///< 1 where nothing is seen, else 0
+    gpu::ImageHandle specular, albedoSpecular, reflectionMotion;  ///< 0
+};
+/// `openness`: of ambientOcclusion(); `depth`: of its G-buffer.
+void ambientOcclusionSignal(gpu::FrameGraph& graph, gpu::ImageHandle openness, gpu::ImageHandle depth,
+                            const AmbientOcclusionSignal& into);
 
 }  // namespace limpid

@@ -21,6 +21,11 @@ struct AmbientOcclusionParams {
     float divisor;  // of the sum of open rays: their number in the last dispatch, 1 in others
 };
 
+struct AmbientOcclusionSignalParams {
+    uint width;
+    uint height;
+};
+
 #ifdef __cplusplus
 }  // namespace limpid
 #endif

@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-/// Records the passes "deform/pose", "deform/refit" and, for the `pipeline` tracer, "deform/structures".
+/// Records the passes "deform/pose", "deform/refit" and, for the `hardware` tracer, "deform/structures".
 /// Later passes of this graph see the scene as `frame` says; so do later frames.
 void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame);
 

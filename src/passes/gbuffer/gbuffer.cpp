@@ -21,35 +21,54 @@ const ParamTable<GBufferSettings>& gbufferParams() {
     return table;
 }
 
-GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
-                      const CameraLaunch& launch) {
-    GBufferImages images;
-    const gpu::History counters = graph.history("gbuffer/counters", Format::RG32Uint, launch.extent);
-    images.counters = counters.current;
-    images.ids = graph.transient("gbuffer/ids", Format::RG32Uint, launch.extent);
-    std::vector<gpu::Binding> bindings{
-        {"countersBefore", counters.previous}, {"counters", counters.current}, {"ids", images.ids}};
-    const auto image = [&](const char* name, ImageHandle& handle) {
-        handle = graph.transient(std::string("gbuffer/") + name, Format::RGBA32Float, launch.extent);
-        bindings.push_back({name, handle});
+GBufferImages makeGBufferImages(gpu::FrameGraph& graph, gpu::Extent extent, GBufferImages given) {
+    const auto make = [&](const char* name, ImageHandle& handle, Format format = Format::RGBA32Float) {
+        if (!handle) handle = graph.transient(std::string("gbuffer/") + name, format, extent);
     };
-    image("light", images.light);
-    image("emission", images.emission);
-    image("albedo", images.albedo);
-    image("albedoSpecular", images.albedoSpecular);
-    image("normal", images.normal);
-    image("depth", images.depth);
-    image("motion", images.motion);
-    image("previousNormal", images.previousNormal);
-    image("position", images.position);
-    image("geometricNormal", images.geometricNormal);
+    make("light", given.light);
+    make("emission", given.emission);
+    make("albedo", given.albedo);
+    make("albedoSpecular", given.albedoSpecular);
+    make("normal", given.normal);
+    make("depth", given.depth);
+    make("motion", given.motion);
+    make("previousNormal", given.previousNormal);
+    make("position", given.position);
+    make("geometricNormal", given.geometricNormal);
+    make("ids", given.ids, Format::RG32Uint);
+    return given;
+}
+
+void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
+             const CameraLaunch& launch, ImageHandle countersBefore, const GBufferImages& into) {
     const GBufferParams params{scene.params(), viewParams(launch)};
-    dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen}, bindings,
+    dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen},
+                   {{"countersBefore", countersBefore},
+                    {"counters", into.counters},
+                    {"ids", into.ids},
+                    {"light", into.light},
+                    {"emission", into.emission},
+                    {"albedo", into.albedo},
+                    {"albedoSpecular", into.albedoSpecular},
+                    {"normal", into.normal},
+                    {"depth", into.depth},
+                    {"motion", into.motion},
+                    {"previousNormal", into.previousNormal},
+                    {"position", into.position},
+                    {"geometricNormal", into.geometricNormal}},
                    gpu::paramsOf(params),
                    {{"LIGHT", settings.light ? 1u : 0u},
                     {"SHADOWS", settings.shadows ? 1u : 0u},
                     {"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}},
                    launch.extent);
+}
+
+GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
+                      const CameraLaunch& launch) {
+    const gpu::History counters = graph.history("gbuffer/counters", Format::RG32Uint, launch.extent);
+    GBufferImages images = makeGBufferImages(graph, launch.extent);
+    images.counters = counters.current;
+    gbuffer(graph, scene, settings, launch, counters.previous, images);
     return images;
 }
 

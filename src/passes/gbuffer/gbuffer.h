@@ -37,5 +37,11 @@ struct GBufferImages {
 
 GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
                       const CameraLaunch& launch);
+/// ... into images made before, for frames of several launches. `countersBefore` are those of the launch
+/// before.
+void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
+             const CameraLaunch& launch, gpu::ImageHandle countersBefore, const GBufferImages& into);
+/// `given`, and new images for all that it lacks but the counters.
+GBufferImages makeGBufferImages(gpu::FrameGraph& graph, gpu::Extent extent, GBufferImages given = {});
 
 }  // namespace limpid

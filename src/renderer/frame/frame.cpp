@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "passes/accumulate/accumulate.h"
 #include "passes/deform/deform.h"
@@ -54,12 +55,12 @@ FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const Re
     };
     FrameImages out;
     if (!settings.layers) {
-        const PathtraceBeauty traced = pathtraceBeauty(graph, scene, settings.pathtrace, launch);
+        const PathtraceBeauty traced = pathtraceBeauty(graph, scene, settings.pathsTraced(), launch);
         out.beauty = mean("beauty", traced.beauty, VarianceOf::Nothing);
         out.counters = traced.counters;
         return out;
     }
-    static_cast<PathtraceLayers&>(out) = pathtraceLayers(graph, scene, settings.pathtrace, launch);
+    static_cast<PathtraceLayers&>(out) = pathtraceLayers(graph, scene, settings.pathsTraced(), launch);
     for (const MeanLayer& layer : meanLayers)
         out.*layer.image = mean(layer.name, out.*layer.image, layer.varianceOf);
     return out;
@@ -124,17 +125,68 @@ FrameImages recordPreview(FrameGraph& graph, const scene::GpuScene& scene, const
     return out;
 }
 
-/// A frame's samples in as many launches as the device needs, averaged.
+/// Records one launch of what a denoiser cleans. `before` are the counters of the launch before.
+using Launch = std::function<void(const PathtraceLaunch&, ImageHandle before, const PathtraceLayers& into)>;
+
+GBufferImages withGuides(GBufferImages images, const PathtraceLayers& layers) {
+    images.normal = layers.normal;
+    images.depth = layers.depth;
+    images.motion = layers.motion;
+    images.previousNormal = layers.previousNormal;
+    images.ids = layers.ids;
+    images.counters = layers.counters;
+    return images;
+}
+
+/// Of one sample each: a white surface's diffuse light, and the guides of the first hit. `layers` are some
+/// that it will be recorded into.
+Launch occlusionLaunch(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
+                       const PathtraceLayers& layers) {
+    const auto openness = makeAmbientOcclusionImages(graph, settings.ambientOcclusion, settings.extent);
+    const GBufferImages images = makeGBufferImages(graph, settings.extent, withGuides({}, layers));
+    return [&, openness, images](const PathtraceLaunch& launch, ImageHandle before,
+                                 const PathtraceLayers& into) {
+        const GBufferImages seen = withGuides(images, into);
+        GBufferSettings used = settings.gbuffer;
+        used.light = false;
+        gbuffer(graph, scene, used, launch, before, seen);
+        const ImageHandle open =
+            ambientOcclusion(graph, scene, settings.ambientOcclusion,
+                             {launch.stream, settings.seed, settings.pathtrace.samplerTea}, seen, openness);
+        ambientOcclusionSignal(graph, open, into.depth,
+                               {.diffuse = into.diffuse,
+                                .albedo = into.albedo,
+                                .emission = into.emission,
+                                .specular = into.specular,
+                                .albedoSpecular = into.albedoSpecular,
+                                .reflectionMotion = into.reflectionMotion});
+    };
+}
+
+Launch pathLaunch(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings) {
+    return [&](const PathtraceLaunch& launch, ImageHandle before, const PathtraceLayers& into) {
+        pathtraceLayers(graph, scene, settings.pathsTraced(), launch, before, into);
+    };
+}
+
+/// A frame's samples in as many launches as the device and the integrator need, averaged.
 PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                              const FrameInput& input) {
-    PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
-    if (input.samples <= input.launchSamples)
-        return pathtraceLayers(graph, scene, settings.pathtrace, launch);
     const gpu::Extent extent = settings.extent;
-    const gpu::History counters = graph.history("pathtrace/counters", gpu::Format::RG32Uint, extent);
+    PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
+    const bool paths = settings.pipeline.integrator != Integrator::AmbientOcclusion;
+    const gpu::History counters =
+        graph.history(paths ? "pathtrace/counters" : "gbuffer/counters", gpu::Format::RG32Uint, extent);
+    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent);
+    traced.counters = counters.current;
+    const Launch record =
+        paths ? pathLaunch(graph, scene, settings) : occlusionLaunch(graph, scene, settings, traced);
+    if (input.samples <= input.launchSamples) {
+        record(launch, counters.previous, traced);
+        return traced;
+    }
     std::array<PathtraceLayers, 2> means{makePathtraceLayers(graph, "mean/", extent),
                                          makePathtraceLayers(graph, "other mean/", extent)};
-    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent);
     for (PathtraceLayers* layers : {&means[0], &means[1], &traced})
         layers->counters =
             graph.transient(graph.name(layers->ids) + " counters", gpu::Format::RG32Uint, extent);
@@ -148,7 +200,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
         PathtraceLayers& mean = means[number % 2];
         PathtraceLayers& into = number == 0 ? mean : traced;
         into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;
-        pathtraceLayers(graph, scene, settings.pathtrace, launch, countersBefore, into);
+        record(launch, countersBefore, into);
         countersBefore = into.counters;
         for (const MeanLayer& layer : meanLayers) {
             if (number == 0) break;
@@ -169,7 +221,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     return means[0];
 }
 
-/// The path tracer, and a denoiser that keeps its histories from frame to frame.
+/// Samples, and a denoiser that keeps its histories from frame to frame.
 FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                            const FrameInput& input) {
     FrameImages out;
@@ -190,9 +242,9 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                                        .filters = input.filters};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =
-        settings.pipeline.denoiser->record(graph, frame, settings.denoisers);
+        settings.pipeline.denoiser->record(graph, frame, settings.denoisers, settings.networks);
     out.beauty = denoised.beauty;
-    out.cases = denoised.cases;
+    out.disocclusion = denoised.disocclusion;
     return out;
 }
 
@@ -201,19 +253,19 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
 FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
                         const FrameInput& input) {
     if (input.moved) deform(graph, scene, *input.moved);
-    switch (settings.pipeline.kind) {
-        case Pipeline::Kind::Path:
+    if (settings.pipeline.denoiser) return recordDenoised(graph, scene, settings, input);
+    switch (settings.pipeline.integrator) {
+        case Integrator::Path:
+        case Integrator::Direct:
             return recordPath(graph, scene, settings, input);
-        case Pipeline::Kind::GBuffer:
-            return recordLit(graph, scene, settings, input);
-        case Pipeline::Kind::AmbientOcclusion:
+        case Integrator::AmbientOcclusion:
             return recordAmbientOcclusion(graph, scene, settings, input);
-        case Pipeline::Kind::Preview:
-            return recordPreview(graph, scene, settings, input);
-        case Pipeline::Kind::Denoised:
+        case Integrator::GBuffer:
+            return recordLit(graph, scene, settings, input);
+        case Integrator::Preview:
             break;
     }
-    return recordDenoised(graph, scene, settings, input);
+    return recordPreview(graph, scene, settings, input);
 }
 
 }  // namespace limpid

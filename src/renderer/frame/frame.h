@@ -17,23 +17,23 @@ namespace limpid {
 struct FrameInput {
     CameraParams camera;
     CameraParams previousCamera;
-    bool hasPrevious = false;                  ///< there is a previous frame, from which motion is told
-    const scene::SceneFrame* moved = nullptr;  ///< what moved since the scene was last traced
-    uint32_t firstSample = 0;                  ///< per pixel since the last reset, before this frame
-    uint64_t stream = 0;                       ///< of random numbers; no two launches have the same
-    uint64_t samplesBefore = 0;                ///< per pixel, in the running means
-    uint32_t samples = 1;                      ///< per pixel, in this frame
-    uint32_t launchSamples = UINT32_MAX;  ///< ... of these in one launch at most, of pipelines that denoise
+    bool hasPrevious = false;                    ///< there is a previous frame, from which motion is told
+    const scene::SceneFrame* moved = nullptr;    ///< what moved since the scene was last traced
+    uint32_t firstSample = 0;                    ///< per pixel since the last reset, before this frame
+    uint64_t stream = 0;                         ///< of random numbers; no two launches have the same
+    uint64_t samplesBefore = 0;                  ///< per pixel, in the running means
+    uint32_t samples = 1;                        ///< per pixel, in this frame
+    uint32_t launchSamples = UINT32_MAX;         ///< ... of these in one launch at most, before a denoiser
     gpu::Backing filters = gpu::Backing::Image;  ///< of images that filters read many times over
 };
 
-/// What a frame leaves on the device; images that a pipeline does not make are empty. `path` without layers
-/// makes `beauty` and `counters`; with layers beauty is the sum of diffuse, specular and emission. These are
-/// running means of `path`, and this frame's own of pipelines that denoise.
+/// What a frame leaves on the device; images that a pipeline does not make are empty. `path` and `direct`
+/// without layers make `beauty` and `counters`; with layers beauty is the sum of diffuse, specular and
+/// emission. These are running means without a denoiser, and this frame's own with one.
 struct FrameImages : PathtraceLayers {
     gpu::ImageHandle beauty;
-    gpu::ImageHandle cases;  ///< denoise::HistoryImages::cases
-    /// From this pass of the graph on they are the denoiser's; none of pipelines that do not denoise.
+    gpu::ImageHandle disocclusion;  ///< denoise::TemporalImages::disocclusion
+    /// From this pass of the graph on they are the denoiser's; none without one.
     std::optional<size_t> firstDenoisingPass;
 };
 

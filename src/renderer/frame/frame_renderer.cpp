@@ -8,8 +8,9 @@ namespace {
 /// Histories of samples that settled differently belong to another picture. What denoisers make of them does
 /// not matter, nor does the camera.
 bool sameSamples(const RenderSettings& a, const RenderSettings& b) {
+    const bool occlusion = a.pipeline.integrator == Integrator::AmbientOcclusion;
     return a.extent == b.extent && a.jitter == b.jitter && a.pipeline == b.pipeline &&
-           a.pathtrace == b.pathtrace;
+           a.pathtrace == b.pathtrace && (!occlusion || a.ambientOcclusion == b.ambientOcclusion);
 }
 
 }  // namespace
@@ -37,8 +38,7 @@ void FrameRenderer::render(Moment moment) {
                      .previousCamera = moment.previousCamera.value_or(moment.camera)};
     input.hasPrevious = moment.previousCamera.has_value();
     input.moved = moment.scene ? &*moment.scene : nullptr;
-    input.launchSamples =
-        settings_.pipeline.takesOneSampleALaunch() ? 1 : samplesPerLaunch(device_, settings_);
+    input.launchSamples = samplesPerLaunch(device_, settings_);
     input.filters = filters_;
     if (moment.scene) ++sceneVersion_;
     const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
@@ -113,9 +113,10 @@ RenderCounters FrameRenderer::counters() {
     return images_.counters ? sumCounters(graph_.downloadUint(device_, images_.counters)) : RenderCounters{};
 }
 
-denoise::HistoryCounts FrameRenderer::historyCounts() {
-    return images_.cases ? denoise::countCases(graph_.downloadUint(device_, images_.cases))
-                         : denoise::HistoryCounts{};
+denoise::DisocclusionCounts FrameRenderer::disocclusionCounts() {
+    return images_.disocclusion
+               ? denoise::countDisocclusion(graph_.downloadUint(device_, images_.disocclusion))
+               : denoise::DisocclusionCounts{};
 }
 
 }  // namespace limpid

@@ -43,8 +43,8 @@ class FrameRenderer {
     /// Of the last frame; without settings.layers only what beauty is made of. Waits for the device.
     RenderedLayers download();
     RenderCounters counters();
-    /// Zeros where the pipeline tracks no history.
-    denoise::HistoryCounts historyCounts();
+    /// Zeros without temporal accumulation.
+    denoise::DisocclusionCounts disocclusionCounts();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
     /// The same of the denoiser's passes alone; empty where the pipeline has none.
     std::vector<gpu::PassTime> denoisingTimes();

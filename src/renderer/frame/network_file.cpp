@@ -24,18 +24,19 @@ fs::path shippedWeights(const denoise::KpcnSettings& settings) {
     return {};
 }
 
-void loadNetwork(gpu::Device& device, const denoise::Denoiser* denoiser, const fs::path& file,
-                 denoise::DenoiserSettings& settings) {
+denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoiser* denoiser,
+                                       const fs::path& file, const denoise::DenoiserSettings& settings) {
     if (!denoiser || !denoiser->network) {
         if (!file.empty()) throw UsageError("--weights: only kpcn is a network and has weights");
-        return;
+        return {};
     }
     const fs::path chosen = file.empty() ? shippedWeights(settings.kpcn) : file;
     if (chosen.empty())
         throw InputError(shippedName(settings.kpcn),
                          "the weights that come with Limpid are not there: --weights FILE");
-    settings.kpcn.network = std::make_shared<denoise::KpcnNetwork>(
-        device, denoise::readKpcnWeights(chosen), denoise::kpcnPrecision(device.info(), settings.kpcn.half));
+    return {.kpcn = std::make_shared<denoise::KpcnNetwork>(
+                device, denoise::readKpcnWeights(chosen),
+                denoise::kpcnPrecision(device.info(), settings.kpcn.half))};
 }
 
 }  // namespace limpid

@@ -9,16 +9,17 @@
 namespace limpid {
 
 /// Fewer samples per pixel tell a network too little of a frame.
-constexpr uint32_t leastNetworkSamples = 8;
+constexpr uint32_t minNetworkSamples = 8;
 
 /// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`, beside
 /// the program, or in ../share/limpid seen from there. Empty if there are none.
 std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
-/// If the denoiser is a network, reads its weights from `file` (empty: the shipped ones) and sets it in
-/// `settings`. Throws InputError as denoise::readKpcnWeights(), and if there is no such file; UsageError if a
-/// file is named for a denoiser that is none.
-void loadNetwork(gpu::Device& device, const denoise::Denoiser* denoiser, const std::filesystem::path& file,
-                 denoise::DenoiserSettings& settings);
+/// What the denoiser (null: none) needs, its weights read from `file`; empty: the shipped ones. Throws
+/// InputError as denoise::readKpcnWeights(), and if there is no such file; UsageError if a file is named for
+/// a denoiser that is none.
+denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoiser* denoiser,
+                                       const std::filesystem::path& file,
+                                       const denoise::DenoiserSettings& settings);
 
 }  // namespace limpid

@@ -28,7 +28,7 @@ const std::vector<ParamGroup>& paramGroups() {
         groupOf(
             ambientOcclusionParams(), [](auto& s) -> auto& { return s.ambientOcclusion; }),
         groupOf(
-            denoise::historyParams(), [](auto& s) -> auto& { return s.denoisers.history; }),
+            denoise::temporalParams(), [](auto& s) -> auto& { return s.denoisers.temporal; }),
         groupOf(
             denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),
         groupOf(

@@ -1,46 +1,96 @@
 #include "renderer/frame/pipeline.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "renderer/layers/layers.h"
 
 namespace limpid {
 
-std::string_view Pipeline::name() const {
-    switch (kind) {
-        case Kind::Path:
-            return "path";
-        case Kind::GBuffer:
-            return "gbuffer";
-        case Kind::AmbientOcclusion:
-            return "ao";
-        case Kind::Preview:
-            return "preview";
-        case Kind::Denoised:
-            break;
-    }
-    return denoiser->name;
+const std::vector<Integrator>& integrators() {
+    static const std::vector<Integrator> all{Integrator::Path, Integrator::Direct,
+                                             Integrator::AmbientOcclusion, Integrator::GBuffer,
+                                             Integrator::Preview};
+    return all;
 }
 
-std::string_view Pipeline::help() const {
-    switch (kind) {
-        case Kind::Path:
-            return "the path tracer alone, accumulated progressively";
-        case Kind::GBuffer:
-            return "what the camera sees, lit by the lights directly, without a bounce";
-        case Kind::AmbientOcclusion:
-            return "ambient occlusion: how open each visible point is";
-        case Kind::Preview:
-            return "what the camera sees, shaded by a light at the camera: fast, for finding one's way";
-        case Kind::Denoised:
+std::string_view nameOf(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::Path:
+            return "path";
+        case Integrator::Direct:
+            return "direct";
+        case Integrator::AmbientOcclusion:
+            return "ao";
+        case Integrator::GBuffer:
+            return "gbuffer";
+        case Integrator::Preview:
             break;
     }
-    return denoiser->help;
+    return "preview";
+}
+
+std::string_view helpOf(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::Path:
+            return "path tracing: all light";
+        case Integrator::Direct:
+            return "path tracing of one bounce: light that reaches visible surfaces directly";
+        case Integrator::AmbientOcclusion:
+            return "ambient occlusion: how open each visible point is";
+        case Integrator::GBuffer:
+            return "visible surfaces, lit by one sample of one light";
+        case Integrator::Preview:
+            break;
+    }
+    return "visible surfaces, shaded by a light at the camera: fast, to find one's way";
+}
+
+bool canBeDenoised(Integrator integrator) {
+    return integrator != Integrator::GBuffer && integrator != Integrator::Preview;
+}
+
+Integrator parseIntegrator(std::string_view name) {
+    std::string names;
+    for (const Integrator integrator : integrators()) {
+        if (nameOf(integrator) == name) return integrator;
+        names += " " + std::string(nameOf(integrator));
+    }
+    throw UsageError("--integrator: there is no '" + std::string(name) + "'; the integrators are" + names);
+}
+
+std::string_view nameOf(const denoise::Denoiser* denoiser) {
+    return denoiser ? denoiser->name : "none";
+}
+
+std::vector<std::string_view> denoiserNames() {
+    std::vector<std::string_view> names{nameOf(nullptr)};
+    for (const denoise::Denoiser& denoiser : denoise::denoisers()) names.push_back(denoiser.name);
+    return names;
+}
+
+const denoise::Denoiser* parseDenoiser(std::string_view name) {
+    if (name == nameOf(nullptr)) return nullptr;
+    if (const denoise::Denoiser* denoiser = denoise::findDenoiser(name)) return denoiser;
+    if (name == "history") throw UsageError("--denoiser history is now --denoiser temporal");
+    std::string names;
+    for (const std::string_view each : denoiserNames()) names += " " + std::string(each);
+    throw UsageError("--denoiser: there is no '" + std::string(name) + "'; the denoisers are" + names);
+}
+
+std::string Pipeline::options() const {
+    return "--integrator " + std::string(nameOf(integrator)) + " --denoiser " + std::string(nameOf(denoiser));
+}
+
+std::string Pipeline::title() const {
+    return std::string(nameOf(integrator)) + (denoiser ? ", " + std::string(denoiser->name) : "");
 }
 
 std::vector<std::string> Pipeline::layers() const {
     std::vector<std::string> names = layerNames();
-    if (takesOneSampleALaunch()) std::erase(names, "specular");
-    if (takesOneSampleALaunch()) std::erase(names, "variance");
+    if (denoiser || !takesOneSampleALaunch()) return names;
+    std::erase(names, "specular");
+    std::erase(names, "variance");
     if (!needsExposure()) std::erase(names, "diffuse");
     if (!needsExposure()) std::erase(names, "emission");
     return names;
@@ -48,24 +98,26 @@ std::vector<std::string> Pipeline::layers() const {
 
 const std::vector<Pipeline>& pipelines() {
     static const std::vector<Pipeline> all = [] {
-        std::vector<Pipeline> list{{Pipeline::Kind::Path},
-                                   {Pipeline::Kind::GBuffer},
-                                   {Pipeline::Kind::AmbientOcclusion},
-                                   {Pipeline::Kind::Preview}};
-        for (const denoise::Denoiser& denoiser : denoise::denoisers())
-            list.push_back({Pipeline::Kind::Denoised, &denoiser});
+        std::vector<Pipeline> list;
+        for (const Integrator integrator : integrators()) {
+            list.push_back({integrator});
+            if (!canBeDenoised(integrator)) continue;
+            for (const denoise::Denoiser& denoiser : denoise::denoisers())
+                list.push_back({integrator, &denoiser});
+        }
         return list;
     }();
     return all;
 }
 
-Pipeline parsePipeline(std::string_view name) {
-    std::string names;
-    for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.name() == name) return pipeline;
-        names += " " + std::string(pipeline.name());
-    }
-    throw UsageError("there is no pipeline '" + std::string(name) + "'; the pipelines are" + names);
+Pipeline parsePipeline(std::string_view integrator, std::string_view denoiser) {
+    const Pipeline pipeline{parseIntegrator(integrator), parseDenoiser(denoiser)};
+    if (!pipeline.denoiser || canBeDenoised(pipeline.integrator)) return pipeline;
+    const char* const why =
+        pipeline.integrator == Integrator::Preview
+            ? "it has no noise"
+            : "it has no light signals for a denoiser; --integrator direct has the same light with them";
+    throw UsageError("--integrator " + std::string(integrator) + " takes no denoiser: " + why);
 }
 
 }  // namespace limpid

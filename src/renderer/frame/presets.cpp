@@ -8,6 +8,8 @@
 namespace limpid {
 namespace {
 
+const std::vector<std::string> lightIntegrators{"path", "direct", "ao"};
+
 Preset historyTrackingCourse() {
     return {.name = "history-tracking-course",
             .help =
@@ -15,19 +17,20 @@ Preset historyTrackingCourse() {
                 "that follow each pixel, restarted from grey, then five levels of an a-trous filter. Not as "
                 "there: the spline is symmetric, motion of objects is followed and changes the expected "
                 "distance, and what is seen directly (lights, sky) is added at the end, unfiltered",
-            .pipelines = {"atrous", "history"},
+            .integrators = lightIntegrators,
+            .denoisers = {"atrous", "temporal"},
             .jitter = Jitter::Off,
-            .assignments = {"history.normal=0.95",
-                            "history.depth=0.15",
-                            "history.relative=off",
-                            "history.search=off",
-                            "history.demodulate=off",
-                            "history.max_history=0",
-                            "history.grey_restart=on",
-                            "history.grey=0.5",
-                            "history.grey_misses=on",
-                            "history.identity=off",
-                            "atrous.history=on",
+            .assignments = {"temporal.normal=0.95",
+                            "temporal.depth=0.15",
+                            "temporal.relative=off",
+                            "temporal.search=off",
+                            "temporal.demodulate=off",
+                            "temporal.max_history=0",
+                            "temporal.grey_restart=on",
+                            "temporal.grey=0.5",
+                            "temporal.grey_misses=on",
+                            "temporal.identity=off",
+                            "atrous.temporal=on",
                             "atrous.levels=5",
                             "atrous.normal_factor=0.003",
                             "atrous.depth_factor=0.007",
@@ -45,7 +48,8 @@ Preset ambientOcclusionTutorial() {
                 "C. Wyman's \"DirectX Raytracing, Tutorial 6\": G-buffer, one ambient-occlusion ray per "
                 "pixel and frame, a running mean that starts anew when anything changes. Not as there: what "
                 "the camera sees is traced and not rasterised",
-            .pipelines = {"ao"},
+            .integrators = {"ao"},
+            .denoisers = {"none", "temporal", "atrous", "svgf", "kpcn"},
             .jitter = Jitter::Off,
             .assignments = {"ao.rays=1", "ao.radius=0.05"}};
 }
@@ -56,18 +60,29 @@ Preset svgfOfCis565() {
                 "SVGF as in \"Path Tracing Denoising\", a final project of the course CIS 565: one signal "
                 "with its albedo, weights by distances of points and of normals in world units. Not as "
                 "there: the first step is 1 pixel instead of 2, variances are those of a weighted mean",
-            .pipelines = {"svgf"},
+            .integrators = lightIntegrators,
+            .denoisers = {"svgf"},
             .jitter = Jitter::Off,
-            .assignments = {"svgf.separate=off",      "svgf.demodulate=off",
-                            "svgf.alpha=0.2",         "svgf.alpha_moments=0.2",
-                            "svgf.normal_test=0.995", "svgf.depth_test=0.1",
-                            "svgf.relative=off",      "svgf.antilag=0",
-                            "svgf.alpha_shown=1",     "svgf.levels=5",
-                            "svgf.history_level=1",   "svgf.wide=on",
-                            "svgf.phi_color=0.7",     "svgf.phi_normal=0.2",
-                            "svgf.phi_depth=0.35",    "svgf.boost=off",
-                            "svgf.blur_levels=10",    "svgf.position=on",
-                            "taa.frames=1",           "pathtrace.through_mirrors=off"}};
+            .assignments = {"svgf.separate=off",
+                            "svgf.demodulate=off",
+                            "svgf.alpha=0.2",
+                            "svgf.alpha_moments=0.2",
+                            "svgf.normal_test=0.995",
+                            "svgf.depth_test=0.1",
+                            "svgf.relative=off",
+                            "svgf.antilag=0",
+                            "svgf.stabilisation_alpha=1",
+                            "svgf.levels=5",
+                            "svgf.history_level=1",
+                            "svgf.wide=on",
+                            "svgf.phi_color=0.7",
+                            "svgf.phi_normal=0.2",
+                            "svgf.phi_depth=0.35",
+                            "svgf.boost=off",
+                            "svgf.blur_levels=10",
+                            "svgf.position=on",
+                            "taa.frames=1",
+                            "pathtrace.through_mirrors=off"}};
 }
 
 Preset kpcnOfCis565() {
@@ -78,7 +93,8 @@ Preset kpcnOfCis565() {
             "10 epochs on 32 samples, with the inputs, rates and batches that it names, and nothing after "
             "its kernels. Not as there: it sees the logarithm of diffuse light, and learnt from Limpid's "
             "random rooms and still lifes",
-        .pipelines = {"kpcn"},
+        .integrators = lightIntegrators,
+        .denoisers = {"kpcn"},
         .jitter = Jitter::Pixel,
         .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off"}};
 }
@@ -90,7 +106,8 @@ Preset jitterCameraTutorial() {
                 "a random point of the pixel, the first through its centre, a TEA seed per pixel and frame "
                 "with a linear congruential generator, a running mean of the frames. Not as there: with "
                 "--samples-per-launch only the very first sample goes through the centre, not all of frame 0",
-            .pipelines = {"path", "gbuffer", "ao"},
+            .integrators = {"path", "direct", "ao", "gbuffer"},
+            .denoisers = {"none"},
             .jitter = Jitter::Pixel,
             .progressive = true,
             .assignments = {"pathtrace.sampler_tea=on"}};
@@ -102,12 +119,13 @@ Preset svgfOfThePaper() {
         .help =
             "Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG 2017, without what Limpid adds "
             "to it",
-        .pipelines = {"svgf"},
+        .integrators = lightIntegrators,
+        .denoisers = {"svgf"},
         .jitter = Jitter::Off,
         .assignments = {"svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on", "svgf.alpha_moments=0.2",
-                        "svgf.antilag=0", "svgf.alpha_shown=1", "svgf.levels=5", "svgf.history_level=1",
-                        "svgf.phi_normal=128", "svgf.phi_depth=1", "svgf.boost=off", "svgf.blur_levels=10",
-                        "taa.frames=1", "pathtrace.through_mirrors=off"}};
+                        "svgf.antilag=0", "svgf.stabilisation_alpha=1", "svgf.levels=5",
+                        "svgf.history_level=1", "svgf.phi_normal=128", "svgf.phi_depth=1", "svgf.boost=off",
+                        "svgf.blur_levels=10", "taa.frames=1", "pathtrace.through_mirrors=off"}};
 }
 
 std::string listed(const std::vector<std::string>& words) {
@@ -116,10 +134,38 @@ std::string listed(const std::vector<std::string>& words) {
     return text;
 }
 
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+    return std::ranges::find(names, name) != names.end();
+}
+
+/// The last preset's first name that all presets have; its first if they have none in common.
+std::string commonName(std::span<const std::string> presetNames, std::vector<std::string> Preset::*namesOf) {
+    const std::vector<std::string>& last = findPreset(presetNames.back()).*namesOf;
+    for (const std::string& name : last) {
+        const bool common = std::ranges::all_of(presetNames, [&](const std::string& preset) {
+            return contains(findPreset(preset).*namesOf, name);
+        });
+        if (common) return name;
+    }
+    return last.front();
+}
+
+void checkIsFor(const std::string& preset, const char* option, std::string_view name,
+                const std::vector<std::string>& names) {
+    if (contains(names, name)) return;
+    throw UsageError("--preset " + preset + ": is not for " + option + " " + std::string(name) + ", but for" +
+                     listed(names));
+}
+
 }  // namespace
 
 bool Preset::isFor(const Pipeline& pipeline) const {
-    return std::ranges::find(pipelines, pipeline.name()) != pipelines.end();
+    return contains(integrators, nameOf(pipeline.integrator)) &&
+           contains(denoisers, nameOf(pipeline.denoiser));
+}
+
+Pipeline Preset::pipeline() const {
+    return parsePipeline(integrators.front(), denoisers.front());
 }
 
 const std::vector<Preset>& presets() {
@@ -147,19 +193,24 @@ void applyPreset(RenderSettings& settings, std::string_view name) {
     for (const std::string& text : preset.assignments) assign(settings, text);
 }
 
-Pipeline pipelineFor(std::span<const std::string> presetNames, std::string_view asked,
-                     std::string_view otherwise) {
-    const std::string name = !asked.empty() || presetNames.empty()
-                                 ? std::string(asked.empty() ? otherwise : asked)
-                                 : findPreset(presetNames.back()).pipelines.front();
-    const Pipeline pipeline = parsePipeline(name);
+Pipeline pipelineFor(std::span<const std::string> presetNames, const PipelineChoice& asked,
+                     const Pipeline& otherwise) {
+    const bool open = presetNames.empty();
+    std::string integrator = asked.integrator, denoiser = asked.denoiser;
+    if (integrator.empty())
+        integrator = open ? nameOf(otherwise.integrator) : commonName(presetNames, &Preset::integrators);
+    if (denoiser.empty())
+        denoiser = open ? nameOf(otherwise.denoiser) : commonName(presetNames, &Preset::denoisers);
+    if (open && !canBeDenoised(parseIntegrator(integrator))) {
+        if (asked.denoiser.empty()) denoiser = nameOf(nullptr);
+        if (asked.integrator.empty() && parseDenoiser(denoiser)) integrator = nameOf(Integrator::Path);
+    }
     for (const std::string& each : presetNames) {
         const Preset& preset = findPreset(each);
-        if (preset.isFor(pipeline)) continue;
-        throw UsageError("--preset " + each + ": is not for '" + name + "', but for" +
-                         listed(preset.pipelines));
+        checkIsFor(each, "--integrator", nameOf(parseIntegrator(integrator)), preset.integrators);
+        checkIsFor(each, "--denoiser", nameOf(parseDenoiser(denoiser)), preset.denoisers);
     }
-    return pipeline;
+    return parsePipeline(integrator, denoiser);
 }
 
 }  // namespace limpid

@@ -18,15 +18,17 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
     for (const Preset& preset : presets()) {
         EXPECT_TRUE(names.insert(preset.name).second) << preset.name;
         EXPECT_GT(preset.help.size(), 20u);
-        ASSERT_FALSE(preset.pipelines.empty());
-        for (const std::string& pipeline : preset.pipelines)
-            EXPECT_TRUE(preset.isFor(parsePipeline(pipeline)));
+        ASSERT_FALSE(preset.integrators.empty() || preset.denoisers.empty());
+        for (const std::string& integrator : preset.integrators) {
+            for (const std::string& denoiser : preset.denoisers)
+                EXPECT_TRUE(preset.isFor(parsePipeline(integrator, denoiser)));
+        }
         RenderSettings settings;
         EXPECT_NO_THROW(applyPreset(settings, preset.name));
         EXPECT_EQ(settings.jitter, preset.jitter);
         EXPECT_NE(assignmentsOf(settings), std::vector<std::string>()) << preset.name;
         // Histories follow what the first hit says.
-        if (const denoise::Denoiser* denoiser = parsePipeline(preset.pipelines.front()).denoiser) {
+        if (const denoise::Denoiser* denoiser = preset.pipeline().denoiser) {
             EXPECT_FALSE(settings.pathtrace.throughMirrors) << preset.name;
             EXPECT_EQ(settings.jitter, denoiser->network ? Jitter::Pixel : Jitter::Off);
         }
@@ -36,11 +38,11 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
 TEST(Presets, TheCoursesHistoryRestartsFromGreyEverywhereAndTracksAnyObject) {
     RenderSettings settings;
     applyPreset(settings, "history-tracking-course");
-    const denoise::HistorySettings& history = settings.denoisers.history;
-    EXPECT_TRUE(history.greyRestart && history.greyMisses);
-    EXPECT_EQ(history.grey, 0.5f);
-    EXPECT_FALSE(history.identity || history.search || history.relative || history.demodulate);
-    EXPECT_EQ(history.maxHistory, 0.0f);
+    const denoise::TemporalSettings& temporal = settings.denoisers.temporal;
+    EXPECT_TRUE(temporal.greyRestart && temporal.greyMisses);
+    EXPECT_EQ(temporal.grey, 0.5f);
+    EXPECT_FALSE(temporal.identity || temporal.search || temporal.relative || temporal.demodulate);
+    EXPECT_EQ(temporal.maxHistory, 0.0f);
 }
 
 TEST(Presets, TheJitterTutorialIsARunningMeanOfOneJitteredRayEach) {
@@ -50,26 +52,53 @@ TEST(Presets, TheJitterTutorialIsARunningMeanOfOneJitteredRayEach) {
     EXPECT_TRUE(settings.pathtrace.samplerTea);
     EXPECT_EQ(settings.samplesPerLaunch, 1u);
     EXPECT_TRUE(findPreset("jitter-camera-tutorial").progressive);
-    for (const char* pipeline : {"path", "gbuffer", "ao"})
-        EXPECT_THAT(findPreset("jitter-camera-tutorial").pipelines, Contains(pipeline));
+    for (const char* integrator : {"path", "gbuffer", "ao"})
+        EXPECT_THAT(findPreset("jitter-camera-tutorial").integrators, Contains(integrator));
 }
 
-TEST(Presets, ThePipelineIsTheAskedOneIfThePresetIsForIt) {
-    const std::vector<std::string> none, course{"history-tracking-course"},
-        both{"history-tracking-course", "svgf-paper"};
-    EXPECT_EQ(pipelineFor(none, "", "path").name(), "path");
-    EXPECT_EQ(pipelineFor(none, "svgf", "path").name(), "svgf");
-    EXPECT_EQ(pipelineFor(course, "", "path").name(), "atrous");
-    EXPECT_EQ(pipelineFor(course, "history", "path").name(), "history");
-    EXPECT_THROW(pipelineFor(course, "path", "path"), UsageError);
-    EXPECT_THROW(pipelineFor(both, "", "path"), UsageError);
-    EXPECT_THROW(pipelineFor(none, "nothing", "path"), UsageError);
+std::string faultOf(const std::vector<std::string>& presetNames, const PipelineChoice& asked) {
     try {
-        pipelineFor(course, "kpcn", "path");
-        FAIL();
+        pipelineFor(presetNames, asked, {});
     } catch (const UsageError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("is not for 'kpcn', but for atrous history"));
+        return error.what();
     }
+    return "none";
+}
+
+TEST(Presets, WhatIsAskedForWinsOverPresetsAndDefaults) {
+    const std::vector<std::string> none, course{"history-tracking-course"};
+    const Pipeline kept = parsePipeline("ao", "svgf");
+    EXPECT_EQ(pipelineFor(none, {}, {}), Pipeline{});
+    EXPECT_EQ(pipelineFor(none, {}, kept), kept);
+    EXPECT_EQ(pipelineFor(none, {"", "atrous"}, kept), parsePipeline("ao", "atrous"));
+    EXPECT_EQ(pipelineFor(none, {"direct", ""}, kept), parsePipeline("direct", "svgf"));
+    EXPECT_EQ(pipelineFor(course, {}, {}), parsePipeline("path", "atrous"));
+    EXPECT_EQ(pipelineFor(course, {"ao", "temporal"}, {}), parsePipeline("ao", "temporal"));
+    EXPECT_THAT(faultOf(none, {"nothing", ""}),
+                HasSubstr("the integrators are path direct ao gbuffer preview"));
+    EXPECT_THAT(faultOf(none, {"", "nothing"}),
+                HasSubstr("the denoisers are none temporal atrous svgf kpcn"));
+}
+
+TEST(Presets, AnIntegratorThatTakesNoDenoiserIsRefusedOnlyWhereBothAreAskedFor) {
+    const std::vector<std::string> none;
+    EXPECT_EQ(pipelineFor(none, {"gbuffer", ""}, parsePipeline("path", "svgf")), parsePipeline("gbuffer"));
+    EXPECT_EQ(pipelineFor(none, {"", "svgf"}, parsePipeline("preview")), parsePipeline("path", "svgf"));
+    EXPECT_THAT(faultOf(none, {"gbuffer", "svgf"}), HasSubstr("--integrator gbuffer takes no denoiser"));
+    EXPECT_THAT(faultOf(none, {"preview", "svgf"}), HasSubstr("it has no noise"));
+}
+
+TEST(Presets, SeveralMustBeForTheSame) {
+    EXPECT_EQ(pipelineFor(std::vector<std::string>{"ambient-occlusion-tutorial", "history-tracking-course"},
+                          {}, {}),
+              parsePipeline("ao", "atrous"));
+    EXPECT_THAT(faultOf({"history-tracking-course", "svgf-paper"}, {}),
+                HasSubstr("history-tracking-course: is not for --denoiser svgf, but for atrous temporal"));
+    EXPECT_THAT(faultOf({"history-tracking-course"}, {"", "kpcn"}),
+                HasSubstr("is not for --denoiser kpcn, but for atrous temporal"));
+    EXPECT_THAT(faultOf({"svgf-paper"}, {"", "none"}), HasSubstr("is not for --denoiser none, but for svgf"));
+    EXPECT_THAT(faultOf({"svgf-paper"}, {"gbuffer", ""}),
+                HasSubstr("is not for --integrator gbuffer, but for path direct ao"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ bool mustReset(const AccumulationState& before, const AccumulationState& now) {
     RenderSettings settings = now.settings;
     settings.samplesPerLaunch = before.settings.samplesPerLaunch;
     settings.denoisers = before.settings.denoisers;
+    settings.networks = before.settings.networks;
     return !sameCamera(before.camera, now.camera) || before.settings != settings ||
            before.sceneVersion != now.sceneVersion;
 }

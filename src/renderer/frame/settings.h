@@ -1,6 +1,7 @@
 // What decides a frame's pixels, besides the scene.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "denoise/api/denoiser.h"
@@ -15,7 +16,7 @@ namespace limpid {
 /// Means of many samples cover the pixel. Histories follow one point of it: jitter per pixel would flip what
 /// a silhouette's pixels see from frame to frame. A network keeps no history, and its guides are means.
 inline Jitter defaultJitter(const Pipeline& pipeline) {
-    const bool means = pipeline.accumulates() || pipeline.denoiser->network;
+    const bool means = pipeline.accumulates() || pipeline.usesNetwork();
     return means ? Jitter::Pixel : Jitter::Off;
 }
 
@@ -35,6 +36,14 @@ struct RenderSettings {
     GBufferSettings gbuffer;
     AmbientOcclusionSettings ambientOcclusion;
     denoise::DenoiserSettings denoisers;
+    denoise::DenoiserNetworks networks;
+
+    /// Those of the path tracer, as the integrator uses them: `direct` has one bounce at most.
+    PathtraceSettings pathsTraced() const {
+        PathtraceSettings traced = pathtrace;
+        if (pipeline.integrator == Integrator::Direct) traced.maxDepth = std::min(traced.maxDepth, 1);
+        return traced;
+    }
     bool operator==(const RenderSettings&) const = default;
 };
 

@@ -28,6 +28,7 @@ RenderCounters sumCounters(std::span<const uint32_t> pixels) {
 }
 
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings) {
+    if (settings.pipeline.takesOneSampleALaunch()) return 1;
     return device.isCpu() ? std::min(settings.samplesPerLaunch, maxSamplesPerCpuLaunch)
                           : settings.samplesPerLaunch;
 }
@@ -38,7 +39,7 @@ std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& 
     if (handles.empty()) {
         std::string names;
         for (const gpu::RecordedPass& recorded : graph.passes()) names += " " + recorded.name;
-        throw UsageError("there is no pass '" + pass + "' in this pipeline; its passes are" + names);
+        throw UsageError("there is no pass '" + pass + "' in this frame; its passes are" + names);
     }
     for (const gpu::ImageHandle previous : graph.previousReadBy(pass)) handles.push_back(previous);
     std::vector<std::pair<std::string, image::Image>> result;

@@ -31,7 +31,7 @@ struct Moment {
     uint64_t number = 0;                         ///< of the frame: another one, other noise
 };
 
-/// What settings.samplesPerLaunch comes to on this device: CPUs have a limit.
+/// What settings.samplesPerLaunch comes to: CPUs have a limit, and some integrators take one.
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
 
 /// The images that the pass of this name wrote in the graph's last frame, and those it found there from the

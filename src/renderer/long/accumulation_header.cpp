@@ -29,14 +29,14 @@ class HeaderReader {
         if (!json_.is_object()) fail("has a damaged header");
     }
 
-    uint64_t number(const char* name, uint64_t least, uint64_t most) const {
-        return number(name, at(name), least, most);
+    uint64_t number(const char* name, uint64_t min, uint64_t max) const {
+        return number(name, at(name), min, max);
     }
-    uint64_t number(const char* name, const Json& json, uint64_t least, uint64_t most) const {
+    uint64_t number(const char* name, const Json& json, uint64_t min, uint64_t max) const {
         if (!json.is_number_unsigned()) fail(fmt::format("'{}' is no number", name));
         const uint64_t value = json.get<uint64_t>();
-        if (value < least || value > most)
-            fail(fmt::format("'{}' is {}, outside {} to {}", name, value, least, most));
+        if (value < min || value > max)
+            fail(fmt::format("'{}' is {}, outside {} to {}", name, value, min, max));
         return value;
     }
     std::string text(const char* name, const Json& json) const {
@@ -110,9 +110,9 @@ Shard shardOf(const HeaderReader& reader) {
 }
 
 gpu::Extent extentOf(const HeaderReader& reader) {
-    constexpr uint64_t most = 65535;
-    const gpu::Extent extent{static_cast<uint32_t>(reader.number("width", 1, most)),
-                             static_cast<uint32_t>(reader.number("height", 1, most))};
+    constexpr uint64_t max = 65535;
+    const gpu::Extent extent{static_cast<uint32_t>(reader.number("width", 1, max)),
+                             static_cast<uint32_t>(reader.number("height", 1, max))};
     if (uint64_t{extent.width} * extent.height > image::maxPixels) reader.fail("is of too large a picture");
     return extent;
 }
@@ -121,14 +121,14 @@ std::vector<std::pair<uint64_t, uint64_t>> finishedOf(const HeaderReader& reader
     std::vector<std::pair<uint64_t, uint64_t>> ranges;
     if (reader.array("finished").size() > maxFinishedRanges)
         reader.fail("has too long a list of finished frames");
-    uint64_t least = 0;
+    uint64_t min = 0;
     for (const Json& json : reader.array("finished")) {
         const Json& range = reader.pair("finished", json);
-        const uint64_t first = reader.number("finished", range[0], least, frames);
+        const uint64_t first = reader.number("finished", range[0], min, frames);
         const uint64_t last = reader.number("finished", range[1], first, frames);
         if (last == frames) reader.fail("has a finished frame that its shard lacks");
         ranges.emplace_back(first, last);
-        least = last + 1;
+        min = last + 1;
     }
     return ranges;
 }

@@ -65,11 +65,11 @@ uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
 }
 
 uint64_t cameraHash(const Sequence& sequence, uint64_t frames, gpu::Extent extent) {
-    constexpr uint64_t most = 1000;
+    constexpr uint64_t maxFrames = 1000;
     Hash64 hash;
-    const uint64_t count = std::min(frames, most);
+    const uint64_t count = std::min(frames, maxFrames);
     for (uint64_t i = 0; i < count; ++i) {
-        const uint64_t frame = frames <= most ? i : i * (frames - 1) / (most - 1);
+        const uint64_t frame = frames <= maxFrames ? i : i * (frames - 1) / (maxFrames - 1);
         hash.addValue(sequence.camera(frame, extent));
     }
     return hash.value();
@@ -88,10 +88,10 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
         {seedEntry, fmt::format("{}", settings.seed)},
         {"jitter", toString(settings.jitter)},
     };
+    const PathtraceSettings traced = settings.pathsTraced();
     const ParamTable<PathtraceSettings>& table = pathtraceParams();
     for (size_t i = 0; i < table.infos().size(); ++i)
-        entries.emplace_back(table.group() + "." + table.infos()[i].name,
-                             toString(table.get(settings.pathtrace, i)));
+        entries.emplace_back(table.group() + "." + table.infos()[i].name, toString(table.get(traced, i)));
     entries.emplace_back(versionEntry, validUtf8(identity.version));
     return entries;
 }

@@ -40,7 +40,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
     }
     if (!data.motion.deforming.empty()) addDeformBuffers(device, data);
-    if (options.tracer == Tracer::Pipeline) {
+    if (options.tracer == Tracer::Hardware) {
         structures_.emplace(device, "scene/structures", buffer("bvhTriangles"), data.trees, data.placements);
     }
 }

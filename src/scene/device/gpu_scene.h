@@ -19,7 +19,7 @@ class GpuScene {
     /// lacks the tracer.
     GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options = {});
 
-    Tracer tracer() const { return structures_ ? Tracer::Pipeline : Tracer::Compute; }
+    Tracer tracer() const { return structures_ ? Tracer::Hardware : Tracer::Compute; }
 
     /// What every pass that includes scene_data.glsl binds.
     std::vector<gpu::Binding> bindings() const;
@@ -32,7 +32,7 @@ class GpuScene {
     const gpu::Buffer& buffer(std::string_view name) const;
     /// bvhNodes are expanded: what changes in "quantisedNodes" must follow there.
     bool expandsNodes() const { return gpuTraversal_; }
-    /// Of the `pipeline` tracer; null with the other.
+    /// Of the `hardware` tracer; null with the other.
     const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
     uint64_t byteCount() const;
 

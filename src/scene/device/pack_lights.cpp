@@ -17,7 +17,7 @@ namespace {
 /// How often next-event estimation asks the environment where there are other lights too.
 constexpr float environmentShare = 0.5f;
 /// ... and how often at least triangles and punctual lights of what is left, where there are both.
-constexpr double leastTriangleShare = 0.2, leastPunctualShare = 0.35;
+constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
 /// Of the triangles' samples: shared equally by all lamps, the rest by power.
 constexpr double uniformShare = 0.25;
 
@@ -121,7 +121,7 @@ class LightPacker {
         data_.params.triangleLightProbability =
             weights_.empty()
                 ? 0.0f
-                : static_cast<float>(std::clamp(share, leastTriangleShare, 1.0 - leastPunctualShare));
+                : static_cast<float>(std::clamp(share, minTriangleShare, 1.0 - minPunctualShare));
     }
 
     void packInstance(size_t index) {

@@ -38,7 +38,7 @@ struct SceneData {
     layout::SceneParams params{};
     uint32_t stackSize = 0;
     MotionData motion;
-    /// For the `pipeline` tracer: the trees as runs of bvhTriangles, and a placement for each record of
+    /// For the `hardware` tracer: the trees as runs of bvhTriangles, and a placement for each record of
     /// bvhInstances; in a scene of one tree, one placement.
     std::vector<gpu::TriangleTree> trees;
     std::vector<gpu::TreePlacement> placements;

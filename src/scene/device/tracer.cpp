@@ -3,11 +3,11 @@
 namespace limpid::scene {
 
 std::string_view toString(Tracer tracer) {
-    return tracer == Tracer::Pipeline ? "pipeline" : "compute";
+    return tracer == Tracer::Hardware ? "hardware" : "compute";
 }
 
 Tracer automaticTracer(const gpu::DeviceInfo& device) {
-    return device.rayTracingCores ? Tracer::Pipeline : Tracer::Compute;
+    return device.rayTracingCores ? Tracer::Hardware : Tracer::Compute;
 }
 
 }  // namespace limpid::scene

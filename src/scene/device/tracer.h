@@ -10,7 +10,7 @@ namespace limpid::scene {
 
 enum class Tracer {
     Compute,   ///< our own tree, walked in a compute shader; on every device
-    Pipeline,  ///< VK_KHR_ray_tracing_pipeline
+    Hardware,  ///< VK_KHR_ray_tracing_pipeline
 };
 
 struct TraceOptions {
@@ -22,7 +22,7 @@ struct TraceOptions {
 
 std::string_view toString(Tracer tracer);
 
-/// `pipeline` where there is hardware for it. Drivers that offer the extension without are slower at it than
+/// `hardware` where there is hardware for it. Drivers that offer the extension without are slower at it than
 /// our own tree (docs/benchmarks.md).
 Tracer automaticTracer(const gpu::DeviceInfo& device);
 

@@ -1,4 +1,4 @@
-// What rays of the `pipeline` tracer run, whichever pass starts them.
+// What rays of the `hardware` tracer run, whichever pass starts them.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"

@@ -1,5 +1,5 @@
 // The one interface through which passes trace rays. Implementations: trace_compute.glsl (our tree, walked in a
-// compute shader) and, where the including shader defines LIMPID_TRACE_PIPELINE, trace_pipeline.glsl (the driver's, from
+// compute shader) and, where the including shader defines LIMPID_TRACE_HARDWARE, trace_hardware.glsl (the driver's, from
 // ray generation). Shading never depends on which one is used.
 #ifndef LIMPID_TRACE_GLSL
 #define LIMPID_TRACE_GLSL
@@ -31,8 +31,8 @@ bool isHit(Hit hit) {
 //     Hit traceClosest(Ray ray, uint rootNode, uint rng);
 //     /// Whether anything lies between the origin and ray.tMax.
 //     bool traceAny(Ray ray, uint rootNode, uint rng);
-#ifdef LIMPID_TRACE_PIPELINE
-#include "shaders/trace/trace_pipeline.glsl"
+#ifdef LIMPID_TRACE_HARDWARE
+#include "shaders/trace/trace_hardware.glsl"
 #else
 #include "shaders/trace/trace_compute.glsl"
 #endif

@@ -1,4 +1,4 @@
-// What the hit shaders of the `pipeline` tracer know of their candidate.
+// What the hit shaders of the `hardware` tracer know of their candidate.
 #ifndef LIMPID_TRACE_HIT_GLSL
 #define LIMPID_TRACE_HIT_GLSL
 

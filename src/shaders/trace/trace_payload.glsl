@@ -1,4 +1,4 @@
-// What a ray of the `pipeline` tracer carries between its shaders.
+// What a ray of the `hardware` tracer carries between its shaders.
 #ifndef LIMPID_TRACE_PAYLOAD_GLSL
 #define LIMPID_TRACE_PAYLOAD_GLSL
 

@@ -48,25 +48,25 @@ Sides sidesOf(ivec2 at) {
 }
 
 /// No further than one of the pixels around, whose extreme moves these are.
-vec3 within(Side own, float least, float most) {
-    return mix(own.clean, own.noisy, abs(clamp(own.moved, min(least, 0.0), max(most, 0.0))));
+vec3 within(Side own, float low, float high) {
+    return mix(own.clean, own.noisy, abs(clamp(own.moved, min(low, 0.0), max(high, 0.0))));
 }
 
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = ivec2(params.width, params.height);
     if (any(greaterThanEqual(at, size))) return;
     const Sides own = sidesOf(at);
-    vec2 least = vec2(0.0), most = vec2(0.0);
+    vec2 low = vec2(0.0), high = vec2(0.0);
     if (own.diffuse.moved != 0.0 || own.specular.moved != 0.0) {
         for (int k = 0; k < 9; ++k) {
             const ivec2 there = at + ivec2(k % 3, k / 3) - 1;
             if (k == 4 || any(lessThan(there, ivec2(0))) || any(greaterThanEqual(there, size))) continue;
             const Sides other = sidesOf(there);
             const vec2 moved = vec2(other.diffuse.moved, other.specular.moved);
-            least = min(least, moved);
-            most = max(most, moved);
+            low = min(low, moved);
+            high = max(high, moved);
         }
     }
-    const vec3 scattered = within(own.diffuse, least.x, most.x) + within(own.specular, least.y, most.y);
+    const vec3 scattered = within(own.diffuse, low.x, high.x) + within(own.specular, low.y, high.y);
     imageStore(beauty, at, vec4(scattered + finiteOr(imageLoad(emission, at).rgb, vec3(0.0)), 1.0));
 }

@@ -118,7 +118,8 @@ const ParamTable<AtrousSettings>& atrousParams() {
     static const auto table = [] {
         using S = AtrousSettings;
         ParamTable<S> t("atrous");
-        t.add("history", &S::history, "filter the running means of `history`; off: the frame's own samples");
+        t.add("temporal", &S::temporal,
+              "filter the running means of `temporal`; off: the frame's own samples");
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels; more is smoother "
               "and slower");

@@ -10,7 +10,7 @@ namespace limpid::denoise {
 
 /// What a user may set; atrousParams() is where range and meaning stand.
 struct AtrousSettings {
-    bool history = true;
+    bool temporal = true;
     int levels = 5;
     float normalFactor = 3e-4f;
     float depthFactor = 1e-4f;

@@ -44,12 +44,12 @@ struct Surfaces {
 };
 
 struct Accumulated {
-    ImageHandle color;      ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
-    ImageHandle moments;    ///< rgba32f: first, second, fast first, frames
-    ImageHandle tiles;      ///< r32f: lag
-    History feedback;       ///< of colors; `current` is what the next frame reads
-    ImageHandle shown;      ///< half4: the last level's result, or as `feedback` where that is not kept
-    ImageHandle shownPast;  ///< half4: what was shown, weight of what is beside it
+    ImageHandle color;       ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
+    ImageHandle moments;     ///< rgba32f: first, second, fast first, frames
+    ImageHandle tiles;       ///< r32f: lag
+    History feedback;        ///< of colors; `current` is what the next frame reads
+    ImageHandle stable;      ///< half4: the last level's result, or as `feedback` where that is not kept
+    ImageHandle stablePast;  ///< half4: stable light of before, weight of the light of now
 };
 
 class Svgf {
@@ -135,7 +135,7 @@ class Svgf {
         return {steadyShare(), settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
     }
 
-    SvgfReprojectParams reprojectParams(bool wasShown) const {
+    SvgfReprojectParams reprojectParams(bool wasStable) const {
         SvgfReprojectParams params{};
         params.camera = input_.camera;
         params.width = extent_.width;
@@ -149,19 +149,19 @@ class Svgf {
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
         params.lag = lagParams();
-        params.alphaShown = wasShown ? settings_.alphaShown : 1.0f;
+        params.stabilisationAlpha = wasStable ? settings_.stabilisationAlpha : 1.0f;
         // Shorter ones would stay young for ever.
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
 
     /// The last of the filter's levels does.
-    bool mixesShown() const { return settings_.alphaShown < 1.0f && settings_.levels > 0; }
+    bool stabilises() const { return settings_.stabilisationAlpha < 1.0f && settings_.levels > 0; }
 
-    /// What was shown lives on as what is fed back, or by itself.
-    History shownOf(const std::string& name, const History& feedback) {
-        if (!mixesShown() || fedBack() == settings_.levels) return feedback;
-        return graph_.history(name + " shown", Format::RGBA16Float, extent_, input_.filters);
+    /// Stable light is what is fed back, or has a history of its own.
+    History stableOf(const std::string& name, const History& feedback) {
+        if (!stabilises() || fedBack() == settings_.levels) return feedback;
+        return graph_.history(name + " stable", Format::RGBA16Float, extent_, input_.filters);
     }
 
     /// What svgf_signal.glsl has.
@@ -185,14 +185,15 @@ class Svgf {
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
         const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
-        const History shown = shownOf(name, feedback);
-        const ImageHandle shownPast = graph_.transient(name + " shown past", Format::RGBA16Float,
-                                                       mixesShown() ? extent_ : Extent{1, 1}, input_.filters);
+        const History stable = stableOf(name, feedback);
+        const ImageHandle stablePast =
+            graph_.transient(name + " stable past", Format::RGBA16Float,
+                             stabilises() ? extent_ : Extent{1, 1}, input_.filters);
         const ImageHandle color =
             fedBack() == 0
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
-        const SvgfReprojectParams params = reprojectParams(shown.valid);
+        const SvgfReprojectParams params = reprojectParams(stable.valid);
         std::vector<gpu::Binding> bindings{{"motion", input_.motion},
                                            {"reflectionMotion", input_.reflectionMotion},
                                            {"previousNormal", input_.previousNormal},
@@ -204,11 +205,11 @@ class Svgf {
                                            {"momentsBefore", moments.previous},
                                            {"color", color},
                                            {"moments", moments.current},
-                                           {"shownBefore", shown.previous},
-                                           {"shownPast", shownPast}};
+                                           {"stableBefore", stable.previous},
+                                           {"stablePast", stablePast}};
         std::vector<gpu::ConstantValue> constants = constantsOf(signal);
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
-        constants.push_back({"MIX_SHOWN", mixesShown() ? 1u : 0u});
+        constants.push_back({"STABILISE", stabilises() ? 1u : 0u});
         if (buffers_) {
             bindings.push_back({"tiles", tiles});
             constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});
@@ -219,7 +220,7 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        return {color, moments.current, tiles, feedback, shown.current, shownPast};
+        return {color, moments.current, tiles, feedback, stable.current, stablePast};
     }
 
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
@@ -258,7 +259,7 @@ class Svgf {
         params.phiColor = settings_.phiColor;
         params.normalScale = log2e * (settings_.position ? 1.0f / settings_.phiNormal : settings_.phiNormal);
         params.depthScale = log2e / settings_.phiDepth;
-        params.shownNoise = settings_.shownNoise;
+        params.stabilisationNoise = settings_.stabilisationNoise;
         return params;
     }
 
@@ -289,9 +290,9 @@ class Svgf {
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
-        const bool mixed = mixesShown() && number == settings_.levels;
+        const bool mixed = stabilises() && number == settings_.levels;
         const ImageHandle filtered =
-            mixed                 ? accumulated.shown
+            mixed                 ? accumulated.stable
             : number == fedBack() ? accumulated.feedback.current
                                   : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
         const int step = 1 << (number - 1);
@@ -299,14 +300,14 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = filterConstants();
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
-        constants.push_back({"MIX_SHOWN", mixed ? 1u : 0u});
+        constants.push_back({"STABILISE", mixed ? 1u : 0u});
         constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
                                       {"signal", before},
                                       {"filtered", filtered},
-                                      {"shownPast", mixed ? accumulated.shownPast : before}},
+                                      {"stablePast", mixed ? accumulated.stablePast : before}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = invocations(step)});
@@ -359,11 +360,11 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("separate", &S::separate,
               "filter diffuse and specular light apart; off: their sum, in half the time");
         t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
-        t.add(
-            "alpha", &S::alpha, 1e-4, 1.0, "",
-            "least weight of a frame in the running mean; lower is smoother, higher follows changes sooner");
+        t.add("alpha", &S::alpha, 1e-4, 1.0, "",
+              "smallest weight of a frame in the running mean; lower is smoother, higher follows changes "
+              "sooner");
         t.add("alpha_moments", &S::alphaMoments, 1e-4, 1.0, "",
-              "... in the moments of the luminance, whence the variance");
+              "... in the moments of the luminance, which give the variance");
         t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "", "... in the fast mean that anti-lag compares with");
         t.add("normal_test", &S::normalTest, -1.0, 1.0, "cosine",
               "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
@@ -392,13 +393,13 @@ const ParamTable<SvgfSettings>& svgfParams() {
               "sees greater changes as greater; above `antilag_noise` a single firefly may pass for one, "
               "below an eighth of it nothing does")
             .slider(0, 10);
-        t.add("alpha_shown", &S::alphaShown, 0.01, 1.0, "",
-              "least weight of a frame's filtered light in what is shown; lower flickers less and follows "
-              "changes later; 1 (and no levels) is off");
-        t.add(
-             "shown_noise", &S::shownNoise, 0.0, 100.0, "deviations",
-             "of the filtered light that what was shown before may differ by and still count in full; higher "
-             "flickers less and follows changes later")
+        t.add("stabilisation_alpha", &S::stabilisationAlpha, 0.01, 1.0, "",
+              "stabilisation: smallest weight of a frame's filtered light in a mean over frames; lower "
+              "flickers less "
+              "and follows changes later; 1 (and no levels) is off");
+        t.add("stabilisation_noise", &S::stabilisationNoise, 0.0, 100.0, "deviations",
+              "of the filtered light that the stable light of before may differ by and still count in full; "
+              "higher flickers less and follows changes later")
             .slider(0, 5);
         t.add("levels", &S::levels, 0, 10, "levels",
               "each doubles the filter's reach: n of them reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2");

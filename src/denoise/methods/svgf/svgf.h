@@ -24,8 +24,8 @@ struct SvgfSettings {
     float antilag = 16.0f;
     float antilagNoise = 1.5f;
     float antilagPixel = 1.5f;
-    float alphaShown = 0.5f;
-    float shownNoise = 0.5f;
+    float stabilisationAlpha = 0.5f;
+    float stabilisationNoise = 0.5f;
     int levels = 4;
     int historyLevel = 0;
     bool wide = false;
@@ -44,7 +44,7 @@ const ParamTable<SvgfSettings>& svgfParams();
 /// (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag SIGNAL" (neither
 /// without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories:
 /// "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it
-/// is fed back, "svgf/SIGNAL shown".
+/// is fed back, "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 /// The same, and the filtered signals by themselves: rgba32f, with albedo, without emission, alpha 1.

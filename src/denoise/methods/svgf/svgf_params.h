@@ -18,10 +18,10 @@ LIMPID_CONST int SVGF_COLUMN = 3;
 // In place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
-LIMPID_CONST float SVGF_YOUNG = 4.0;  // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_LEAST_FRAMES = 1.5;  // of history: 2 is the first, but for rounding
-LIMPID_CONST float SVGF_LEAST_LAG = 0.1;     // less would change little, and cost as much memory traffic
-LIMPID_CONST float SVGF_LEAST_SLOPE =
+LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // of history: 2 is the first, but for rounding
+LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // less would change little, and cost as much memory traffic
+LIMPID_CONST float SVGF_MIN_SLOPE =
     0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // of the luminance: tolerated where there is no noise
@@ -51,8 +51,8 @@ struct SvgfReprojectParams {
     float alpha;
     float alphaMoments;
     float alphaFast;
-    float longest;     // frames
-    float alphaShown;  // 1 if nothing was shown
+    float longest;             // frames
+    float stabilisationAlpha;  // 1 if there is no stable light of before
     SvgfLagParams lag;
 };
 
@@ -77,9 +77,9 @@ struct SvgfFilterParams {
     uint height;
     int step;  // pixels
     float phiColor;
-    float normalScale;  // log2(e) phi_normal; with positions log2(e) / phi_normal
-    float depthScale;   // log2(e) / phi_depth
-    float shownNoise;   // deviations that what was shown may differ by
+    float normalScale;         // log2(e) phi_normal; with positions log2(e) / phi_normal
+    float depthScale;          // log2(e) / phi_depth
+    float stabilisationNoise;  // deviations that the stable light of before may differ by
 };
 
 struct SvgfModulateParams {

@@ -5,9 +5,9 @@
 
 namespace limpid::denoise {
 
-/// Beauty, rgba32f, alpha 1. `scattered` and `emission` are rgba32f; `cases` is HistoryImages::cases, shown
-/// as colours if `showCases`.
+/// Beauty, rgba32f, alpha 1. `scattered` and `emission` are rgba32f; `disocclusion` is
+/// TemporalImages::disocclusion, in colours instead of light if `showDisocclusion`.
 gpu::ImageHandle compose(gpu::FrameGraph& graph, gpu::ImageHandle scattered, gpu::ImageHandle emission,
-                         gpu::ImageHandle cases, bool showCases);
+                         gpu::ImageHandle disocclusion, bool showDisocclusion);
 
 }  // namespace limpid::denoise

@@ -10,7 +10,7 @@ namespace limpid::denoise {
 struct ComposeParams {
     uint width;
     uint height;
-    uint showCases;  // colours instead of light where there is no history
+    uint showDisocclusion;  // colours instead of light where there is no history
 };
 
 #ifdef __cplusplus

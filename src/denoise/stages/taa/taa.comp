@@ -43,7 +43,7 @@ struct Neighbourhood {
 /// `now` is what p has: differences from it keep their digits where the picture is flat.
 Neighbourhood around(ivec2 at, vec3 now) {
     vec3 sum = vec3(0.0), squares = vec3(0.0);
-    float least = 1e30;
+    float minDepth = 1e30;
     ivec2 nearest = at;
     for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
@@ -52,8 +52,8 @@ Neighbourhood around(ivec2 at, vec3 now) {
             sum += v;
             squares += v * v;
             const float z = hitDistance(imageLoad(depth, there));
-            if (z > 0.0 && z < least) {
-                least = z;
+            if (z > 0.0 && z < minDepth) {
+                minDepth = z;
                 nearest = there;
             }
         }

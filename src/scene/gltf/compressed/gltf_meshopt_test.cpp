@@ -141,7 +141,7 @@ GltfFile plainSheet(const Sheet& sheet) {
 }
 
 /// The mode TRIANGLES keeps triangles and their order, but may start each at another corner.
-std::vector<uint32_t> withLeastFirst(std::vector<uint32_t> indices) {
+std::vector<uint32_t> withMinFirst(std::vector<uint32_t> indices) {
     for (size_t i = 0; i + 2 < indices.size(); i += 3) {
         const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
         std::rotate(first, std::min_element(first, first + 3), first + 3);
@@ -166,7 +166,7 @@ TEST_F(MeshoptTest, CompressedGeometryEqualsThePlain) {
                     const Mesh mesh = loadScene(file.saveCompressed(folder, marked)).meshes.at(0);
                     EXPECT_EQ(mesh.positions, plain.positions);
                     EXPECT_EQ(mesh.uv0, plain.uv0);
-                    EXPECT_EQ(withLeastFirst(mesh.indices), withLeastFirst(plain.indices));
+                    EXPECT_EQ(withMinFirst(mesh.indices), withMinFirst(plain.indices));
                     if (std::string(mode) == "INDICES") {
                         EXPECT_EQ(mesh.indices, plain.indices);
                     }

@@ -33,7 +33,7 @@ float lagBetween(vec4 corners, vec2 share) {
 }
 
 void shorten(ivec2 at, float lag) {
-    if (!(lag >= SVGF_LEAST_LAG)) return;
+    if (!(lag >= SVGF_MIN_LAG)) return;
     const vec4 before = imageLoad(moments, at);
     const vec3 light = lightAt(at);
     if (before.w <= 1.0 || !isFinite(light)) return;

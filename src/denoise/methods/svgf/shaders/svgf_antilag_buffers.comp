@@ -19,7 +19,7 @@ void main() {
     barrier();
     if (number < EDGE * EDGE) {
         lags[number] = tileAt(firstTile + ivec2(number % EDGE, number / EDGE));
-        if (lags[number] >= SVGF_LEAST_LAG) atomicOr(anyLags, 1u);
+        if (lags[number] >= SVGF_MIN_LAG) atomicOr(anyLags, 1u);
     }
     barrier();
     if (anyLags == 0u || at.x >= int(params.width) || at.y >= int(params.height)) return;

@@ -6,7 +6,7 @@
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
-layout(constant_id = 5) const bool MIX_SHOWN = false;  // with what was shown before
+layout(constant_id = 5) const bool STABILISE = false;  // a mean with the stable light of before
 layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1
 
 layout(set = 0, binding = 0, scalar) uniform Params {
@@ -15,7 +15,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_UINT2(1, surfaces);
 READ_HALF4(2, signal);
 WRITE_HALF4(3, filtered);
-READ_HALF4(4, shownPast);  // light | weight of this frame's beside it
+READ_HALF4(4, stablePast);  // light | weight of this frame's beside it
 
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
 
@@ -55,7 +55,7 @@ struct Centre {
     vec4 sum;  // of weighted light; of weights
     float squares;
     bool seen;
-    vec4 shownPast;
+    vec4 stablePast;
 };
 
 /// Of differences of luminance, for an exponent of 2.
@@ -124,7 +124,7 @@ Centre begin(ivec2 at, int number) {
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
     // Loaded before the taps, so that its latency is hidden behind theirs.
-    centre.shownPast = MIX_SHOWN ? LOAD_HALF4(shownPast, nearestInside(at)) : vec4(0.0);
+    centre.stablePast = STABILISE ? LOAD_HALF4(stablePast, nearestInside(at)) : vec4(0.0);
     return centre;
 }
 
@@ -137,17 +137,17 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     centre.squares += deviation * deviation;
 }
 
-/// What is shown of filtered light: what was is trusted as far as the filter's own noise reaches.
+/// Stabilised light: a mean over frames, as far as the filter's own noise explains that they differ.
 vec3 mixedWithPast(vec4 now, vec4 past) {
     const float l = luminance(now.rgb), change = abs(luminance(past.rgb) - l);
-    const float noise = params.shownNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
+    const float noise = params.stabilisationNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
     return mix(now.rgb, past.rgb, (1.0 - past.a) * min(noise / max(change, 1e-30), 1.0));
 }
 
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
     vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
-    if (MIX_SHOWN) result.rgb = mixedWithPast(result, centre.shownPast);
+    if (STABILISE) result.rgb = mixedWithPast(result, centre.stablePast);
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 

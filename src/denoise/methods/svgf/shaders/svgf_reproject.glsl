@@ -4,7 +4,7 @@
 #include "denoise/methods/svgf/svgf_params.h"
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // light is followed as what lies behind its surface
-layout(constant_id = 3) const bool MIX_SHOWN = false;    // what was shown is followed, too
+layout(constant_id = 3) const bool STABILISE = false;    // stable light is reprojected, too
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
@@ -23,8 +23,8 @@ READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
-READ_HALF4(18, shownBefore);
-WRITE_HALF4(13, shownPast);  // light | weight of this frame's beside it
+READ_HALF4(18, stableBefore);
+WRITE_HALF4(13, stablePast);  // light | weight of this frame's beside it
 
 /// How a surface point must have looked in the previous frame.
 struct Expected {
@@ -34,7 +34,7 @@ struct Expected {
 };
 
 struct Past {
-    vec3 color, shown;
+    vec3 color, stable;
     vec4 moments;
 };
 
@@ -63,16 +63,16 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     Past there = NO_TAPS.sum;
     there.moments = imageLoad(momentsBefore, inside);
     if (WAIT_ONCE) there.color = LOAD_HALF4(colorBefore, inside).rgb;
-    if (WAIT_ONCE && MIX_SHOWN) there.shown = LOAD_HALF4(shownBefore, inside).rgb;
+    if (WAIT_ONCE && STABILISE) there.stable = LOAD_HALF4(stableBefore, inside).rgb;
     const bool counts = at == inside && depth > 0.0 && there.moments.w > 0.0 &&
                         dot(expected.normal, decodeOctahedral(surface.x)) > params.normalTest &&
                         abs(expected.depth - depth) < expected.tolerance &&
                         (WAIT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance;
     if (!counts || weight <= 0.0) return;
     if (!WAIT_ONCE) there.color = LOAD_HALF4(colorBefore, inside).rgb;
-    if (!WAIT_ONCE && MIX_SHOWN) there.shown = LOAD_HALF4(shownBefore, inside).rgb;
+    if (!WAIT_ONCE && STABILISE) there.stable = LOAD_HALF4(stableBefore, inside).rgb;
     taps.sum.color += weight * there.color;
-    taps.sum.shown += weight * there.shown;
+    taps.sum.stable += weight * there.stable;
     taps.sum.moments += weight * there.moments;
     taps.weight += weight;
 }
@@ -110,7 +110,7 @@ Past pastAt(vec2 position, Expected expected) {
     } while (more);
 #endif
     if (taps.weight <= 0.0) return NO_TAPS.sum;
-    return Past(taps.sum.color / taps.weight, taps.sum.shown / taps.weight, taps.sum.moments / taps.weight);
+    return Past(taps.sum.color / taps.weight, taps.sum.stable / taps.weight, taps.sum.moments / taps.weight);
 }
 
 /// `moved` as in the `motion` image.
@@ -149,13 +149,13 @@ Past accumulated(Past past, vec3 x) {
     const float frames = min(past.moments.w + 1.0, params.longest);
     const float l = luminance(x);
     const vec3 alphas = max(vec3(params.alphaMoments, params.alphaMoments, params.alphaFast), 1.0 / frames);
-    return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)), past.shown,
+    return Past(mix(past.color, x, max(params.alpha, 1.0 / frames)), past.stable,
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
 }
 
-/// Of this frame's filtered light, beside what was shown.
-float shownWeight(float frames) {
-    return max(params.alphaShown, 1.0 / max(frames, 1.0));
+/// Of this frame's filtered light, beside the stable light of before.
+float stableWeight(float frames) {
+    return max(params.stabilisationAlpha, 1.0 / max(frames, 1.0));
 }
 
 /// Returns the moments.
@@ -169,7 +169,7 @@ vec4 accumulate(ivec2 at) {
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(now.moments)) : vec4(x, SVGF_NOTHING_SEEN));
-    if (MIX_SHOWN) STORE_HALF4(shownPast, at, vec4(now.shown, shownWeight(now.moments.w)));
+    if (STABILISE) STORE_HALF4(stablePast, at, vec4(now.stable, stableWeight(now.moments.w)));
     const vec4 stored = seen ? now.moments : vec4(0.0);
     imageStore(moments, at, stored);
     return stored;

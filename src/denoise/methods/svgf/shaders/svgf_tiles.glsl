@@ -9,9 +9,9 @@ struct TileSums {
 /// Of a pixel of the image of moments. It is taken at its word only as far as its own noise reaches: a bright sample makes
 /// no change of light.
 TileSums tileSumsOf(vec4 m, SvgfLagParams lag) {
-    if (m.w < SVGF_LEAST_FRAMES) return TileSums(0.0, 0.0, 0.0);
-    const float noise = lag.steadyShare * max(m.y - m.x * m.x, 0.0), most = lag.antilagPixel * sqrt(noise);
-    return TileSums(clamp(m.z - m.x, -most, most), noise, max(m.z, m.x));
+    if (m.w < SVGF_MIN_FRAMES) return TileSums(0.0, 0.0, 0.0);
+    const float noise = lag.steadyShare * max(m.y - m.x * m.x, 0.0), limit = lag.antilagPixel * sqrt(noise);
+    return TileSums(clamp(m.z - m.x, -limit, limit), noise, max(m.z, m.x));
 }
 
 void add(inout TileSums sums, TileSums other) {

@@ -45,8 +45,8 @@ vec2 slopeOf(Surface surface, ivec2 at) {
     const vec3 down = params.camera.up * (-2.0 / float(params.height));
     const float squared = dot(ray, ray);
     float facing = dot(surface.normal, ray);
-    const float least = SVGF_LEAST_SLOPE * sqrt(squared);
-    facing = facing < 0.0 ? min(facing, -least) : max(facing, least);
+    const float minimum = SVGF_MIN_SLOPE * sqrt(squared);
+    facing = facing < 0.0 ? min(facing, -minimum) : max(facing, minimum);
     const vec2 tilt = vec2(dot(surface.normal, toRight), dot(surface.normal, down)) / facing;
     if (ORTHOGRAPHIC) return -tilt;
     return surface.depth * (vec2(dot(ray, toRight), dot(ray, down)) / squared - tilt);

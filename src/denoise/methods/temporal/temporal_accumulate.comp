@@ -1,14 +1,14 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// History tracking: each pixel's running mean follows its surface point from frame to frame. docs/denoising.md has the
+// Temporal accumulation: each pixel's running mean follows its surface point from frame to frame. docs/denoising.md has the
 // formulas; the idea is from D. Nehab et al., "Accelerating Real-Time Shading with Reverse Reprojection Caching", 2007.
-#include "denoise/methods/history/history_params.h"
+#include "denoise/methods/temporal/temporal_params.h"
 #include "denoise/stages/reprojection.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    HistoryParams params;
+    TemporalParams params;
 };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D diffuse;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D specular;
@@ -24,7 +24,7 @@ layout(set = 0, binding = 11, rgba32f) uniform readonly image2D albedoIdBefore;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D color;
 layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D normalDepth;
 layout(set = 0, binding = 14, rgba32f) uniform writeonly image2D albedoId;
-layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D cases;
+layout(set = 0, binding = 15, r32ui) uniform writeonly uimage2D disocclusion;
 
 /// How a surface point must have looked in the previous frame.
 struct Expected {
@@ -101,21 +101,21 @@ void main() {
 
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(imageLoad(motion, at), vec2(pixel), size);
-    uint failure = !hit ? CASE_NOTHING_HIT : !was.onScreen ? CASE_OFF_SCREEN : CASE_TRACKED;
+    uint failure = !hit ? DISOCCLUSION_NOTHING_HIT : !was.onScreen ? DISOCCLUSION_OFF_SCREEN : DISOCCLUSION_NONE;
     vec4 before = vec4(0.0);
-    if (failure == CASE_TRACKED) {
+    if (failure == DISOCCLUSION_NONE) {
         const float depthBefore = z + was.depthChange;
         const float tolerance =
             params.relative == 0u ? params.depthThreshold
                                   : depthTolerance(params.camera, depthBefore, n, vec2(pixel), size, params.depthThreshold);
         const Expected expected = Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, id);
         before = historyAt(was.position, expected, modulation(vec4(albedoNow, 0.0)));
-        if (before.w < 0.0) failure = CASE_NO_VALID_TAP;
+        if (before.w < 0.0) failure = DISOCCLUSION_NO_VALID_TAP;
     }
     vec4 now = updated(before, radiance);
-    if (failure != CASE_TRACKED) {
+    if (failure != DISOCCLUSION_NONE) {
         before = vec4(0.0);
-        const bool grey = params.greyRestart != 0u && (failure != CASE_NOTHING_HIT || params.greyMisses != 0u);
+        const bool grey = params.greyRestart != 0u && (failure != DISOCCLUSION_NOTHING_HIT || params.greyMisses != 0u);
         now = grey ? updated(vec4(vec3(params.grey), 1.0), radiance) : vec4(radiance, 1.0);
     }
     // Near the end of float's range resampling may overflow, too.
@@ -125,5 +125,5 @@ void main() {
     imageStore(color, at, valid ? now : before);
     imageStore(normalDepth, at, vec4(hit ? n : vec3(0.0), z));
     imageStore(albedoId, at, vec4(albedoNow, id));
-    imageStore(cases, at, uvec4(failure | (valid ? 0u : SAMPLE_REJECTED)));
+    imageStore(disocclusion, at, uvec4(failure | (valid ? 0u : SAMPLE_REJECTED)));
 }

@@ -1,7 +1,7 @@
 // Rays through the driver's acceleration structures, from a ray-generation shader. Its trees are made of the triangles in
 // bvhTriangles, in that order (gpu/graph/resources.h).
-#ifndef LIMPID_TRACE_PIPELINE_GLSL
-#define LIMPID_TRACE_PIPELINE_GLSL
+#ifndef LIMPID_TRACE_HARDWARE_GLSL
+#define LIMPID_TRACE_HARDWARE_GLSL
 
 #include "shaders/trace/trace_payload.glsl"
 

@@ -1,5 +1,5 @@
-// The oracle of history tracking on whole frames, by what must hold of any right implementation.
-#include "tests/oracle/double_history.h"
+// The oracle of temporal accumulation on whole frames, by what must hold of any right implementation.
+#include "tests/oracle/double_temporal.h"
 
 #include <gtest/gtest.h>
 
@@ -12,24 +12,24 @@ namespace {
 
 using denoise::HostFrame;
 
-HistoryResult trackFrames(const SyntheticScene& scene, int frames, const DoubleHistoryParams& params = {}) {
-    HistoryResult result;
+TemporalResult trackFrames(const SyntheticScene& scene, int frames, const DoubleTemporalParams& params = {}) {
+    TemporalResult result;
     for (int i = 0; i < frames; ++i)
-        result = trackHistory(scene.frame(i, width, height, 1), result.images, params);
+        result = accumulateTemporally(scene.frame(i, width, height, 1), result.images, params);
     return result;
 }
 
-TEST(DoubleHistory, StaticFramesGiveTheProgressiveMean) {
+TEST(DoubleTemporal, StaticFramesGiveTheProgressiveMean) {
     const SyntheticScene scene({});
-    HistoryResult result;
+    TemporalResult result;
     std::vector<dvec3> sums(size_t{width} * height, dvec3(0.0));
     for (int i = 0; i < 6; ++i) {
         const HostFrame frame = scene.frame(i, width, height, 1);
         const DoubleFrame pixels(frame);
-        result = trackHistory(frame, result.images, {});
+        result = accumulateTemporally(frame, result.images, {});
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             sums[p] += pixels.scattered(p);
-            const HistoryPixel& pixel = result.pixels[p];
+            const TemporalPixel& pixel = result.pixels[p];
             ASSERT_EQ(pixel.failure, !pixels.hit(p) ? 1 : i == 0 ? 2 : 0);
             ASSERT_FALSE(pixel.doubtful || pixel.rejected);
             const double count = pixels.hit(p) ? i + 1.0 : 1.0;
@@ -40,14 +40,15 @@ TEST(DoubleHistory, StaticFramesGiveTheProgressiveMean) {
     }
 }
 
-TEST(DoubleHistory, ATranslatedCameraFindsTheFloorAgain) {
+TEST(DoubleTemporal, ATranslatedCameraFindsTheFloorAgain) {
     for (const bool orthographic : {false, true}) {
         const SyntheticScene scene({.cameraMoves = true, .orthographic = orthographic});
         const HostFrame now = scene.frame(1, width, height, 1), before = scene.frame(0, width, height, 1);
         const DoubleFrame pixels(now);
         for (const bool search : {false, true}) {
-            const DoubleHistoryParams params{.search = search};
-            const HistoryResult result = trackHistory(now, trackHistory(before, {}, params).images, params);
+            const DoubleTemporalParams params{.search = search};
+            const TemporalResult result =
+                accumulateTemporally(now, accumulateTemporally(before, {}, params).images, params);
             size_t floor = 0, found = 0, grazing = 0, grazingFound = 0, doubtful = 0;
             for (size_t p = 0; p < now.pixelCount(); ++p) {
                 if (!allAround(p, 3, [&](size_t q) { return isFloor(now, q); })) continue;
@@ -68,12 +69,12 @@ TEST(DoubleHistory, ATranslatedCameraFindsTheFloorAgain) {
     }
 }
 
-TEST(DoubleHistory, WhatAnObjectUncoversHasNoHistory) {
+TEST(DoubleTemporal, WhatAnObjectUncoversHasNoHistory) {
     const SyntheticScene scene({.objectMoves = true});
     const HostFrame before = scene.frame(0, width, height, 1), now = scene.frame(1, width, height, 1);
     const auto wasBox = [&](size_t p) { return before.ids[2 * p] == SyntheticScene::Box; };
-    const HistoryResult result = trackFrames(scene, 2);
-    const HistoryResult grey = trackFrames(scene, 2, {.greyRestart = true});
+    const TemporalResult result = trackFrames(scene, 2);
+    const TemporalResult grey = trackFrames(scene, 2, {.greyRestart = true});
     size_t uncovered = 0;
     for (size_t p = 0; p < now.pixelCount(); ++p) {
         const uint32_t id = now.ids[2 * p];
@@ -96,28 +97,28 @@ TEST(DoubleHistory, WhatAnObjectUncoversHasNoHistory) {
     EXPECT_GT(uncovered, 30u);
 }
 
-TEST(DoubleHistory, InvalidSamplesLeaveTheHistoryAlone) {
+TEST(DoubleTemporal, InvalidSamplesLeaveTheHistoryAlone) {
     const SyntheticScene scene({});
-    const HistoryResult before = trackFrames(scene, 3, {.maxHistory = 2});
+    const TemporalResult before = trackFrames(scene, 3, {.maxHistory = 2});
     HostFrame frame = scene.frame(3, width, height, 1);
     const size_t p = frame.pixelCount() - width / 2;  // the floor at the bottom
     frame.diffuse[4 * p] = std::numeric_limits<float>::quiet_NaN();
     // Finite each, but their sum is not in float32.
     frame.diffuse[4 * p + 5] = frame.specular[4 * p + 5] = std::numeric_limits<float>::max();
-    const HistoryResult after = trackHistory(frame, before.images, {.maxHistory = 2});
+    const TemporalResult after = accumulateTemporally(frame, before.images, {.maxHistory = 2});
     for (const size_t q : {p, p + 1}) {
         EXPECT_TRUE(after.pixels[q].rejected);
         EXPECT_LT(glm::distance(after.images.colour[q], before.images.colour[q]), 1e-12);
     }
     EXPECT_FALSE(after.pixels[p + 2].rejected);
     EXPECT_EQ(after.images.colour[p + 2].w, 2.0);
-    const HistoryResult first = trackHistory(frame, {}, {});
+    const TemporalResult first = accumulateTemporally(frame, {}, {});
     EXPECT_EQ(first.images.colour[p], dvec4(0.0));
 }
 
-TEST(DoubleHistory, TheScaleOfTheSceneDoesNotMatter) {
-    const HistoryResult small = trackFrames(SyntheticScene({.cameraMoves = true, .objectMoves = true}), 4);
-    const HistoryResult large =
+TEST(DoubleTemporal, TheScaleOfTheSceneDoesNotMatter) {
+    const TemporalResult small = trackFrames(SyntheticScene({.cameraMoves = true, .objectMoves = true}), 4);
+    const TemporalResult large =
         trackFrames(SyntheticScene({.cameraMoves = true, .objectMoves = true, .scale = 1000.0}), 4);
     size_t doubtful = 0;
     for (size_t p = 0; p < small.pixels.size(); ++p) {
@@ -130,16 +131,17 @@ TEST(DoubleHistory, TheScaleOfTheSceneDoesNotMatter) {
     EXPECT_LT(doubtful, small.pixels.size() / 50);
 }
 
-TEST(DoubleHistory, SlopeAndDoubtCoverErrorsOfPosition) {
+TEST(DoubleTemporal, SlopeAndDoubtCoverErrorsOfPosition) {
     const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
-    const HistoryImages before = trackFrames(scene, 5).images;
+    const TemporalImages before = trackFrames(scene, 5).images;
     const HostFrame frame = scene.frame(5, width, height, 1);
     HostFrame off = frame;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         off.motion[4 * p] += 2e-4f;
         off.motion[4 * p + 1] -= 2e-4f;
     }
-    const HistoryResult a = trackHistory(frame, before, {}), b = trackHistory(off, before, {});
+    const TemporalResult a = accumulateTemporally(frame, before, {}),
+                         b = accumulateTemporally(off, before, {});
     size_t compared = 0, outside = 0;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         if (a.pixels[p].doubtful) continue;

@@ -1,5 +1,5 @@
-// History tracking in double precision, written from the formulas of docs/denoising.md and from nothing else:
-// the oracle of the denoiser `history`.
+// Temporal accumulation in double precision, written from the formulas of docs/denoising.md and from nothing
+// else: the oracle of the denoiser `temporal`.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace limpid::test {
 
-struct DoubleHistoryParams {
+struct DoubleTemporalParams {
     double normal = 0.95;     ///< least cosine between normals
     double depth = 0.02;      ///< of the distance; with `relative` off in world units
     bool relative = true;     ///< off: plain differences of distances
@@ -23,14 +23,14 @@ struct DoubleHistoryParams {
 
 /// What lives from frame to frame. Images of another size than the frame's (none at all before the first
 /// frame) mean the same as zeros: nothing was seen.
-struct HistoryImages {
+struct TemporalImages {
     uint32_t width = 0, height = 0;
     std::vector<dvec4> colour;       ///< mean, count
     std::vector<dvec4> normalDepth;  ///< N, Z
     std::vector<dvec4> albedoId;     ///< A, I
 };
 
-struct HistoryPixel {
+struct TemporalPixel {
     int failure = 0;        ///< 0: history was found; else the failure case of the specification
     bool rejected = false;  ///< the sample has a NaN or an infinity
     /// A decision was so close that float32 may take the other one: compare nothing here.
@@ -40,14 +40,14 @@ struct HistoryPixel {
     dvec4 slope{0.0};
 };
 
-struct HistoryResult {
-    HistoryImages images;
-    std::vector<HistoryPixel> pixels;
+struct TemporalResult {
+    TemporalImages images;
+    std::vector<TemporalPixel> pixels;
 };
 
 /// One frame. `previous` is what an earlier call returned, or what was downloaded from a device: then errors
 /// do not build up, and a doubtful pixel of one frame spoils nothing in the next.
-HistoryResult trackHistory(const denoise::HostFrame& frame, const HistoryImages& previous,
-                           const DoubleHistoryParams& params);
+TemporalResult accumulateTemporally(const denoise::HostFrame& frame, const TemporalImages& previous,
+                                    const DoubleTemporalParams& params);
 
 }  // namespace limpid::test

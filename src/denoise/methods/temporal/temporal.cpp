@@ -1,14 +1,14 @@
-#include "denoise/methods/history/history.h"
+#include "denoise/methods/temporal/temporal.h"
 
 #include <limits>
 
-#include "history_track.comp.h"
+#include "temporal_accumulate.comp.h"
 
 namespace limpid::denoise {
 namespace {
 
-HistoryParams makeParams(gpu::Extent extent, const CameraParams& camera, const HistorySettings& settings) {
-    HistoryParams params{};
+TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const TemporalSettings& settings) {
+    TemporalParams params{};
     params.camera = camera;
     params.width = extent.width;
     params.height = extent.height;
@@ -27,10 +27,10 @@ HistoryParams makeParams(gpu::Extent extent, const CameraParams& camera, const H
 
 }  // namespace
 
-const ParamTable<HistorySettings>& historyParams() {
+const ParamTable<TemporalSettings>& temporalParams() {
     static const auto table = [] {
-        using S = HistorySettings;
-        ParamTable<S> t("history");
+        using S = TemporalSettings;
+        ParamTable<S> t("temporal");
         t.add("normal", &S::normal, -1.0, 1.0, "cosine",
               "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
               "expected one "
@@ -47,7 +47,7 @@ const ParamTable<HistorySettings>& historyParams() {
         t.add("demodulate", &S::demodulate,
               "divide by the albedo before resampling, multiply after it: textures stay sharp");
         t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
-              "weight of the past at most; lower follows changing light sooner, higher is smoother; 0 is no "
+              "largest weight of the past; lower follows changing light sooner, higher is smoother; 0 is no "
               "limit")
             .slider(0, 1000, SliderScale::Logarithmic, 1);
         t.add(
@@ -60,24 +60,24 @@ const ParamTable<HistorySettings>& historyParams() {
               "a pixel of the previous frame counts if it saw the same object; off: objects that touch may "
               "share "
               "their history");
-        t.add("show_cases", &S::showCases,
+        t.add("show_disocclusion", &S::showDisocclusion,
               "show why pixels have no history: blue nothing hit, yellow off screen, red no valid tap");
         return t;
     }();
     return table;
 }
 
-HistoryImages trackHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
-                           const HistorySettings& settings) {
+TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
+                                    const TemporalSettings& settings) {
     using gpu::Format;
     const gpu::Extent extent = graph.extent(input.diffuse);
-    const gpu::History color = graph.history("history/color", Format::RGBA32Float, extent);
-    const gpu::History normalDepth = graph.history("history/normal_depth", Format::RGBA32Float, extent);
-    const gpu::History albedoId = graph.history("history/albedo_id", Format::RGBA32Float, extent);
-    const gpu::ImageHandle cases = graph.transient("history/cases", Format::R32Uint, extent);
-    const HistoryParams params = makeParams(extent, input.camera, settings);
-    graph.dispatch({.pass = "history/track",
-                    .shader = shaders::history_track_comp,
+    const gpu::History color = graph.history("temporal/color", Format::RGBA32Float, extent);
+    const gpu::History normalDepth = graph.history("temporal/normal_depth", Format::RGBA32Float, extent);
+    const gpu::History albedoId = graph.history("temporal/albedo_id", Format::RGBA32Float, extent);
+    const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
+    const TemporalParams params = makeParams(extent, input.camera, settings);
+    graph.dispatch({.pass = "temporal/accumulate",
+                    .shader = shaders::temporal_accumulate_comp,
                     .bindings = {{"diffuse", input.diffuse},
                                  {"specular", input.specular},
                                  {"albedo", input.albedo},
@@ -92,20 +92,20 @@ HistoryImages trackHistory(gpu::FrameGraph& graph, const DenoiserInput& input,
                                  {"color", color.current},
                                  {"normalDepth", normalDepth.current},
                                  {"albedoId", albedoId.current},
-                                 {"cases", cases}},
+                                 {"disocclusion", disocclusion}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
                     .extent = extent});
-    return {color.current, normalDepth.current, albedoId.current, cases};
+    return {color.current, normalDepth.current, albedoId.current, disocclusion};
 }
 
-HistoryCounts countCases(std::span<const uint32_t> cases) {
-    HistoryCounts counts;
-    for (const uint32_t value : cases) {
-        const uint32_t failure = value & CASE_MASK;
-        counts.nothingHit += failure == CASE_NOTHING_HIT;
-        counts.offScreen += failure == CASE_OFF_SCREEN;
-        counts.noValidTap += failure == CASE_NO_VALID_TAP;
+DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
+    DisocclusionCounts counts;
+    for (const uint32_t value : disocclusion) {
+        const uint32_t failure = value & DISOCCLUSION_MASK;
+        counts.nothingHit += failure == DISOCCLUSION_NOTHING_HIT;
+        counts.offScreen += failure == DISOCCLUSION_OFF_SCREEN;
+        counts.noValidTap += failure == DISOCCLUSION_NO_VALID_TAP;
         counts.rejected += (value & SAMPLE_REJECTED) != 0;
     }
     return counts;

@@ -1,4 +1,4 @@
-#include "tests/oracle/double_history.h"
+#include "tests/oracle/double_temporal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,8 @@ struct Old {
 
 class Tracker {
   public:
-    Tracker(const denoise::HostFrame& frame, const HistoryImages& previous, const DoubleHistoryParams& params)
+    Tracker(const denoise::HostFrame& frame, const TemporalImages& previous,
+            const DoubleTemporalParams& params)
         : frame_(frame),
           previous_(previous),
           params_(params),
@@ -26,22 +27,22 @@ class Tracker {
     Tracker(const Tracker&) = delete;
     Tracker& operator=(const Tracker&) = delete;
 
-    void track(size_t p, HistoryResult& result) const;
+    void track(size_t p, TemporalResult& result) const;
 
   private:
-    static std::vector<PreviousSurface> surfacesOf(const HistoryImages& images);
+    static std::vector<PreviousSurface> surfacesOf(const TemporalImages& images);
     Old find(size_t p, Decision& decision) const;
     double countAfter(double count) const;
 
     DoubleFrame frame_;
-    const HistoryImages& previous_;
-    const DoubleHistoryParams& params_;
+    const TemporalImages& previous_;
+    const DoubleTemporalParams& params_;
     std::vector<PreviousSurface> surfaces_;
     ReprojectionParams reprojection_;
     Reprojector reprojector_;
 };
 
-std::vector<PreviousSurface> Tracker::surfacesOf(const HistoryImages& images) {
+std::vector<PreviousSurface> Tracker::surfacesOf(const TemporalImages& images) {
     std::vector<PreviousSurface> surfaces;
     for (size_t q = 0; q < images.colour.size(); ++q) {
         surfaces.push_back({dvec3(images.normalDepth[q]), images.normalDepth[q].w, images.albedoId[q].w,
@@ -65,11 +66,11 @@ double Tracker::countAfter(double count) const {
     return params_.maxHistory == 0 ? count + 1.0 : std::min<double>(count + 1.0, params_.maxHistory);
 }
 
-void Tracker::track(size_t p, HistoryResult& result) const {
+void Tracker::track(size_t p, TemporalResult& result) const {
     Decision decision;
     const Old old = find(p, decision);
     const dvec3 c = frame_.scattered(p);
-    HistoryPixel& pixel = result.pixels[p];
+    TemporalPixel& pixel = result.pixels[p];
     pixel = {old.failure, !isFiniteInFloat(c), decision.doubtful(), old.slope};
     dvec4& colour = result.images.colour[p];
     if (pixel.rejected) {
@@ -88,19 +89,19 @@ void Tracker::track(size_t p, HistoryResult& result) const {
     result.images.albedoId[p] = dvec4(frame_.albedo(p), frame_.id(p));
 }
 
-HistoryImages blankImages(uint32_t width, uint32_t height) {
+TemporalImages blankImages(uint32_t width, uint32_t height) {
     const std::vector<dvec4> zeros(size_t{width} * height, dvec4(0.0));
     return {width, height, zeros, zeros, zeros};
 }
 
 }  // namespace
 
-HistoryResult trackHistory(const denoise::HostFrame& frame, const HistoryImages& previous,
-                           const DoubleHistoryParams& params) {
-    const HistoryImages blank = blankImages(frame.width, frame.height);
+TemporalResult accumulateTemporally(const denoise::HostFrame& frame, const TemporalImages& previous,
+                                    const DoubleTemporalParams& params) {
+    const TemporalImages blank = blankImages(frame.width, frame.height);
     const bool fits = previous.width == frame.width && previous.height == frame.height;
     const Tracker tracker(frame, fits ? previous : blank, params);
-    HistoryResult result{blank, std::vector<HistoryPixel>(frame.pixelCount())};
+    TemporalResult result{blank, std::vector<TemporalPixel>(frame.pixelCount())};
     for (size_t p = 0; p < frame.pixelCount(); ++p) tracker.track(p, result);
     return result;
 }

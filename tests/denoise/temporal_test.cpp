@@ -1,4 +1,4 @@
-// The pass of history tracking, on identical inputs, against the version in double precision.
+// The pass of temporal accumulation, on identical inputs, against the version in double precision.
 #include <gmock/gmock.h>
 
 #include "base/params.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t columns = 213, rows = 119;
 
-DoubleHistoryParams inDouble(const denoise::HistorySettings& s) {
+DoubleTemporalParams inDouble(const denoise::TemporalSettings& s) {
     return {.normal = double{s.normal},
             .depth = double{s.depth},
             .relative = s.relative,
@@ -35,7 +35,7 @@ bool differs(const dvec4& value, const dvec4& expected, const dvec4& slope) {
 struct Sequence {
     const char* name;
     SyntheticOptions options;
-    const char* parameters;  ///< "name=value" of the group history, by blanks
+    const char* parameters;  ///< "name=value" of the group temporal, by blanks
     int resizeAt = -1;       ///< from this frame on the picture is smaller
 };
 
@@ -43,39 +43,39 @@ std::string nameOf(const testing::TestParamInfo<Sequence>& info) {
     return info.param.name;
 }
 
-class HistoryPassTest : public DenoiseTest, public testing::WithParamInterface<Sequence> {
+class TemporalPassTest : public DenoiseTest, public testing::WithParamInterface<Sequence> {
   protected:
-    static denoise::HistorySettings settings() {
-        denoise::HistorySettings result;
+    static denoise::TemporalSettings settings() {
+        denoise::TemporalSettings result;
         std::istringstream words(GetParam().parameters);
         for (std::string word; words >> word;) {
             const size_t equals = word.find('=');
             if (equals == std::string::npos) {
                 RenderSettings all;
                 applyPreset(all, word);
-                result = all.denoisers.history;
+                result = all.denoisers.temporal;
             } else {
                 EXPECT_TRUE(
-                    denoise::historyParams().set(result, word.substr(0, equals), word.substr(equals + 1)));
+                    denoise::temporalParams().set(result, word.substr(0, equals), word.substr(equals + 1)));
             }
         }
         return result;
     }
 
     /// Compares a frame on the device with the double version, which starts from what the device had before.
-    void compare(const HostFrame& frame, const HistoryImages& before, const denoise::HistorySettings& s,
+    void compare(const HostFrame& frame, const TemporalImages& before, const denoise::TemporalSettings& s,
                  int number) {
-        const HistoryResult expected = trackHistory(frame, before, inDouble(s));
-        const HistoryImages now = images(frame);
-        const std::vector<uint32_t> cases = graph_.downloadUint(device(), output_.cases);
+        const TemporalResult expected = accumulateTemporally(frame, before, inDouble(s));
+        const TemporalImages now = images(frame);
+        const std::vector<uint32_t> disocclusion = graph_.downloadUint(device(), output_.disocclusion);
         size_t doubtful = 0, wrong = 0;
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
-            const HistoryPixel& pixel = expected.pixels[p];
+            const TemporalPixel& pixel = expected.pixels[p];
             doubtful += pixel.doubtful;
             if (pixel.doubtful) continue;
-            ASSERT_EQ(cases[p] & denoise::CASE_MASK, static_cast<uint32_t>(pixel.failure))
+            ASSERT_EQ(disocclusion[p] & denoise::DISOCCLUSION_MASK, static_cast<uint32_t>(pixel.failure))
                 << "frame " << number << " pixel " << p;
-            ASSERT_EQ((cases[p] & denoise::SAMPLE_REJECTED) != 0, pixel.rejected);
+            ASSERT_EQ((disocclusion[p] & denoise::SAMPLE_REJECTED) != 0, pixel.rejected);
             wrong += differs(now.colour[p], expected.images.colour[p], pixel.slope) ||
                      differs(now.normalDepth[p], expected.images.normalDepth[p], dvec4(0.0)) ||
                      differs(now.albedoId[p], expected.images.albedoId[p], dvec4(0.0));
@@ -83,28 +83,29 @@ class HistoryPassTest : public DenoiseTest, public testing::WithParamInterface<S
         // A position that rounds across a pixel's centre takes taps that the slope does not know.
         EXPECT_LE(wrong, frame.pixelCount() / 1000) << "frame " << number;
         EXPECT_LE(doubtful, frame.pixelCount() / 1000) << "frame " << number;
-        counts_ = denoise::countCases(cases);
+        counts_ = denoise::countDisocclusion(disocclusion);
     }
 
-    HistoryImages images(const HostFrame& frame) {
-        return {frame.width, frame.height, download("history/track", "color"),
-                download("history/track", "normal_depth"), download("history/track", "albedo_id")};
+    TemporalImages images(const HostFrame& frame) {
+        return {frame.width, frame.height, download("temporal/accumulate", "color"),
+                download("temporal/accumulate", "normal_depth"),
+                download("temporal/accumulate", "albedo_id")};
     }
 
-    denoise::HistoryCounts counts_;
+    denoise::DisocclusionCounts counts_;
 };
 
-TEST_P(HistoryPassTest, AgreesWithTheFormulasInDouble) {
+TEST_P(TemporalPassTest, AgreesWithTheFormulasInDouble) {
     const Sequence& sequence = GetParam();
     const SyntheticScene scene(sequence.options);
-    const denoise::HistorySettings s = settings();
-    HistoryImages before;
+    const denoise::TemporalSettings s = settings();
+    TemporalImages before;
     for (int number = 0; number < 8; ++number) {
         const bool small = sequence.resizeAt >= 0 && number >= sequence.resizeAt;
         const HostFrame frame = scene.frame(number, small ? 101 : columns, small ? 67 : rows, 7);
         DenoiserSettings all;
-        all.history = s;
-        denoise(*denoise::findDenoiser("history"), frame, all);
+        all.temporal = s;
+        denoise(*denoise::findDenoiser("temporal"), frame, all);
         compare(frame, before, s, number);
         if (testing::Test::HasFatalFailure()) return;
         before = images(frame);
@@ -121,7 +122,7 @@ TEST_P(HistoryPassTest, AgreesWithTheFormulasInDouble) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Sequences, HistoryPassTest,
+    Sequences, TemporalPassTest,
     testing::Values(
         Sequence{"Static", {}, ""}, Sequence{"StaticUnlimited", {}, "max_history=0"},
         Sequence{"Camera", {.cameraMoves = true}, ""},
@@ -137,41 +138,41 @@ INSTANTIATE_TEST_SUITE_P(
         Sequence{"Course", {.cameraMoves = true, .objectMoves = true}, "history-tracking-course"}),
     nameOf);
 
-class HistoryTest : public DenoiseTest {};
+class TemporalTest : public DenoiseTest {};
 
-TEST_F(HistoryTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
+TEST_F(TemporalTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
     const SyntheticScene scene({});
-    const denoise::Denoiser& method = *denoise::findDenoiser("history");
+    const denoise::Denoiser& method = *denoise::findDenoiser("temporal");
     denoise(method, scene.frame(0, 32, 18, 1));
     denoise(method, scene.frame(1, 32, 18, 1));
-    const std::vector<dvec4> before = download("history/track", "color");
+    const std::vector<dvec4> before = download("temporal/accumulate", "color");
     HostFrame frame = scene.frame(2, 32, 18, 1);
     frame.diffuse[4 * 300] = std::numeric_limits<float>::quiet_NaN();
     frame.specular[4 * 500 + 2] = std::numeric_limits<float>::infinity();
     denoise(method, frame);
-    const std::vector<dvec4> after = download("history/track", "color");
+    const std::vector<dvec4> after = download("temporal/accumulate", "color");
     // Dividing by the albedo and multiplying again may cost the last bit.
     EXPECT_LT(glm::distance(after[300], before[300]), 1e-6);
     EXPECT_LT(glm::distance(after[500], before[500]), 1e-6);
     EXPECT_NE(after[301], before[301]);
-    EXPECT_EQ(denoise::countCases(graph_.downloadUint(device(), output_.cases)).rejected, 2u);
+    EXPECT_EQ(denoise::countDisocclusion(graph_.downloadUint(device(), output_.disocclusion)).rejected, 2u);
 }
 
-TEST_F(HistoryTest, CasesAreShownInColours) {
+TEST_F(TemporalTest, DisocclusionIsShownInColours) {
     const SyntheticScene scene({.cameraMoves = true, .objectMoves = true});
     DenoiserSettings settings;
-    settings.history.showCases = true;
+    settings.temporal.showDisocclusion = true;
     std::vector<float> picture;
     for (int number = 0; number < 3; ++number)
-        picture = denoise(*denoise::findDenoiser("history"), scene.frame(number, 64, 36, 1), settings);
-    const std::vector<uint32_t> cases = graph_.downloadUint(device(), output_.cases);
+        picture = denoise(*denoise::findDenoiser("temporal"), scene.frame(number, 64, 36, 1), settings);
+    const std::vector<uint32_t> disocclusion = graph_.downloadUint(device(), output_.disocclusion);
     const vec3 colors[] = {{}, {0, 0, 1}, {1, 1, 0}, {1, 0, 0}};
-    for (size_t p = 0; p < cases.size(); ++p) {
+    for (size_t p = 0; p < disocclusion.size(); ++p) {
         const vec3 shown{picture[4 * p], picture[4 * p + 1], picture[4 * p + 2]};
-        if (cases[p] == denoise::CASE_TRACKED) {
+        if (disocclusion[p] == denoise::DISOCCLUSION_NONE) {
             ASSERT_EQ(shown.x, shown.z) << "grey";
         } else {
-            ASSERT_EQ(shown, colors[cases[p]]);
+            ASSERT_EQ(shown, colors[disocclusion[p]]);
         }
     }
 }

@@ -1,6 +1,6 @@
-// Parameters of history tracking. Included by C++ and GLSL.
-#ifndef LIMPID_DENOISE_HISTORY_PARAMS_H
-#define LIMPID_DENOISE_HISTORY_PARAMS_H
+// Parameters of temporal accumulation. Included by C++ and GLSL.
+#ifndef LIMPID_DENOISE_TEMPORAL_PARAMS_H
+#define LIMPID_DENOISE_TEMPORAL_PARAMS_H
 
 #include "shaders/common/camera.h"
 
@@ -11,15 +11,16 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-// The image `history/cases`: why a pixel has no history; the bit is added where its sample was rejected.
-LIMPID_CONST uint CASE_TRACKED = 0u;
-LIMPID_CONST uint CASE_NOTHING_HIT = 1u;
-LIMPID_CONST uint CASE_OFF_SCREEN = 2u;  // or behind the previous eye, or there is no previous frame
-LIMPID_CONST uint CASE_NO_VALID_TAP = 3u;
-LIMPID_CONST uint CASE_MASK = 3u;
+// The image `temporal/disocclusion`: why a pixel has no history; the bit is added where its sample was
+// rejected.
+LIMPID_CONST uint DISOCCLUSION_NONE = 0u;
+LIMPID_CONST uint DISOCCLUSION_NOTHING_HIT = 1u;
+LIMPID_CONST uint DISOCCLUSION_OFF_SCREEN = 2u;  // or behind the previous eye, or there is no previous frame
+LIMPID_CONST uint DISOCCLUSION_NO_VALID_TAP = 3u;
+LIMPID_CONST uint DISOCCLUSION_MASK = 3u;
 LIMPID_CONST uint SAMPLE_REJECTED = 4u;
 
-struct HistoryParams {
+struct TemporalParams {
     CameraParams camera;
     uint width;
     uint height;

@@ -1,10 +1,10 @@
-// The oracle of history tracking, by numbers that were computed by hand.
+// The oracle of temporal accumulation, by numbers that were computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/oracle/double_denoise_fixture.h"
-#include "tests/oracle/double_history.h"
+#include "tests/oracle/double_temporal.h"
 
 namespace limpid::test {
 namespace {
@@ -13,9 +13,9 @@ using denoise::HostFrame;
 
 /// The middle pixel of five by five goes back to s = (2.75, 3), hence to the taps (2, 2) and (2, 3) of weight
 /// 3/8 each and to (3, 2) and (3, 3) of 1/8, and to z' = 2.5 - 0.5. Its surface slants: c = 0.8, tan = 3/4.
-class HistoryByHand : public testing::Test {
+class TemporalByHand : public testing::Test {
   protected:
-    HistoryByHand() {
+    TemporalByHand() {
         frame.camera.spread = 0.1f;
         set(frame.depth, {2.5f, 1, 0});
         set(frame.motion, {0.25f, 0.5f, -0.5f});
@@ -31,7 +31,7 @@ class HistoryByHand : public testing::Test {
     void set(std::vector<float>& layer, const vec3& value) {
         for (int i = 0; i < 3; ++i) layer[static_cast<size_t>(4 * 12 + i)] = value[i];
     }
-    dvec4 track() const { return trackHistory(frame, before, params).images.colour[12]; }
+    dvec4 track() const { return accumulateTemporally(frame, before, params).images.colour[12]; }
     /// The new count if the tap (2, 2), alone of another count, passes the tests or not.
     bool counts() {
         before.colour[12].w = 12.0;
@@ -41,11 +41,11 @@ class HistoryByHand : public testing::Test {
     }
 
     HostFrame frame = frontalPlane(5, 5);
-    HistoryImages before{5, 5, {}, {}, {}};
-    DoubleHistoryParams params;
+    TemporalImages before{5, 5, {}, {}, {}};
+    DoubleTemporalParams params;
 };
 
-TEST_F(HistoryByHand, WeightsAndAlbedo) {
+TEST_F(TemporalByHand, WeightsAndAlbedo) {
     before.colour[12] = dvec4(3, 3, 3, 8);  // weight 3/8: the mean is 7/4, the count 5.5
     EXPECT_LT(glm::distance(track(), dvec4(dvec3(1.75 + 0.25 / 6.5), 6.5)), 1e-6);
     before.albedoId[12] = dvec4(0.4, 0.8, 0.05, 1);  // the light was 1/2, 4 and 1 times as much
@@ -55,7 +55,7 @@ TEST_F(HistoryByHand, WeightsAndAlbedo) {
     EXPECT_LT(glm::distance(track(), dvec4(dvec3(1.75 + 0.25 / 6.5), 6.5)), 1e-6);
 }
 
-TEST_F(HistoryByHand, TestsOfATap) {
+TEST_F(TemporalByHand, TestsOfATap) {
     EXPECT_TRUE(counts());
     const double t = 2.0 * (0.02 + 1.5 * 0.1 * 0.75);
     for (const double sign : {-1.0, 1.0}) {
@@ -78,7 +78,7 @@ TEST_F(HistoryByHand, TestsOfATap) {
     EXPECT_FALSE(counts());
 }
 
-TEST_F(HistoryByHand, OrthographicTolerance) {
+TEST_F(TemporalByHand, OrthographicTolerance) {
     frame.camera.orthographic = 1;
     const double t = 2.0 * 0.02 + 1.5 * 0.1 * 0.75;
     before.normalDepth[12].w = 2.0 + 0.99 * t;
@@ -87,7 +87,7 @@ TEST_F(HistoryByHand, OrthographicTolerance) {
     EXPECT_FALSE(counts());
 }
 
-TEST_F(HistoryByHand, Search) {
+TEST_F(TemporalByHand, Search) {
     for (dvec4& texel : before.albedoId) texel.w = 7.0;
     before.albedoId[5 * 4 + 1].w = before.albedoId[5 * 2 + 3].w = 1.0;  // (1, 4); (3, 2) is a bilinear tap
     before.colour[5 * 4 + 1].w = 9.0;
@@ -100,8 +100,8 @@ TEST_F(HistoryByHand, Search) {
     EXPECT_EQ(track(), dvec4(2, 2, 2, 1));
 }
 
-TEST_F(HistoryByHand, Doubt) {
-    const auto doubtful = [this] { return trackHistory(frame, before, params).pixels[12].doubtful; };
+TEST_F(TemporalByHand, Doubt) {
+    const auto doubtful = [this] { return accumulateTemporally(frame, before, params).pixels[12].doubtful; };
     EXPECT_FALSE(doubtful());
     before.normalDepth[12].w = 2.0 + 2.0 * (0.02 + 1.5 * 0.1 * 0.75) * 1.00005;
     EXPECT_TRUE(doubtful());

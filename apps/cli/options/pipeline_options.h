@@ -1,0 +1,18 @@
+// The options --integrator and --denoiser, which several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "renderer/frame/presets.h"
+
+namespace limpid::cli {
+
+/// The defaults are for the help text only.
+void addPipelineOptions(CLI::App& command, PipelineChoice& choice, const std::string& defaultIntegrator,
+                        const std::string& defaultDenoiser);
+
+/// "none temporal ...", as help texts list them.
+std::string listOfDenoisers();
+
+}  // namespace limpid::cli

@@ -1,0 +1,52 @@
+// Temporal accumulation: the running mean of a pixel's samples follows the surface point that it sees through
+// camera and object motion. The steps, formulas and causes of disocclusion are in docs/denoising.md.
+#pragma once
+
+#include <span>
+
+#include "base/params.h"
+#include "denoise/api/denoiser_input.h"
+#include "denoise/methods/temporal/temporal_params.h"
+#include "gpu/graph/frame_graph.h"
+
+namespace limpid::denoise {
+
+/// What a user may set; temporalParams() is where range and meaning stand.
+struct TemporalSettings {
+    float normal = 0.95f;
+    float depth = 0.02f;
+    bool relative = true;
+    bool search = true;
+    bool demodulate = true;
+    float maxHistory = 8.0f;
+    bool greyRestart = false;
+    float grey = 0.5f;
+    bool greyMisses = false;
+    bool identity = true;
+    bool showDisocclusion = false;
+    bool operator==(const TemporalSettings&) const = default;
+};
+const ParamTable<TemporalSettings>& temporalParams();
+
+struct TemporalImages {
+    gpu::ImageHandle color;         ///< rgba32f: mean of diffuse + specular, cd/m^2; number of frames in it
+    gpu::ImageHandle normalDepth;   ///< rgba32f: world normal, distance from the eye (0: nothing seen)
+    gpu::ImageHandle albedoId;      ///< rgba32f: albedo, instance number + 1
+    gpu::ImageHandle disocclusion;  ///< r32ui: DISOCCLUSION_* and SAMPLE_REJECTED of temporal_params.h
+};
+
+/// One frame. The three images besides `disocclusion` are histories of the graph ("temporal/color",
+/// "temporal/normal_depth", "temporal/albedo_id"): what they held in the previous frame is read, and nothing
+/// needs clearing when the camera moves.
+TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
+                                    const TemporalSettings& settings);
+
+/// How many pixels have no history, and why.
+struct DisocclusionCounts {
+    uint64_t nothingHit = 0, offScreen = 0, noValidTap = 0;
+    uint64_t rejected = 0;  ///< samples that were NaN or infinite
+};
+/// Of the image `disocclusion`, as downloaded.
+DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion);
+
+}  // namespace limpid::denoise
