@@ -90,12 +90,9 @@ void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
     image::writePng(path, image::toBytes(image::tonemap(picture, stops)));
 }
 
-void warnOfLacking(const std::vector<std::string>& lacking) {
-    for (const std::string& layer : lacking) {
-        log::warn(
-            "the layer '{}' is missing: {}", layer,
-            layer == "id" ? "objects that touch share their history" : "turning objects lose their history");
-    }
+void warnOfLacking(const std::vector<const LayerInfo*>& lacking) {
+    for (const LayerInfo* layer : lacking)
+        log::warn("the layer '{}' is missing: {}", layer->name, layer->without);
 }
 
 struct DenoiseSummary {
@@ -116,7 +113,7 @@ DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
     for (const int frame : frames) {
         const fs::path name = input.format(std::max(frame, 0)), result = output.format(std::max(frame, 0));
         LayeredImage file = image::readExr(name);
-        std::vector<std::string> lacking;
+        std::vector<const LayerInfo*> lacking;
         if (method.network) requireVariances(file, name);
         const denoise::HostFrame host = frameOf(file, name, frames.size() > 1 && !method.network, lacking);
         if (summary.frames == 0) warnOfLacking(lacking);

@@ -127,8 +127,8 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
         fmt::print("{:<28} {}\n", "builtin:" + info.name, info.help);
     }
     fmt::print("\nLayers (--aov)\n");
-    for (const std::string& name : layerNames()) fmt::print("{} ", name);
-    fmt::print("\n\nParameters (--set group.name=value)\n");
+    for (const LayerInfo& layer : layerTable) fmt::print("{:<16} {}\n", layer.name, layer.help);
+    fmt::print("\nParameters (--set group.name=value)\n");
     for (const ParamGroup& group : paramGroups()) {
         for (const ParamInfo& info : group.infos) {
             fmt::print("{:<28} default {}, {} to {} {}\n   {}\n", group.name + "." + info.name,

@@ -29,10 +29,10 @@ class BlockRendererTest : public RenderTest {
 
     /// The components of a layer, and its variance where there is one.
     static void expectNear(const LayerSums& layer, const std::vector<float>& a, const std::vector<float>& b) {
-        ASSERT_EQ(a.size(), b.size()) << layer.kind->name;
+        ASSERT_EQ(a.size(), b.size()) << layer.info->name;
         for (size_t i = 0; i < a.size(); ++i) {
-            if (i % 4 >= layer.kind->components && !(layer.squares && i % 4 == 3)) continue;
-            ASSERT_NEAR(a[i], b[i], 1e-4f * (std::abs(b[i]) + 1e-4f)) << layer.kind->name << " " << i;
+            if (i % 4 >= layer.info->meanComponents() && !(layer.squares && i % 4 == 3)) continue;
+            ASSERT_NEAR(a[i], b[i], 1e-4f * (std::abs(b[i]) + 1e-4f)) << layer.info->name << " " << i;
         }
     }
 };
@@ -60,7 +60,7 @@ TEST_F(BlockRendererTest, SumsAreTheRunningMeansOfTheSameSamples) {
     EXPECT_EQ(sums.counts.rays, still.counters().rays);
     EXPECT_EQ(sums.counts.clamped, 0u);
     for (const LayerSums& layer : sums.layers) {
-        expectNear(layer, got.*layer.kind->means, expected.*layer.kind->means);
+        expectNear(layer, got[*layer.info], expected[*layer.info]);
     }
 }
 

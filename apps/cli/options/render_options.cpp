@@ -112,7 +112,9 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
                      "--shard and --time-limit");
     command.add_option("--exposure", o.exposure,
                        "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
-    command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all'");
+    std::string layers;
+    for (const std::string& layer : layerNames()) layers += " " + layer;
+    command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all':" + layers);
     command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
     command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");
     command.add_flag("--json", o.json, "One JSON object about the run on stdout");

@@ -1,28 +1,19 @@
 // One frame of what denoisers read, in host memory: from EXR files, from other renderers, in tests.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
+#include "base/layers/layer_set.h"
 #include "shaders/common/camera.h"
 
 namespace limpid::denoise {
 
-/// Four floats a pixel unless said otherwise, row 0 first; docs/denoising.md says what each is. The fourth of
+/// A member for each layer of base/layers/layer_table.h: four floats a pixel (of `ids` two integers), row 0
+/// first; docs/denoising.md says what each is. Optional layers may be empty: zeros. The fourth float of
 /// diffuse, specular, albedo, normal and depth is read by networks only (DenoiserInput::samples).
-struct HostFrame {
+struct HostFrame : LayerSet<std::vector<float>, std::vector<uint32_t>> {
     uint32_t width = 0, height = 0;
-    std::vector<float> diffuse, specular, emission;  ///< linear radiance
-    std::vector<float> albedo;
-    std::vector<float> albedoSpecular;    ///< as albedo; empty: zeros
-    std::vector<float> normal;            ///< world space, facing the viewer; 0 at a miss
-    std::vector<float> depth;             ///< x: distance from the eye times y; y: share of hits (0 or 1)
-    std::vector<float> motion;            ///< xyz times w; w: share of valid samples (0 or 1)
-    std::vector<float> reflectionMotion;  ///< likewise, of what the surface reflects; empty: zeros
-    std::vector<float> previousNormal;    ///< of the same surface points in the previous frame
-    std::vector<uint32_t> ids;            ///< two a pixel: instance, material; UINT32_MAX at a miss
     CameraParams camera{};
     uint32_t samples = 1;  ///< per pixel
 

@@ -3,13 +3,14 @@
 
 #include <optional>
 
+#include "base/layers/layer_table.h"
 #include "image/image.h"
 
 namespace limpid::image {
 
 /// How an EXR file says that a pixel has no place in the previous frame (the first frame, a scene cut, a
 /// point behind the previous eye): this value in motion.X and motion.Y. See validMotion.
-inline constexpr float invalidMotion = 1e10f;
+inline constexpr float invalidMotion = noValue;
 
 /// Whether motion (pixels) is one: finite, and under a million pixels in each direction. What is not is a
 /// mark, invalidMotion or another renderer's.

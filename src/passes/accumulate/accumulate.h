@@ -3,12 +3,10 @@
 
 #include <string>
 
+#include "base/layers/layer_table.h"
 #include "gpu/graph/frame_graph.h"
 
 namespace limpid {
-
-/// What the alpha channel's variance is of.
-enum class VarianceOf { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
 /// The mean of `countBefore` samples in `before` and `countAdded` in `added` goes to `after`, all within one
 /// frame. Alpha as below.

@@ -22,40 +22,31 @@ const ParamTable<GBufferSettings>& gbufferParams() {
 }
 
 GBufferImages makeGBufferImages(gpu::FrameGraph& graph, gpu::Extent extent, GBufferImages given) {
-    const auto make = [&](const char* name, ImageHandle& handle, Format format = Format::RGBA32Float) {
-        if (!handle) handle = graph.transient(std::string("gbuffer/") + name, format, extent);
+    const auto make = [&](std::string_view name, ImageHandle& handle, Format format = Format::RGBA32Float) {
+        if (!handle) handle = graph.transient("gbuffer/" + std::string(name), format, extent);
     };
     make("light", given.light);
-    make("emission", given.emission);
-    make("albedo", given.albedo);
-    make("albedoSpecular", given.albedoSpecular);
-    make("normal", given.normal);
-    make("depth", given.depth);
-    make("motion", given.motion);
-    make("previousNormal", given.previousNormal);
     make("position", given.position);
     make("geometricNormal", given.geometricNormal);
-    make("ids", given.ids, Format::RG32Uint);
+    for (const LayerInfo& layer : frameLayers) {
+        if (!layer.ofFirstHit) continue;
+        make(layer.member, given[layer],
+             layer.stored == Stored::Uint ? Format::RG32Uint : Format::RGBA32Float);
+    }
     return given;
 }
 
 void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
              const CameraLaunch& launch, ImageHandle countersBefore, const GBufferImages& into) {
+    std::vector<gpu::Binding> bindings{{"countersBefore", countersBefore},
+                                       {"counters", into.counters},
+                                       {"light", into.light},
+                                       {"position", into.position},
+                                       {"geometricNormal", into.geometricNormal}};
+    for (const LayerInfo& layer : frameLayers)
+        if (layer.ofFirstHit) bindings.push_back({layer.member, into[layer]});
     const GBufferParams params{scene.params(), viewParams(launch)};
-    dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen},
-                   {{"countersBefore", countersBefore},
-                    {"counters", into.counters},
-                    {"ids", into.ids},
-                    {"light", into.light},
-                    {"emission", into.emission},
-                    {"albedo", into.albedo},
-                    {"albedoSpecular", into.albedoSpecular},
-                    {"normal", into.normal},
-                    {"depth", into.depth},
-                    {"motion", into.motion},
-                    {"previousNormal", into.previousNormal},
-                    {"position", into.position},
-                    {"geometricNormal", into.geometricNormal}},
+    dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen}, bindings,
                    gpu::paramsOf(params),
                    {{"LIGHT", settings.light ? 1u : 0u},
                     {"SHADOWS", settings.shadows ? 1u : 0u},

@@ -2,6 +2,7 @@
 // per pixel and launch; no bounce.
 #pragma once
 
+#include "base/layers/layer_set.h"
 #include "base/params.h"
 #include "gpu/graph/frame_graph.h"
 #include "passes/camera_launch.h"
@@ -17,21 +18,15 @@ struct GBufferSettings {
 };
 const ParamTable<GBufferSettings>& gbufferParams();
 
-/// Of one sample; rgba32f, alpha 0 unless said otherwise. All but `light`, `position` and `geometricNormal`
-/// are those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample: on CPUs bit
-/// for bit (but for the sign of 0), elsewhere up to rounding.
-struct GBufferImages {
+/// Of one sample; rgba32f, alpha 0 unless said otherwise. The layers that follow from the first hit are those
+/// of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample: on CPUs bit for bit
+/// (but for the sign of 0), elsewhere up to rounding. The other layers are empty.
+struct GBufferImages : LayerSet<gpu::ImageHandle> {
     /// Radiance that the surface scatters of what one light sends to it: an unbiased
     /// estimate of light scattered once. A perfectly smooth mirror or pane shows nothing.
     gpu::ImageHandle light;
-    gpu::ImageHandle emission, albedo, albedoSpecular;
-    gpu::ImageHandle normal;           ///< shading normal: unit, world space, facing the viewer; 0 at a miss
-    gpu::ImageHandle depth;            ///< x: distance along the ray, world units, 0 at a miss; y: 1 at a hit
-    gpu::ImageHandle motion;           ///< xyz: motion, invalid as 0; a: 1 where it is valid
-    gpu::ImageHandle previousNormal;   ///< of the same point in the previous frame
     gpu::ImageHandle position;         ///< xyz: world space; a: magnitude, for offsetRay(); all 0 at a miss
     gpu::ImageHandle geometricNormal;  ///< of the triangle: unit, on the viewer's side; 0 at a miss
-    gpu::ImageHandle ids;              ///< rg32ui: instance, material; layout::NONE at a miss
     gpu::ImageHandle counters;         ///< rg32ui: rays and rejected samples since the last reset
 };
 

@@ -78,40 +78,20 @@ PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
 }
 
 PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix, gpu::Extent extent) {
-    const auto image = [&](const char* name) {
-        return graph.transient(prefix + name, Format::RGBA32Float, extent);
-    };
     PathtraceLayers layers;
-    layers.diffuse = image("diffuse");
-    layers.specular = image("specular");
-    layers.emission = image("emission");
-    layers.albedo = image("albedo");
-    layers.albedoSpecular = image("albedoSpecular");
-    layers.normal = image("normal");
-    layers.depth = image("depth");
-    layers.motion = image("motion");
-    layers.reflectionMotion = image("reflectionMotion");
-    layers.previousNormal = image("previousNormal");
-    layers.ids = graph.transient(prefix + "ids", Format::RG32Uint, extent);
+    for (const LayerInfo& layer : frameLayers) {
+        const Format format = layer.stored == Stored::Uint ? Format::RG32Uint : Format::RGBA32Float;
+        layers[layer] = graph.transient(prefix + std::string(layer.member), format, extent);
+    }
     return layers;
 }
 
 void pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
                      const PathtraceLaunch& launch, ImageHandle countersBefore, const PathtraceLayers& into) {
+    std::vector<Binding> images{{"countersBefore", countersBefore}, {"counters", into.counters}};
+    for (const LayerInfo& layer : frameLayers) images.push_back({layer.member, into[layer]});
     dispatch(graph, {shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen}, scene, settings, launch,
-             {{"diffuse", into.diffuse},
-              {"specular", into.specular},
-              {"emission", into.emission},
-              {"albedo", into.albedo},
-              {"albedoSpecular", into.albedoSpecular},
-              {"normal", into.normal},
-              {"depth", into.depth},
-              {"motion", into.motion},
-              {"reflectionMotion", into.reflectionMotion},
-              {"previousNormal", into.previousNormal},
-              {"ids", into.ids},
-              {"countersBefore", countersBefore},
-              {"counters", into.counters}});
+             images);
 }
 
 PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,

@@ -1,6 +1,7 @@
 // The path-tracing pass: light transport by unidirectional path tracing with next-event estimation.
 #pragma once
 
+#include "base/layers/layer_set.h"
 #include "base/params.h"
 #include "gpu/graph/frame_graph.h"
 #include "passes/camera_launch.h"
@@ -26,15 +27,10 @@ struct PathtraceLaunch : CameraLaunch {
     uint32_t samples = 1;  ///< per pixel in this launch
 };
 
-/// Means over the launch's samples, rgba32f. Alpha holds the mean squared deviation of luminance (diffuse,
-/// specular, albedo, albedoSpecular, emission) or of the components (normal).
-struct PathtraceLayers {
-    gpu::ImageHandle diffuse, specular, emission, albedo, albedoSpecular, normal;
-    gpu::ImageHandle depth;   ///< x: depth, misses as 0; y: share of hits; a: mean squared deviation of x
-    gpu::ImageHandle motion;  ///< xyz: motion, invalid as 0; a: share of valid samples
-    gpu::ImageHandle reflectionMotion;  ///< as motion, of what smooth surfaces reflect (docs/layers.md)
-    gpu::ImageHandle previousNormal;    ///< xyz: of the same points in the previous frame
-    gpu::ImageHandle ids;       ///< rg32ui: instance, material of the first sample; layout::NONE at a miss
+/// Every layer of base/layers/layer_table.h: means over the launch's samples, rgba32f (Mean and VarianceOf
+/// say what the components are). `ids` is rg32ui: instance, material of the first sample; layout::NONE at a
+/// miss.
+struct PathtraceLayers : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };
 struct PathtraceBeauty {

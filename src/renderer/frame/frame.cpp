@@ -27,42 +27,30 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .samplerTea = settings.pathtrace.samplerTea};
 }
 
-/// The layers that are means over samples, and what their variances are of.
-struct MeanLayer {
-    ImageHandle PathtraceLayers::*image;
-    const char* name;
-    VarianceOf varianceOf;
-};
-constexpr std::array<MeanLayer, 10> meanLayers{{
-    {&PathtraceLayers::diffuse, "diffuse", VarianceOf::Luminance},
-    {&PathtraceLayers::specular, "specular", VarianceOf::Luminance},
-    {&PathtraceLayers::emission, "emission", VarianceOf::Luminance},
-    {&PathtraceLayers::albedo, "albedo", VarianceOf::Luminance},
-    {&PathtraceLayers::albedoSpecular, "albedoSpecular", VarianceOf::Luminance},
-    {&PathtraceLayers::normal, "normal", VarianceOf::MeanOfComponents},
-    {&PathtraceLayers::previousNormal, "previousNormal", VarianceOf::Nothing},
-    {&PathtraceLayers::depth, "depth", VarianceOf::FirstComponent},
-    {&PathtraceLayers::motion, "motion", VarianceOf::Nothing},
-    {&PathtraceLayers::reflectionMotion, "reflectionMotion", VarianceOf::Nothing},
-}};
+/// Makes the layers that `out` has running means.
+void accumulateLayers(FrameGraph& graph, const FrameInput& input, FrameImages& out) {
+    for (const LayerInfo& layer : frameLayers) {
+        ImageHandle& image = out[layer];
+        if (!image || !layer.isMean()) continue;
+        image = accumulate(graph, std::string(layer.member), image, input.samplesBefore, input.samples,
+                           layer.varianceOf);
+    }
+}
 
 /// The path tracer alone: running means over frames.
 FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                        const FrameInput& input) {
     const PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
-    const auto mean = [&](const char* name, ImageHandle added, VarianceOf varianceOf) {
-        return accumulate(graph, name, added, input.samplesBefore, input.samples, varianceOf);
-    };
     FrameImages out;
     if (!settings.layers) {
         const PathtraceBeauty traced = pathtraceBeauty(graph, scene, settings.pathsTraced(), launch);
-        out.beauty = mean("beauty", traced.beauty, VarianceOf::Nothing);
+        out.beauty = accumulate(graph, "beauty", traced.beauty, input.samplesBefore, input.samples,
+                                VarianceOf::Nothing);
         out.counters = traced.counters;
         return out;
     }
     static_cast<PathtraceLayers&>(out) = pathtraceLayers(graph, scene, settings.pathsTraced(), launch);
-    for (const MeanLayer& layer : meanLayers)
-        out.*layer.image = mean(layer.name, out.*layer.image, layer.varianceOf);
+    accumulateLayers(graph, input, out);
     return out;
 }
 
@@ -73,26 +61,14 @@ GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, con
     used.light = used.light && light;
     const GBufferImages seen = gbuffer(graph, scene, used, cameraLaunch(settings, input));
     out.counters = seen.counters;
+    for (const LayerInfo& layer : frameLayers) {
+        if (layer.inBeauty ? light : settings.layers) out[layer] = seen[layer];
+    }
     if (light) {
         out.diffuse = seen.light;
-        out.emission = seen.emission;
         out.depth = seen.depth;
     }
-    if (settings.layers) {
-        out.albedo = seen.albedo;
-        out.albedoSpecular = seen.albedoSpecular;
-        out.normal = seen.normal;
-        out.previousNormal = seen.previousNormal;
-        out.depth = seen.depth;
-        out.motion = seen.motion;
-        out.ids = seen.ids;
-    }
-    for (const MeanLayer& layer : meanLayers) {
-        ImageHandle& image = out.*layer.image;
-        if (image)
-            image =
-                accumulate(graph, layer.name, image, input.samplesBefore, input.samples, layer.varianceOf);
-    }
+    accumulateLayers(graph, input, out);
     return seen;
 }
 
@@ -202,12 +178,12 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
         into.counters = done + launch.samples == input.samples ? counters.current : mean.counters;
         record(launch, countersBefore, into);
         countersBefore = into.counters;
-        for (const MeanLayer& layer : meanLayers) {
-            if (number == 0) break;
-            accumulateStep(graph, layer.name,
-                           {.before = means[1 - number % 2].*layer.image,
-                            .added = traced.*layer.image,
-                            .after = mean.*layer.image,
+        for (const LayerInfo& layer : frameLayers) {
+            if (number == 0 || !layer.isMean()) continue;
+            accumulateStep(graph, std::string(layer.member),
+                           {.before = means[1 - number % 2][layer],
+                            .added = traced[layer],
+                            .after = mean[layer],
                             .countBefore = static_cast<float>(done),
                             .countAdded = static_cast<float>(launch.samples),
                             .varianceOf = layer.varianceOf});
@@ -226,20 +202,7 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                            const FrameInput& input) {
     FrameImages out;
     static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
-    const denoise::DenoiserInput frame{.diffuse = out.diffuse,
-                                       .specular = out.specular,
-                                       .emission = out.emission,
-                                       .albedo = out.albedo,
-                                       .albedoSpecular = out.albedoSpecular,
-                                       .normal = out.normal,
-                                       .depth = out.depth,
-                                       .motion = out.motion,
-                                       .reflectionMotion = out.reflectionMotion,
-                                       .previousNormal = out.previousNormal,
-                                       .ids = out.ids,
-                                       .camera = input.camera,
-                                       .samples = input.samples,
-                                       .filters = input.filters};
+    const denoise::DenoiserInput frame{{out}, input.camera, input.samples, input.filters};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =
         settings.pipeline.denoiser->record(graph, frame, settings.denoisers, settings.networks);

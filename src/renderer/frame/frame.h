@@ -32,6 +32,15 @@ struct FrameInput {
 /// emission. These are running means without a denoiser, and this frame's own with one.
 struct FrameImages : PathtraceLayers {
     gpu::ImageHandle beauty;
+
+    /// Of one of frameLayers, or of beautyLayer.
+    gpu::ImageHandle& operator[](const LayerInfo& layer) {
+        return layer.index == beautyLayer.index ? beauty : LayerSet::operator[](layer);
+    }
+    const gpu::ImageHandle& operator[](const LayerInfo& layer) const {
+        return layer.index == beautyLayer.index ? beauty : LayerSet::operator[](layer);
+    }
+
     gpu::ImageHandle disocclusion;  ///< denoise::TemporalImages::disocclusion
     /// From this pass of the graph on they are the denoiser's; none without one.
     std::optional<size_t> firstDenoisingPass;

@@ -16,6 +16,15 @@ bool isUint(gpu::Format format) {
 /// a million triangles needs some thousands. More samples would lose light without a word.
 constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
+void download(gpu::FrameGraph& graph, gpu::Device& device, gpu::ImageHandle image,
+              std::vector<float>& pixels) {
+    if (image) pixels = graph.downloadFloat(device, image);
+}
+void download(gpu::FrameGraph& graph, gpu::Device& device, gpu::ImageHandle image,
+              std::vector<uint32_t>& pixels) {
+    if (image) pixels = graph.downloadUint(device, image);
+}
+
 }  // namespace
 
 RenderCounters sumCounters(std::span<const uint32_t> pixels) {
@@ -65,21 +74,9 @@ RenderedLayers downloadLayers(gpu::FrameGraph& graph, gpu::Device& device, const
     RenderedLayers layers;
     layers.extent = graph.extent(any);
     layers.samples = samples;
-    const auto get = [&](gpu::ImageHandle handle) {
-        return handle ? graph.downloadFloat(device, handle) : std::vector<float>();
-    };
-    layers.beauty = get(images.beauty);
-    layers.diffuse = get(images.diffuse);
-    layers.specular = get(images.specular);
-    layers.emission = get(images.emission);
-    layers.albedo = get(images.albedo);
-    layers.albedoSpecular = get(images.albedoSpecular);
-    layers.normal = get(images.normal);
-    layers.depth = get(images.depth);
-    layers.motion = get(images.motion);
-    layers.reflectionMotion = get(images.reflectionMotion);
-    layers.previousNormal = get(images.previousNormal);
-    if (images.ids) layers.ids = graph.downloadUint(device, images.ids);
+    download(graph, device, images.beauty, layers.beauty);
+    layers.forEach(
+        [&](const LayerInfo& layer, auto& pixels) { download(graph, device, images[layer], pixels); });
     return layers;
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "image/metrics/geometry.h"
 #include "renderer/frame/camera_text.h"
+#include "renderer/layers/layers.h"
 #include "shaders/common/scene_layout.h"
 
 namespace limpid {
@@ -19,20 +20,30 @@ using image::LayeredImage;
 /// Distances from here on mean that nothing was hit (files have 1e10).
 constexpr float farAway = 9e9f;
 
-bool has(const LayeredImage& file, const std::string& layer, std::string_view suffixes) {
-    return std::all_of(suffixes.begin(), suffixes.end(),
-                       [&](char suffix) { return file.find(layer + "." + suffix) != nullptr; });
+bool has(const LayeredImage& file, const LayerInfo& layer) {
+    return std::all_of(layer.suffixes.begin(), layer.suffixes.end(), [&](char suffix) {
+        return file.find(std::string(layer.name) + "." + suffix) != nullptr;
+    });
+}
+
+/// The layer's variance, also under the name with a one-letter ending, which Blender keeps; null without one.
+const image::Channel* varianceOf(const LayeredImage& file, const LayerInfo& layer) {
+    const std::string name = varianceChannel(layer);
+    const image::Channel* const channel = file.find(name);
+    return channel ? channel : file.find(name + ".V");
+}
+
+void addName(std::string& list, std::string_view name) {
+    if (!list.empty()) list += ", ";
+    list += name;
 }
 
 void requireLayers(const LayeredImage& file, const std::filesystem::path& name, bool sequence) {
     std::string missing;
-    const auto require = [&](const char* layer, std::string_view suffixes) {
-        if (!has(file, layer, suffixes)) missing += std::string(missing.empty() ? "" : ", ") + layer;
-    };
-    for (const char* layer : {"diffuse", "specular", "emission", "albedo"}) require(layer, "RGB");
-    require("normal", "XYZ");
-    require("depth", "Z");
-    if (sequence) require("motion", "XYZ");
+    for (const LayerInfo& layer : frameLayers) {
+        const bool needed = layer.need == Need::Always || (sequence && layer.need == Need::InSequences);
+        if (needed && !has(file, layer)) addName(missing, layer.name);
+    }
     if (!missing.empty()) {
         throw InputError(name, "lacks the layers " + missing +
                                    ", which denoising needs ('limpid render --aov all' writes them)");
@@ -61,70 +72,50 @@ uint32_t samplesOf(const LayeredImage& file) {
     return samples > 0 ? samples : unknown;
 }
 
-constexpr const char* layersWithVariance[] = {"diffuse", "specular", "albedo", "normal", "depth"};
-
-/// As the fourth of four; stays 0 without such a layer.
-void addVariance(const LayeredImage& file, const std::string& layer, std::vector<float>& pixels) {
-    const image::Channel* const variance = file.find(layer + ".variance");
+/// As the fourth of four; stays 0 where the file has none.
+void addVariance(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
+    const image::Channel* const variance = varianceOf(file, layer);
     const auto ofDeviations = static_cast<float>(samplesOf(file) - 1);
     for (size_t p = 0; variance && p < variance->values.size(); ++p)
-        pixels[4 * p + 3] = variance->values[p] * ofDeviations;
+        texels[4 * p + 3] = variance->values[p] * ofDeviations;
 }
 
-/// Four floats a pixel from three, and the mean squared deviation.
-std::vector<float> fourOf(const LayeredImage& file, const char* layer, const char* suffixes = "RGB") {
-    const Image image = file.get(layer, suffixes);
-    const size_t pixels = size_t{image.width} * image.height;
-    std::vector<float> result(4 * pixels);
-    for (size_t p = 0; p < pixels; ++p) {
-        for (size_t c = 0; c < 3; ++c) result[4 * p + c] = image.pixels[3 * p + c];
+/// Whether the components of a layer with a share of samples are a value.
+bool isValue(const LayerInfo& layer, const float* components) {
+    if (layer.mean == Mean::OfHits) return components[0] > 0.0f && components[0] < farAway;
+    return image::validMotion(components[0], components[1]) && std::isfinite(components[2]);
+}
+
+/// A mean, four floats a pixel.
+void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
+    const Image picture = file.get(layer.name, layer.suffixes);
+    const size_t count = layer.suffixes.size();
+    for (size_t p = 0; 4 * p < texels.size(); ++p) {
+        const float* const components = &picture.pixels[count * p];
+        if (layer.hasShare() && !isValue(layer, components)) continue;
+        std::copy_n(components, count, &texels[4 * p]);
+        if (layer.hasShare()) texels[4 * p + count] = 1.0f;
     }
-    addVariance(file, layer, result);
-    return result;
+    if (layer.varianceOf != VarianceOf::Nothing) addVariance(file, layer, texels);
 }
 
-std::vector<float> depthOf(const Image& distances) {
-    std::vector<float> result(4 * distances.pixels.size());
-    for (size_t p = 0; p < distances.pixels.size(); ++p) {
-        const float z = distances.pixels[p];
-        if (!(z > 0.0f && z < farAway)) continue;
-        result[4 * p] = z;
-        result[4 * p + 1] = 1.0f;
-    }
-    return result;
-}
-
-/// All invalid if there is no such layer.
-std::vector<float> motionOf(const LayeredImage& file, const char* layer, size_t pixels) {
-    std::vector<float> result(4 * pixels);
-    if (!has(file, layer, "XYZ")) return result;
-    const Image motion = file.get(layer, "XYZ");
-    for (size_t p = 0; p < pixels; ++p) {
-        const float* m = &motion.pixels[3 * p];
-        if (!image::validMotion(m[0], m[1]) || !std::isfinite(m[2])) continue;
-        std::copy_n(m, 3, &result[4 * p]);
-        result[4 * p + 3] = 1.0f;
-    }
-    return result;
-}
-
-std::vector<uint32_t> idsOf(const Image& numbers) {
-    std::vector<uint32_t> result(2 * numbers.pixels.size(), layout::NONE);
+/// Numbers of instances, two integers a pixel. In files 0 is nothing, and an instance has its number plus
+/// one.
+void read(const LayeredImage& file, const LayerInfo& layer, std::vector<uint32_t>& ids) {
+    const Image numbers = file.get(layer.name, layer.suffixes);
+    std::fill(ids.begin(), ids.end(), layout::NONE);
     for (size_t p = 0; p < numbers.pixels.size(); ++p) {
-        // In files 0 is nothing, and an instance has its number plus one.
         const float number = numbers.pixels[p];
-        if (number >= 1.0f && number < 4e9f) result[2 * p] = static_cast<uint32_t>(number) - 1;
+        if (number >= 1.0f && number < 4e9f) ids[2 * p] = static_cast<uint32_t>(number) - 1;
     }
-    return result;
 }
 
 }  // namespace
 
 void requireVariances(const LayeredImage& file, const std::filesystem::path& name) {
     std::string missing;
-    for (const char* layer : layersWithVariance) {
-        const std::string wanted = std::string(layer) + ".variance";
-        if (!file.find(wanted)) missing += (missing.empty() ? "" : ", ") + wanted;
+    for (const LayerInfo& layer : frameLayers) {
+        if (layer.varianceInFiles && !varianceOf(file, layer)) addName(missing, varianceChannel(layer));
     }
     if (!missing.empty())
         throw InputError(name, "lacks the layers " + missing +
@@ -132,35 +123,26 @@ void requireVariances(const LayeredImage& file, const std::filesystem::path& nam
 }
 
 denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path& name, bool sequence,
-                           std::vector<std::string>& lacking) {
+                           std::vector<const LayerInfo*>& lacking) {
     requireLayers(file, name, sequence);
     denoise::HostFrame frame;
     frame.width = file.width;
     frame.height = file.height;
     frame.camera = cameraOf(file, name);
-    frame.diffuse = fourOf(file, "diffuse");
-    frame.specular = fourOf(file, "specular");
-    frame.emission = fourOf(file, "emission");
-    frame.albedo = fourOf(file, "albedo");
-    if (has(file, "albedoSpecular", "RGB")) frame.albedoSpecular = fourOf(file, "albedoSpecular");
-    frame.normal = fourOf(file, "normal", "XYZ");
-    frame.depth = depthOf(file.get("depth", "Z"));
-    addVariance(file, "depth", frame.depth);
     frame.samples = samplesOf(file);
-    frame.motion = motionOf(file, "motion", frame.pixelCount());
-    frame.reflectionMotion = motionOf(file, "reflectionMotion", frame.pixelCount());
-    if (has(file, "prevNormal", "XYZ")) {
-        frame.previousNormal = fourOf(file, "prevNormal", "XYZ");
-    } else {
-        frame.previousNormal = frame.normal;
-        if (sequence) lacking.push_back("prevNormal");
-    }
-    if (has(file, "id", "I")) {
-        frame.ids = idsOf(file.get("id", "I"));
-    } else {
-        frame.ids.assign(2 * frame.pixelCount(), 0);
-        if (sequence) lacking.push_back("id");
-    }
+    const auto makePixels = [&](const LayerInfo& layer, auto& texels) {
+        texels.resize((layer.stored == Stored::Uint ? 2 : 4) * frame.pixelCount());
+    };
+    frame.forEach([&](const LayerInfo& layer, auto& texels) {
+        if (has(file, layer)) {
+            makePixels(layer, texels);
+            read(file, layer, texels);
+        } else if (sequence && layer.need == Need::Advised) {
+            lacking.push_back(&layer);
+        }
+    });
+    if (frame.previousNormal.empty()) frame.previousNormal = frame.normal;  // as if nothing turned
+    frame.forEach(makePixels);  // zeros where the file has nothing: no motion, one object
     return frame;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "denoise/api/host_frame.h"
@@ -10,17 +9,16 @@
 
 namespace limpid {
 
-/// The frame that the file holds. `sequence`: it has a frame before it, so motion is needed. Throws
-/// InputError listing all that is missing of diffuse, specular, emission, albedo, normal, depth, the camera,
-/// and motion. Without the layers id and prevNormal there is one object and nothing turns; `lacking` names
-/// them.
-/// With the layers of variance, and of as many samples as the attribute "limpid.samples" says; of 32 without
-/// it.
+/// The frame that the file holds. `sequence`: it has a frame before it. Throws InputError if the camera is
+/// missing, or layers that denoising needs (base/layers/layer_table.h: Need), listing all of these. Missing
+/// layers that are advised in a sequence are added to `lacking`: without `id` there is one object, without
+/// `prevNormal` nothing turns. With the layers of variance, and of as many samples as the attribute
+/// "limpid.samples" says; of 32 without it.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
-                           std::vector<std::string>& lacking);
+                           std::vector<const LayerInfo*>& lacking);
 
-/// Throws InputError listing those of the layers diffuse.variance, specular.variance, albedo.variance,
-/// normal.variance and depth.variance that the file lacks: networks need them.
+/// Throws InputError listing the layers of variance (LayerInfo::varianceInFiles) that the file lacks:
+/// networks need them.
 void requireVariances(const image::LayeredImage& file, const std::filesystem::path& name);
 
 }  // namespace limpid

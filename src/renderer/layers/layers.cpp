@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "image/metrics/geometry.h"
 
 namespace limpid {
 namespace {
@@ -30,34 +29,48 @@ Image varianceOfMean(const std::vector<float>& texels, gpu::Extent extent, uint6
     return out;
 }
 
-/// Divides by the share of samples that were valid (component `share` of four).
-Image perValidSample(const std::vector<float>& texels, gpu::Extent extent, uint32_t share, uint32_t count,
-                     float otherwise) {
+/// The components of a mean, divided by the share of samples that have a value where there is one.
+Image imageOf(const LayerInfo& layer, const std::vector<float>& texels, gpu::Extent extent) {
+    const auto count = static_cast<uint32_t>(layer.suffixes.size());
     Image out = components(texels, extent, 0, count);
     const size_t pixels = size_t{extent.width} * extent.height;
-    for (size_t p = 0; p < pixels; ++p) {
-        const float valid = texels[p * 4 + share];
+    for (size_t p = 0; layer.hasShare() && p < pixels; ++p) {
+        const float valid = texels[p * 4 + count];
         for (uint32_t c = 0; c < count; ++c) {
             float& value = out.pixels[p * count + c];
-            value = valid > 0.0f ? value / valid : otherwise;
+            value = valid > 0.0f ? value / valid : noValue;
         }
     }
     return out;
 }
 
-Image idImage(const RenderedLayers& layers) {
-    Image out(layers.extent.width, layers.extent.height, 1);
-    // 0: nothing; otherwise the instance's number plus one.
-    for (size_t p = 0; p < out.pixels.size(); ++p) out.pixels[p] = static_cast<float>(layers.ids[2 * p] + 1u);
+/// 0: nothing; otherwise the instance's number plus one.
+Image imageOf(const LayerInfo&, const std::vector<uint32_t>& ids, gpu::Extent extent) {
+    Image out(extent.width, extent.height, 1);
+    for (size_t p = 0; p < out.pixels.size(); ++p) out.pixels[p] = static_cast<float>(ids[2 * p] + 1u);
     return out;
+}
+
+Storage storageOf(const LayerInfo& layer, Storage colorStorage) {
+    switch (layer.stored) {
+        case Stored::Color:
+            break;
+        case Stored::Float:
+            return Storage::Float;
+        case Stored::Uint:
+            return Storage::Uint;
+    }
+    return colorStorage;
 }
 
 }  // namespace
 
 const std::vector<std::string>& layerNames() {
-    static const std::vector<std::string> names{
-        "beauty",     "diffuse", "specular", "emission",         "albedo", "albedoSpecular", "normal",
-        "prevNormal", "depth",   "motion",   "reflectionMotion", "id",     "variance",       "samples"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list;
+        for (const LayerInfo& layer : layerTable) list.emplace_back(layer.name);
+        return list;
+    }();
     return names;
 }
 
@@ -105,45 +118,28 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
     out.height = extent.height;
     out.add("", "RGB", beautyOf(layers), colorStorage);
     out.add("", "A", Image(extent.width, extent.height, 1, 1.0f), colorStorage);
-    const auto wants = [&](std::string_view name) {
-        return std::find(names.begin(), names.end(), name) != names.end();
+    const auto wants = [&](const LayerInfo& layer) {
+        return std::find(names.begin(), names.end(), layer.name) != names.end();
     };
-    const auto addColor = [&](const char* name, const std::vector<float>& texels) {
-        if (wants(name)) out.add(name, "RGB", components(texels, extent, 0, 3), colorStorage);
-    };
-    addColor("diffuse", layers.diffuse);
-    addColor("specular", layers.specular);
-    addColor("emission", layers.emission);
-    addColor("albedo", layers.albedo);
-    addColor("albedoSpecular", layers.albedoSpecular);
-    if (wants("normal")) out.add("normal", "XYZ", components(layers.normal, extent, 0, 3), colorStorage);
-    if (wants("prevNormal")) {
-        out.add("prevNormal", "XYZ", components(layers.previousNormal, extent, 0, 3), colorStorage);
-    }
-    if (wants("depth"))
-        out.add("depth", "Z", perValidSample(layers.depth, extent, 1, 1, missDepth), Storage::Float);
-    const auto addMotion = [&](const char* name, const std::vector<float>& texels) {
-        if (!wants(name) || texels.empty()) return;
-        out.add(name, "XYZ", perValidSample(texels, extent, 3, 3, image::invalidMotion), Storage::Float);
-    };
-    addMotion("motion", layers.motion);
-    addMotion("reflectionMotion", layers.reflectionMotion);
-    if (wants("id")) out.add("id", "I", idImage(layers), Storage::Uint);
-    if (wants("samples")) {
+    layers.forEach([&](const LayerInfo& layer, const auto& texels) {
+        if (!wants(layer) || texels.empty()) return;
+        out.add(layer.name, layer.suffixes, imageOf(layer, texels, extent), storageOf(layer, colorStorage));
+    });
+    if (wants(samplesLayer)) {
         const Image count(extent.width, extent.height, 1, static_cast<float>(layers.samples));
-        out.add("samples", "N", count, Storage::Float);
+        out.add(samplesLayer.name, samplesLayer.suffixes, count, storageOf(samplesLayer, colorStorage));
     }
-    if (!wants("variance")) return out;
-    const auto addVariance = [&](const char* name, const std::vector<float>& texels) {
-        const Image variance = varianceOfMean(texels, extent, layers.samples);
-        out.channels.push_back({std::string(name) + ".variance", Storage::Float, variance.pixels});
-    };
-    addVariance("diffuse", layers.diffuse);
-    addVariance("specular", layers.specular);
-    addVariance("albedo", layers.albedo);
-    addVariance("normal", layers.normal);
-    addVariance("depth", layers.depth);
+    for (const LayerInfo& layer : frameLayers) {
+        if (!wants(varianceLayer) || !layer.varianceInFiles || layers[layer].empty()) continue;
+        const Image variance = varianceOfMean(layers[layer], extent, layers.samples);
+        out.channels.push_back(
+            {varianceChannel(layer), storageOf(varianceLayer, colorStorage), variance.pixels});
+    }
     return out;
+}
+
+std::string varianceChannel(const LayerInfo& layer) {
+    return std::string(layer.name) + "." + std::string(varianceLayer.name);
 }
 
 }  // namespace limpid

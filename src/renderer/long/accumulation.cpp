@@ -16,36 +16,16 @@
 namespace limpid {
 namespace {
 
-using Images = FrameImages;
-using Layers = RenderedLayers;
-
-constexpr LayerKind beautyAlone{"beauty", 4, VarianceOf::Nothing, &Images::beauty, &Layers::beauty};
-
-// The first three are what beauty is made of.
-constexpr size_t partsOfBeauty = 3;
-constexpr std::array<LayerKind, 10> kinds{{
-    {"diffuse", 3, VarianceOf::Luminance, &Images::diffuse, &Layers::diffuse},
-    {"specular", 3, VarianceOf::Luminance, &Images::specular, &Layers::specular},
-    {"emission", 3, VarianceOf::Nothing, &Images::emission, &Layers::emission},
-    {"albedo", 3, VarianceOf::Luminance, &Images::albedo, &Layers::albedo},
-    {"albedoSpecular", 3, VarianceOf::Nothing, &Images::albedoSpecular, &Layers::albedoSpecular},
-    {"normal", 3, VarianceOf::MeanOfComponents, &Images::normal, &Layers::normal},
-    {"prevNormal", 3, VarianceOf::Nothing, &Images::previousNormal, &Layers::previousNormal},
-    {"depth", 2, VarianceOf::FirstComponent, &Images::depth, &Layers::depth},
-    {"motion", 4, VarianceOf::Nothing, &Images::motion, &Layers::motion},
-    {"reflectionMotion", 4, VarianceOf::Nothing, &Images::reflectionMotion, &Layers::reflectionMotion},
-}};
-
 std::vector<LayerSums> layersFor(const std::vector<std::string>& names) {
-    const auto wants = [&](const char* name) {
-        return std::find(names.begin(), names.end(), name) != names.end();
+    if (names.empty()) return {{.info = &beautyLayer, .squares = false, .values = {}}};
+    const auto wants = [&](const LayerInfo& layer) {
+        return std::find(names.begin(), names.end(), layer.name) != names.end();
     };
     std::vector<LayerSums> layers;
-    if (names.empty()) layers.push_back({.kind = &beautyAlone, .squares = false, .values = {}});
-    for (size_t i = 0; i < kinds.size() && !names.empty(); ++i) {
-        const bool squares = wants("variance") && kinds[i].varianceOf != VarianceOf::Nothing;
-        if (i < partsOfBeauty || squares || wants(kinds[i].name))
-            layers.push_back({.kind = &kinds[i], .squares = squares, .values = {}});
+    for (const LayerInfo& layer : frameLayers) {
+        const bool squares = wants(varianceLayer) && layer.varianceInFiles;
+        if (layer.isMean() && (layer.inBeauty || squares || wants(layer)))
+            layers.push_back({.info = &layer, .squares = squares, .values = {}});
     }
     return layers;
 }
@@ -70,15 +50,15 @@ double clamped(double value, double limit, uint64_t& count) {
 uint64_t addPixel(const LayerSums& layer, const float* means, double samples, Int128* sums) {
     uint64_t changed = 0;
     std::array<double, 4> mean{};
-    for (uint32_t c = 0; c < layer.kind->components; ++c) {
+    for (size_t c = 0; c < layer.info->meanComponents(); ++c) {
         mean[c] = clamped(double{means[c]}, meanLimit, changed);
         sums[c] = addFixed(sums[c], toFixed(mean[c] * samples, meanFraction));
     }
     if (!layer.squares) return changed;
     const double deviation = clamped(std::max(double{means[3]}, 0.0), squareLimit, changed);
     const double square =
-        clamped(squareOf(layer.kind->varianceOf, mean[0], mean[1], mean[2]), squareLimit, changed);
-    Int128& sum = sums[layer.kind->components];
+        clamped(squareOf(layer.info->varianceOf, mean[0], mean[1], mean[2]), squareLimit, changed);
+    Int128& sum = sums[layer.info->meanComponents()];
     sum = addFixed(sum, toFixed(deviation * samples, squareFraction));
     sum = addFixed(sum, toFixed(square * samples, squareFraction));
     return changed;
@@ -89,8 +69,8 @@ using Range = tbb::blocked_range<size_t>;
 uint64_t addLayer(LayerSums& layer, const std::vector<float>& means, uint64_t pixels, uint32_t samples) {
     if (means.size() != pixels * 4)
         throw Error(
-            fmt::format("the layer {} has {} values for {} pixels", layer.kind->name, means.size(), pixels));
-    const uint32_t planes = layer.planes();
+            fmt::format("the layer {} has {} values for {} pixels", layer.info->name, means.size(), pixels));
+    const size_t planes = layer.planes();
     layer.values.resize(pixels * planes);
     const auto addRange = [&](const Range& range, uint64_t changed) {
         for (size_t p = range.begin(); p < range.end(); ++p)
@@ -103,13 +83,13 @@ uint64_t addLayer(LayerSums& layer, const std::vector<float>& means, uint64_t pi
 /// Four floats: the means, and in the fourth the mean squared deviation if squares were summed.
 void meanOfPixel(const LayerSums& layer, const Int128* sums, long double samples, float* result) {
     std::array<long double, 4> mean{};
-    for (uint32_t c = 0; c < layer.kind->components; ++c) {
+    for (size_t c = 0; c < layer.info->meanComponents(); ++c) {
         mean[c] = fromFixed(sums[c], meanFraction) / samples;
         result[c] = static_cast<float>(mean[c]);
     }
     if (!layer.squares) return;
-    const long double square = fromFixed(sums[layer.kind->components], squareFraction) / samples;
-    const long double ofMean = squareOf(layer.kind->varianceOf, mean[0], mean[1], mean[2]);
+    const long double square = fromFixed(sums[layer.info->meanComponents()], squareFraction) / samples;
+    const long double ofMean = squareOf(layer.info->varianceOf, mean[0], mean[1], mean[2]);
     result[3] = static_cast<float>(std::max(square - ofMean, 0.0L));
 }
 
@@ -144,7 +124,7 @@ uint64_t FrameSums::samples() const {
 void FrameSums::add(uint32_t samples, const MeansOf& meansOf) {
     if (partSamples > 0) throw Error("nothing can be added to sums that end in a part of a block");
     for (LayerSums& layer : layers)
-        counts.clamped += addLayer(layer, meansOf(*layer.kind), pixels(), samples);
+        counts.clamped += addLayer(layer, meansOf(*layer.info), pixels(), samples);
 }
 
 void FrameSums::addBlock(uint32_t block, const MeansOf& meansOf) {
@@ -182,7 +162,7 @@ RenderedLayers FrameSums::means() const {
     result.samples = samples();
     if (result.samples == 0) throw Error("nothing has been rendered yet");
     for (const LayerSums& layer : layers) {
-        std::vector<float>& texels = result.*layer.kind->means;
+        std::vector<float>& texels = result[*layer.info];
         texels.resize(pixels() * 4);
         tbb::parallel_for(Range(0, pixels(), 4096), [&](const Range& range) {
             for (size_t p = range.begin(); p < range.end(); ++p)

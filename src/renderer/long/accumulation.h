@@ -23,26 +23,17 @@ inline constexpr double meanLimit = 0x1p40;
 inline constexpr int squareFraction = 38;
 inline constexpr double squareLimit = 0x1p63;
 
-/// An image of recordFrame() that can be summed.
-struct LayerKind {
-    const char* name;  ///< as in layerNames(); "beauty" where layers are not computed
-    uint32_t components;
-    VarianceOf varianceOf;  ///< Nothing: the fourth component, if counted, is a mean like the others
-    gpu::ImageHandle FrameImages::*image;
-    std::vector<float> RenderedLayers::*means;
-};
-
 /// The sums of one layer.
 struct LayerSums {
-    const LayerKind* kind = nullptr;
-    bool squares = false;        ///< summed too, for the variance
+    const LayerInfo* info = nullptr;  ///< one that is a mean; beautyLayer where layers are not computed
+    bool squares = false;             ///< summed too, for the variance
     std::vector<Int128> values;  ///< by pixel: the components, then the square if there is one; empty: all 0
 
-    uint32_t planes() const { return kind->components + (squares ? 1u : 0u); }
+    size_t planes() const { return info->meanComponents() + (squares ? 1 : 0); }
 };
 
-/// Gives the means of a layer, four floats a pixel (passes/pathtrace/pathtrace.h says which).
-using MeansOf = std::function<std::vector<float>(const LayerKind&)>;
+/// Gives the means of a layer, four floats a pixel (base/layers/layer_table.h says which).
+using MeansOf = std::function<std::vector<float>(const LayerInfo&)>;
 
 /// What a block's samples cost and lost.
 struct SampleCounts {

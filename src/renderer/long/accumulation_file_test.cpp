@@ -206,7 +206,7 @@ TEST_F(AccumulationFileTest, WhatIsNoFileIsNamed) {
     EXPECT_THROW(writeAccumulation(folder_ / "no/such.sums", smallHeader(), randomSums(smallHeader(), {})),
                  OutputError);
     FrameSums part = randomSums(smallHeader(), {});
-    part.addPart(3, [&](const LayerKind& layer) { return randomMeans(layer, 0, 6); });
+    part.addPart(3, [&](const LayerInfo& layer) { return randomMeans(layer, 0, 6); });
     EXPECT_THROW(writeAccumulation(folder_ / "b.sums", smallHeader(), part), Error);
     EXPECT_FALSE(fs::exists(folder_ / "b.sums"));
 }

@@ -1,7 +1,6 @@
 // For tests: a small render whose blocks are made of random numbers.
 #pragma once
 
-#include <cstring>
 #include <random>
 
 #include "renderer/long/accumulation_file.h"
@@ -22,8 +21,8 @@ inline AccumulationHeader smallHeader() {
 }
 
 /// Means of `layer` in a block: the same for the same arguments; from -2 to 2, the fourth not negative.
-inline std::vector<float> randomMeans(const LayerKind& layer, uint32_t block, uint64_t pixels) {
-    std::seed_seq seed(layer.name, layer.name + std::strlen(layer.name));
+inline std::vector<float> randomMeans(const LayerInfo& layer, uint32_t block, uint64_t pixels) {
+    std::seed_seq seed(layer.name.begin(), layer.name.end());
     std::mt19937 random(seed);
     random.discard(block * 1000);
     std::uniform_real_distribution<float> value(-2.0f, 2.0f);
@@ -33,7 +32,7 @@ inline std::vector<float> randomMeans(const LayerKind& layer, uint32_t block, ui
 }
 
 inline void addRandomBlock(FrameSums& sums, uint32_t block) {
-    sums.addBlock(block, [&](const LayerKind& layer) { return randomMeans(layer, block, sums.pixels()); });
+    sums.addBlock(block, [&](const LayerInfo& layer) { return randomMeans(layer, block, sums.pixels()); });
     if (block == 0 && sums.wantsIds) sums.ids.assign(sums.pixels() * 2, 7);
     sums.counts.rays += 100 + block;
 }
@@ -50,8 +49,8 @@ inline void expectSame(const FrameSums& a, const FrameSums& b) {
     EXPECT_EQ(a.counts.rays, b.counts.rays);
     ASSERT_EQ(a.layers.size(), b.layers.size());
     for (size_t i = 0; i < a.layers.size(); ++i) {
-        EXPECT_EQ(a.layers[i].kind, b.layers[i].kind);
-        EXPECT_TRUE(a.layers[i].values == b.layers[i].values) << a.layers[i].kind->name;
+        EXPECT_EQ(a.layers[i].info, b.layers[i].info);
+        EXPECT_TRUE(a.layers[i].values == b.layers[i].values) << a.layers[i].info->name;
     }
 }
 

@@ -68,26 +68,26 @@ TEST(FrameSums, MeansAndVariancesAreThoseOfAllSamples) {
     ASSERT_EQ(sums.samples(), 40u);
     const RenderedLayers result = sums.means();
     for (const LayerSums& layer : sums.layers) {
-        const std::vector<float>& got = result.*layer.kind->means;
+        const std::vector<float>& got = result[*layer.info];
         for (size_t p = 0; p < 6; ++p) {
             double mean[4] = {}, square = 0.0;
             const auto of = [&](const auto* v) {
-                if (layer.kind->varianceOf == VarianceOf::FirstComponent) return double{v[0]} * v[0];
-                if (layer.kind->varianceOf == VarianceOf::MeanOfComponents)
+                if (layer.info->varianceOf == VarianceOf::FirstComponent) return double{v[0]} * v[0];
+                if (layer.info->varianceOf == VarianceOf::MeanOfComponents)
                     return (double{v[0]} * v[0] + double{v[1]} * v[1] + double{v[2]} * v[2]) / 3.0;
                 const double l = 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2];
                 return l * l;
             };
             for (uint32_t block = 0; block < 3; ++block) {
-                const std::vector<float> m = randomMeans(*layer.kind, block, 6);
+                const std::vector<float> m = randomMeans(*layer.info, block, 6);
                 const double share = header.plan.samplesOf(block) / 40.0;
                 for (size_t c = 0; c < 4; ++c) mean[c] += share * double{m[p * 4 + c]};
                 square += share * (double{m[p * 4 + 3]} + of(&m[p * 4]));
             }
-            for (size_t c = 0; c < layer.kind->components; ++c)
-                EXPECT_FLOAT_EQ(got[p * 4 + c], static_cast<float>(mean[c])) << layer.kind->name;
+            for (size_t c = 0; c < layer.info->meanComponents(); ++c)
+                EXPECT_FLOAT_EQ(got[p * 4 + c], static_cast<float>(mean[c])) << layer.info->name;
             if (!layer.squares) continue;
-            EXPECT_NEAR(got[p * 4 + 3], square - of(mean), 1e-6) << layer.kind->name;
+            EXPECT_NEAR(got[p * 4 + 3], square - of(mean), 1e-6) << layer.info->name;
         }
     }
     EXPECT_EQ(result.ids, std::vector<uint32_t>(12, 7));
@@ -98,7 +98,7 @@ TEST(FrameSums, OneBlocksMeansComeBackExactly) {
     AccumulationHeader header = smallHeader();
     header.plan.samples = 16;
     const FrameSums sums = randomSums(header, {0});
-    const std::vector<float> expected = randomMeans(*sums.layers[0].kind, 0, 6);
+    const std::vector<float> expected = randomMeans(*sums.layers[0].info, 0, 6);
     const std::vector<float> got = sums.means().beauty;
     for (size_t p = 0; p < 6; ++p) {
         for (size_t c = 0; c < 4; ++c) EXPECT_EQ(got[p * 4 + c], expected[p * 4 + c]);
@@ -114,7 +114,7 @@ TEST(FrameSums, WhatIsBeyondTheRangeIsClampedAndCounted) {
     means[2] = -1e30f;
     means[4] = 0x1p40f;  // the largest
     for (uint32_t block = 0; block < 3; ++block) {
-        sums.addBlock(block, [&](const LayerKind&) { return means; });
+        sums.addBlock(block, [&](const LayerInfo&) { return means; });
     }
     EXPECT_EQ(sums.counts.clamped, 9u);
     const std::vector<float> got = sums.means().beauty;
@@ -133,7 +133,7 @@ TEST(FrameSums, TheMostSamplesOfTheLargestDoNotOverflow) {
     FrameSums sums(header.extent, header.plan, header.layers);
     const std::vector<float> largest{0x1p40f, 0x1p40f, 0x1p40f, std::numeric_limits<float>::max()};
     for (uint32_t block = 0; block < header.plan.blocks(); ++block)
-        sums.addBlock(block, [&](const LayerKind&) { return largest; });
+        sums.addBlock(block, [&](const LayerInfo&) { return largest; });
     const RenderedLayers result = sums.means();
     EXPECT_EQ(result.diffuse[0], 0x1p40f);
     EXPECT_EQ(result.depth[0], 0x1p40f);
@@ -146,12 +146,12 @@ TEST(FrameSums, WrongUseIsRefused) {
     FrameSums sums = randomSums(header, {1});
     EXPECT_THROW(addRandomBlock(sums, 1), Error);
     EXPECT_THROW(sums.merge(randomSums(header, {0, 1})), Error);
-    EXPECT_THROW(sums.addBlock(0, [](const LayerKind&) { return std::vector<float>(4); }), Error);
+    EXPECT_THROW(sums.addBlock(0, [](const LayerInfo&) { return std::vector<float>(4); }), Error);
     AccumulationHeader other = header;
     other.extent = {2, 3};
     EXPECT_THROW(sums.merge(randomSums(other, {0})), Error);
     EXPECT_THROW(FrameSums(header.extent, header.plan, header.layers).means(), Error);
-    sums.addPart(3, [&](const LayerKind& layer) { return randomMeans(layer, 0, 6); });
+    sums.addPart(3, [&](const LayerInfo& layer) { return randomMeans(layer, 0, 6); });
     EXPECT_EQ(sums.samples(), 19u);
     EXPECT_THROW(addRandomBlock(sums, 2), Error);
 }

@@ -62,8 +62,8 @@ SampleCounts BlockRenderer::countsOfBlock() {
 
 void BlockRenderer::addTo(FrameSums& sums) {
     if (samplesDone_ == 0) throw Error("nothing has been rendered yet");
-    const auto meansOf = [&](const LayerKind& kind) {
-        return graph_.downloadFloat(device_, images_.*kind.image);
+    const auto meansOf = [&](const LayerInfo& layer) {
+        return graph_.downloadFloat(device_, images_[layer]);
     };
     const uint64_t clampedBefore = sums.counts.clamped;
     if (samplesDone_ == plan_.samplesOf(block_)) {
