@@ -141,7 +141,7 @@ void denoiseFiles(const DenoiseOptions& o) {
     checkPictureOutput(FramePattern(o.output).format(0), false);
     chosenDenoiser(o);
     settingsOf(o);
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     const DenoiseSummary summary = denoiseFrames(o, *device);
     if (o.json) {
         const nlohmann::json object{{"output", o.output},

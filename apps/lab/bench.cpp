@@ -102,7 +102,7 @@ json traceBench(gpu::Device& device, const BenchOptions& o, const std::string& n
 }
 
 void runTrace(const BenchOptions& o) {
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     json results = json::array();
     if (!o.json) {
         fmt::print("{}, tracer {}, {}x{}, depth {}\n{:<24}{:>12}{:>14}{:>14}{:>14}\n", device->info().name,
@@ -213,7 +213,7 @@ void plotConvergence(const BenchOptions& o, const json& rows) {
 
 void runConvergence(const BenchOptions& o) {
     makeFolder(o.folder);
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     json all = json::array();
     if (!o.json) {
         fmt::print("{}, {}x{}\n{:<26}{:>9}{:>10}{:>10}{:>10}\n", device->info().name, o.width, o.height,
@@ -269,6 +269,7 @@ void addBenchCommand(CLI::App& app) {
         runConvergence(*options);
     });
     addDenoiseBench(*bench);
+    addFirstFrameBench(*bench);
     addKpcnBench(*bench);
     addLaunchesBench(*bench);
     addQualityBench(*bench);

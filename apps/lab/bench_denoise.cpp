@@ -77,7 +77,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
 }
 
 void run(const DenoiseBench& o) {
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     const double limit = copyRate(*device);
     json passes = json::array();
     if (!o.json) {

@@ -161,7 +161,7 @@ void print(const KpcnBench& o, const gpu::Device& device, const std::vector<Row>
 
 void run(const KpcnBench& o) {
     if (o.productSize % 128 != 0) throw UsageError("--product-size is a multiple of 128");
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     RenderSettings settings = settingsOf(o);
     const std::vector<Row> rows = measure(*device, o, settings);
     const std::string_view precision = denoise::toString(settings.networks.kpcn->precision());

@@ -116,7 +116,7 @@ void printJson(const LaunchesBench& o, const std::string& device, const std::vec
 
 void run(const LaunchesBench& o) {
     if (!o.folder.empty()) makeFolder(o.folder);
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     const std::vector<Row> rows = measure(*device, o);
     if (!o.folder.empty()) {
         PlotLine line{fmt::format("{} samples per pixel", o.samples), {}};

@@ -166,7 +166,7 @@ void printJson(const SvgfBench& o, const std::string& device, const Measured& m)
 void run(const SvgfBench& o) {
     settingsOf(o);
     if (!o.folder.empty()) makeFolder(o.folder);
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     Measured measured;
     {
         BenchScene scene(*device, chosenTracer(o.device, *device), {.scene = o.scene});

@@ -149,7 +149,7 @@ void run(const DatasetOptions& o) {
     const Dataset dataset(o);
     if (dataset.examples() == 0) throw UsageError("a dataset of no rooms, no still lifes and no scenes");
     makeFolder(o.folder);
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);
     Progress progress("files", dataset.files());
     for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {

@@ -17,6 +17,7 @@
 #include "live_render.h"
 #include "networks.h"
 #include "playback.h"
+#include "renderer/frame/pipeline_store.h"
 #include "renderer/frame/reset_rule.h"
 #include "scene/framing/framing.h"
 #include "scene/model/camera.h"
@@ -70,6 +71,7 @@ class Viewer {
     Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoader load, scene::Scene first,
            const scene::Camera& home, const ViewSettings& settings);
     void run();
+    void storePipelines() const { limpid::storePipelines(device_, pipelineFile(device_)); }
     uint64_t rendered() const { return main_.frames(); }
     ViewSettings settingsNow() const;
     /// What another viewer of the same scene needs to go on as this one.
@@ -158,6 +160,7 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
       networks_(device_, settings.weights),
       comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()) {
+    loadPipelines(device_, pipelineFile(device_));
     panel_.render = settings.render;
     if (settings.preview) panel_.setPreview(true);
     if (settings.jitter) panel_.jitter = jitterChoice(*settings.jitter, settings.render.pipeline);
@@ -669,7 +672,8 @@ void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const Sc
     auto viewer = std::make_unique<Viewer>(device, tracer, load, std::move(first), home, settings);
     for (;;) {
         try {
-            return viewer->run();
+            viewer->run();
+            return viewer->storePipelines();
         } catch (const gpu::DeviceLost& fault) {
             if (viewer->rendered() < minFramesOfADevice) throw;
             log::error("{}; setting everything up anew", fault.what());

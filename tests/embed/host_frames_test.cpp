@@ -20,7 +20,7 @@ class HostFramesTest : public DenoiseTest {
   protected:
     void SetUp() override {
         DenoiseTest::SetUp();
-        if (IsSkipped()) return;
+        if (IsSkipped() || device_) return;
         const std::string select = wantedDevice();
         limpid_device_desc desc = {sizeof desc};
         desc.select = select.c_str();
@@ -28,9 +28,9 @@ class HostFramesTest : public DenoiseTest {
     }
     void TearDown() override {
         limpid_denoiser_destroy(denoiser_);
-        limpid_device_destroy(device_);
         DenoiseTest::TearDown();
     }
+    static void TearDownTestSuite() { limpid_device_destroy(std::exchange(device_, nullptr)); }
 
     void create(limpid_method method, uint32_t signals = 2) {
         limpid_denoiser_desc desc = {sizeof desc};
@@ -42,7 +42,7 @@ class HostFramesTest : public DenoiseTest {
         ASSERT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_OK) << limpid_last_error();
     }
 
-    limpid_device* device_ = nullptr;
+    inline static limpid_device* device_ = nullptr;  ///< of all tests: each shader is compiled once
     limpid_denoiser* denoiser_ = nullptr;
 };
 
@@ -51,8 +51,8 @@ limpid_host_image imageOf(const std::vector<float>& pixels) {
 }
 
 /// What a SyntheticScene's frame is for other programs. `depths` keeps the distances.
-limpid_host_frame hostFrame(const HostFrame& frame, int number, std::vector<float>& depths,
-                            std::vector<float>& ids, std::vector<float>& result) {
+limpid_host_frame hostFrame(const HostFrame& frame, std::vector<float>& depths, std::vector<float>& ids,
+                            std::vector<float>& result) {
     limpid_host_frame given = {sizeof given};
     given.inputs[LIMPID_INPUT_RADIANCE] = imageOf(frame.diffuse);
     given.inputs[LIMPID_INPUT_SPECULAR] = imageOf(frame.specular);
@@ -73,7 +73,6 @@ limpid_host_frame hostFrame(const HostFrame& frame, int number, std::vector<floa
     result.assign(4 * frame.pixelCount(), -1.0f);
     given.outputs[LIMPID_OUTPUT_COLOR] = {result.data(), 4, 0, 0};
     given.camera = matricesOf(frame.camera, frame.camera);
-    (void)number;
     return given;
 }
 
@@ -96,7 +95,7 @@ TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
     std::vector<float> depths, ids, result, inside;
     for (int number = 0; number < 6; ++number) {
         const HostFrame frame = embeddable(scene, number);
-        const limpid_host_frame given = hostFrame(frame, number, depths, ids, result);
+        const limpid_host_frame given = hostFrame(frame, depths, ids, result);
         ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
         filters_ = gpu::filterBacking(device());
         inside = denoise(*denoise::findDenoiser("svgf"), frame);
@@ -113,7 +112,7 @@ TEST_F(HostFramesTest, SignalsAddUpToThePicture) {
     std::vector<float> depths, ids, color;
     std::vector<float> radiance(3 * width * height), specular(4 * width * height);
     const HostFrame frame = embeddable(scene, 0);
-    limpid_host_frame given = hostFrame(frame, 0, depths, ids, color);
+    limpid_host_frame given = hostFrame(frame, depths, ids, color);
     given.outputs[LIMPID_OUTPUT_RADIANCE] = {radiance.data(), 3, 0, 0};
     given.outputs[LIMPID_OUTPUT_SPECULAR] = {specular.data(), 4, 0, 0};
     ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
@@ -129,12 +128,12 @@ TEST_F(HostFramesTest, AResetForgetsThePast) {
     const SyntheticScene scene({});
     std::vector<float> depths, ids, first, later;
     const HostFrame frame = embeddable(scene, 0);
-    limpid_host_frame given = hostFrame(frame, 0, depths, ids, first);
+    limpid_host_frame given = hostFrame(frame, depths, ids, first);
     ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
     const HostFrame other = scene.frame(0, width, height, 2);
-    given = hostFrame(other, 0, depths, ids, later);
+    given = hostFrame(other, depths, ids, later);
     ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK);
-    given = hostFrame(frame, 0, depths, ids, later);
+    given = hostFrame(frame, depths, ids, later);
     given.reset = 1;
     ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK);
     EXPECT_EQ(first, later);
@@ -158,9 +157,8 @@ TEST_F(HostFramesTest, EveryMethodRunsAndListsItsParameters) {
         EXPECT_GT(count, 5u);
         const SyntheticScene scene({});
         std::vector<float> depths, ids, result;
-        limpid_host_frame given = hostFrame(embeddable(scene, 0), 0, depths, ids, result);
         const HostFrame frame = embeddable(scene, 0);
-        given = hostFrame(frame, 0, depths, ids, result);
+        const limpid_host_frame given = hostFrame(frame, depths, ids, result);
         ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
         for (const float value : result) ASSERT_TRUE(std::isfinite(value));
         limpid_denoiser_destroy(std::exchange(denoiser_, nullptr));
@@ -172,11 +170,11 @@ TEST_F(HostFramesTest, SaysWhatIsMissing) {
     const SyntheticScene scene({});
     std::vector<float> depths, ids, result;
     const HostFrame frame = embeddable(scene, 0);
-    limpid_host_frame given = hostFrame(frame, 0, depths, ids, result);
+    limpid_host_frame given = hostFrame(frame, depths, ids, result);
     given.inputs[LIMPID_INPUT_SPECULAR].data = nullptr;
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_THAT(limpid_last_error(), HasSubstr("'specular' is missing"));
-    given = hostFrame(frame, 0, depths, ids, result);
+    given = hostFrame(frame, depths, ids, result);
     given.camera.projection[0] = NAN;
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_THAT(limpid_last_error(), HasSubstr("matrix of the camera"));
@@ -186,7 +184,7 @@ TEST_F(HostFramesTest, SaysWhatIsMissing) {
     EXPECT_EQ(limpid_denoise_host(denoiser_, nullptr), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(limpid_denoiser_set(denoiser_, "svgf.nothing", 1), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_THAT(limpid_last_error(), HasSubstr("svgf.nothing"));
-    given = hostFrame(frame, 0, depths, ids, result);
+    given = hostFrame(frame, depths, ids, result);
     EXPECT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
 }
 

@@ -24,8 +24,10 @@ void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
     command.add_flag("--validation", choice.device.validation, "Run under the Vulkan validation layer; slow");
 }
 
-std::unique_ptr<gpu::Device> openDevice(const DeviceChoice& choice) {
-    return std::make_unique<gpu::Device>(choice.device);
+OpenDevice openDevice(const DeviceChoice& choice) {
+    OpenDevice device(new gpu::Device(choice.device));
+    loadPipelines(*device, pipelineFile(*device));
+    return device;
 }
 
 scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gpu/vulkan/device.h"
+#include "renderer/frame/pipeline_store.h"
 #include "scene/device/tracer.h"
 
 namespace limpid::cli {
@@ -16,7 +17,9 @@ struct DeviceChoice {
 
 void addDeviceOptions(CLI::App& command, DeviceChoice& choice);
 
-std::unique_ptr<gpu::Device> openDevice(const DeviceChoice& choice);
+/// With the pipelines that earlier runs have compiled; those of this run are stored when it goes.
+using OpenDevice = std::unique_ptr<gpu::Device, KeepPipelines>;
+OpenDevice openDevice(const DeviceChoice& choice);
 /// Throws UsageError if the tracer that was asked for is not to be had on the device.
 scene::Tracer chosenTracer(const DeviceChoice& choice, const gpu::Device& device);
 

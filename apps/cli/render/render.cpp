@@ -89,7 +89,7 @@ void render(const RenderOptions& o) {
     summary.timings.loadSeconds = since(started);
 
     const Clock::time_point uploadStart = Clock::now();
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     if (settings.pipeline.usesNetwork() && samplesOf(o) < minNetworkSamples)
         log::warn("{} learnt from frames of 32 samples; {} tell it little", settings.pipeline.denoiser->name,
                   samplesOf(o));

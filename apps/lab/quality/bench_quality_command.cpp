@@ -223,7 +223,7 @@ void run(const QualityOptions& o, const std::string& command) {
     for (const std::string& folder : {o.folder, o.referenceFolder}) {
         if (!folder.empty()) makeFolder(folder);
     }
-    const std::unique_ptr<gpu::Device> device = openDevice(o.device);
+    const OpenDevice device = openDevice(o.device);
     const std::vector<QualityMethod> methods = loadMethods(*device, o);
     QualityRun all{.version = LIMPID_VERSION,
                    .command = command,

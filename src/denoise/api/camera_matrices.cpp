@@ -51,7 +51,7 @@ Matrix inverse(Matrix m) {
             if (std::abs(m[4 * column + row]) > std::abs(m[4 * column + pivot])) pivot = row;
         const double scale = m[4 * column + pivot];
         if (!(std::abs(scale) > 0.0) || !std::isfinite(scale))
-            throw Error("a matrix of the camera is singular, or not finite");
+            throw UsageError("a matrix of the camera is singular, or not finite");
         for (size_t c = 0; c < 4; ++c) {
             std::swap(m[4 * c + column], m[4 * c + pivot]);
             std::swap(result[4 * c + column], result[4 * c + pivot]);

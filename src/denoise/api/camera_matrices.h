@@ -19,7 +19,7 @@ struct CameraMatrices {
 };
 
 /// `view` from world to view space, rigid; `projection` to clip space, perspective or orthographic, also
-/// off-centre. Throws Error if a matrix is singular or has a NaN.
+/// off-centre. Throws UsageError if a matrix is singular or has a NaN.
 CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&projection)[16], bool yUp,
                                   uint32_t height);
 

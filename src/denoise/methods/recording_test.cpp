@@ -1,0 +1,81 @@
+// What a frame does can be listed where there is no Vulkan: this program does not link it.
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "denoise/methods/recipes.h"
+#include "denoise/stages/ingest/ingest.h"
+
+namespace limpid::denoise {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr gpu::Extent extent{64, 32};
+constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
+
+/// The names of the passes of an SVGF frame of foreign images, in their order.
+std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& settings) {
+    graph.beginFrame();
+    const auto import = [&](const char* name) {
+        return graph.import(name, gpu::Format::RGBA32Float, extent, nowhere);
+    };
+    IngestImages images;
+    images.radiance = import("radiance");
+    images.normal = import("normal");
+    images.depth = import("depth");
+    IngestParams params{};
+    params.width = extent.width;
+    params.height = extent.height;
+    recordSvgf(graph, ingest(graph, images, params), settings);
+    std::vector<std::string> names;
+    for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
+    return names;
+}
+
+TEST(RecordingTest, AFrameIsListedWithoutADevice) {
+    gpu::FrameGraph graph;
+    FilterSettings settings;
+    settings.svgf.separate = false;
+    settings.svgf.levels = 2;
+    EXPECT_THAT(passesOf(graph, settings),
+                ElementsAre("ingest", "svgf/surfaces", "svgf/reproject joint", "svgf/tiles joint",
+                            "svgf/antilag joint", "svgf/variance joint", "svgf/level 1 joint",
+                            "svgf/level 2 joint", "svgf/modulate"));
+    const gpu::RecordedPass& surfaces = graph.passes().at(1);
+    ASSERT_FALSE(surfaces.hazards.empty());
+    EXPECT_EQ(surfaces.hazards[0].earlierPass, "ingest");
+    EXPECT_GT(graph.imageBytes(), uint64_t{extent.width} * extent.height * 100);
+}
+
+TEST(RecordingTest, HistoriesLiveFromFrameToFrame) {
+    gpu::FrameGraph graph;
+    passesOf(graph, {});
+    graph.assumeExecuted();
+    passesOf(graph, {});
+    const gpu::RecordedPass& reproject = graph.passes().at(2);
+    EXPECT_THAT(reproject.reads, Contains(HasSubstr("(previous)")));
+}
+
+TEST(RecordingTest, AnImportedImageNeedsAHandle) {
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    EXPECT_THROW(graph.import("nothing", gpu::Format::RGBA32Float, extent, {}), Error);
+}
+
+TEST(RecordingTest, AnImageIsSampledOrStoredNotBoth) {
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    const gpu::ImageHandle image = graph.import("image", gpu::Format::RGBA32Float, extent, nowhere);
+    IngestImages images{.radiance = image, .normal = image, .depth = image};
+    IngestParams params{};
+    params.width = extent.width;
+    params.height = extent.height;
+    DenoiserInput input = ingest(graph, images, params);
+    input.emission = image;  // bound as a storage image
+    EXPECT_THROW(recordSvgf(graph, input, {}), Error);
+}
+
+}  // namespace
+}  // namespace limpid::denoise
