@@ -34,7 +34,7 @@ function(limpid_add_suite SUITE)
   string(REGEX REPLACE "\\.$" "" TEST "${SUITE}")
   # The slow ones first, or one of them would run alone at the end.
   set(COST 1)
-  if("slow" IN_LIST LABELS)
+  if(LABELS MATCHES "slow")
     set(COST 100)
   endif()
   add_test("${TEST}" "${PROGRAM}" "--gtest_filter=${NAMES}" --gtest_brief=1)

@@ -11,7 +11,7 @@
 namespace limpid::test {
 namespace {
 
-constexpr gpu::Extent extent{112, 63};
+constexpr gpu::Extent extent{160, 90};
 constexpr size_t pixels = size_t{extent.width} * extent.height;
 constexpr uint64_t lastFrame = 30;
 constexpr uint32_t seeds = 16;

@@ -86,7 +86,7 @@ TEST_F(KnownAnswerTest, FurnaceOfDirectLight) {
 TEST_F(KnownAnswerTest, DirectLightHasNoSecondBounce) {
     scene::Scene scene = viewedFloor();
     scene::MeshBuilder wall("wall");
-    wall.quad({-10, 0, -3}, {10, 0, -3}, {10, 6, -3}, {-10, 6, -3});
+    wall.quad({-10, 0, -3.5f}, {10, 0, -3.5f}, {10, 6, -3.5f}, {-10, 6, -3.5f});
     addMesh(scene, wall.take(), lambertian(vec3(0.9f)));
     scene::PunctualLight light;
     light.position = {0.3f, 1.5f, -0.2f};

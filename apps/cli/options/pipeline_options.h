@@ -8,11 +8,11 @@
 
 namespace limpid::cli {
 
-/// The defaults are for the help text only.
+/// --integrator, --denoiser, and --pipeline of former versions. The defaults are for the help text only.
 void addPipelineOptions(CLI::App& command, PipelineChoice& choice, const std::string& defaultIntegrator,
                         const std::string& defaultDenoiser);
 
-/// "none temporal ...", as help texts list them.
+/// "none, temporal, ...", for help texts and messages.
 std::string listOfDenoisers();
 
 }  // namespace limpid::cli

@@ -114,8 +114,8 @@ GBufferImages withGuides(GBufferImages images, const PathtraceLayers& layers) {
     return images;
 }
 
-/// Of one sample each: a white surface's diffuse light, and the guides of the first hit. `layers` are some
-/// that it will be recorded into.
+/// Of one sample each: ambient occlusion as the light of white surfaces, and the guides of the first hit.
+/// `layers`: those of one of the launches.
 Launch occlusionLaunch(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                        const PathtraceLayers& layers) {
     const auto openness = makeAmbientOcclusionImages(graph, settings.ambientOcclusion, settings.extent);

@@ -1,0 +1,208 @@
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, NamedTuple, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+__all__: list[str]
+
+_Image = NDArray[np.float32]
+_Matrix = NDArray[np.float64]
+_Method = Literal["svgf", "atrous", "temporal"]
+_Output = Literal["color", "radiance", "specular"]
+_Path = str | PathLike[str]
+
+class Error(RuntimeError):
+    code: Literal["invalid_argument", "unsupported", "out_of_memory", "device_lost", "unreadable", "failed"]
+    def __init__(self, message: str, code: str = "failed") -> None: ...
+
+class Parameter(NamedTuple):
+    name: str
+    type: type[bool] | type[int] | type[float]
+    default: bool | int | float
+    minimum: float
+    maximum: float
+    unit: str
+    help: str
+
+class Device:
+    def __init__(self, select: str | int | None = None, *, validation: bool = False) -> None: ...
+    @property
+    def name(self) -> str: ...
+    def messages(self) -> list[tuple[str, str]]: ...
+    def pipeline_cache(self) -> bytes: ...
+    def load_pipeline_cache(self, data: bytes) -> None: ...
+
+class Denoiser:
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        method: _Method = "svgf",
+        *,
+        device: Device | str | int | None = None,
+        signals: Literal[1, 2] = 1,
+        demodulated: bool = False,
+        normal_encoding: Literal["signed", "unorm", "octahedral_signed", "octahedral_unorm"] = "signed",
+        normal_space: Literal["world", "view"] = "world",
+        depth_encoding: Literal["distance", "linear", "device"] = "distance",
+        far_depth: float = 1e9,
+        motion_unit: Literal["pixels", "uv", "ndc"] = "pixels",
+        motion_direction: Literal["to_previous", "from_previous"] = "to_previous",
+        motion_depth: Literal["2d", "distance"] = "2d",
+        clip_y: Literal["down", "up"] = "down",
+        timings: bool = False,
+        parameters: Mapping[str, float] | None = None,
+    ) -> None: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def device(self) -> Device: ...
+    @overload
+    def denoise(
+        self,
+        radiance: ArrayLike,
+        normal: ArrayLike,
+        depth: ArrayLike,
+        *,
+        specular: ArrayLike | None = None,
+        emission: ArrayLike | None = None,
+        albedo: ArrayLike | None = None,
+        albedo_specular: ArrayLike | None = None,
+        motion: ArrayLike | None = None,
+        previous_normal: ArrayLike | None = None,
+        reflection_motion: ArrayLike | None = None,
+        id: ArrayLike | None = None,
+        view: ArrayLike | None = None,
+        projection: ArrayLike | None = None,
+        previous_view: ArrayLike | None = None,
+        previous_projection: ArrayLike | None = None,
+        jitter: tuple[float, float] = (0.0, 0.0),
+        reset: bool = False,
+        outputs: _Output = "color",
+    ) -> _Image: ...
+    @overload
+    def denoise(
+        self,
+        radiance: ArrayLike,
+        normal: ArrayLike,
+        depth: ArrayLike,
+        *,
+        specular: ArrayLike | None = None,
+        emission: ArrayLike | None = None,
+        albedo: ArrayLike | None = None,
+        albedo_specular: ArrayLike | None = None,
+        motion: ArrayLike | None = None,
+        previous_normal: ArrayLike | None = None,
+        reflection_motion: ArrayLike | None = None,
+        id: ArrayLike | None = None,
+        view: ArrayLike | None = None,
+        projection: ArrayLike | None = None,
+        previous_view: ArrayLike | None = None,
+        previous_projection: ArrayLike | None = None,
+        jitter: tuple[float, float] = (0.0, 0.0),
+        reset: bool = False,
+        outputs: Sequence[_Output],
+    ) -> dict[str, _Image]: ...
+    def reset(self) -> None: ...
+    def resize(self, width: int, height: int) -> None: ...
+    def parameters(self) -> dict[str, Parameter]: ...
+    def set(self, name: str, value: float) -> None: ...
+    def get(self, name: str) -> bool | int | float: ...
+    def timings(self) -> dict[str, float]: ...
+
+@overload
+def denoise(
+    radiance: ArrayLike,
+    normal: ArrayLike,
+    depth: ArrayLike,
+    *,
+    specular: ArrayLike | None = None,
+    emission: ArrayLike | None = None,
+    albedo: ArrayLike | None = None,
+    albedo_specular: ArrayLike | None = None,
+    id: ArrayLike | None = None,
+    view: ArrayLike | None = None,
+    projection: ArrayLike | None = None,
+    jitter: tuple[float, float] = (0.0, 0.0),
+    outputs: Sequence[_Output],
+    method: _Method = "svgf",
+    device: Device | str | int | None = None,
+    **options: Any,
+) -> dict[str, _Image]: ...
+@overload
+def denoise(
+    radiance: ArrayLike,
+    normal: ArrayLike,
+    depth: ArrayLike,
+    *,
+    specular: ArrayLike | None = None,
+    emission: ArrayLike | None = None,
+    albedo: ArrayLike | None = None,
+    albedo_specular: ArrayLike | None = None,
+    id: ArrayLike | None = None,
+    view: ArrayLike | None = None,
+    projection: ArrayLike | None = None,
+    jitter: tuple[float, float] = (0.0, 0.0),
+    outputs: _Output = "color",
+    method: _Method = "svgf",
+    device: Device | str | int | None = None,
+    **options: Any,
+) -> _Image: ...
+def parameters(method: _Method = "svgf") -> dict[str, Parameter]: ...
+def compare(
+    test: ArrayLike, reference: ArrayLike, *, exposure: float | Literal["auto"] = "auto"
+) -> dict[str, float]: ...
+def render(
+    scene: _Path,
+    width: int,
+    height: int,
+    spp: int = 64,
+    *,
+    seed: int = 0,
+    denoiser: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    device: Device | str | int | None = None,
+    environment: _Path | None = None,
+    camera: str | int | None = None,
+    eye: ArrayLike | None = None,
+    target: ArrayLike | None = None,
+    fov: float | None = None,
+    jitter: Literal["pixel", "frame", "off"] | None = None,
+    weights: _Path | None = None,
+    asset_root: _Path | None = None,
+) -> dict[str, NDArray[Any]]: ...
+def render_sequence(
+    scene: _Path,
+    width: int,
+    height: int,
+    frames: int,
+    spp: int = 1,
+    *,
+    fps: float = 30.0,
+    animation: str | int | None = None,
+    camera_path: _Path | None = None,
+    seed: int = 0,
+    denoiser: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    device: Device | str | int | None = None,
+    environment: _Path | None = None,
+    camera: str | int | None = None,
+    eye: ArrayLike | None = None,
+    target: ArrayLike | None = None,
+    fov: float | None = None,
+    jitter: Literal["pixel", "frame", "off"] | None = None,
+    weights: _Path | None = None,
+    asset_root: _Path | None = None,
+) -> Iterator[dict[str, NDArray[Any]]]: ...
+def builtin_scenes() -> dict[str, str]: ...
+def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> _Matrix: ...
+def perspective(
+    fov: float, aspect: float, near: float = 0.1, far: float = ..., clip_y: Literal["down", "up"] = "down"
+) -> _Matrix: ...

@@ -1,0 +1,62 @@
+"""Checks arrays and matrices before they reach the library: ValueError names the argument that is wrong."""
+
+import numpy as np
+
+
+def choose(name, value, table):
+    """What `table` has for a name; ValueError lists the names if there is none."""
+    if value not in table:
+        raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, table))}")
+    return table[value]
+
+
+def _shape_text(components):
+    return " or ".join("(height, width)" if n == 1 else f"(height, width, {n})" for n in components)
+
+
+def _check_dtype(name, array):
+    if array.dtype.kind != "f" or array.dtype.itemsize > 8:
+        hint = ": linear radiance of 8-bit pictures has to be decoded first" if array.dtype.kind in "iu" else ""
+        raise ValueError(f"{name}: the dtype is {array.dtype}, not float16, float32 or float64{hint}")
+
+
+def image(name, value, components, size=None):
+    """A float32 view of (height, width, n), n being one of `components`, or a copy where a view is not possible.
+
+    `size`: the (height, width) that it must have.
+    """
+    array = np.asarray(value)
+    _check_dtype(name, array)
+    if array.ndim == 2 and 1 in components:
+        array = array[:, :, np.newaxis]
+    if array.ndim != 3 or array.shape[2] not in components:
+        raise ValueError(f"{name}: the shape is {np.shape(value)}, not {_shape_text(components)}")
+    if size is not None and array.shape[:2] != size:
+        raise ValueError(f"{name}: {array.shape[0]} x {array.shape[1]} pixels (height x width), "
+                         f"but {size[0]} x {size[1]} are expected")
+    if array.size == 0:
+        raise ValueError(f"{name}: the shape is {np.shape(value)}, there are no pixels")
+    array = array.astype(np.float32, copy=False)
+    if array.strides[2] != 4 or min(array.strides) <= 0:
+        array = array.copy(order="C")
+    return array
+
+
+def identifiers(name, value, size):
+    """Integers of (height, width), as float32: they are exact up to 2^24."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: the dtype is {array.dtype}, not an integer")
+    if array.size and (array.min() < 0 or array.max() > 2**24):
+        raise ValueError(f"{name}: numbers from 0 to {2**24} are possible, not {array.min()} to {array.max()}")
+    return image(name, array.astype(np.float32), (1,), size)
+
+
+def matrix(name, value):
+    """A float64 matrix of (4, 4)."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{name}: the dtype is {array.dtype}, not a floating-point number")
+    if array.shape != (4, 4):
+        raise ValueError(f"{name}: the shape is {array.shape}, not (4, 4)")
+    return array.astype(np.float64)

@@ -1,0 +1,65 @@
+"""Matrices of cameras. Points are columns: clip = projection @ view @ [x, y, z, 1]."""
+
+import math
+
+import numpy as np
+
+
+def look_at(eye, target, up=(0.0, 1.0, 0.0)):
+    """The view matrix, (4, 4) float64, of a camera at `eye` that looks at `target`.
+
+    View space is right-handed: x to the right, y up, and the camera looks along -z.
+    """
+    eye, target, up = (np.asarray(v, np.float64) for v in (eye, target, up))
+    back = eye - target
+    right = np.cross(up, back)
+    if not np.any(right):
+        raise ValueError("look_at: eye and target are the same point, or up is along the view")
+    return _view(eye, right, np.cross(back, right), -back)
+
+
+def perspective(fov, aspect, near=0.1, far=math.inf, clip_y="down"):
+    """A projection matrix, (4, 4) float64, for view spaces as look_at() makes them.
+
+    fov: vertical field of view, degrees. aspect: width / height. near, far: distances of the clip planes, world units;
+    depth is 0 at the near and 1 at the far plane. clip_y: "down" as in Vulkan, "up" as in OpenGL and Direct3D.
+    """
+    if clip_y not in ("down", "up"):
+        raise ValueError(f"clip_y: {clip_y!r} is none of 'down', 'up'")
+    if not (0.0 < fov < 180.0 and aspect > 0.0 and 0.0 < near < far):
+        raise ValueError("perspective: needs 0 < fov < 180, aspect > 0 and 0 < near < far")
+    scale = 1.0 / math.tan(math.radians(fov) / 2.0)
+    # far / (far - near), which is 1 where far is infinite.
+    share = 1.0 / (1.0 - near / far)
+    return np.array([
+        [scale / aspect, 0.0, 0.0, 0.0],
+        [0.0, scale if clip_y == "up" else -scale, 0.0, 0.0],
+        [0.0, 0.0, -share, -share * near],
+        [0.0, 0.0, -1.0, 0.0],
+    ])
+
+
+def _view(eye, right, up, forward):
+    rotation = np.stack([right, up, -forward])
+    rotation /= np.linalg.norm(rotation, axis=1, keepdims=True)
+    view = np.eye(4)
+    view[:3, :3] = rotation
+    view[:3, 3] = -rotation @ eye
+    return view
+
+
+def matrices_of(camera):
+    """View and projection of a camera as limpid._renderer describes it: origin, axes scaled to the picture's edges."""
+    origin, forward, right, up = (np.array(camera[key], np.float64) for key in ("origin", "forward", "right", "up"))
+    half_width, half_height = np.linalg.norm(right), np.linalg.norm(up)
+    view = _view(origin, right, up, forward)
+    if not camera["orthographic"]:
+        fov = math.degrees(2.0 * math.atan(half_height))
+        return view, perspective(fov, half_width / half_height, near=0.01)
+    far = 1e4
+    return view, np.array([
+        [1.0 / half_width, 0.0, 0.0, 0.0],
+        [0.0, -1.0 / half_height, 0.0, 0.0],
+        [0.0, 0.0, -1.0 / far, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ])

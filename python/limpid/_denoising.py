@@ -1,0 +1,303 @@
+"""Denoising of stills and sequences."""
+
+import atexit
+from typing import NamedTuple
+
+import numpy as np
+
+from limpid import _arrays, _camera, _denoise
+
+# Images that may have more components than are read: the components that are accepted.
+_COMPONENTS = {
+    "radiance": (3, 4), "specular": (3, 4), "emission": (3, 4), "albedo": (3, 4), "albedo_specular": (3, 4),
+    "depth": (1,),
+}
+# The library's floats have 32 bits: 0.2 is not to read 0.20000000298.
+_TYPES = {"bool": bool, "int": int, "float": lambda value: float(str(np.float32(value)))}
+
+
+class Parameter(NamedTuple):
+    """What can be set about a method."""
+
+    name: str
+    type: type
+    default: object
+    minimum: float
+    maximum: float
+    unit: str
+    help: str
+
+
+def parameters(method="svgf"):
+    """The parameters of a method, by name: a dict of limpid.Parameter. They are those of 'limpid info'."""
+    number = _arrays.choose("method", method, _denoise.METHODS)
+    result = {}
+    for name, kind, default, *rest in _denoise.parameters(number):
+        default = _TYPES[kind](default)
+        result[name] = Parameter(name, type(default), default, *rest)
+    return result
+
+
+class Device:
+    """A Vulkan device.
+
+    select: None for the best device (discrete before integrated before CPU); "cpu" for a software device; a number as
+        text for that device; otherwise a part of its name, in any case.
+    validation: has Vulkan's validation layer check every call (slow); what it says is in messages().
+
+    Throws limpid.Error with the code "unsupported" if no device fits; its text lists the devices that there are.
+    """
+
+    def __init__(self, select=None, *, validation=False):
+        self._handle = _denoise.Device("" if select is None else str(select), bool(validation))
+
+    def __repr__(self):
+        return f"<limpid.Device {self.name!r}>"
+
+    @property
+    def name(self):
+        """As the driver calls it."""
+        return self._handle.name()
+
+    def messages(self):
+        """Messages of the library and the validation layer since the last call: a list of (level, text); level is
+        "debug", "info", "warning" or "error"."""
+        return self._handle.messages()
+
+    def pipeline_cache(self):
+        """What the driver has compiled so far, as bytes: to be stored for load_pipeline_cache()."""
+        return self._handle.pipeline_cache()
+
+    def load_pipeline_cache(self, data):
+        """Takes bytes of pipeline_cache() of an earlier run, before the first denoiser is made: then the driver
+        compiles nothing again. Bytes of another device or driver, and damaged ones, are ignored."""
+        self._handle.load_pipeline_cache(bytes(data))
+
+
+_devices = {}
+# Drivers may be gone by the time that the interpreter's last objects are.
+atexit.register(_devices.clear)
+
+
+def _device_of(choice):
+    """The device itself, or one that is shared by all who choose it by the same text."""
+    if isinstance(choice, Device):
+        return choice
+    key = "" if choice is None else str(choice)
+    if key not in _devices:
+        _devices[key] = Device(key)
+    return _devices[key]
+
+
+class Denoiser:
+    """Denoises the frames of a sequence, each with the help of those before it.
+
+    width, height: of all images, pixels, 1 to 32768.
+    method: "svgf" (spatiotemporal variance-guided filtering: the best), "atrous" (temporal accumulation, then the
+        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone).
+    device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
+    signals: 1: radiance is all light that is filtered; 2: radiance is diffuse, specular is specular light.
+    demodulated: radiance comes without albedo in it, and leaves without.
+    normal_encoding: "signed" (xyz, -1 to 1), "unorm" (xyz, 0 to 1 for -1 to 1), "octahedral_signed" (xy, -1 to 1),
+        "octahedral_unorm" (xy, 0 to 1 for -1 to 1).
+    normal_space: "world" or "view" (of the frame's view matrix).
+    depth_encoding: "distance" (from the eye, along the pixel's ray, world units), "linear" (along the view axis, world
+        units), "device" (of the depth buffer, 0 to 1; the projection matrix says how).
+    far_depth: depth from which on nothing is seen; not with "device". World units.
+    motion_unit: "pixels", "uv" (1 is the width or height of the picture, v points down), "ndc" (2 is).
+    motion_direction: "to_previous" (position in the previous frame minus position now) or "from_previous".
+    motion_depth: "2d" (only x and y are read: what moves in depth is taken to stand still) or "distance" (z is the
+        change of distance from the eye, world units).
+    clip_y: "down" as in Vulkan, "up" as in OpenGL and Direct3D: where y = 1 is in clip space.
+    timings: measures the passes (see timings()).
+    parameters: a mapping of names to values, as set() takes them.
+
+    Several threads may use denoisers at once; calls to one denoiser wait for each other. The GIL is released while the
+    device works.
+    """
+
+    def __init__(self, width, height, method="svgf", *, device=None, signals=1, demodulated=False,
+                 normal_encoding="signed", normal_space="world", depth_encoding="distance", far_depth=1e9,
+                 motion_unit="pixels", motion_direction="to_previous", motion_depth="2d", clip_y="down", timings=False,
+                 parameters=None):
+        for name, value in (("width", width), ("height", height)):
+            _check_side(name, value)
+        if signals not in (1, 2):
+            raise ValueError(f"signals: there are 1 or 2, not {signals!r}")
+        if not far_depth > 0.0:
+            raise ValueError(f"far_depth: {far_depth!r} is not above 0")
+        choose = _arrays.choose
+        description = _denoise.Description(
+            method=choose("method", method, _denoise.METHODS), width=width, height=height, signals=signals,
+            demodulated=bool(demodulated),
+            normal_encoding=choose("normal_encoding", normal_encoding, _denoise.NORMAL_ENCODINGS),
+            normal_space=choose("normal_space", normal_space, _denoise.NORMAL_SPACES),
+            depth_encoding=choose("depth_encoding", depth_encoding, _denoise.DEPTH_ENCODINGS),
+            far_depth=far_depth,
+            motion_unit=choose("motion_unit", motion_unit, _denoise.MOTION_UNITS),
+            motion_direction=choose("motion_direction", motion_direction, _denoise.MOTION_DIRECTIONS),
+            motion_depth=choose("motion_depth", motion_depth, _denoise.MOTION_DEPTHS),
+            clip_y=choose("clip_y", clip_y, _denoise.CLIP_Y), timings=bool(timings))
+        self._method = method
+        self._device = _device_of(device)
+        self._signals = signals
+        self._clip_y = clip_y
+        self._needs_projection = depth_encoding == "device"
+        normal_components = (2, 3, 4) if normal_encoding.startswith("octahedral") else (3, 4)
+        motion_components = (3, 4) if motion_depth == "distance" else (2, 3, 4)
+        self._components = dict(_COMPONENTS, normal=normal_components, previous_normal=normal_components,
+                                motion=motion_components, reflection_motion=motion_components)
+        self._camera = None  # of the previous frame
+        self._handle = _denoise.Denoiser(self._device._handle, description)
+        for name, value in (parameters or {}).items():
+            self.set(name, value)
+
+    def __repr__(self):
+        return f"<limpid.Denoiser {self.method!r} {self.width} x {self.height} on {self.device.name!r}>"
+
+    @property
+    def width(self):
+        """Pixels."""
+        return self._handle.width
+
+    @property
+    def height(self):
+        """Pixels."""
+        return self._handle.height
+
+    @property
+    def method(self):
+        """Its name."""
+        return self._method
+
+    @property
+    def device(self):
+        """The limpid.Device that it runs on."""
+        return self._device
+
+    def denoise(self, radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None,
+                motion=None, previous_normal=None, reflection_motion=None, id=None, view=None, projection=None,
+                previous_view=None, previous_projection=None, jitter=(0.0, 0.0), reset=False, outputs="color"):
+        """Denoises the next frame of the sequence and returns the clean picture, (height, width, 3) float32.
+
+        All images are arrays of (height, width, components), float16, float32 or float64; row 0 is the top. float32
+        arrays are read where they are, slices and flipped channels of them too, if a pixel's components are adjacent.
+
+        radiance: (h, w, 3), linear: light that is scattered towards the eye; with two signals diffuse light.
+        normal: (h, w, 3), or 2 components if octahedral.
+        depth: (h, w). Where nothing is seen: 0 or below, not finite, or far_depth and beyond.
+        specular: (h, w, 3), specular light; needed with two signals.
+        emission: (h, w, 3): what the camera sees directly (emitters, sky); it is added, and not filtered.
+        albedo: (h, w, 3), diffuse albedo, 0 to 1, textures in it: they stay sharp.
+        albedo_specular: (h, w, 3), pre-integrated reflectance of the specular lobe, 0 to 1.
+        motion: (h, w, 2 or 3), as the denoiser was told. Without it only the camera moves.
+        previous_normal: as normal: of the same surface point in the previous frame.
+        reflection_motion: as motion: of what a flat mirror shows.
+        id: (h, w), integers from 0 to 2^24: a number for each object.
+        view, projection: (4, 4), from world to view and from view to clip space (depth 0 to 1), without jitter; points
+            are columns, as look_at() and perspective() make them. Without view the camera stands at the origin and
+            looks along -z; without projection its field of view is taken to be 60 degrees.
+        previous_view, previous_projection: of the previous frame; default: what the previous call was given.
+        jitter: where in their pixels the rays go, from the centres, pixels, -0.5 to 0.5: (x, y).
+        reset: a cut: history starts with this frame.
+        outputs: "color": the picture with emission and albedo in it. A sequence of names gives a dict of arrays
+            instead: "color", "radiance" and "specular" (what the inputs of these names have become; SVGF only).
+
+        Throws ValueError naming the argument whose shape or type is wrong, limpid.Error if the library fails.
+        """
+        images = {"radiance": radiance, "specular": specular, "emission": emission, "albedo": albedo,
+                  "albedo_specular": albedo_specular, "normal": normal, "depth": depth, "motion": motion,
+                  "previous_normal": previous_normal, "reflection_motion": reflection_motion}
+        if self._signals == 2 and specular is None:
+            raise ValueError("specular: is needed with two signals")
+        if self._signals == 1 and specular is not None:
+            raise ValueError("specular: is for denoisers of two signals; add it to radiance")
+        names = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+        numbers = [_arrays.choose("outputs", name, _denoise.OUTPUTS) for name in names]
+        matrices, now = self._matrices(view, projection, previous_view, previous_projection)
+        inputs, point = self._inputs(images, id), _point("jitter", jitter)
+        results = self._handle.denoise(inputs, numbers, matrices, point, bool(reset))
+        self._camera = now
+        return results[0] if isinstance(outputs, str) else dict(zip(names, results))
+
+    def _inputs(self, images, id):
+        size = (self.height, self.width)
+        inputs = []
+        for name, value in images.items():
+            if value is not None:
+                inputs.append((_denoise.INPUTS[name], _arrays.image(name, value, self._components[name], size)))
+            elif name in ("radiance", "normal", "depth"):
+                raise ValueError(f"{name}: is needed")
+        if id is not None:
+            inputs.append((_denoise.INPUTS["id"], _arrays.identifiers("id", id, size)))
+        return inputs
+
+    def _matrices(self, view, projection, previous_view, previous_projection):
+        """The four as the library reads them, column after column, and this frame's two."""
+        if projection is None and self._needs_projection:
+            raise ValueError("projection: is needed with depth_encoding='device'")
+        view = np.eye(4) if view is None else _arrays.matrix("view", view)
+        if projection is None:
+            projection = _camera.perspective(60.0, self.width / self.height, clip_y=self._clip_y)
+        projection = _arrays.matrix("projection", projection)
+        before = self._camera or (view, projection)
+        previous = [before[0] if previous_view is None else _arrays.matrix("previous_view", previous_view),
+                    before[1] if previous_projection is None
+                    else _arrays.matrix("previous_projection", previous_projection)]
+        stacked = np.stack([view, projection, *previous]).transpose(0, 2, 1)
+        return np.ascontiguousarray(stacked, np.float32), (view, projection)
+
+    def reset(self):
+        """A cut: the next frame starts without history."""
+        self._handle.reset()
+
+    def resize(self, width, height):
+        """The frames that follow are of another size, in pixels. History starts anew."""
+        for name, value in (("width", width), ("height", height)):
+            _check_side(name, value)
+        self._handle.resize(width, height)
+
+    def parameters(self):
+        """What can be set, by name: a dict of limpid.Parameter."""
+        return parameters(self._method)
+
+    def set(self, name, value):
+        """Sets a parameter from the next frame on. Throws limpid.Error if there is none of this name, or if the value
+        is outside its range."""
+        self._handle.set(name, float(value))
+
+    def get(self, name):
+        """The value of a parameter: a bool, int or float, as its type is."""
+        value = self._handle.get(name)
+        return _TYPES[self.parameters()[name].type.__name__](value)
+
+    def timings(self):
+        """Milliseconds on the device of each pass of the latest frame, by the pass's name, in order. Empty unless the
+        denoiser was made with timings=True."""
+        return dict(self._handle.timings())
+
+
+def _check_side(name, value):
+    if not isinstance(value, (int, np.integer)) or not 1 <= value <= 32768:
+        raise ValueError(f"{name}: {value!r} is not a number of pixels from 1 to 32768")
+
+
+def _point(name, value):
+    array = np.asarray(value, np.float64)
+    if array.shape != (2,):
+        raise ValueError(f"{name}: needs two numbers, x and y")
+    return float(array[0]), float(array[1])
+
+
+def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None, id=None,
+            view=None, projection=None, jitter=(0.0, 0.0), outputs="color", method="svgf", device=None, **options):
+    """Denoises one still: returns the clean picture, (height, width, 3) float32.
+
+    Images are as Denoiser.denoise() takes them; there are two signals if specular is given. `options` are those of
+    limpid.Denoiser. Sequences need a limpid.Denoiser, which learns from frame to frame.
+    """
+    size = _arrays.image("radiance", radiance, _COMPONENTS["radiance"]).shape
+    denoiser = Denoiser(size[1], size[0], method, device=device, signals=1 if specular is None else 2, **options)
+    return denoiser.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo,
+                            albedo_specular=albedo_specular, id=id, view=view, projection=projection, jitter=jitter,
+                            outputs=outputs)

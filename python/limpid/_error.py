@@ -1,0 +1,17 @@
+"""What the library throws."""
+
+
+class Error(RuntimeError):
+    """A failure of the library or the device; str() is a sentence about it.
+
+    code: "invalid_argument" (a value outside its range, an unknown name, a missing input), "unsupported" (no device
+    fits, or it lacks something), "out_of_memory", "device_lost" (make a new Device), "unreadable" (an input file),
+    or "failed" (anything else).
+    """
+
+    def __init__(self, message, code="failed"):
+        super().__init__(message)
+        self.code = code
+
+
+Error.__module__ = "limpid"

@@ -1,0 +1,141 @@
+"""Rendering and comparing: what needs limpid._renderer."""
+
+import atexit
+
+import numpy as np
+
+from limpid import _arrays, _camera
+from limpid._denoising import Device
+
+try:
+    from limpid import _renderer
+except ImportError as error:
+    _renderer, _missing = None, error
+
+_devices = {}
+# Drivers may be gone by the time that the interpreter's last objects are.
+atexit.register(_devices.clear)
+
+
+def _module():
+    if _renderer is None:
+        message = "limpid was built without its renderer: limpid.render and limpid.compare are missing"
+        raise ImportError(message) from _missing
+    return _renderer
+
+
+def _device_of(choice):
+    key = choice.name if isinstance(choice, Device) else "" if choice is None else str(choice)
+    if key not in _devices:
+        _devices[key] = _module().Device(key)
+    return _devices[key]
+
+
+def compare(test, reference, *, exposure="auto"):
+    """How far a picture is from its reference: a dict of floats.
+
+    test, reference: (height, width, 3), linear radiance, float16, float32 or float64.
+    exposure: stops for psnr, ssim and flip, which see the pictures as a screen shows them: exposed, clamped to [0, 1]
+        and sRGB-encoded. "auto": what brings the reference's average luminance to 0.18.
+
+    psnr: dB, infinite for equal pictures. ssim: 1 for equal pictures. flip: mean LDR-FLIP at 67 pixels per degree,
+    0 to 1, 0 for equal pictures. relmse: mean((test - reference)^2 / (reference^2 + 0.01)) of linear values, without
+    exposure. exposure: the stops that were applied. invalid_pixels: of the test picture, with a NaN or an infinity;
+    they count as the worst error. Throws limpid.Error if the reference has such pixels.
+    """
+    reference = _arrays.image("reference", reference, (3, 4))
+    test = _arrays.image("test", test, (3, 4), reference.shape[:2])
+    if exposure != "auto" and not -60.0 <= float(exposure) <= 60.0:
+        raise ValueError(f"exposure: {exposure!r} is neither 'auto' nor a number of stops from -60 to 60")
+    pictures = (np.ascontiguousarray(picture[:, :, :3]) for picture in (test, reference))
+    return _module().compare(*pictures, None if exposure == "auto" else float(exposure))
+
+
+def render(scene, width, height, spp=64, **options):
+    """Path-traces a still of a scene: a dict of arrays.
+
+    scene: the path of a .gltf, .glb or .obj file, or "builtin:" and a name (builtin_scenes() lists them).
+    width, height: pixels. spp: samples per pixel.
+
+    options:
+    seed: another one, other noise; the same gives the same picture on the same device. Default: 0.
+    denoiser: None, or "history", "atrous", "svgf" or "kpcn": what cleans the picture before it is returned as "color".
+    parameters: a mapping of names to values: {"pathtrace.max_depth": 4}; 'limpid info' lists them.
+    device: as in limpid.Denoiser. environment: path of a lat-long .hdr or .exr.
+    camera: of the scene's, its name or number; default: the first.
+    eye, target: instead, two points of three numbers each; fov: its vertical field of view, degrees.
+    jitter: where in their pixels rays go: "pixel" (anywhere), "frame" (one point for all pixels) or "off" (the
+        centre); default: "pixel", but "off" for sequences and for denoisers that keep a history.
+    weights: of "kpcn": a file instead of the one that comes with Limpid.
+    asset_root: a folder that the scene's files must lie in; default: the folder above the scene's.
+
+    The arrays are float32 unless said otherwise, row 0 at the top:
+    color: (h, w, 3), linear radiance, clean if there is a denoiser. diffuse, specular, emission: (h, w, 3): without a
+    denoiser, color is their sum. albedo, albedo_specular: (h, w, 3). normal, previous_normal: (h, w, 3), world space,
+    0 where nothing is seen. depth: (h, w), distance from the eye, world units, 1e10 where nothing is seen.
+    motion, reflection_motion: (h, w, 3): x and y in pixels and z in world units, previous minus now, 1e10 where there
+    is none. id: (h, w) uint32: number of the object plus one; 0: nothing. diffuse_variance and so on, of specular,
+    albedo, normal and depth: (h, w), variance of the mean, 0 for one sample. view, projection: (4, 4) float64, of
+    the camera.
+    They go into Denoiser.denoise() as they are, with motion_depth="distance".
+    """
+    return _Renderer(scene, width, height, spp, default_jitter="pixel", **options).render(0)
+
+
+def render_sequence(scene, width, height, frames, spp=1, *, fps=30.0, animation=None, camera_path=None, **options):
+    """Path-traces the frames of a moving scene: a generator of what render() returns.
+
+    frames: how many. fps: frames per second. animation: a clip of the scene, by name or number, or "all"; default:
+    the first, if there is one; "none": at rest. camera_path: "orbit", "dolly", "shake", or a JSON file
+    (docs/animation.md).
+    options: those of render(). Frames of denoisers build on each other.
+    """
+    renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
+                         camera_path=camera_path, **options)
+    return (renderer.render(frame) for frame in range(frames))
+
+
+def builtin_scenes():
+    """The scenes that come with Limpid: a dict of "builtin:..." and a line about each."""
+    return dict(_module().builtin_scenes())
+
+
+class _Renderer:
+    """One scene on a device, and the camera's matrices of each frame."""
+
+    def __init__(self, scene, width, height, spp, *, default_jitter, seed=0, denoiser=None, parameters=None,
+                 device=None, environment=None, camera=None, eye=None, target=None, fov=None, jitter=None,
+                 weights=None, asset_root=None, fps=30.0, frames=1, animation="none", camera_path=None):
+        for name, value, most in (("width", width, 65535), ("height", height, 65535), ("spp", spp, 1 << 24),
+                                  ("frames", frames, 1000000)):
+            if not isinstance(value, (int, np.integer)) or not 1 <= value <= most:
+                raise ValueError(f"{name}: {value!r} is not a number from 1 to {most}")
+        if jitter is None:
+            jitter = "" if denoiser else default_jitter
+        options = _module().Options(
+            scene=str(scene), width=width, height=height, samples=spp, seed=seed, denoiser=_text(denoiser),
+            assignments=[f"{name}={_text(value)}" for name, value in (parameters or {}).items()],
+            environment=_text(environment), camera=_text(camera), eye=_vector("eye", eye),
+            target=_vector("target", target), fov=0.0 if fov is None else fov, jitter=jitter, weights=_text(weights),
+            asset_root=_text(asset_root), fps=fps, frames=frames, animation=_text(animation),
+            camera_path=_text(camera_path))
+        self._handle = _module().Renderer(_device_of(device), options)
+
+    def render(self, frame):
+        layers, camera = self._handle.render(frame)
+        layers["view"], layers["projection"] = _camera.matrices_of(camera)
+        return layers
+
+
+def _text(value):
+    """As the command line takes it."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return "" if value is None else str(value)
+
+
+def _vector(name, value):
+    array = np.asarray([] if value is None else value, np.float64)
+    if array.shape not in ((0,), (3,)):
+        raise ValueError(f"{name}: needs three numbers")
+    return array.tolist()

@@ -1,0 +1,359 @@
+// limpid._denoise: the C interface (limpid/denoise.h) for Python. limpid/_denoising.py checks arguments and
+// documents them.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "limpid/denoise.h"
+#include "python_error.h"
+
+namespace py = pybind11;
+
+namespace {
+
+struct Failure : std::runtime_error {
+    Failure(const char* message, limpid_result what) : std::runtime_error(message), result(what) {}
+    limpid_result result;
+};
+
+/// On the thread that made the call.
+void check(limpid_result result) {
+    if (result != LIMPID_OK) throw Failure(limpid_last_error(), result);
+}
+
+const char* codeOf(limpid_result result) {
+    switch (result) {
+        case LIMPID_ERROR_INVALID_ARGUMENT:
+            return "invalid_argument";
+        case LIMPID_ERROR_UNSUPPORTED:
+            return "unsupported";
+        case LIMPID_ERROR_OUT_OF_MEMORY:
+            return "out_of_memory";
+        case LIMPID_ERROR_DEVICE_LOST:
+            return "device_lost";
+        default:
+            return "failed";
+    }
+}
+
+const char* nameOf(limpid_message_level level) {
+    constexpr const char* names[] = {"debug", "info", "warning", "error"};
+    return level >= LIMPID_MESSAGE_DEBUG && level <= LIMPID_MESSAGE_ERROR ? names[level] : "error";
+}
+
+using Message = std::pair<std::string, std::string>;  ///< level, text
+
+class Device {
+  public:
+    Device(const std::string& select, bool validation) {
+        limpid_device_desc desc{};
+        desc.size = sizeof desc;
+        desc.select = select.c_str();
+        desc.validation = validation ? 1 : 0;
+        desc.message = [](void* user, limpid_message_level level, const char* text) {
+            static_cast<Device*>(user)->keep(nameOf(level), text);
+        };
+        desc.message_user = this;
+        limpid_device* device = nullptr;
+        check(limpid_device_create(&desc, &device));
+        handle_.reset(device);
+    }
+
+    limpid_device* handle() const { return handle_.get(); }
+    std::string name() const { return limpid_device_name(handle_.get()); }
+
+    /// Since the last call.
+    std::vector<Message> messages() {
+        const std::lock_guard lock(mutex_);
+        return std::exchange(messages_, {});
+    }
+
+    py::bytes pipelineCache() const {
+        size_t size = 0;
+        check(limpid_device_pipeline_cache(handle_.get(), nullptr, &size));
+        std::string data(size, '\0');
+        check(limpid_device_pipeline_cache(handle_.get(), data.data(), &size));
+        data.resize(size);
+        return data;
+    }
+    void loadPipelineCache(const std::string& data) {
+        check(limpid_device_load_pipeline_cache(handle_.get(), data.data(), data.size()));
+    }
+
+  private:
+    /// Called from any thread, with or without the GIL: nothing of Python's is touched.
+    void keep(const char* level, const char* text) {
+        const std::lock_guard lock(mutex_);
+        messages_.emplace_back(level, text);
+    }
+
+    struct Destroy {
+        void operator()(limpid_device* device) const { limpid_device_destroy(device); }
+    };
+    std::mutex mutex_;
+    std::vector<Message> messages_;
+    std::unique_ptr<limpid_device, Destroy> handle_;  ///< goes first: its end may have messages
+};
+
+using Array = py::array_t<float>;
+using Matrices = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// Where the values of an array of (height, width, components) lie.
+template <typename Image, typename Data>
+Image hostImage(Data* data, const Array& array) {
+    // Strides along an axis of length 1 mean nothing in NumPy; 0 is the C interface's default.
+    const auto stride = [&](int axis) {
+        return array.shape(axis) > 1 ? static_cast<size_t>(array.strides(axis)) : 0;
+    };
+    Image image{};
+    image.data = data;
+    image.components = static_cast<uint32_t>(array.shape(2));
+    image.pixel_stride = stride(1);
+    image.row_stride = stride(0);
+    return image;
+}
+
+void copyMatrix(const float* from, float (&to)[16]) {
+    std::copy(from, from + 16, to);
+}
+
+/// view, projection, previous view, previous projection, each column after column.
+limpid_camera cameraOf(const Matrices& matrices, std::pair<float, float> jitter) {
+    if (matrices.size() != 64) throw std::invalid_argument("the camera has four matrices of 4 x 4");
+    limpid_camera camera{};
+    const float* data = matrices.data();
+    copyMatrix(data, camera.view);
+    copyMatrix(data + 16, camera.projection);
+    copyMatrix(data + 32, camera.previous_view);
+    copyMatrix(data + 48, camera.previous_projection);
+    camera.jitter[0] = jitter.first;
+    camera.jitter[1] = jitter.second;
+    return camera;
+}
+
+class Denoiser {
+  public:
+    Denoiser(std::shared_ptr<Device> device, const limpid_denoiser_desc& desc)
+        : device_(std::move(device)), width_(desc.width), height_(desc.height) {
+        limpid_denoiser* denoiser = nullptr;
+        check(limpid_denoiser_create(device_->handle(), &desc, &denoiser));
+        handle_.reset(denoiser);
+    }
+
+    /// `inputs`: limpid_input and a float array of (height, width, components), whose components are
+    /// adjacent. One array of (height, width, 3) for each of `outputs` (limpid_output).
+    py::list denoise(const std::vector<std::pair<uint32_t, Array>>& inputs,
+                     const std::vector<uint32_t>& outputs, const Matrices& camera,
+                     std::pair<float, float> jitter, bool reset) {
+        limpid_host_frame frame{};
+        frame.size = sizeof frame;
+        frame.reset = reset ? 1 : 0;
+        frame.camera = cameraOf(camera, jitter);
+        for (const auto& [input, array] : inputs) {
+            checkInput(input, array);
+            frame.inputs[input] = hostImage<limpid_host_image>(array.data(), array);
+        }
+        py::list results;
+        for (const uint32_t output : outputs) {
+            if (output >= LIMPID_OUTPUT_MAX) throw std::invalid_argument("there is no such output");
+            Array result({py::ssize_t{height_}, py::ssize_t{width_}, py::ssize_t{3}});
+            frame.outputs[output] = hostImage<limpid_host_output>(result.mutable_data(), result);
+            results.append(std::move(result));
+        }
+        const py::gil_scoped_release release;
+        const std::lock_guard lock(mutex_);
+        check(limpid_denoise_host(handle_.get(), &frame));
+        return results;
+    }
+
+    void resize(uint32_t width, uint32_t height) {
+        const std::lock_guard lock(mutex_);
+        check(limpid_denoiser_resize(handle_.get(), width, height));
+        width_ = width;
+        height_ = height;
+    }
+    void reset() {
+        const std::lock_guard lock(mutex_);
+        check(limpid_denoiser_reset(handle_.get()));
+    }
+    void set(const std::string& name, double value) {
+        const std::lock_guard lock(mutex_);
+        check(limpid_denoiser_set(handle_.get(), name.c_str(), value));
+    }
+    double get(const std::string& name) {
+        const std::lock_guard lock(mutex_);
+        double value = 0.0;
+        check(limpid_denoiser_get(handle_.get(), name.c_str(), &value));
+        return value;
+    }
+
+    std::vector<std::pair<std::string, double>> timings() {
+        const std::lock_guard lock(mutex_);
+        uint32_t count = 0;
+        check(limpid_denoiser_timings(handle_.get(), nullptr, &count));
+        std::vector<limpid_timing> timings(count);
+        check(limpid_denoiser_timings(handle_.get(), timings.data(), &count));
+        std::vector<std::pair<std::string, double>> result;
+        for (uint32_t i = 0; i < count; ++i) result.emplace_back(timings[i].pass, timings[i].milliseconds);
+        return result;
+    }
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+
+  private:
+    void checkInput(uint32_t input, const Array& array) const {
+        if (input >= LIMPID_INPUT_MAX) throw std::invalid_argument("there is no such input");
+        const bool shaped = array.ndim() == 3 && array.shape(0) == py::ssize_t{height_} &&
+                            array.shape(1) == py::ssize_t{width_} && array.shape(2) >= 1 &&
+                            array.shape(2) <= 4;
+        const auto forwards = [&](int axis) { return array.shape(axis) == 1 || array.strides(axis) > 0; };
+        const bool adjacent = array.shape(2) == 1 || array.strides(2) == py::ssize_t{sizeof(float)};
+        if (!shaped || !forwards(0) || !forwards(1) || !adjacent)
+            throw std::invalid_argument("an input's shape or strides cannot be read");
+    }
+
+    struct Destroy {
+        void operator()(limpid_denoiser* denoiser) const { limpid_denoiser_destroy(denoiser); }
+    };
+    std::shared_ptr<Device> device_;
+    uint32_t width_, height_;
+    std::mutex mutex_;  ///< one thread at a time may use a denoiser; the GIL does not see to that while it is
+                        ///< released
+    std::unique_ptr<limpid_denoiser, Destroy> handle_;
+};
+
+limpid_denoiser_desc describe(int method, uint32_t width, uint32_t height, uint32_t signals, bool demodulated,
+                              int normalEncoding, int normalSpace, int depth, float farDepth, int motionUnit,
+                              int motionDirection, int motionDepth, int clipY, bool timings) {
+    limpid_denoiser_desc desc{};
+    desc.size = sizeof desc;
+    desc.method = static_cast<limpid_method>(method);
+    desc.width = width;
+    desc.height = height;
+    desc.signals = signals;
+    desc.demodulated = demodulated ? 1 : 0;
+    desc.normal_encoding = static_cast<limpid_normal_encoding>(normalEncoding);
+    desc.normal_space = static_cast<limpid_space>(normalSpace);
+    desc.depth = static_cast<limpid_depth>(depth);
+    desc.far_depth = farDepth;
+    desc.motion_unit = static_cast<limpid_motion_unit>(motionUnit);
+    desc.motion_direction = static_cast<limpid_motion_direction>(motionDirection);
+    desc.motion_depth = static_cast<limpid_motion_depth>(motionDepth);
+    desc.clip_y = static_cast<limpid_clip_y>(clipY);
+    desc.timings = timings ? 1 : 0;
+    return desc;
+}
+
+/// Name, type, default, minimum, maximum, unit, help.
+using Parameter = std::tuple<std::string, std::string, double, double, double, std::string, std::string>;
+
+std::vector<Parameter> parameters(int method) {
+    constexpr const char* types[] = {"bool", "int", "float"};
+    std::vector<Parameter> all;
+    limpid_parameter p{};
+    while (limpid_method_parameter(static_cast<limpid_method>(method), static_cast<uint32_t>(all.size()),
+                                   &p) == LIMPID_OK)
+        all.emplace_back(p.name, types[p.type], p.default_value, p.minimum, p.maximum, p.unit, p.help);
+    return all;
+}
+
+using Names = std::vector<std::pair<const char*, int>>;
+
+/// A dict from the names in Python to the numbers in C.
+void addNames(py::module_& module, const char* table, const Names& names) {
+    py::dict dict;
+    for (const auto& [name, value] : names) dict[name] = value;
+    module.attr(table) = dict;
+}
+
+void addTables(py::module_& m) {
+    addNames(m, "METHODS",
+             {{"svgf", LIMPID_METHOD_SVGF},
+              {"atrous", LIMPID_METHOD_ATROUS},
+              {"temporal", LIMPID_METHOD_TEMPORAL}});
+    addNames(m, "NORMAL_ENCODINGS",
+             {{"signed", LIMPID_NORMAL_SIGNED},
+              {"unorm", LIMPID_NORMAL_UNORM},
+              {"octahedral_signed", LIMPID_NORMAL_OCTAHEDRAL_SIGNED},
+              {"octahedral_unorm", LIMPID_NORMAL_OCTAHEDRAL_UNORM}});
+    addNames(m, "NORMAL_SPACES", {{"world", LIMPID_SPACE_WORLD}, {"view", LIMPID_SPACE_VIEW}});
+    addNames(m, "DEPTH_ENCODINGS",
+             {{"distance", LIMPID_DEPTH_DISTANCE},
+              {"linear", LIMPID_DEPTH_LINEAR},
+              {"device", LIMPID_DEPTH_DEVICE}});
+    addNames(m, "MOTION_UNITS",
+             {{"pixels", LIMPID_MOTION_PIXELS}, {"uv", LIMPID_MOTION_UV}, {"ndc", LIMPID_MOTION_NDC}});
+    addNames(m, "MOTION_DIRECTIONS",
+             {{"to_previous", LIMPID_MOTION_TO_PREVIOUS}, {"from_previous", LIMPID_MOTION_FROM_PREVIOUS}});
+    addNames(m, "MOTION_DEPTHS", {{"2d", LIMPID_MOTION_2D}, {"distance", LIMPID_MOTION_DISTANCE}});
+    addNames(m, "CLIP_Y", {{"down", LIMPID_CLIP_Y_DOWN}, {"up", LIMPID_CLIP_Y_UP}});
+    addNames(m, "INPUTS",
+             {{"radiance", LIMPID_INPUT_RADIANCE},
+              {"specular", LIMPID_INPUT_SPECULAR},
+              {"emission", LIMPID_INPUT_EMISSION},
+              {"albedo", LIMPID_INPUT_ALBEDO},
+              {"albedo_specular", LIMPID_INPUT_ALBEDO_SPECULAR},
+              {"normal", LIMPID_INPUT_NORMAL},
+              {"depth", LIMPID_INPUT_DEPTH},
+              {"motion", LIMPID_INPUT_MOTION},
+              {"previous_normal", LIMPID_INPUT_PREVIOUS_NORMAL},
+              {"reflection_motion", LIMPID_INPUT_REFLECTION_MOTION},
+              {"id", LIMPID_INPUT_ID}});
+    addNames(m, "OUTPUTS",
+             {{"color", LIMPID_OUTPUT_COLOR},
+              {"radiance", LIMPID_OUTPUT_RADIANCE},
+              {"specular", LIMPID_OUTPUT_SPECULAR}});
+}
+
+std::string version() {
+    const uint32_t v = limpid_version();
+    return std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." + std::to_string(v % 100);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_denoise, m) {
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const Failure& failure) {
+            limpid::python::raiseError(failure.what(), codeOf(failure.result));
+        }
+    });
+    using Unlocked = py::call_guard<py::gil_scoped_release>;
+    m.def("version", version);
+    m.def("parameters", parameters);
+    addTables(m);
+    py::class_<Device, std::shared_ptr<Device>>(m, "Device")
+        .def(py::init<const std::string&, bool>(), Unlocked())
+        .def("name", &Device::name)
+        .def("messages", &Device::messages)
+        .def("pipeline_cache", &Device::pipelineCache)
+        .def("load_pipeline_cache", &Device::loadPipelineCache);
+    py::class_<limpid_denoiser_desc>(m, "Description")
+        .def(py::init(&describe), py::kw_only(), py::arg("method"), py::arg("width"), py::arg("height"),
+             py::arg("signals"), py::arg("demodulated"), py::arg("normal_encoding"), py::arg("normal_space"),
+             py::arg("depth_encoding"), py::arg("far_depth"), py::arg("motion_unit"),
+             py::arg("motion_direction"), py::arg("motion_depth"), py::arg("clip_y"), py::arg("timings"));
+    py::class_<Denoiser>(m, "Denoiser")
+        .def(py::init<std::shared_ptr<Device>, const limpid_denoiser_desc&>(), Unlocked())
+        .def("denoise", &Denoiser::denoise)
+        .def("resize", &Denoiser::resize, Unlocked())
+        .def("reset", &Denoiser::reset, Unlocked())
+        .def("set", &Denoiser::set, Unlocked())
+        .def("get", &Denoiser::get, Unlocked())
+        .def("timings", &Denoiser::timings, Unlocked())
+        .def_property_readonly("width", &Denoiser::width)
+        .def_property_readonly("height", &Denoiser::height);
+}

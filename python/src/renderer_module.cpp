@@ -1,0 +1,191 @@
+// limpid._renderer: pictures of scenes, and metrics, for Python. limpid/_rendering.py checks arguments and
+// documents them.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu/vulkan/device.h"
+#include "image/metrics/metrics.h"
+#include "image/tonemap.h"
+#include "python_error.h"
+#include "renderer/layers/layers.h"
+#include "scene/builtin/builtin.h"
+#include "scene_renderer.h"
+
+namespace py = pybind11;
+
+namespace limpid::python {
+namespace {
+
+/// Of the exception that is being handled.
+void raiseAsPython(std::exception_ptr thrown) {
+    try {
+        if (thrown) std::rethrow_exception(thrown);
+    } catch (const gpu::DeviceLost& error) {
+        raiseError(error.what(), "device_lost");
+    } catch (const gpu::OutOfMemory& error) {
+        raiseError(error.what(), "out_of_memory");
+    } catch (const gpu::Unsupported& error) {
+        raiseError(error.what(), "unsupported");
+    } catch (const Error& error) {
+        raiseError(error.what(), error.code() == ExitCode::Usage      ? "invalid_argument"
+                                 : error.code() == ExitCode::BadInput ? "unreadable"
+                                                                      : "failed");
+    }
+}
+
+using Array = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+image::Image imageOf(const Array& array) {
+    if (array.ndim() != 3 || array.shape(2) > 4) throw UsageError("a picture is (height, width, components)");
+    image::Image picture(static_cast<uint32_t>(array.shape(1)), static_cast<uint32_t>(array.shape(0)),
+                         static_cast<uint32_t>(array.shape(2)));
+    std::copy(array.data(), array.data() + array.size(), picture.pixels.begin());
+    return picture;
+}
+
+py::dict compare(const Array& test, const Array& reference, std::optional<float> stops) {
+    const image::Image a = imageOf(test), b = imageOf(reference);
+    const image::Comparison result = [&] {
+        const py::gil_scoped_release release;
+        return image::compare(a, b, stops ? *stops : image::autoExposure(b));
+    }();
+    py::dict dict;
+    dict["psnr"] = result.psnr;
+    dict["ssim"] = result.ssim;
+    dict["flip"] = result.flip;
+    dict["relmse"] = result.relMse;
+    dict["exposure"] = result.exposure;
+    dict["invalid_pixels"] = result.invalidPixels;
+    return dict;
+}
+
+/// A layer of the EXR files, and its name here.
+struct Layer {
+    const char* name;
+    const char* layer;
+    const char* suffixes;
+};
+constexpr Layer colors[] = {{"color", "", "RGB"},
+                            {"diffuse", "diffuse", "RGB"},
+                            {"specular", "specular", "RGB"},
+                            {"emission", "emission", "RGB"},
+                            {"albedo", "albedo", "RGB"},
+                            {"albedo_specular", "albedoSpecular", "RGB"},
+                            {"normal", "normal", "XYZ"},
+                            {"previous_normal", "prevNormal", "XYZ"},
+                            {"depth", "depth", "Z"},
+                            {"motion", "motion", "XYZ"},
+                            {"reflection_motion", "reflectionMotion", "XYZ"},
+                            {"id", "id", "I"}};
+constexpr const char* varianceOf[] = {"diffuse", "specular", "albedo", "normal", "depth"};
+
+/// (height, width) of one component, (height, width, n) of several.
+py::array_t<float> arrayOf(const image::Image& picture) {
+    std::vector<py::ssize_t> shape{py::ssize_t{picture.height}, py::ssize_t{picture.width}};
+    if (picture.components > 1) shape.push_back(py::ssize_t{picture.components});
+    py::array_t<float> array(shape);
+    std::copy(picture.pixels.begin(), picture.pixels.end(), array.mutable_data());
+    return array;
+}
+
+py::dict arraysOf(const image::LayeredImage& layers) {
+    py::dict dict;
+    for (const auto& [name, layer, suffixes] : colors) {
+        const std::string channel =
+            std::string(layer) + (layer[0] == '\0' ? "" : ".") + std::string(1, suffixes[0]);
+        if (!layers.find(channel)) continue;
+        const py::array_t<float> array = arrayOf(layers.get(layer, suffixes));
+        dict[name] = array;
+    }
+    if (dict.contains("id")) dict["id"] = dict["id"].attr("astype")("uint32");
+    for (const char* name : varianceOf) {
+        const image::Channel* channel = layers.find(std::string(name) + ".variance");
+        if (!channel) continue;
+        image::Image picture(layers.width, layers.height, 1);
+        picture.pixels = channel->values;
+        dict[(std::string(name) + "_variance").c_str()] = arrayOf(picture);
+    }
+    return dict;
+}
+
+std::vector<float> components(const vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+py::dict cameraDict(const CameraParams& camera) {
+    py::dict dict;
+    dict["origin"] = components(camera.origin);
+    dict["forward"] = components(camera.forward);
+    dict["right"] = components(camera.right);
+    dict["up"] = components(camera.up);
+    dict["orthographic"] = camera.orthographic != 0;
+    return dict;
+}
+
+/// The layers of a frame by name, and its camera.
+py::tuple render(SceneRenderer& renderer, uint64_t frame) {
+    const auto [layers, camera] = [&] {
+        const py::gil_scoped_release release;
+        return renderer.render(frame);
+    }();
+    return py::make_tuple(arraysOf(layers), cameraDict(camera));
+}
+
+std::vector<std::pair<std::string, std::string>> builtinScenes() {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const scene::BuiltinInfo& info : scene::builtinScenes())
+        all.emplace_back("builtin:" + info.name, info.help);
+    return all;
+}
+
+RenderOptions optionsOf(const py::kwargs& given) {
+    RenderOptions o;
+    const auto take = [&](const char* name, auto& member) {
+        member = given[name].cast<std::remove_reference_t<decltype(member)>>();
+    };
+    take("scene", o.scene);
+    take("width", o.width);
+    take("height", o.height);
+    take("samples", o.samples);
+    take("seed", o.seed);
+    take("denoiser", o.denoiser);
+    take("assignments", o.assignments);
+    take("environment", o.environment);
+    take("camera", o.camera);
+    take("eye", o.eye);
+    take("target", o.target);
+    take("fov", o.fov);
+    take("jitter", o.jitter);
+    take("weights", o.weights);
+    take("asset_root", o.assetRoot);
+    take("fps", o.timing.framesPerSecond);
+    take("frames", o.frames);
+    take("animation", o.animation);
+    take("camera_path", o.cameraPath);
+    return o;
+}
+
+}  // namespace
+}  // namespace limpid::python
+
+PYBIND11_MODULE(_renderer, m) {
+    using namespace limpid::python;
+    py::register_local_exception_translator(raiseAsPython);
+    using Unlocked = py::call_guard<py::gil_scoped_release>;
+    m.def("compare", compare);
+    m.def("builtin_scenes", builtinScenes);
+    py::class_<RenderDevice, std::shared_ptr<RenderDevice>>(m, "Device")
+        .def(py::init<const std::string&>(), Unlocked());
+    py::class_<RenderOptions>(m, "Options").def(py::init(&optionsOf));
+    py::class_<SceneRenderer>(m, "Renderer")
+        .def(py::init<std::shared_ptr<RenderDevice>, const RenderOptions&>(), Unlocked())
+        .def("render", render);
+}

@@ -1,0 +1,153 @@
+#include "scene_renderer.h"
+
+#include "base/error.h"
+#include "renderer/frame/network_file.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/layers/layers.h"
+#include "scene/builtin/builtin.h"
+#include "scene/framing/camera_path.h"
+#include "scene/model/camera.h"
+#include "scene/model/environment.h"
+#include "scene/model/load.h"
+#include "scene/model/prepare.h"
+#include "scene/motion/movement.h"
+
+namespace limpid::python {
+namespace {
+
+Pipeline pipelineOf(const std::string& denoiser) {
+    if (denoiser.empty()) return {};
+    std::string names;
+    for (const Pipeline& pipeline : pipelines()) {
+        if (pipeline.kind != Pipeline::Kind::Denoised) continue;
+        if (pipeline.name() == denoiser) return pipeline;
+        names += " " + std::string(pipeline.name());
+    }
+    throw UsageError("there is no denoiser '" + denoiser + "'; the denoisers are" + names);
+}
+
+Jitter jitterOf(const std::string& name, const Pipeline& pipeline) {
+    if (name.empty()) return defaultJitter(pipeline);
+    for (const Jitter jitter : {Jitter::Pixel, Jitter::Frame, Jitter::Off})
+        if (name == toString(jitter)) return jitter;
+    throw UsageError("jitter: '" + name + "' is none of pixel, frame and off");
+}
+
+RenderSettings settingsOf(const RenderOptions& o) {
+    RenderSettings settings;
+    settings.extent = {o.width, o.height};
+    settings.seed = o.seed;
+    settings.samplesPerLaunch = std::min(o.samples, 4u);  // what every device does
+    settings.pipeline = pipelineOf(o.denoiser);
+    settings.jitter = jitterOf(o.jitter, settings.pipeline);
+    settings.layers = true;
+    for (const std::string& text : o.assignments) assign(settings, text);
+    if (!settings.pipeline.accumulates() && o.samples > 65536)
+        throw UsageError("spp: a frame that is denoised takes 65536 samples at most");
+    return settings;
+}
+
+scene::Scene sceneOf(const RenderOptions& o) {
+    constexpr std::string_view prefix = "builtin:";
+    const bool builtin = o.scene.starts_with(prefix);
+    scene::Scene scene;
+    if (builtin) {
+        scene = scene::builtinScene(std::string_view(o.scene).substr(prefix.size()));
+    } else {
+        scene::LoadOptions options;
+        options.assetRoot =
+            o.assetRoot.empty() ? scene::defaultAssetRoot(o.scene) : std::filesystem::path(o.assetRoot);
+        scene = scene::loadScene(o.scene, options);
+    }
+    if (!o.environment.empty()) scene.environment = scene::loadEnvironment(o.environment);
+    scene::prepare(scene, builtin ? scene::SkyRule::WithoutLights : scene::SkyRule::InTheDark);
+    const bool atRest = o.animation == "none" || (o.animation.empty() && scene.rig.clips.empty());
+    if (!atRest) scene::chooseClip(scene, o.animation);
+    return scene;
+}
+
+scene::Camera namedCamera(const scene::Scene& scene, const std::string& choice) {
+    if (choice.empty()) return scene.cameras.front();
+    std::string known;
+    for (size_t i = 0; i < scene.cameras.size(); ++i) {
+        const scene::Camera& camera = scene.cameras[i];
+        if (camera.name == choice || std::to_string(i) == choice) return camera;
+        known += " " + std::to_string(i) + " '" + camera.name + "'";
+    }
+    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
+}
+
+scene::Camera cameraOf(const RenderOptions& o, const scene::Scene& scene) {
+    const scene::Camera camera = namedCamera(scene, o.camera);
+    if (o.eye.empty() && o.target.empty() && o.fov == 0.0f) return camera;
+    if (o.eye.size() != 3 || o.target.size() != 3)
+        throw UsageError("eye and target go together, and fov with them");
+    if (!(o.fov >= 0.0f && o.fov < 180.0f))
+        throw UsageError("fov: more than 0 and less than 180 degrees are possible");
+    const vec3 eye(o.eye[0], o.eye[1], o.eye[2]), target(o.target[0], o.target[1], o.target[2]);
+    if (eye == target) throw UsageError("eye and target are the same point");
+    return scene::lookAt(eye, target, vec3(0.0f, 1.0f, 0.0f),
+                         o.fov > 0.0f ? glm::radians(o.fov) : camera.verticalFov);
+}
+
+std::optional<scene::CameraPath> pathOf(const RenderOptions& o, const scene::Scene& scene,
+                                        const scene::Camera& camera) {
+    if (o.cameraPath.empty()) return std::nullopt;
+    if (!scene::isBuiltinCameraPath(o.cameraPath)) return scene::loadCameraPath(o.cameraPath);
+    return scene::builtinCameraPath(o.cameraPath, scene, camera, o.timing.timeOf(o.frames));
+}
+
+}  // namespace
+
+RenderDevice::RenderDevice(const std::string& select)
+    : device([&] {
+          gpu::DeviceOptions options;
+          options.select = select;
+          return options;
+      }()) {}
+
+SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderOptions& o)
+    : device_(std::move(device)), samples_(o.samples), settings_(settingsOf(o)), scene_(sceneOf(o)) {
+    if (!(o.timing.framesPerSecond >= 1e-3 && o.timing.framesPerSecond <= 1e6))
+        throw UsageError("fps: 0.001 to 1000000 frames per second are possible");
+    const std::lock_guard lock(device_->mutex);
+    gpu::Device& on = device_->device;
+    loadNetwork(on, settings_.pipeline.denoiser, o.weights, settings_.denoisers);
+    const scene::SceneData data = scene::buildSceneData(scene_);
+    gpuScene_.emplace(on, data, scene::TraceOptions{scene::automaticTracer(on.info()), {}});
+    const scene::Camera camera = cameraOf(o, scene_);
+    sequence_.emplace(scene_, data, camera, pathOf(o, scene_, camera), o.timing);
+    scene_.textures.clear();  // they are on the device
+    if (settings_.pipeline.accumulates()) {
+        accumulated_.emplace(on, *gpuScene_, samples_);
+    } else {
+        denoised_.emplace(on, *gpuScene_, settings_, samples_);
+    }
+}
+
+SceneRenderer::~SceneRenderer() {
+    const std::lock_guard lock(device_->mutex);
+    denoised_.reset();
+    accumulated_.reset();
+    gpuScene_.reset();
+}
+
+RenderedLayers SceneRenderer::renderLayers(Moment moment) {
+    if (denoised_) {
+        denoised_->render(std::move(moment));
+        return denoised_->download();
+    }
+    accumulated_->update(std::move(moment), settings_);
+    while (accumulated_->launch()) continue;
+    return accumulated_->download();
+}
+
+std::pair<image::LayeredImage, CameraParams> SceneRenderer::render(uint64_t frame) {
+    const std::lock_guard lock(device_->mutex);
+    Moment moment = sequence_->moment(frame, settings_.extent);
+    const CameraParams camera = moment.camera;
+    const RenderedLayers layers = renderLayers(std::move(moment));
+    return {toLayeredImage(layers, settings_.pipeline.layers(), image::Storage::Float), camera};
+}
+
+}  // namespace limpid::python

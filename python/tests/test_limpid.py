@@ -1,0 +1,513 @@
+"""import limpid: shapes, errors, denoising, comparing, rendering; on the device LIMPID_TEST_DEVICE (cpu)."""
+
+import os
+import subprocess
+import sys
+import threading
+import unittest
+
+import numpy as np
+
+import limpid
+
+WIDTH, HEIGHT, FRAMES, FOV = 64, 48, 12, 60.0
+
+
+def device():
+    name = os.environ.get("LIMPID_TEST_DEVICE", "cpu")
+    if name not in device.made:
+        device.made[name] = limpid.Device(name)
+    return device.made[name]
+
+
+device.made = {}
+
+
+def tearDownModule():
+    device.made.clear()
+
+
+def wall(eye_x):
+    """Seen from (eye_x, 0, 0): a wall across the view at z = -3, striped, and nothing to the right of x = 2.5."""
+    half = np.tan(np.radians(FOV / 2))
+    x = (2 * (np.arange(WIDTH) + 0.5) / WIDTH - 1) * half * WIDTH / HEIGHT
+    y = (1 - 2 * (np.arange(HEIGHT) + 0.5) / HEIGHT) * half
+    x, y = np.meshgrid(x, y)
+    seen = eye_x + 3 * x < 2.5
+    depth = np.where(seen, 3 * np.sqrt(x * x + y * y + 1), 0.0)
+    normal = np.broadcast_to((0.0, 0.0, 1.0), (HEIGHT, WIDTH, 3)).copy()
+    stripes = np.where(np.floor(4 * (eye_x + 3 * x)) % 2 == 0, 0.8, 0.3)
+    albedo = stripes[..., None] * (1.0, 0.8, 0.6)
+    return depth, normal, albedo, seen[..., None] * albedo * 0.7
+
+
+def wall_view(eye_x):
+    return limpid.look_at((eye_x, 0, 0), (eye_x, 0, -1))
+
+
+def mse(a, b):
+    return float(np.mean((a - b) ** 2))
+
+
+def gain(clean, noisy, truth):
+    """dB of PSNR."""
+    return 10 * np.log10(mse(noisy, truth) / mse(clean, truth))
+
+
+class Sequence:
+    """Noisy frames of wall(), the camera moving to the right, and what they should be."""
+
+    def __init__(self, seed=1):
+        random = np.random.default_rng(seed)
+        self.frames = []
+        for i in range(FRAMES):
+            depth, normal, albedo, truth = wall(0.03 * i)
+            noisy = truth * random.exponential(size=(HEIGHT, WIDTH, 1))
+            inputs = {"radiance": noisy, "normal": normal, "depth": depth, "albedo": albedo,
+                      "view": wall_view(0.03 * i), "projection": limpid.perspective(FOV, WIDTH / HEIGHT)}
+            self.frames.append((inputs, truth))
+
+    def run(self, denoiser, **more):
+        """The last clean frame's gain."""
+        for inputs, truth in self.frames:
+            clean = denoiser.denoise(**{**inputs, **more})
+        return gain(clean, inputs["radiance"], truth)
+
+
+def still():
+    """The first frame: denoise()'s arguments but for albedo and cameras."""
+    inputs = Sequence().frames[0][0]
+    return {name: inputs[name].astype(np.float32) for name in ("radiance", "normal", "depth")}
+
+
+class DeviceTest(unittest.TestCase):
+    def test_has_a_name_and_no_messages(self):
+        self.assertTrue(device().name)
+        self.assertEqual([m for m in device().messages() if m[0] == "error"], [])
+
+    def test_unknown_device_lists_those_there_are(self):
+        with self.assertRaises(limpid.Error) as caught:
+            limpid.Device("no such device")
+        self.assertEqual(caught.exception.code, "unsupported")
+        self.assertIn("no such device", str(caught.exception))
+        self.assertIsInstance(caught.exception, RuntimeError)
+
+    def test_pipeline_cache_comes_back(self):
+        limpid.Denoiser(8, 8, "temporal", device=device())
+        data = device().pipeline_cache()
+        self.assertIsInstance(data, bytes)
+        other = limpid.Device(os.environ.get("LIMPID_TEST_DEVICE", "cpu"))
+        other.load_pipeline_cache(data)
+        other.load_pipeline_cache(b"damaged")
+
+
+class ShapeTest(unittest.TestCase):
+    def setUp(self):
+        self.denoiser = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device())
+
+    def assertNames(self, argument, function, *args, **kwargs):
+        with self.assertRaises(ValueError) as caught:
+            function(*args, **kwargs)
+        self.assertTrue(str(caught.exception).startswith(argument + ":"), str(caught.exception))
+
+    def test_result_is_height_width_3_float32(self):
+        result = self.denoiser.denoise(**still())
+        self.assertEqual((result.shape, result.dtype), ((HEIGHT, WIDTH, 3), np.float32))
+        self.assertTrue(np.isfinite(result).all())
+
+    def test_wrong_shapes_name_the_argument(self):
+        flat = np.zeros((HEIGHT, WIDTH), np.float32)
+        small = np.zeros((HEIGHT, WIDTH - 1, 3), np.float32)
+        for name, value in (("radiance", flat), ("radiance", small), ("normal", flat), ("normal", small[..., :2]),
+                            ("depth", small), ("depth", flat[:-1]), ("albedo", flat), ("motion", flat),
+                            ("emission", small), ("previous_normal", flat), ("id", np.zeros((3, 3), np.uint32)),
+                            ("view", np.eye(3)), ("projection", np.zeros(16)), ("previous_view", np.eye(3)),
+                            ("jitter", 0.5)):
+            with self.subTest(name, shape=np.shape(value)):
+                self.assertNames(name, self.denoiser.denoise, **{**still(), name: value})
+
+    def test_wrong_dtypes_name_the_argument(self):
+        image = np.zeros((HEIGHT, WIDTH, 3))
+        for name, value in (("radiance", image.astype(np.uint8)), ("normal", image.astype(np.int32)),
+                            ("albedo", image.astype(bool)), ("emission", image.astype(complex)),
+                            ("motion", image.astype("U1")), ("id", image[..., 0]), ("view", np.eye(4).astype(complex)),
+                            ("id", np.full((HEIGHT, WIDTH), -1))):
+            with self.subTest(name, dtype=value.dtype):
+                self.assertNames(name, self.denoiser.denoise, **{**still(), name: value})
+
+    def test_missing_inputs_name_the_argument(self):
+        self.assertNames("radiance", self.denoiser.denoise, **{**still(), "radiance": None})
+        self.assertNames("specular", self.denoiser.denoise, **still(), specular=still()["radiance"])
+        two = limpid.Denoiser(WIDTH, HEIGHT, device=device(), signals=2)
+        self.assertNames("specular", two.denoise, **still())
+        with_buffer = limpid.Denoiser(WIDTH, HEIGHT, "temporal", device=device(), depth_encoding="device")
+        self.assertNames("projection", with_buffer.denoise, **still())
+
+    def test_wrong_options_name_the_argument(self):
+        for name, value in (("method", "nlm"), ("signals", 3), ("normal_encoding", "rgb"), ("normal_space", "object"),
+                            ("depth_encoding", "z"), ("far_depth", 0), ("motion_unit", "px"), ("motion_depth", "3d"),
+                            ("motion_direction", "back"), ("clip_y", "left")):
+            with self.subTest(name):
+                self.assertNames(name, limpid.Denoiser, WIDTH, HEIGHT, device=device(), **{name: value})
+        self.assertNames("width", limpid.Denoiser, 0, HEIGHT, device=device())
+        self.assertNames("height", self.denoiser.resize, WIDTH, 1.5)
+        self.assertNames("outputs", self.denoiser.denoise, **still(), outputs="clean")
+
+    def test_half_double_and_strided_arrays_give_the_same(self):
+        inputs = {name: value.astype(np.float16).astype(np.float32) for name, value in still().items()}
+        expected = self.denoiser.denoise(**inputs, reset=True)
+        wide = np.full((2 * HEIGHT, WIDTH, 5), np.nan, np.float32)
+        wide[::2, :, 1:4] = inputs["radiance"]
+        flipped = np.ascontiguousarray(inputs["radiance"][::-1, ::-1, ::-1])[::-1, ::-1, ::-1]
+        for radiance in (inputs["radiance"].astype(np.float16), inputs["radiance"].astype(np.float64),
+                         inputs["radiance"].astype(">f4"), wide[::2, :, 1:4], flipped,
+                         np.dstack([inputs["radiance"], np.ones((HEIGHT, WIDTH), np.float32)]),
+                         inputs["radiance"].tolist()):
+            result = self.denoiser.denoise(**{**inputs, "radiance": radiance}, reset=True)
+            np.testing.assert_array_equal(result, expected)
+
+    def test_broadcast_arrays_are_read(self):
+        inputs = still()
+        inputs["radiance"] = np.broadcast_to(np.float32(0.5), (HEIGHT, WIDTH, 3))
+        inputs["normal"] = np.broadcast_to(np.array((0, 0, 1), np.float32), (HEIGHT, WIDTH, 3))
+        np.testing.assert_allclose(self.denoiser.denoise(**inputs)[inputs["depth"] > 0], 0.5, atol=1e-3)
+
+    def test_one_pixel_and_odd_sizes(self):
+        for height, width in ((1, 1), (1, 7), (5, 1), (3, 13)):
+            radiance = np.full((height, width, 3), 0.25, np.float32)
+            normal = np.broadcast_to((0.0, 0.0, 1.0), radiance.shape)
+            result = limpid.denoise(radiance, normal, np.ones((height, width)), device=device())
+            self.assertEqual(result.shape, (height, width, 3))
+            np.testing.assert_allclose(result, 0.25, atol=1e-3)
+
+    def test_resize(self):
+        self.denoiser.denoise(**still())
+        self.denoiser.resize(8, 4)
+        self.assertEqual((self.denoiser.width, self.denoiser.height), (8, 4))
+        small = {name: value[:4, :8] for name, value in still().items()}
+        self.assertEqual(self.denoiser.denoise(**small).shape, (4, 8, 3))
+        self.assertNames("radiance", self.denoiser.denoise, **still())
+
+    def test_library_errors_have_their_message(self):
+        with self.assertRaises(limpid.Error) as caught:
+            self.denoiser.denoise(**still(), view=np.zeros((4, 4)))
+        self.assertIn("singular", str(caught.exception))
+        with self.assertRaises(limpid.Error):
+            self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF's alone
+        self.denoiser.denoise(**still())  # goes on
+
+
+class ParameterTest(unittest.TestCase):
+    def test_every_parameter_has_its_default_and_can_be_set(self):
+        for method in ("svgf", "atrous", "temporal"):
+            denoiser = limpid.Denoiser(8, 8, method, device=device())
+            self.assertEqual(denoiser.parameters(), limpid.parameters(method))
+            self.assertGreater(len(denoiser.parameters()), 3)
+            for name, p in denoiser.parameters().items():
+                self.assertEqual(p.name, name)
+                self.assertTrue(p.help, name)
+                self.assertIs(type(denoiser.get(name)), p.type, name)
+                self.assertAlmostEqual(denoiser.get(name), p.default, places=5, msg=name)
+                denoiser.set(name, p.minimum)
+                self.assertAlmostEqual(denoiser.get(name), p.minimum, places=5, msg=name)
+
+    def test_wrong_names_and_values_are_refused(self):
+        denoiser = limpid.Denoiser(8, 8, device=device())
+        for name, value in (("svgf.nothing", 1.0), ("svgf.alpha", 17.0), ("svgf.alpha", float("nan"))):
+            with self.assertRaises(limpid.Error) as caught:
+                denoiser.set(name, value)
+            self.assertEqual(caught.exception.code, "invalid_argument")
+            self.assertIn(name, str(caught.exception))
+        with self.assertRaises(limpid.Error):
+            denoiser.get("svgf.nothing")
+        with self.assertRaises(limpid.Error):
+            limpid.Denoiser(8, 8, device=device(), parameters={"svgf.nothing": 1.0})
+
+    def test_a_parameter_changes_the_picture(self):
+        plain = limpid.denoise(**still(), device=device())
+        changed = limpid.denoise(**still(), device=device(), parameters={"svgf.phi_color": 0.1})
+        self.assertGreater(mse(plain, changed), 0.0)
+
+
+class DenoiseTest(unittest.TestCase):
+    def test_sequence_comes_closer_to_the_truth(self):
+        for method in ("svgf", "atrous", "temporal"):
+            with self.subTest(method):
+                self.assertGreater(Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, method, device=device())), 6.0)
+
+    def test_previous_camera_is_remembered(self):
+        sequence = Sequence()
+        remembering = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        told = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        before = None
+        for inputs, _ in sequence.frames:
+            before = before or inputs
+            a = remembering.denoise(**inputs)
+            b = told.denoise(**inputs, previous_view=before["view"], previous_projection=before["projection"])
+            before = inputs
+        np.testing.assert_array_equal(a, b)
+        standing = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        for inputs, truth in sequence.frames:
+            c = standing.denoise(**inputs, previous_view=inputs["view"])
+        self.assertGreater(mse(c, truth), mse(a, truth))
+
+    def test_motion_does_as_well_as_the_camera(self):
+        # A camera that moves to the right by 0.03 sees a wall 3 away move to the left.
+        pixels = 0.03 / 3 / np.tan(np.radians(FOV / 2)) * HEIGHT / 2
+        motion = np.zeros((HEIGHT, WIDTH, 2))
+        motion[..., 0] = pixels
+        by_camera = Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, device=device()))
+        by_motion = Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, device=device()), motion=motion)
+        in_uv = Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, device=device(), motion_unit="uv",
+                                               motion_direction="from_previous"), motion=-motion / (WIDTH, HEIGHT))
+        self.assertAlmostEqual(by_motion, by_camera, delta=0.5)
+        self.assertAlmostEqual(in_uv, by_motion, delta=0.01)
+
+    def test_encodings_mean_the_same(self):
+        expected = limpid.denoise(**still(), device=device())
+        images = still()
+        unorm = dict(images, normal=0.5 * images["normal"] + 0.5)
+        linear = dict(images, depth=np.where(images["depth"] > 0, 3.0, 0.0))
+        octahedral = dict(images, normal=np.zeros((HEIGHT, WIDTH, 2)))
+        for inputs, options in ((unorm, {"normal_encoding": "unorm"}), (linear, {"depth_encoding": "linear"}),
+                                (octahedral, {"normal_encoding": "octahedral_signed"}),
+                                (images, {"normal_space": "view"}), (images, {"clip_y": "up"})):
+            with self.subTest(**options):
+                np.testing.assert_allclose(limpid.denoise(**inputs, device=device(), **options), expected, atol=2e-3)
+
+    def test_reset_forgets(self):
+        sequence = Sequence()
+        used = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        sequence.run(used)
+        used.reset()
+        fresh = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        first = sequence.frames[0][0]
+        expected = fresh.denoise(**first)
+        np.testing.assert_array_equal(used.denoise(**first), expected)
+        np.testing.assert_array_equal(used.denoise(**first, reset=True), expected)
+
+    def test_emission_is_added_and_not_filtered(self):
+        emission = np.random.default_rng(3).random((HEIGHT, WIDTH, 3), np.float32)
+        inputs = still()
+        plain = limpid.denoise(**inputs, device=device(), method="atrous")
+        lit = limpid.denoise(**inputs, emission=emission, device=device(), method="atrous")
+        seen = inputs["depth"] > 0
+        np.testing.assert_allclose((lit - plain)[seen], emission[seen], atol=2e-3)
+
+    def test_outputs_of_two_signals_add_up(self):
+        inputs = still()
+        results = limpid.denoise(**inputs, specular=0.5 * inputs["radiance"], demodulated=True, device=device(),
+                                 outputs=("color", "radiance", "specular"))
+        self.assertEqual(list(results), ["color", "radiance", "specular"])
+        np.testing.assert_allclose(results["color"], results["radiance"] + results["specular"], atol=5e-3)
+
+    def test_identifiers_part_surfaces(self):
+        id = np.zeros((HEIGHT, WIDTH), np.uint8)
+        id[:, WIDTH // 2:] = 7
+        self.assertEqual(limpid.denoise(**still(), id=id, device=device()).shape, (HEIGHT, WIDTH, 3))
+
+    def test_timings(self):
+        denoiser = limpid.Denoiser(WIDTH, HEIGHT, device=device(), timings=True)
+        for _ in range(3):
+            denoiser.denoise(**still())
+        timings = denoiser.timings()
+        self.assertTrue(timings)
+        self.assertTrue(all(isinstance(name, str) and time >= 0 for name, time in timings.items()))
+
+    def test_threads_may_use_one_device_and_one_denoiser(self):
+        shared = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+        expected = limpid.denoise(**still(), device=device())
+        results = []
+
+        def work():
+            own = limpid.Denoiser(WIDTH, HEIGHT, device=device())
+            for _ in range(3):
+                results.append(own.denoise(**still(), reset=True))
+                results.append(shared.denoise(**still(), reset=True))
+
+        threads = [threading.Thread(target=work) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(results), 18)
+        for result in results:
+            np.testing.assert_array_equal(result, expected)
+
+    def test_other_threads_run_meanwhile(self):
+        # Counts while the device works: with the GIL held it would hardly get on.
+        denoiser = limpid.Denoiser(512, 512, device=device())
+        shape = (512, 512, 3)
+        normal = np.broadcast_to(np.array((0, 0, 1), np.float32), shape).copy()
+        arguments = np.ones(shape, np.float32), normal, np.ones(shape[:2], np.float32)
+        denoiser.denoise(*arguments)
+        done, counts = threading.Event(), [0]
+
+        def count():
+            while not done.wait(0.001):
+                counts[0] += 1
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        before = counts[0]
+        for _ in range(5):
+            denoiser.denoise(*arguments)
+        during = counts[0] - before
+        done.set()
+        thread.join()
+        self.assertGreater(during, 5)
+
+
+class CameraTest(unittest.TestCase):
+    def test_look_at_puts_the_target_in_front(self):
+        view = limpid.look_at((1, 2, 3), (1, 2, -1))
+        np.testing.assert_allclose(view @ (1, 2, 3, 1), (0, 0, 0, 1), atol=1e-12)
+        np.testing.assert_allclose(view @ (2, 3, -1, 1), (1, 1, -4, 1), atol=1e-12)
+        with self.assertRaises(ValueError):
+            limpid.look_at((0, 0, 0), (0, 1, 0))
+
+    def test_perspective_is_vulkans(self):
+        for far in (100.0, np.inf):
+            projection = limpid.perspective(90, 2, near=0.5, far=far)
+            near = projection @ (1, 0.5, -0.5, 1)
+            np.testing.assert_allclose(near / near[3], (1, -1, 0, 1), atol=1e-12)
+            end = projection @ (0, 0, -min(far, 1e12), 1)
+            self.assertAlmostEqual(end[2] / end[3], 1, places=9)
+        self.assertGreater(limpid.perspective(90, 1, clip_y="up")[1, 1], 0)
+        with self.assertRaises(ValueError):
+            limpid.perspective(180, 1)
+
+
+class CompareTest(unittest.TestCase):
+    def setUp(self):
+        self.picture = np.random.default_rng(5).random((32, 40, 3), np.float32)
+
+    def test_equal_pictures(self):
+        result = limpid.compare(self.picture, self.picture)
+        self.assertEqual(result["psnr"], np.inf)
+        self.assertAlmostEqual(result["ssim"], 1.0, places=6)
+        self.assertEqual((result["flip"], result["relmse"], result["invalid_pixels"]), (0.0, 0.0, 0))
+
+    def test_known_answers(self):
+        black, grey = np.zeros((16, 16, 3)), np.full((16, 16, 3), 0.5)
+        result = limpid.compare(grey, black, exposure=0)
+        shown = 1.055 * 0.5 ** (1 / 2.4) - 0.055  # sRGB
+        self.assertAlmostEqual(result["psnr"], -20 * np.log10(shown), places=4)
+        self.assertAlmostEqual(result["relmse"], 0.25 / 0.01, places=3)
+        green, blue = black + (0, 1, 0), black + (0, 0, 1)
+        self.assertAlmostEqual(limpid.compare(green, blue, exposure=0)["flip"], 1.0, places=3)
+
+    def test_wrong_arguments(self):
+        for test, reference, word in ((self.picture[1:], self.picture, "test:"), (self.picture, self.picture[..., 0],
+                                                                                  "reference:"),
+                                      (self.picture.astype(np.uint8), self.picture, "test:")):
+            with self.assertRaises(ValueError) as caught:
+                limpid.compare(test, reference)
+            self.assertTrue(str(caught.exception).startswith(word), str(caught.exception))
+        with self.assertRaises(ValueError):
+            limpid.compare(self.picture, self.picture, exposure=100)
+        invalid = self.picture.copy()
+        invalid[0, 0, 0] = np.nan
+        self.assertEqual(limpid.compare(invalid, self.picture)["invalid_pixels"], 1)
+        with self.assertRaises(limpid.Error):
+            limpid.compare(self.picture, invalid)
+
+
+class RenderTest(unittest.TestCase):
+    def render(self, **more):
+        return limpid.render("builtin:cornell", 32, 32, **{"spp": 4, "device": device(), **more})
+
+    def test_layers_have_their_keys_shapes_and_types(self):
+        layers = self.render()
+        three = {"color", "diffuse", "specular", "emission", "albedo", "albedo_specular", "normal", "previous_normal",
+                 "motion", "reflection_motion"}
+        one = {"depth", "id", "diffuse_variance", "specular_variance", "albedo_variance", "normal_variance",
+               "depth_variance"}
+        self.assertEqual(set(layers), three | one | {"view", "projection"})
+        for name, value in layers.items():
+            shape = (4, 4) if name in ("view", "projection") else (32, 32, 3) if name in three else (32, 32)
+            self.assertEqual(value.shape, shape, name)
+        self.assertEqual((layers["id"].dtype, layers["color"].dtype), (np.uint32, np.float32))
+        np.testing.assert_allclose(layers["color"], layers["diffuse"] + layers["specular"] + layers["emission"],
+                                   rtol=1e-5, atol=1e-6)
+        self.assertGreater(layers["color"].mean(), 0)
+
+    def test_a_seed_decides_the_noise(self):
+        first, again, other = self.render(seed=3), self.render(seed=3), self.render(seed=4)
+        for name in first:
+            np.testing.assert_array_equal(first[name], again[name], err_msg=name)
+        self.assertGreater(mse(first["color"], other["color"]), 0)
+
+    def test_matrices_are_the_cameras(self):
+        # What they project is where the pixels are: by depth, backwards.
+        layers = self.render(spp=1)
+        to_world = np.linalg.inv(layers["projection"] @ layers["view"])
+        eye = np.linalg.inv(layers["view"])[:3, 3]
+        x, y = np.meshgrid(2 * (np.arange(32) + 0.5) / 32 - 1, 2 * (np.arange(32) + 0.5) / 32 - 1)
+        points = np.stack([x, y, np.full_like(x, 0.5), np.ones_like(x)], axis=2) @ to_world.T
+        ray = points[..., :3] / points[..., 3:] - eye
+        ray /= np.linalg.norm(ray, axis=2, keepdims=True)
+        hits = eye + layers["depth"][..., None] * ray
+        floor = (layers["normal"][..., 1] > 0.99) & (y > 0.8)
+        self.assertGreater(floor.sum(), 10)
+        np.testing.assert_allclose(hits[floor][:, 1], 0, atol=2e-3)
+
+    def test_options_reach_the_renderer(self):
+        dark = self.render(parameters={"pathtrace.max_depth": 0})
+        self.assertLess(dark["color"].mean(), self.render()["color"].mean())
+        clean = self.render(denoiser="svgf", spp=1)
+        self.assertLess(np.abs(np.diff(clean["color"], axis=0)).mean(),
+                        np.abs(np.diff(clean["diffuse"] + clean["specular"], axis=0)).mean())
+        aside = self.render(eye=(0.2, 0.27, 0.5), target=(0.27, 0.27, 0), fov=50, spp=1)
+        np.testing.assert_allclose(np.linalg.inv(aside["view"])[:3, 3], (0.2, 0.27, 0.5), atol=1e-5)
+
+    def test_wrong_arguments(self):
+        for more, code in (({"denoiser": "nlm"}, "invalid_argument"), ({"camera": "nobody"}, "invalid_argument"),
+                           ({"parameters": {"pathtrace.no": 1}}, "invalid_argument"),
+                           ({"environment": "no-such-file.hdr"}, "unreadable"),
+                           ({"jitter": "some"}, "invalid_argument")):
+            with self.assertRaises(limpid.Error, msg=str(more)) as caught:
+                self.render(**more)
+            self.assertEqual(caught.exception.code, code)
+        with self.assertRaises(limpid.Error) as caught:
+            limpid.render("no-such-file.glb", 8, 8, device=device())
+        self.assertIn("no-such-file.glb", str(caught.exception))
+        with self.assertRaises(ValueError):
+            self.render(spp=0)
+        with self.assertRaises(TypeError):
+            self.render(samples=4)
+
+    def test_rendered_sequence_is_denoised(self):
+        arguments = "builtin:cornell-moving", 48, 48
+        truth = list(limpid.render_sequence(*arguments, frames=6, spp=128, device=device(), seed=9))[-1]["color"]
+        denoiser = limpid.Denoiser(48, 48, device=device(), signals=2, motion_depth="distance")
+        for f in limpid.render_sequence(*arguments, frames=6, device=device()):
+            clean = denoiser.denoise(
+                f["diffuse"], f["normal"], f["depth"], specular=f["specular"], emission=f["emission"],
+                albedo=f["albedo"], albedo_specular=f["albedo_specular"], motion=f["motion"],
+                previous_normal=f["previous_normal"], id=f["id"], view=f["view"], projection=f["projection"])
+        self.assertLess(np.isfinite(f["motion"]).all() and np.abs(f["motion"][..., :2]).min(), 1e9)
+        before, after = limpid.compare(f["color"], truth), limpid.compare(clean, truth)
+        self.assertGreater(after["psnr"], before["psnr"] + 6, (before, after))
+        self.assertLess(after["flip"], before["flip"])
+
+    def test_builtin_scenes(self):
+        self.assertIn("builtin:cornell", limpid.builtin_scenes())
+
+
+class PackageTest(unittest.TestCase):
+    def test_denoising_works_without_the_renderer(self):
+        code = ("import sys; sys.modules['limpid._renderer'] = None\n"
+                "import limpid\n"
+                "try: limpid.render('builtin:cornell', 8, 8)\n"
+                "except ImportError as error: print(error, limpid.__version__)\n")
+        text = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+        self.assertIn("limpid.render and limpid.compare are missing", text)
+        self.assertIn(limpid.__version__, text)
+
+    def test_version_has_three_numbers(self):
+        self.assertEqual(len([int(part) for part in limpid.__version__.split(".")]), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
