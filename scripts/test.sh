@@ -6,6 +6,8 @@ scripts/install.sh libembree-dev chromium ffmpeg python3 python3-numpy python3-t
 scripts/build.sh release -DLIMPID_TESTS=ON "$@"
 [ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
 ctest --preset release --parallel "$(nproc)"
+echo "== tests that were skipped, and why"
+sed -n 's/.*\(NOT TESTED.*\|NOT VALIDATED.*\|SKIPPED: .*\)/\1/p' build/release/Testing/Temporary/LastTest.log | sort | uniq -c
 
 echo "== the hardware tracer, on a software driver that has ray-tracing pipelines"
 if icd=$(scripts/lavapipe25.sh); then

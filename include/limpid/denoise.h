@@ -217,7 +217,8 @@ LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const lim
 /* NULL is ignored. What it has recorded must be done on the device. */
 LIMPID_API void limpid_denoiser_destroy(limpid_denoiser* denoiser);
 
-/* Device memory that a denoiser of this kind allocates for its images, in bytes: needs no device. `for_gpu` 0: on CPUs. */
+/* Device memory that a denoiser of this kind allocates for its images, in bytes: needs no device. `for_gpu` 0: on CPUs.
+ * RADIANCE and SPECULAR as outputs take 16 bytes a pixel each on top, where they are wanted. */
 LIMPID_API limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t for_gpu, uint64_t* bytes);
 
 /* The frames that follow are of another size. History starts anew. */

@@ -90,7 +90,8 @@ typedef struct limpid_vulkan_frame {
     int32_t reset; /* not 0: a cut; history starts with this frame */
 } limpid_vulkan_frame;
 
-/* Records one frame. On failure nothing that matters has been recorded; the command buffer may be submitted. */
+/* Records one frame. On failure nothing that matters has been recorded; the command buffer may be submitted. A frame that
+ * was recorded must run: if you drop its command buffer, destroy the denoiser. */
 LIMPID_API limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                        const limpid_vulkan_frame* frame);
 

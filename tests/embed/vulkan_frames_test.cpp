@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "denoise/api/c_handles.h"
 #include "gpu/vulkan/device_impl.h"
 #include "gpu/vulkan/memory/image.h"
 #include "limpid/denoise_vulkan.h"
@@ -198,6 +199,35 @@ TEST_F(VulkanFramesTest, ThreeFramesAreInFlight) {
 }
 
 TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL}) {
+        limpid_denoiser_desc desc = {};
+        desc.method = method;
+        limpid_denoiser* denoiser = create(desc);
+        const size_t made = adopted_->device->pipelineCount();
+        for (const bool orthographic : {false, true})
+            denoiseSequence(denoiser, SyntheticScene({.orthographic = orthographic}), 2);
+        EXPECT_EQ(adopted_->device->pipelineCount(), made);
+    }
+}
+
+TEST_F(VulkanFramesTest, TellsTheTimesOfFramesThatAreDone) {
+    limpid_denoiser_desc desc = {};
+    desc.timings = 1;
+    limpid_denoiser* denoiser = create(desc);
+    uint32_t count = 0;
+    denoiseSequence(denoiser, SyntheticScene({}), 1);
+    ASSERT_EQ(limpid_denoiser_timings(denoiser, nullptr, &count), LIMPID_OK);
+    EXPECT_EQ(count, 0u);  // nothing says that the first is done
+    denoiseSequence(denoiser, SyntheticScene({}), 3);
+    ASSERT_EQ(limpid_denoiser_timings(denoiser, nullptr, &count), LIMPID_OK);
+    ASSERT_GT(count, 5u);
+    std::vector<limpid_timing> times(count);
+    ASSERT_EQ(limpid_denoiser_timings(denoiser, times.data(), &count), LIMPID_OK);
+    EXPECT_STREQ(times[0].pass, "ingest");
+    for (const limpid_timing& time : times) EXPECT_GT(time.milliseconds, 0.0) << time.pass;
+}
+
+TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
     limpid_denoiser* denoiser = create();
     size_t size = 0;
     ASSERT_EQ(limpid_device_pipeline_cache(adopted_, nullptr, &size), LIMPID_OK);

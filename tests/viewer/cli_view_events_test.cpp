@@ -180,7 +180,7 @@ TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
 }
 
 TEST_F(ViewEventsTest, RestsWhereNothingChangesAndKeepsNothing) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1300", /*shrink=*/8);
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1300");
     viewer.waitFor("200 frames", [&] { return viewer.number("frames") >= 200; });
     const double early = viewer.residentBytes();
     viewer.waitFor("1200 frames", [&] { return viewer.number("frames") >= 1200; });

@@ -12,7 +12,9 @@ namespace {
 
 thread_local std::string lastError;
 
+/// Looks along -z and along +z: as matrices of a perspective and of an orthographic camera.
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
 
 MessageCallback callbackOf(limpid_message_callback message, void* user) {
     if (!message) return {};
@@ -86,7 +88,7 @@ void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images)
 }
 
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters) {
+                    gpu::Backing filters, bool orthographic, bool signalsToo) {
     const gpu::Extent extent{desc.width, desc.height};
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();
@@ -98,11 +100,11 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
                          unsignedInput ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent, nowhere);
     }
     limpid_camera camera{};
-    for (auto* matrix :
-         {&camera.view, &camera.projection, &camera.previous_view, &camera.previous_projection})
-        std::copy(std::begin(identity), std::end(identity), *matrix);
+    for (auto* view : {&camera.view, &camera.previous_view}) std::ranges::copy(identity, *view);
+    for (auto* projection : {&camera.projection, &camera.previous_projection})
+        std::ranges::copy(orthographic ? identity : perspective, *projection);
     const InstanceOutputs outputs =
-        recordFrame(graph, desc, settings, images, ingestParams(desc, camera, true), filters, true);
+        recordFrame(graph, desc, settings, images, ingestParams(desc, camera, true), filters, signalsToo);
     for (const gpu::Format format : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float}) {
         const bool half = format == gpu::Format::RGBA16Float;
         output(graph, half ? "half" : "float", outputs.color,
@@ -115,9 +117,11 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
 limpid_denoiser::limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& wanted)
     : device(on.device), adopted(on.adopted), desc(wanted), graph(graphOptions(wanted)) {
     desc.name = nullptr;  // the caller's string: the graph has its own
-    gpu::FrameGraph dry;
-    recordDryFrame(dry, desc, settings, gpu::filterBacking(*device));
-    dry.prepare(*device);
+    for (const bool orthographic : {false, true}) {
+        gpu::FrameGraph dry;
+        recordDryFrame(dry, desc, settings, gpu::filterBacking(*device), orthographic, true);
+        dry.prepare(*device);
+    }
 }
 
 bool limpid_denoiser::startsAnew(bool reset) {
@@ -195,7 +199,7 @@ limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t f
         const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
         check(d);
         gpu::FrameGraph dry;
-        recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image);
+        recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, false, false);
         required(bytes, "bytes") = dry.imageBytes();
     });
 }

@@ -39,7 +39,7 @@ gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 
 /// Records a frame of inputs that do not exist: what prepare() and memory need to know.
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters);
+                    gpu::Backing filters, bool orthographic, bool signalsToo);
 
 /// Throws UsageError if an input that the method needs is not there.
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images);

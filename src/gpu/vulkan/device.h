@@ -113,8 +113,8 @@ class Device {
     /// far, to be kept by the caller and given to loadPipelineCache() in the next run of the program, on the
     /// same driver.
     std::vector<std::byte> pipelineCacheData() const;
-    /// To be called before any pipeline is made. The driver checks the data's header and ignores those of
-    /// another device or driver; what it does not check is that the bytes are whole.
+    /// To be called before any pipeline is made, else it throws Error. Data that are damaged, or of another
+    /// device or driver, are ignored.
     void loadPipelineCache(std::span<const std::byte> data);
     /// So far.
     size_t pipelineCount() const;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 
 #include "base/error.h"
@@ -17,14 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t maxBytes = uint64_t{256} << 20;
-/// A driver's header alone (VkPipelineCacheHeaderVersionOne).
-constexpr size_t emptyBytes = 32;
-
-uint64_t checksum(std::span<const std::byte> data) {
-    Hash64 hash;
-    hash.add(data);
-    return hash.value();
-}
+/// A checksum and a driver's header alone (VkPipelineCacheHeaderVersionOne).
+constexpr size_t emptyBytes = 40;
 
 fs::path cacheFolder() {
     if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && fs::path(cache).is_absolute())
@@ -51,13 +44,7 @@ void loadPipelines(gpu::Device& device, const fs::path& file) {
     std::error_code error;
     if (file.empty() || !fs::is_regular_file(file, error)) return;
     try {
-        const std::vector<std::byte> bytes = readFile(file, maxBytes);
-        uint64_t expected = 0;
-        if (bytes.size() <= sizeof(expected)) return;
-        std::memcpy(&expected, bytes.data(), sizeof(expected));
-        const std::span<const std::byte> data = std::span(bytes).subspan(sizeof(expected));
-        // Drivers look at their header only: what follows must be whole.
-        if (checksum(data) == expected) device.loadPipelineCache(data);
+        device.loadPipelineCache(readFile(file, maxBytes));
     } catch (const Error& fault) {
         log::debug("{}", fault.what());
     }
@@ -71,8 +58,6 @@ void storePipelines(const gpu::Device& device, const fs::path& file) {
         fs::create_directories(file.parent_path());
         writeAtomically(file, [&](const fs::path& temporary) {
             std::ofstream out(temporary, std::ios::binary);
-            const uint64_t sum = checksum(data);
-            out.write(reinterpret_cast<const char*>(&sum), sizeof(sum));
             out.write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
             if (!out.flush()) throw OutputError(temporary, "cannot be written");
         });

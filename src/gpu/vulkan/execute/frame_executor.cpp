@@ -87,7 +87,9 @@ void FrameExecutor::record(const RecordedFrame& frame, VkCommandBuffer commands)
                          VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT |
                              VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
     FrameSlot& slot = nextSlot();
-    slot.beginForeign(frame, commands);
+    foreign_ = true;
+    if (std::vector<PassTime> times = slot.beginForeign(frame, commands); !times.empty())
+        foreignTimes_ = std::move(times);
     recordFrame(frame, slot, ours);
     releaseForeign(frame, commands);
     slot.endForeign(frame);
@@ -366,6 +368,7 @@ const Image& FrameExecutor::image(const RecordedImage& recorded) const {
 
 std::vector<PassTime> FrameExecutor::passTimes() {
     if (submitted_ == 0) return {};
+    if (foreign_) return foreignTimes_;
     return slots_[(submitted_ - 1) % slots_.size()].passTimes();
 }
 

@@ -68,6 +68,8 @@ class FrameExecutor {
     std::string prefix_;
     std::vector<FrameSlot> slots_;
     std::vector<FrameImage> frameImages_;  ///< by the index of the recorded image
+    bool foreign_ = false;                 ///< frames are recorded into the caller's commands
+    std::vector<PassTime> foreignTimes_;   ///< of the latest one that is known to be done
     uint64_t submitted_ = 0;               ///< frames so far
 };
 

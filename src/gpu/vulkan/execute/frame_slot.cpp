@@ -54,10 +54,12 @@ void FrameSlot::begin(const RecordedFrame& frame) {
     if (timed_) context_->vk().CmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
 }
 
-void FrameSlot::beginForeign(const RecordedFrame& frame, VkCommandBuffer commands) {
+std::vector<PassTime> FrameSlot::beginForeign(const RecordedFrame& frame, VkCommandBuffer commands) {
+    std::vector<PassTime> times = passTimes();
     makeRoom(frame);
     commands_ = commands;
     if (timed_) context_->vk().CmdResetQueryPool(commands_, timestamps_.get(), 0, timestampCapacity_);
+    return times;
 }
 
 void FrameSlot::endForeign(const RecordedFrame& frame) {
@@ -198,7 +200,7 @@ std::vector<PassTime> FrameSlot::passTimes() {
     wait();
     if (passNames_.empty() || !timed_) return {};
     std::vector<uint64_t> ticks(passNames_.size() + 1);
-    // A frame of the caller's may still be under way; waiting for it is not ours.
+    // A frame that the caller never submitted will never have times.
     const VkQueryResultFlags waits = submitted_ ? VK_QUERY_RESULT_WAIT_BIT : 0;
     const VkResult result = context_->vk().GetQueryPoolResults(
         context_->device(), timestamps_.get(), 0, static_cast<uint32_t>(ticks.size()),

@@ -16,7 +16,8 @@ class FrameSlot {
     void begin(const RecordedFrame& frame);
     void submit(const RecordedFrame& frame);
     /// The same around commands of the caller's, who knows that the slot's last frame is done.
-    void beginForeign(const RecordedFrame& frame, VkCommandBuffer commands);
+    /// Returns the times of that last frame.
+    std::vector<PassTime> beginForeign(const RecordedFrame& frame, VkCommandBuffer commands);
     void endForeign(const RecordedFrame& frame);
     void wait();
     /// Runs the commands so far to their end, in the middle of a frame.
@@ -30,8 +31,7 @@ class FrameSlot {
     VkBuffer stage(std::span<const std::byte> data);
     /// After the passes so far, the clock is read: stamp 0 before the first pass, stamp i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
-    /// Of the slot's last frame, which execute() waits for. Of one in the caller's commands: empty until it
-    /// is done.
+    /// Of the slot's last frame. Waits for it if it was submitted here; otherwise it must be done.
     std::vector<PassTime> passTimes();
 
   private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <exception>
 #include <thread>
 
@@ -85,6 +86,13 @@ void forEachOnThreads(size_t count, const std::function<void(size_t)>& work) {
     if (fault) std::rethrow_exception(fault);
 }
 
+/// Drivers check the header of their data only: what is behind it must be whole.
+uint64_t checksum(std::span<const std::byte> data) {
+    uint64_t hash = 0xCBF29CE484222325u;  // FNV-1a
+    for (const std::byte byte : data) hash = (hash ^ static_cast<uint64_t>(byte)) * 0x100000001B3u;
+    return hash;
+}
+
 }  // namespace
 
 VkDescriptorType descriptorType(BindingKind kind) {
@@ -139,16 +147,22 @@ std::vector<std::byte> PipelineCache::data() const {
     const DeviceFunctions& vk = context_->vk();
     size_t size = 0;
     LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, nullptr));
-    std::vector<std::byte> bytes(size);
-    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, bytes.data()));
-    bytes.resize(size);
+    std::vector<std::byte> bytes(sizeof(uint64_t) + size);
+    LIMPID_VK(vk.GetPipelineCacheData(vk.device, driverCache_.get(), &size, bytes.data() + sizeof(uint64_t)));
+    bytes.resize(sizeof(uint64_t) + size);
+    const uint64_t sum = checksum(std::span(bytes).subspan(sizeof(sum)));
+    std::memcpy(bytes.data(), &sum, sizeof(sum));
     return bytes;
 }
 
 void PipelineCache::load(std::span<const std::byte> data) {
     const std::lock_guard lock(mutex_);
     if (!pipelines_.empty()) throw Error("the pipeline cache cannot be loaded: pipelines have been made");
-    driverCache_ = makeDriverCache(data);
+    uint64_t sum = 0;
+    if (data.size() <= sizeof(sum)) return;
+    std::memcpy(&sum, data.data(), sizeof(sum));
+    const std::span<const std::byte> content = data.subspan(sizeof(sum));
+    if (checksum(content) == sum) driverCache_ = makeDriverCache(content);
 }
 
 size_t PipelineCache::size() const {

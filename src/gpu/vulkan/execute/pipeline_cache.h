@@ -28,9 +28,10 @@ class PipelineCache {
     /// Makes what is missing, on as many threads as the machine runs at once. From any thread.
     void prepare(std::span<const RecordedDispatch> dispatches);
 
-    /// Of the driver's own cache (VkPipelineCache): what it has compiled so far.
+    /// What the driver has compiled so far (VkPipelineCache), with a checksum.
     std::vector<std::byte> data() const;
-    /// Starts the driver's cache from what data() once gave. Throws Error if pipelines have been made.
+    /// Starts the driver's cache from what data() once gave; damaged data are ignored. Throws Error if
+    /// pipelines have been made.
     void load(std::span<const std::byte> data);
     size_t size() const;
 
