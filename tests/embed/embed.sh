@@ -71,7 +71,7 @@ case $test in
         consumer
         ;;
     symbols)
-        nm -D --defined-only "$prefix/$libdir/liblimpid.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' | sort >"$own/symbols"
+        nm -D --defined-only "$prefix/$libdir/liblimpid.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' | LC_ALL=C sort >"$own/symbols"
         ! grep -v '^limpid_' "$own/symbols" || fail "exported, and not of the interface"
         ${CC:-cc} -std=c99 $(pkg-config --cflags limpid) -o "$own/abi" "$source/tests/embed/abi.c"
         { cat "$own/symbols"; "$own/abi"; } >"$own/abi.txt"
