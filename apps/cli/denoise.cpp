@@ -163,22 +163,27 @@ void addDenoiseCommand(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("denoise", "Clean EXR frames that have the layers of docs/layers.md");
     auto o = std::make_shared<DenoiseOptions>();
-    command->add_option("IN", o->input, "frame.exr, or frame.%04d.exr for all frames that there are")
+    command->add_option("IN", o->input, "Input: frame.exr, or frame.%04d.exr for all existing frames")
         ->required();
-    command->add_option("-o,--output", o->output, "EXR (all layers of the input, beauty replaced) or PNG")
+    command
+        ->add_option("-o,--output", o->output,
+                     "Output: EXR (all layers of the input, with a new beauty) or PNG")
         ->required();
     command->add_option("--denoiser", o->denoiser,
-                        "What cleans them: " + listOfDenoisers() + "; needed unless --preset names it");
+                        "Denoiser: " + listOfDenoisers() + "; required unless --preset names one");
     refuseMethodOption(*command);
-    command->add_option(
-        "--preset", o->presets,
-        "A denoiser as a paper or a course has it; 'limpid info' lists them; other options win");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value; 'limpid info' lists them");
-    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
+    command->add_option("--preset", o->presets,
+                        "Use a denoiser with the settings of a paper or course; 'limpid info' lists them; "
+                        "other options override it");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--weights", o->weights,
+                        "Weights file for kpcn instead of the one that comes with Limpid");
     command->add_option("--exposure", o->exposure,
-                        "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
-    command->add_option("--dump", o->dump, "Write the images of this pass beside the output");
-    command->add_flag("--json", o->json, "One JSON object about the run on stdout");
+                        "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
+                        "pixels that see a surface");
+    command->add_option("--dump", o->dump, "Also write the images of this pass, beside the output");
+    command->add_flag("--json", o->json, "Print one JSON object about the run on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o] { denoiseFiles(*o); });
 }

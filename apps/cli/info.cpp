@@ -152,9 +152,8 @@ void addInfoCommand(CLI::App& app) {
         "List devices, integrators, denoisers, built-in scenes and every parameter; or what a scene holds");
     auto asJson = std::make_shared<bool>(false);
     auto scene = std::make_shared<std::string>();
-    command->add_option("SCENE", *scene,
-                        "Of this scene: cameras, animations, lights, and how much of all else");
-    command->add_flag("--json", *asJson, "One JSON object on stdout");
+    command->add_option("SCENE", *scene, "Show the cameras, animations, lights and sizes of this scene");
+    command->add_flag("--json", *asJson, "Print one JSON object on stdout");
     command->callback([asJson, scene] {
         if (!scene->empty()) return printSceneInfo(*scene, *asJson);
         const std::vector<gpu::DeviceInfo> devices = gpu::enumerateDevices();

@@ -73,13 +73,13 @@ void addMergeCommand(CLI::App& app) {
     command
         ->add_option(
             "FILE", options->inputs,
-            "The .sums files of a still, in any order; or the frames of a sequence, as in a.%04d.exr")
+            "The .sums files of a still, in any order, or the frames of a sequence, as in a.%04d.exr")
         ->required();
     command
         ->add_option("-o,--output", options->output,
-                     "Output: .exr or .png, as one run would have written it; frame.%04d.exr for a sequence")
+                     "Output: .exr or .png, as a single run would write it; frame.%04d.exr for a sequence")
         ->required();
-    command->add_flag("--json", options->json, "One JSON object about the result on stdout");
+    command->add_flag("--json", options->json, "Print one JSON object about the result on stdout");
     command->callback([options] { merge(*options); });
 }
 

@@ -107,37 +107,38 @@ void addViewCommand(CLI::App& app) {
     command->add_flag("--preview", o->preview,
                       "Start with the fast preview: first hits, shaded by a light at the camera");
     command->add_option("--preset", o->presets,
-                        "All that a paper, a course or a tutorial says; 'limpid info' lists them");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
-    command->add_option("--width", o->width, "Of the window, in pixels (1280)")->check(CLI::Range(1, 16384));
-    command->add_option("--height", o->height, "(720)")->check(CLI::Range(1, 16384));
-    command->add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 64));
+                        "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--weights", o->weights,
+                        "Weights file for kpcn instead of the one that comes with Limpid");
+    command->add_option("--width", o->width, "Window width, pixels (1280)")->check(CLI::Range(1, 16384));
+    command->add_option("--height", o->height, "Window height, pixels (720)")->check(CLI::Range(1, 16384));
+    command->add_option("--spp", o->samples, "Samples per pixel and frame; more is less noisy and slower (1)")
+        ->check(CLI::Range(1, 64));
     command
         ->add_option("--max-spp", o->maxSamples,
-                     "With so many and nothing changing, nothing is computed any more (4096)")
+                     "Samples per pixel at which a still picture is finished and computing stops (4096)")
         ->check(CLI::Range(1, 1 << 20));
     command->add_option(
         "--settings", o->settings,
-        "File that keeps integrator, denoiser and parameters from one time to the next, under what this "
-        "command line "
-        "says; "
-        "default: limpid/view.json in $XDG_CONFIG_HOME or ~/.config; 'none': nothing is kept");
-    command->add_option("--seed", o->seed, "Another seed, other noise (0)");
-    command->add_option("--animation", o->animation, "Clip by name or number, or all; default: the first");
+        "File that keeps integrator, denoiser and parameters between sessions; default: limpid/view.json in "
+        "$XDG_CONFIG_HOME or ~/.config; 'none' keeps nothing; the command line overrides it");
+    command->add_option("--seed", o->seed, "Random seed; another seed gives other noise (0)");
+    command->add_option("--animation", o->animation, "Clip by name or number, or 'all'; default: the first");
     command
-        ->add_option("--shrink", o->shrink,
-                     "The picture has 2^N times fewer pixels along each axis than the window, for slow "
-                     "devices (0; on CPUs as it needs to stay fluent)")
+        ->add_option(
+            "--shrink", o->shrink,
+            "Render with 2^N times fewer pixels along each axis, for slow devices (0; on CPUs automatic)")
         ->check(CLI::Range(0, 3));
     command->add_option("--shaders", o->shaders,
-                        "Limpid's src folder: shaders are compiled anew (by glslc) when they are saved");
+                        "Limpid's src folder: recompile shaders with glslc when they are saved");
     command->add_option("--controls", o->controls,
-                        "For tests: a file that says where in the window each control is");
+                        "For tests: write the position of each control in the window to this file");
     command->add_option("--lose-device", o->loseDeviceAt,
-                        "For tests: after so many frames, as if it were lost");
-    command->add_option("--frames", o->frames, "Leave after so many (0: when the window is closed)");
-    command->add_option("--screenshot", o->screenshot, "PNG or EXR to write on leaving");
+                        "For tests: simulate a lost device after this many frames");
+    command->add_option("--frames", o->frames, "Quit after this many frames (0: when the window is closed)");
+    command->add_option("--screenshot", o->screenshot, "Write a PNG or EXR on exit");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

@@ -234,10 +234,10 @@ void runConvergence(const BenchOptions& o) {
 }
 
 void addCommon(CLI::App& command, const std::shared_ptr<BenchOptions>& o) {
-    command.add_option("--scene", o->scenes, "Scenes (repeatable); default: built-in ones");
-    command.add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command.add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
-    command.add_flag("--json", o->json, "One JSON object on stdout");
+    command.add_option("--scene", o->scenes, "Scene to measure (repeatable; default: built-in scenes)");
+    command.add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o->height, "Picture height, pixels (360)")->check(CLI::Range(1, 65535));
+    command.add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(command, o->device);
 }
 
@@ -249,9 +249,12 @@ void addBenchCommand(CLI::App& app) {
     auto options = std::make_shared<BenchOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "Milliseconds per sample and rays per second");
     addCommon(*trace, options);
-    trace->add_option("--frames", options->frames, "Launches timed (16)")->check(CLI::Range(1, 100000));
-    trace->add_option("--warmup", options->warmup, "Launches before them (4)")->check(CLI::Range(1, 100000));
-    trace->add_option("--max-depth", options->maxDepth, "Bounces (4)")->check(CLI::Range(0, 1024));
+    trace->add_option("--frames", options->frames, "Number of launches timed; more is steadier (16)")
+        ->check(CLI::Range(1, 100000));
+    trace->add_option("--warmup", options->warmup, "Number of launches before timing starts (4)")
+        ->check(CLI::Range(1, 100000));
+    trace->add_option("--max-depth", options->maxDepth, "Maximum number of bounces; more is slower (4)")
+        ->check(CLI::Range(0, 1024));
     trace->callback([options] {
         if (options->scenes.empty()) options->scenes = {"builtin:cornell", "builtin:heavy"};
         runTrace(*options);
@@ -260,8 +263,9 @@ void addBenchCommand(CLI::App& app) {
         "convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG, EXR and a plot");
     addCommon(*converge, options);
     converge
-        ->add_option("--spp", options->referenceSamples,
-                     "Samples of the converged picture (1024); noisy ones have up to a quarter")
+        ->add_option(
+            "--spp", options->referenceSamples,
+            "Samples per pixel of the converged picture; noisy ones have up to a quarter of it (1024)")
         ->check(CLI::Range(2, 1 << 24));
     converge->add_option("--out", options->folder, "Folder for the pictures (out)");
     converge->callback([options] {

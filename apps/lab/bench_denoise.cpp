@@ -119,21 +119,26 @@ void addDenoiseBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "denoise", "Milliseconds of every pass of a frame under a moving camera, and the bytes it moves");
     auto o = std::make_shared<DenoiseBench>();
-    command->add_option("--scene", o->scene.scene, "Scene (builtin:cornell)");
-    command->add_option("--env", o->scene.environment, "Environment map, .hdr or .exr, lat-long");
-    command->add_option("--camera-path", o->cameraPath, "A JSON file, or orbit, dolly or shake (shake)");
+    command->add_option("--scene", o->scene.scene, "Scene to render (builtin:cornell)");
+    command->add_option("--env", o->scene.environment, "Environment map: .hdr or .exr, latitude-longitude");
+    command->add_option("--camera-path", o->cameraPath,
+                        "Camera path: a JSON file, orbit, dolly or shake (shake)");
     addPipelineOptions(*command, o->pipeline, "path, or the preset's", "atrous, or the preset's");
     command->add_option("--preset", o->presets,
-                        "All that a paper, a course or a tutorial says; 'limpid info' lists them");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
-    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
-    command->add_option("--frames", o->frames, "Frames timed (100)")->check(CLI::Range(1, 100000));
-    command->add_option("--warmup", o->warmup, "Frames before them (20)")->check(CLI::Range(0, 100000));
-    command->add_option("--filters", o->filters, "What filters read lies in images or buffers; default: auto")
+                        "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--weights", o->weights,
+                        "Weights file for kpcn instead of the one that comes with Limpid");
+    command->add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Picture height, pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--frames", o->frames, "Number of frames timed; more is steadier (100)")
+        ->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Number of frames before timing starts (20)")
+        ->check(CLI::Range(0, 100000));
+    command->add_option("--filters", o->filters, "Storage of filter inputs: auto (default), image or buffer")
         ->check(CLI::IsMember({"auto", "image", "buffer"}));
-    command->add_flag("--json", o->json, "One JSON object on stdout");
+    command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

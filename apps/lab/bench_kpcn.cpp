@@ -191,16 +191,21 @@ void addKpcnBench(CLI::App& bench) {
         "kpcn",
         "Milliseconds of the network's layers, and operations a second beside those of a plain product");
     auto o = std::make_shared<KpcnBench>();
-    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
-    command->add_option("--weights", o->weights, "Another file than the one that comes with Limpid");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option("--width", o->width, "Pixels (1920)")->check(CLI::Range(1, 16384));
-    command->add_option("--height", o->height, "Pixels (1080)")->check(CLI::Range(1, 16384));
-    command->add_option("--frames", o->frames, "Frames timed (10)")->check(CLI::Range(1, 100000));
-    command->add_option("--warmup", o->warmup, "Frames before them (3)")->check(CLI::Range(0, 100000));
-    command->add_option("--product-size", o->productSize, "Rows of the matrices (8192)")
+    command->add_option("--scene", o->scene, "Scene to render (builtin:cornell)");
+    command->add_option("--weights", o->weights, "Weights file instead of the one that comes with Limpid");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--width", o->width, "Picture width, pixels (1920)")->check(CLI::Range(1, 16384));
+    command->add_option("--height", o->height, "Picture height, pixels (1080)")->check(CLI::Range(1, 16384));
+    command->add_option("--frames", o->frames, "Number of frames timed; more is steadier (10)")
+        ->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Number of frames before timing starts (3)")
+        ->check(CLI::Range(0, 100000));
+    command
+        ->add_option("--product-size", o->productSize,
+                     "Rows of the matrices in the comparison with a plain product (8192)")
         ->check(CLI::Range(128, 16384));
-    command->add_flag("--json", o->json, "One JSON object on stdout");
+    command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

@@ -134,17 +134,19 @@ void addLaunchesBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "launches", "The same samples in many launches of few or in few launches of many: time and PSNR");
     auto o = std::make_shared<LaunchesBench>();
-    command->add_option("--scene", o->scene, "Scene (builtin:cornell)");
-    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--scene", o->scene, "Scene to render (builtin:cornell)");
+    command->add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Picture height, pixels (360)")->check(CLI::Range(1, 65535));
     command->add_option("--spp", o->samples, "Samples per pixel of each picture (64)")
         ->check(CLI::Range(1, 1 << 20));
-    command->add_option("--reference-spp", o->referenceSamples, "... of the reference (1024)")
+    command
+        ->add_option("--reference-spp", o->referenceSamples,
+                     "Samples per pixel of the reference; more is more accurate (1024)")
         ->check(CLI::Range(1, 1 << 24));
-    command->add_option("--repeats", o->repeats, "Renderings of each; their median counts (3)")
+    command->add_option("--repeats", o->repeats, "Number of runs of each setting; the median counts (3)")
         ->check(CLI::Range(1, 1000));
-    command->add_option("--out", o->folder, "Folder for a plot, launches.svg");
-    command->add_flag("--json", o->json, "One JSON object on stdout");
+    command->add_option("--out", o->folder, "Folder for the plot launches.svg");
+    command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

@@ -187,16 +187,20 @@ void addSvgfBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "svgf", "SVGF: time per stage, against the scene's triangles, and against the levels");
     auto o = std::make_shared<SvgfBench>();
-    command->add_option("--scene", o->scene, "Of the stages and levels (builtin:cornell-spheres)");
+    command->add_option("--scene", o->scene,
+                        "Scene for the measurement of stages and levels (builtin:cornell-spheres)");
     command->add_option("--preset", o->presets,
-                        "SVGF as a paper or a course has it; 'limpid info' lists them");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command->add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
-    command->add_option("--frames", o->frames, "Frames timed (30)")->check(CLI::Range(1, 100000));
-    command->add_option("--warmup", o->warmup, "Frames before them (10)")->check(CLI::Range(0, 100000));
+                        "Preset of SVGF from a paper or course; 'limpid info' lists them");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));
+    command->add_option("--height", o->height, "Picture height, pixels (360)")->check(CLI::Range(1, 65535));
+    command->add_option("--frames", o->frames, "Number of frames timed; more is steadier (30)")
+        ->check(CLI::Range(1, 100000));
+    command->add_option("--warmup", o->warmup, "Number of frames before timing starts (10)")
+        ->check(CLI::Range(0, 100000));
     command->add_option("--out", o->folder, "Folder for three plots (SVG)");
-    command->add_flag("--json", o->json, "One JSON object on stdout");
+    command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

@@ -171,23 +171,28 @@ void addDatasetCommand(CLI::App& app) {
         "dataset", "Pictures of many scenes with few and with many samples, to train networks on");
     auto o = std::make_shared<DatasetOptions>();
     ExampleSettings& example = o->example;
-    command->add_option("-o,--output", o->folder, "Folder")->required();
-    command->add_option("--rooms", o->rooms, "Rooms drawn from the seed (100)")
+    command->add_option("-o,--output", o->folder, "Output folder")->required();
+    command->add_option("--rooms", o->rooms, "Number of random rooms (100)")->check(CLI::Range(0, 1000000));
+    command->add_option("--still-lifes", o->stillLifes, "Number of random still lifes (0)")
         ->check(CLI::Range(0, 1000000));
-    command->add_option("--still-lifes", o->stillLifes, "Still lifes drawn from the seed (0)")
-        ->check(CLI::Range(0, 1000000));
-    command->add_option("--scene", o->scenes, "More scenes: files or built-in ones (repeatable)");
+    command->add_option("--scene", o->scenes, "Additional scene: a file or a built-in one (repeatable)");
     command->add_option("--seed", example.seed,
-                        "The same seed makes the same dataset on the same device (0)");
-    command->add_option("--width", example.extent.width, "Pixels (256)")->check(CLI::Range(1, 16384));
-    command->add_option("--height", example.extent.height, "Pixels (256)")->check(CLI::Range(1, 16384));
-    command->add_option("--samples", example.samples, "Per pixel, of the noisy pictures (1,4,8,32,128)")
+                        "Random seed; the same seed gives the same dataset on the same device (0)");
+    command->add_option("--width", example.extent.width, "Picture width, pixels (256)")
+        ->check(CLI::Range(1, 16384));
+    command->add_option("--height", example.extent.height, "Picture height, pixels (256)")
+        ->check(CLI::Range(1, 16384));
+    command
+        ->add_option("--samples", example.samples,
+                     "Samples per pixel of the noisy pictures, comma-separated (1,4,8,32,128)")
         ->delimiter(',');
-    command->add_option("--reference-samples", example.referenceSamples, "Of the clean ones (1024)")
+    command
+        ->add_option("--reference-samples", example.referenceSamples,
+                     "Samples per pixel of the clean pictures; more is cleaner and slower (1024)")
         ->check(CLI::Range(1, 1 << 24));
-    command->add_option("--per-file", o->perFile, "Examples in a file (8)")->check(CLI::Range(1, 10000));
+    command->add_option("--per-file", o->perFile, "Examples per file (8)")->check(CLI::Range(1, 10000));
     command->add_option("--shard", o->shard,
-                        "I/N: the I-th of N parts, from 1/N to N/N; files that are there are kept (1/1)");
+                        "I/N: write the I-th of N parts only; existing files are kept (1/1)");
     addDeviceOptions(*command, o->device);
     command->callback([o] { run(*o); });
 }

@@ -154,15 +154,13 @@ void addCompareCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "compare", "Measure how far pictures, or sequences of them, are from their reference");
     command
-        ->add_option(
-            "TEST", arguments->test,
-            "The picture to judge: EXR, HDR, PNG or JPEG; or a sequence of them, as in test.%04d.exr")
+        ->add_option("TEST", arguments->test,
+                     "Picture to measure: EXR, HDR, PNG or JPEG; or a sequence, as in test.%04d.exr")
         ->required();
     command
-        ->add_option(
-            "REFERENCE", arguments->reference,
-            "The picture it should be; any of these formats, of the same size. For a sequence: a sequence "
-            "of the same frames, or one picture for all of them")
+        ->add_option("REFERENCE", arguments->reference,
+                     "Picture to compare with: any of these formats, same size. For a sequence: a sequence "
+                     "of the same frames, or one picture for all")
         ->required();
     command->add_flag(
         "--json", arguments->json,
@@ -170,33 +168,26 @@ void addCompareCommand(CLI::App& app) {
         "relmse, flip, hdr_flip (null unless both are EXR or HDR), exposure (stops), width, height, "
         "invalid_pixels. For a sequence: frames (an array of these, flicker and temporal_error), "
         "mean, worst");
-    command->add_option(
-        "--error-map", arguments->errorMap,
-        "Write the FLIP error of each pixel as a PNG (magma: black 0, yellow 1); for a sequence "
-        "with %04d in the name");
-    command->add_option("--hdr-error-map", arguments->hdrErrorMap, "The same for HDR-FLIP");
+    command->add_option("--error-map", arguments->errorMap,
+                        "Write the FLIP error of each pixel as PNG (magma: black 0, yellow 1); for a "
+                        "sequence with %04d in the name");
+    command->add_option("--hdr-error-map", arguments->hdrErrorMap,
+                        "Write the HDR-FLIP error of each pixel as PNG, in the same way");
     command
-        ->add_option(
-            "--exposure", arguments->exposure,
-            "Stops for psnr, ssim, flip, flicker and temporal_error, which see the exposed picture clamped "
-            "to [0,1] and sRGB-encoded; 'auto' brings the reference's average luminance to 0.18, for a "
-            "sequence that of "
-            "all "
-            "its frames. Default: auto for an EXR or HDR reference, 0 for PNG or JPEG. relmse and hdr_flip "
-            "see "
-            "unexposed linear values")
+        ->add_option("--exposure", arguments->exposure,
+                     "Exposure, stops, before psnr, ssim, flip, flicker and temporal_error clamp to [0,1] "
+                     "and encode as sRGB; 'auto' brings the reference's average luminance to 0.18 (of a "
+                     "sequence: over all frames). Default: auto for an EXR or HDR reference, 0 for PNG or "
+                     "JPEG. relmse and hdr_flip use unexposed linear values")
         ->type_name("STOPS|auto");
     command->footer(
-        "psnr and ssim: higher is better; ssim is of luma, 11x11 Gaussian window within the picture. "
-        "flip: LDR-FLIP at 67 pixels per degree, 0 to 1, lower is better; hdr_flip: its maximum over the "
-        "exposures "
-        "that the reference calls for. relmse: mean of (x-r)^2/(r^2+0.01). flicker: how much more the "
-        "sequence "
-        "changes from frame to frame, along the motion layer, than its reference does; its mean is of "
-        "magnitudes. temporal_error: how "
-        "much the error changes likewise. "
-        "A NaN or infinite pixel in TEST counts as the worst error; in REFERENCE it is refused. "
-        "A percent sign in a file's name is written %%.");
+        "psnr, ssim: higher is better; ssim uses luma and an 11x11 Gaussian window within the picture. flip: "
+        "LDR-FLIP at 67 pixels per degree, 0 to 1, lower is better. hdr_flip: the maximum of flip over the "
+        "exposures that the reference calls for. relmse: mean of (x-r)^2/(r^2+0.01). flicker: how much more "
+        "the sequence changes from frame to frame, along the motion layer, than its reference does; its mean "
+        "is over magnitudes. temporal_error: how much the error changes from frame to frame, along the "
+        "motion layer. A NaN or infinite pixel counts as the worst error in TEST and is refused in "
+        "REFERENCE. Write a percent sign in a file name as %%.");
     command->callback([arguments] { runCompare(*arguments); });
 }
 

@@ -18,10 +18,10 @@ std::string faultOfTracer(const std::string& name) {
 void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
     command.add_option("--device", choice.device.select,
                        "Device by name, index, or 'cpu'; default: the best one");
-    command.add_option("--tracer", choice.tracer, "How rays are traced: auto (default), compute or hardware")
+    command.add_option("--tracer", choice.tracer, "Ray tracing method: auto (default), compute or hardware")
         ->check(CLI::Validator(faultOfTracer, "auto|compute|hardware"));
     choice.device.messages = log::write;
-    command.add_flag("--validation", choice.device.validation, "Run under the Vulkan validation layer; slow");
+    command.add_flag("--validation", choice.device.validation, "Run with the Vulkan validation layer; slow");
 }
 
 OpenDevice openDevice(const DeviceChoice& choice) {

@@ -23,16 +23,15 @@ uint32_t positiveNumber(std::string_view text) {
 void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice) {
     command
         .add_option("--time-limit", choice.timeLimit,
-                    "Seconds from the start of the program until it writes what it has")
+                    "Seconds from the start of the program after which the picture so far is written")
         ->check(CLI::Range(1e-3, 1e9));
     command.add_option("--checkpoint", choice.checkpoint,
-                       "Keep the state of the render in this file (docs/long-renders.md)");
+                       "File that keeps the state of the render (docs/long-renders.md)");
     command.add_flag("--resume", choice.resume,
-                     "Go on from the checkpoint; from the beginning if there is none yet");
-    command.add_option(
-        "--shard", choice.shard,
-        "I/N: the I-th of N parts, of a sequence's frames or a still's samples; a still's OUTPUT "
-        "is then a .sums file for 'limpid merge'");
+                     "Continue from the checkpoint, or start from the beginning if it does not exist");
+    command.add_option("--shard", choice.shard,
+                       "I/N: render the I-th of N parts of a sequence's frames or a still's samples; a "
+                       "still's OUTPUT is a .sums file for 'limpid merge'");
 }
 
 bool isLongRender(const LongRenderChoice& choice) {

@@ -14,10 +14,11 @@ void addPipelineOptions(CLI::App& command, PipelineChoice& choice, const std::st
                         const std::string& defaultDenoiser) {
     std::vector<std::string_view> names;
     for (const Integrator integrator : integrators()) names.push_back(nameOf(integrator));
-    command.add_option("--integrator", choice.integrator,
-                       fmt::format("What is computed: {} ({})", fmt::join(names, ", "), defaultIntegrator));
+    command.add_option(
+        "--integrator", choice.integrator,
+        fmt::format("Integrator, what is computed: {} ({})", fmt::join(names, ", "), defaultIntegrator));
     command.add_option("--denoiser", choice.denoiser,
-                       fmt::format("What cleans it: {} ({})", listOfDenoisers(), defaultDenoiser));
+                       fmt::format("Denoiser, what cleans it: {} ({})", listOfDenoisers(), defaultDenoiser));
     refusePipelineOption(command);
 }
 

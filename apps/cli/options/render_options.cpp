@@ -75,49 +75,52 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     addSequenceOptions(command, o.sequence);
     command
         .add_option("-o,--output", o.output,
-                    "Output: .exr (linear, layers) or .png (tone-mapped); frame.%04d.exr for several frames; "
-                    "a clip by "
-                    "the program ffmpeg: .mp4, .webm, .webp or .gif")
+                    "Output: .exr (linear, layers) or .png (tone-mapped), frame.%04d.exr for several frames, "
+                    "or a video by ffmpeg: .mp4, .webm, .webp or .gif")
         ->required();
-    command.add_option("--width", o.width, "Pixels (1280)")->check(CLI::Range(1, 65535));
-    command.add_option("--height", o.height, "Pixels (720)")->check(CLI::Range(1, 65535));
+    command.add_option("--width", o.width, "Picture width, pixels (1280)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o.height, "Picture height, pixels (720)")->check(CLI::Range(1, 65535));
     command
         .add_option("--spp", o.samples,
-                    "Samples per pixel (64); with a denoiser, per pixel and frame (1; kpcn 32)")
+                    "Samples per pixel (64), with a denoiser per pixel and frame (1; kpcn 32); more is less "
+                    "noisy and slower")
         ->check(CLI::Range(1, 1 << 24));
     command
         .add_option("--samples-per-launch", o.samplesPerLaunch,
-                    "Of these, so many in one launch (1); at most 4 on a CPU")
+                    "Samples per pixel in one launch (1); more is a little faster; at most 4 on a CPU")
         ->check(CLI::Range(1, 4096));
-    command.add_option("--max-depth", o.maxDepth, "Bounces (8); the same as --set pathtrace.max_depth")
+    command
+        .add_option("--max-depth", o.maxDepth,
+                    "Maximum number of bounces (8); the same as --set pathtrace.max_depth")
         ->check(CLI::Range(0, 1024));
-    command.add_option("--seed", o.seed, "Another seed, other noise (0)");
-    command.add_option("--sampler", o.sampler, "Random numbers: pcg (default) or tea")
+    command.add_option("--seed", o.seed, "Random seed; another seed gives other noise (0)");
+    command.add_option("--sampler", o.sampler, "Random number generator: pcg (default) or tea")
         ->check(CLI::IsMember({"pcg", "tea"}));
     command
-        .add_option(
-            "--jitter", o.jitter,
-            "Where in its pixel a ray goes: pixel, frame or off (the centre); default: pixel, but off with "
-            "denoisers that keep a history")
+        .add_option("--jitter", o.jitter,
+                    "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
+                    "default: pixel, but off with denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
     addPipelineOptions(command, o.pipeline, "path, or the preset's", "none, or the preset's");
     command.add_option("--preset", o.presets,
-                       "All that a paper, a course or a tutorial says, as svgf-paper; 'limpid info' lists "
-                       "them; other options win");
-    command.add_option("--set", o.assignments, "A parameter: group.name=value; 'limpid info' lists them");
-    command.add_option("--weights", o.weights, "Of kpcn: another file than the one that comes with Limpid");
+                       "Use all settings of a paper, course or tutorial, as in svgf-paper; 'limpid info' "
+                       "lists them; other options override it");
+    command.add_option("--set", o.assignments,
+                       "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command.add_option("--weights", o.weights,
+                       "Weights file for kpcn instead of the one that comes with Limpid");
     command.add_flag("--progressive", o.progressive,
-                     "Without a denoiser: the mean as the window keeps it, launch after launch in single "
-                     "precision; not with --resume, "
-                     "--shard and --time-limit");
+                     "Accumulate in single precision, launch after launch, as the window does; only without "
+                     "a denoiser, --resume, --shard and --time-limit");
     command.add_option("--exposure", o.exposure,
-                       "Of a PNG: stops, or 'auto' (default): by the pixels that see a surface");
+                       "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
+                       "pixels that see a surface");
     std::string layers;
     for (const std::string& layer : layerNames()) layers += " " + layer;
-    command.add_option("--aov", o.layers, "EXR layers besides beauty, by commas, or 'all':" + layers);
-    command.add_option("--dump", o.dump, "Write the images of this pass beside the output");
-    command.add_flag("--float", o.floatExr, "32-bit colours in the EXR; default 16-bit");
-    command.add_flag("--json", o.json, "One JSON object about the run on stdout");
+    command.add_option("--aov", o.layers, "EXR layers besides beauty, comma-separated, or 'all':" + layers);
+    command.add_option("--dump", o.dump, "Also write the images of this pass, beside the output");
+    command.add_flag("--float", o.floatExr, "Store colours in the EXR in 32 bits instead of 16");
+    command.add_flag("--json", o.json, "Print one JSON object about the run on stdout");
     addLongRenderOptions(command, o.longRender);
     addDeviceOptions(command, o.device);
 }

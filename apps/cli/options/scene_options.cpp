@@ -39,40 +39,42 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
             "SCENE", choice.scene,
             "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
         ->required();
-    command.add_option("--env", choice.environment, "Environment map, .hdr or .exr, lat-long");
+    command.add_option("--env", choice.environment, "Environment map: .hdr or .exr, latitude-longitude");
     command
         .add_option("--light", choice.lights,
-                    "A white light besides the scene's: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY in "
-                    "that direction; once for each")
+                    "Add a white light: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY shining in that "
+                    "direction (repeatable)")
         ->allow_extra_args(false);
     command.add_option("--lights", choice.lightFile,
-                       "Changes to the scene's lights, as the window saves them (JSON)");
-    command.add_option("--background", choice.background,
-                       "The same radiance from everywhere instead of any environment: R,G,B; 0,0,0 is black");
+                       "Changes to the scene's lights, as saved by the window (JSON)");
+    command.add_option(
+        "--background", choice.background,
+        "Constant radiance from all directions instead of an environment: R,G,B; 0,0,0 is black");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
     const CLI::Range reachable(-farthest, farthest);
-    command.add_option("--eye", choice.eye, "Where a camera of your own stands: X,Y,Z; with --target")
+    command.add_option("--eye", choice.eye, "Position of your own camera: X,Y,Z; needs --target")
         ->delimiter(',')
         ->expected(3)
         ->check(reachable);
-    command.add_option("--target", choice.target, "What it looks at: X,Y,Z")
+    command.add_option("--target", choice.target, "Point that your own camera looks at: X,Y,Z")
         ->delimiter(',')
         ->expected(3)
         ->check(reachable);
-    command.add_option("--up", choice.up, "What is up in its picture: X,Y,Z (0,1,0)")
+    command.add_option("--up", choice.up, "Up direction of your own camera: X,Y,Z (0,1,0)")
         ->delimiter(',')
         ->expected(3)
         ->check(reachable);
-    command.add_option("--fov", choice.fov, "Its field of view from top to bottom, degrees")
+    command
+        .add_option("--fov", choice.fov,
+                    "Vertical field of view of your own camera, degrees; more shows more")
         ->check(CLI::Range(0.01, 179.0));
-    command.add_option(
-        "--asset-root", choice.assetRoot,
-        "Folder that the scene's files (textures, buffers, materials) must lie in, if not in the "
-        "scene's own; default: the folder above the scene's, unless that is / or holds home folders");
+    command.add_option("--asset-root", choice.assetRoot,
+                       "Folder that the scene may read textures, buffers and materials from, besides its "
+                       "own; default: the folder above, unless that is / or contains home folders");
     command
         .add_option("--max-image-memory", choice.maxImageMemory,
-                    "Host memory that one texture or environment map may take, as 512MB or 8GB (2GB); larger "
-                    "ones are scaled down while they are read")
+                    "Maximum host memory of one texture or environment map, as in 512MB or 8GB (2GB); larger "
+                    "ones are scaled down")
         ->transform(CLI::AsSizeValue(false))
         ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 50));
 }

@@ -39,20 +39,19 @@ int framesUntil(double seconds, const SequenceTiming& timing) {
 
 void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
     command.add_option("--animation", choice.animation,
-                       "Clip by name or number, or all: all together; default: the first, if there is more "
-                       "than one frame or "
-                       "--time; 'none': at rest");
+                       "Clip by name or number, 'all' together, or 'none' for the rest pose; default: the "
+                       "first if there are several frames or --time");
     command
         .add_option("--frames", choice.frames,
-                    "Frames; then OUTPUT holds %04d. Default: all of the animation")
+                    "Number of frames, with %04d in OUTPUT; default: all of the animation")
         ->check(CLI::Range(1, maxFrames));
     command.add_option("--fps", choice.timing.framesPerSecond, "Frames per second (30)")
         ->check(CLI::Range(1e-3, 1e6));
-    command.add_option("--time", choice.timing.start, "Seconds: the time of the first frame (0)")
+    command.add_option("--time", choice.timing.start, "Time of the first frame, seconds (0)")
         ->check(CLI::Range(-1e6, 1e6))
         ->each([&choice](const std::string&) { choice.timeGiven = true; });
     command.add_option("--camera-path", choice.cameraPath,
-                       "A JSON file (docs/animation.md), or orbit, dolly or shake");
+                       "Camera path: a JSON file (docs/animation.md), orbit, dolly or shake");
 }
 
 void chooseAnimation(const SequenceChoice& choice, const FramePattern& output, scene::Scene& scene) {

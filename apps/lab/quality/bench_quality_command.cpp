@@ -266,34 +266,39 @@ void complete(QualityOptions& o, const CLI::App& command) {
 }
 
 void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
-    command.add_option("--scene", o->scenes, "Scenes (repeatable; builtin:cornell)");
-    command.add_flag("--lab", o->lab, "The fixed set of built-in sequences");
+    command.add_option("--scene", o->scenes, "Scene to measure (repeatable; builtin:cornell)");
+    command.add_flag("--lab", o->lab, "Measure the fixed set of built-in sequences");
     command.add_flag("--quick", o->quick,
                      "Small enough for a CPU: 160x90, frames 6 to 8, references of 256 samples, scenes under "
-                     "1000 triangles; of --lab, unless scenes are named");
-    command.add_option("--scenes-folder", o->scenesFolder,
-                       "All glTF scenes in the folders of this one; those that cannot be loaded are skipped");
-    command.add_option("--paths-folder", o->pathsFolder,
-                       "Camera paths for these, NAME.json; those without take --camera-path");
-    command.add_option("--env", o->environment, "Environment map of --scene and --scenes-folder");
-    command.add_option("--camera-path", o->cameraPath,
-                       "Of --scene and --scenes-folder: orbit (default), dolly, shake, a file, or none");
-    command.add_option("--frames", o->frames, "Frames (61; --lab has its own)")->check(CLI::Range(1, 100000));
+                     "1000 triangles; uses --lab unless scenes are named");
+    command.add_option(
+        "--scenes-folder", o->scenesFolder,
+        "Measure all glTF scenes in the subfolders of this folder; scenes that cannot be loaded are skipped");
+    command.add_option(
+        "--paths-folder", o->pathsFolder,
+        "Folder of camera paths NAME.json for these scenes; scenes without one use --camera-path");
+    command.add_option("--env", o->environment, "Environment map for --scene and --scenes-folder");
+    command.add_option(
+        "--camera-path", o->cameraPath,
+        "Camera path for --scene and --scenes-folder: orbit (default), dolly, shake, a file, or none");
+    command.add_option("--frames", o->frames, "Number of frames (61; --lab has its own)")
+        ->check(CLI::Range(1, 100000));
     command.add_option("--first", o->first, "First frame that is compared (16; --lab has its own)")
         ->check(CLI::Range(0, 100000));
-    command.add_option("--spp", o->samples, "Samples per pixel and frame (1)")->check(CLI::Range(1, 65536));
+    command.add_option("--spp", o->samples, "Samples per pixel and frame; more is less noisy (1)")
+        ->check(CLI::Range(1, 65536));
     command
-        .add_option("--reference-spp", o->referenceSamples,
-                    "Samples of the references (4096; --lab has its own)")
+        .add_option(
+            "--reference-spp", o->referenceSamples,
+            "Samples per pixel of the references; more is more accurate and slower (4096; --lab has its own)")
         ->check(CLI::Range(2, 1 << 24));
-    command.add_flag(
-        "--smooth-edges", o->smoothEdges,
-        "Rays go through another point of their pixels in each frame, and references are means over the "
-        "pixels; otherwise all go through the centres");
+    command.add_flag("--smooth-edges", o->smoothEdges,
+                     "Jitter rays from frame to frame, and average references over pixels; default: all rays "
+                     "go through pixel centres");
     command.add_option("--reference-folder", o->referenceFolder,
-                       "Keeps the references there, and reads those that are there already");
-    command.add_option("--width", o->width, "Pixels (640)")->check(CLI::Range(1, 65535));
-    command.add_option("--height", o->height, "Pixels (360)")->check(CLI::Range(1, 65535));
+                       "Folder that keeps references; existing ones are read instead of rendered");
+    command.add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));
+    command.add_option("--height", o->height, "Picture height, pixels (360)")->check(CLI::Range(1, 65535));
 }
 
 }  // namespace
@@ -303,23 +308,26 @@ void addQualityBench(CLI::App& bench) {
         "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
     addSequenceOptions(*command, o);
-    command->add_option("--integrator", o->integrator, "What is denoised: path (default), direct or ao");
+    command->add_option("--integrator", o->integrator,
+                        "Integrator whose output is denoised: path (default), direct or ao");
     command->add_option("--denoiser", o->methods.denoisers,
-                        "Denoisers (repeatable; all of them, kpcn from --spp 8 on)");
+                        "Denoiser to measure (repeatable; default: all, kpcn only from --spp 8 on)");
     refusePipelineOption(*command);
-    command->add_option("--weights", o->weights, "Of kpcn: another file than the one that comes with Limpid");
+    command->add_option("--weights", o->weights,
+                        "Weights file for kpcn instead of the one that comes with Limpid");
     command->add_option("--preset", o->presets,
-                        "A denoiser as a paper or a course has it; 'limpid info' lists them");
-    command->add_option("--set", o->assignments, "A parameter: group.name=value");
-    command->add_option(
-        "--variant", o->methods.variants,
-        "A denoiser once more with these of its parameters, or preset=NAME, by commas; the last "
-        "one if they are of none (repeatable)");
-    command->add_flag("--steps", o->methods.steps,
-                      "SVGF's presets, and SVGF without each step beyond its paper and with former defaults");
-    command->add_option("--out", o->folder, "Folder for a picture of each scene, everything side by side");
-    command->add_option("--report", o->report, "An HTML page with everything, pictures included");
-    command->add_flag("--json", o->json, "One JSON object on stdout");
+                        "Preset of a denoiser from a paper or course (repeatable); 'limpid info' lists them");
+    command->add_option("--set", o->assignments,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--variant", o->methods.variants,
+                        "Measure a denoiser again with other parameters, comma-separated, or preset=NAME; "
+                        "parameters of no denoiser apply to the last one (repeatable)");
+    command->add_flag(
+        "--steps", o->methods.steps,
+        "Measure SVGF's presets, and SVGF without each of its extensions and with former defaults");
+    command->add_option("--out", o->folder, "Folder for a side-by-side picture of each scene");
+    command->add_option("--report", o->report, "HTML report with all results and pictures");
+    command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o, command] {
         complete(*o, *command);

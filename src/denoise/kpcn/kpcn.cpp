@@ -372,27 +372,25 @@ const ParamTable<KpcnSettings>& kpcnParams() {
         using S = KpcnSettings;
         ParamTable<S> t("kpcn");
         t.add("tile", &S::tile, 16, 16384, "pixels",
-              "edge of the parts in which a picture is denoised; larger takes more memory and is a little "
-              "faster")
+              "Edge of the tiles in which a picture is denoised; larger is a little faster and takes more "
+              "memory")
             .slider(64, 4096, SliderScale::Logarithmic);
         t.add("errors", &S::standardErrors, 0.0, 100.0, "standard errors",
-              "how far a pixel's clean light may be from its noisy light, by what the samples say of that: "
-              "less keeps sharp "
-              "reflections and small lights, more removes fireflies; 0: as far as the network likes. A pixel "
-              "whose neighbours agree with the network stays as the network has it")
+              "Maximum deviation of clean from noisy light; lower keeps sharp reflections and small lights, "
+              "higher removes fireflies; 0 is no limit. Does not apply where neighbours agree with the "
+              "network")
             .slider(0, 20);
-        t.add(
-            "levels", &S::levels, 0, static_cast<int>(std::size(levelSteps)), "levels",
-            "of a filter after the network's kernels, for what is flat; the last takes in direct neighbours, "
-            "the one before it pixels 2 apart, each one before that four times as far; those that are wider "
-            "than a tenth of the picture's shorter edge are left out");
+        t.add("levels", &S::levels, 0, static_cast<int>(std::size(levelSteps)), "levels",
+              "Filter passes after the network, for flat areas; the last reads direct neighbours, the one "
+              "before at 2 pixels, each earlier one four times as far; passes wider than a tenth of the "
+              "shorter edge are skipped; more is smoother");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "standard errors",
-              "difference of luminance that it tolerates, by what the kernels left of the noise; higher is "
-              "smoother and blurs soft shadows");
-        t.add("half", &S::half, "half precision; off: single precision, slower");
+              "Difference of luminance that the filter passes tolerate; higher is smoother and blurs soft "
+              "shadows");
+        t.add("half", &S::half, "Half precision; off: single precision, slower");
         t.add("cis565", &S::cis565,
-              "the shipped network that was trained as the course CIS 565 describes (docs/kpcn.md); off: "
-              "Limpid's own, which is better");
+              "Use the shipped network trained as the course CIS 565 describes (docs/kpcn.md); off: Limpid's "
+              "own, which is better");
         return t;
     }();
     return table;

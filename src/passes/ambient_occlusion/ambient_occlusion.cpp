@@ -30,9 +30,10 @@ const ParamTable<AmbientOcclusionSettings>& ambientOcclusionParams() {
         using S = AmbientOcclusionSettings;
         ParamTable<S> t("ao");
         t.add("radius", &S::radius, 0, 1000, "scene radii",
-              "how far away things still darken; 0 has no limit and shows what a white sky would light")
+              "Distance up to which geometry occludes; higher darkens more; 0 is no limit, as under a white "
+              "sky")
             .slider(0, 10, SliderScale::Logarithmic, 0.01);
-        t.add("rays", &S::rays, 1, 1024, "", "per pixel and frame; more is slower and less noisy")
+        t.add("rays", &S::rays, 1, 1024, "", "Rays per pixel and frame; more is less noisy and slower")
             .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();

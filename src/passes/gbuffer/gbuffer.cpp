@@ -14,8 +14,8 @@ const ParamTable<GBufferSettings>& gbufferParams() {
     static const auto table = [] {
         using S = GBufferSettings;
         ParamTable<S> t("gbuffer");
-        t.add("light", &S::light, "light that arrives directly is computed; off is black and faster");
-        t.add("shadows", &S::shadows, "lights are hidden by what stands before them; off is faster");
+        t.add("light", &S::light, "Compute direct light; off: black, faster");
+        t.add("shadows", &S::shadows, "Trace shadow rays for direct light; off: no shadows, faster");
         return t;
     }();
     return table;

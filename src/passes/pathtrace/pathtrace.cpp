@@ -44,25 +44,26 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         using S = PathtraceSettings;
         ParamTable<S> t("pathtrace");
         t.add("max_depth", &S::maxDepth, 0, 1024, "bounces",
-              "scattering events of a path; 0 shows emitters only, more adds indirect light and time")
+              "Maximum number of scattering events of a path; 0 shows emitters only, more adds indirect "
+              "light and time")
             .slider(0, 32);
         t.add("max_transmission_depth", &S::maxTransmissionDepth, 0, 1024, "passages",
-              "of a path into, through and out of glass, reflections inside it too; they do not count as "
-              "bounces of max_depth, those beyond this limit do")
+              "Maximum number of passages through glass, including inner reflections; passages beyond it "
+              "count as bounces of max_depth; more is brighter in glass and slower")
             .slider(0, 64);
         t.add("roulette_depth", &S::rouletteDepth, 0, 1024, "bounces",
-              "from this bounce on, dark paths are ended at random (unbiased); earlier is faster and noisier")
+              "Bounce from which dark paths end at random (unbiased); lower is faster and noisier")
             .slider(0, 32);
         t.add("firefly_clamp", &S::fireflyClamp, 0, 1e9, "cd/m^2",
-              "biased: indirect samples brighter than this are dimmed to it; 0 is off")
+              "Maximum brightness of an indirect sample (biased); lower removes more fireflies and light; 0 "
+              "is off")
             .slider(0, 1000, SliderScale::Logarithmic, 0.01);
         t.add("sampler_tea", &S::samplerTea,
-              "random numbers of all passes by a TEA seed and the 24 low bits of a linear congruential "
-              "generator, as "
-              "many tutorials do, instead of PCG; more correlated");
+              "Use the low 24 bits of a linear congruential generator instead of PCG, as many tutorials do; "
+              "more correlated");
         t.add("through_mirrors", &S::throughMirrors,
-              "layers of a perfect mirror are those of what it shows, so that denoisers see through it as "
-              "through a window; off: its own");
+              "Write the layers of what a perfect mirror shows, which helps denoisers; off: the mirror's own "
+              "layers");
         return t;
     }();
     return table;

@@ -119,29 +119,25 @@ const ParamTable<AtrousSettings>& atrousParams() {
         using S = AtrousSettings;
         ParamTable<S> t("atrous");
         t.add("temporal", &S::temporal,
-              "filter the running means of `temporal`; off: the frame's own samples");
+              "Filter the running means of `temporal`; off: the samples of the current frame");
         t.add("levels", &S::levels, 0, 10, "levels",
-              "each doubles the filter's reach, the last of n reaches 2^(n+1) - 2 pixels; more is smoother "
-              "and slower");
+              "Number of filter passes; n passes reach 2^(n+1) - 2 pixels; more is smoother and slower");
         t.add("normal_factor", &S::normalFactor, 1e-9, 1e9, "",
-              "tolerated squared difference of normals at level 1, fourfold at each further; higher smooths "
-              "over "
-              "edges and curves");
+              "Tolerated squared difference of normals at level 1, four times as much at each further level; "
+              "higher smooths across edges and curves");
         t.add("depth_factor", &S::depthFactor, 1e-12, 1e12, "of the squared distance",
-              "tolerated squared deviation from the pixel's plane, relative to its distance from the eye "
-              "(without "
-              "`plane`: of depths, world units); higher smooths over steps");
+              "Tolerated squared deviation from the pixel's plane, relative to the distance (without "
+              "`plane`: squared difference of depths); higher smooths across steps");
         t.add("sample_target", &S::sampleTarget, 0.0, 1e9, "samples",
-              "a pixel that has gathered so many, over time and over the levels so far, weighs itself twice "
-              "as much as "
-              "the level asks; lower keeps shadows sharper where history is long, higher is smoother; 0 is "
-              "no limit");
-        t.add("plane", &S::plane,
-              "weigh by the deviation from the pixel's plane instead of the difference of depths");
-        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+              "Number of samples, over time and levels, at which a pixel's own weight is doubled; lower "
+              "keeps shadows sharper, higher is smoother; 0 is off");
+        t.add(
+            "plane", &S::plane,
+            "Weigh neighbours by their distance from the pixel's plane instead of their difference in depth");
+        t.add("demodulate", &S::demodulate, "Filter light without albedo; keeps textures sharp");
         t.add("color_factor", &S::colorFactor, 0.0, 1e9, "(cd/m^2)^2",
-              "tolerated squared difference of light at level 1, a quarter of it at each further (Dammertz "
-              "2010); lower keeps shadows, and noise; 0: differences of light do not count");
+              "Tolerated squared difference of light at level 1, a quarter at each further level (Dammertz "
+              "2010); lower keeps shadows and noise; 0 ignores light");
         return t;
     }();
     return table;

@@ -358,70 +358,74 @@ const ParamTable<SvgfSettings>& svgfParams() {
         using S = SvgfSettings;
         ParamTable<S> t("svgf");
         t.add("separate", &S::separate,
-              "filter diffuse and specular light apart; off: their sum, in half the time");
-        t.add("demodulate", &S::demodulate, "filter light without albedo: textures stay sharp");
+              "Filter diffuse and specular light separately; off: their sum, in half the time");
+        t.add("demodulate", &S::demodulate, "Filter light without albedo; keeps textures sharp");
         t.add("alpha", &S::alpha, 1e-4, 1.0, "",
-              "smallest weight of a frame in the running mean; lower is smoother, higher follows changes "
-              "sooner");
+              "Minimum weight of a new frame in the running mean; lower is smoother, higher follows changes "
+              "faster");
         t.add("alpha_moments", &S::alphaMoments, 1e-4, 1.0, "",
-              "... in the moments of the luminance, which give the variance");
-        t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "", "... in the fast mean that anti-lag compares with");
+              "Minimum weight of a new frame in the luminance moments, which give the variance; lower is "
+              "steadier");
+        t.add("alpha_fast", &S::alphaFast, 1e-4, 1.0, "",
+              "Minimum weight of a new frame in the fast mean that anti-lag compares with; higher reacts "
+              "faster");
         t.add("normal_test", &S::normalTest, -1.0, 1.0, "cosine",
-              "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
-              "expected one is above this")
+              "Minimum cosine between a previous pixel's normal and the expected one; higher keeps edges, "
+              "lower keeps more history")
             .slider(0.5, 1);
         t.add("depth_test", &S::depthTest, 0.0, 1e6, "of the distance",
-              "... and if its distance is off by less than this share of the expected one (without "
-              "`relative`: "
-              "world units)")
+              "Maximum deviation from the expected distance (world units without `relative`); lower ghosts "
+              "less, higher loses less history")
             .slider(0, 1, SliderScale::Logarithmic, 0.001);
         t.add("relative", &S::relative,
-              "`depth_test` is relative to the distance, and makes room for tilted planes");
-        t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+              "Measure `depth_test` relative to the distance, and allow more on tilted planes");
+        t.add("search", &S::search,
+              "Search the 3x3 neighbouring pixels if all four bilinear taps are rejected");
         t.add("reflections", &S::reflections,
-              "of specular light that is filtered apart: look for its history where the reflection was, not "
-              "the surface");
+              "Reproject specular light along the motion of the reflected image instead of the surface (with "
+              "`separate`)");
         t.add("antilag", &S::antilag, 0.0, 1e6, "",
-              "history that is forgotten per relative change of light beyond noise; higher follows changes "
-              "sooner and is noisier; below 0.1 is off");
+              "History dropped per relative change of light beyond noise; higher follows changes faster and "
+              "is noisier; below 0.1 is off");
         t.add("antilag_noise", &S::antilagNoise, 0.0, 100.0, "deviations",
-              "of the mean over a tile are noise and no change; lower sees smaller changes and takes some "
-              "noise for one")
+              "Change of a tile's mean that still counts as noise; lower detects smaller changes and more "
+              "false ones")
             .slider(0, 10);
         t.add("antilag_pixel", &S::antilagPixel, 0.0, 1e6, "deviations",
-              "the most that one pixel's difference counts for in that mean, in its own deviations; higher "
-              "sees greater changes as greater; above `antilag_noise` a single firefly may pass for one, "
-              "below an eighth of it nothing does")
+              "Maximum contribution of one pixel to a tile's mean; higher measures large changes better, but "
+              "above `antilag_noise` one firefly can trigger anti-lag; below an eighth of it anti-lag never "
+              "acts")
             .slider(0, 10);
         t.add("stabilisation_alpha", &S::stabilisationAlpha, 0.01, 1.0, "",
-              "stabilisation: smallest weight of a frame's filtered light in a mean over frames; lower "
-              "flickers less "
-              "and follows changes later; 1 (and no levels) is off");
+              "Minimum weight of a frame's filtered light in the stabilised mean; lower flickers less and "
+              "follows changes later; 1 (and 0 levels) is off");
         t.add("stabilisation_noise", &S::stabilisationNoise, 0.0, 100.0, "deviations",
-              "of the filtered light that the stable light of before may differ by and still count in full; "
-              "higher flickers less and follows changes later")
+              "Difference from the filtered light up to which stabilised history counts in full; higher "
+              "flickers less and follows changes later")
             .slider(0, 5);
         t.add("levels", &S::levels, 0, 10, "levels",
-              "each doubles the filter's reach: n of them reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2");
+              "Number of filter passes; n passes reach 2^n - 1 pixels, with `wide` 2^(n+1) - 2; more is "
+              "smoother and slower");
         t.add("history_level", &S::historyLevel, 0, 10, "levels",
-              "whose result is the next frame's history; higher is smoother and blurs over time");
-        t.add("wide", &S::wide, "5x5 taps a level; off: 3x3, half the reach in half the time");
+              "Filter pass whose result becomes the next frame's history; higher is smoother and blurs over "
+              "time");
+        t.add("wide", &S::wide, "5x5 taps per pass; off: 3x3, half the reach in half the time");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations",
-              "tolerated difference of luminance; higher smooths over shadows");
+              "Tolerated difference of luminance; higher smooths across shadows");
         t.add("phi_normal", &S::phiNormal, 1e-6, 1e5, "",
-              "sharpness of the tolerance of normals; lower smooths over edges (with `position`: tolerated "
-              "distance of normals; higher does)");
+              "Exponent on the cosine of normals; lower smooths across edges (with `position`: tolerated "
+              "distance of normals; higher smooths across edges)");
         t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
-              "tolerated difference of distance, in units of the surface's own slope (with `position`: "
-              "tolerated distance of points, world units); higher smooths over steps");
+              "Tolerated difference of distance, relative to the surface's slope (with `position`: distance "
+              "of points in world units); higher smooths across steps");
         t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
-              "so many first levels average the variance over 3x3 pixels before it guides them; more take "
-              "longer");
+              "Number of first passes that use a variance averaged over 3x3 pixels; more is steadier and "
+              "slower");
         t.add("boost", &S::boost,
-              "the noise expected of a pixel falls with the length of its history (times 2 / sqrt(frames)); "
-              "off: it is that of one frame");
+              "Let the expected noise fall with the length of the history (by 2 / sqrt(frames)); off: use "
+              "the noise of one frame");
         t.add("position", &S::position,
-              "weigh by distances of points and of normals instead of slopes and cosines");
+              "Weigh neighbours by distances of points and normals instead of slopes and cosines");
         return t;
     }();
     return table;

@@ -32,36 +32,33 @@ const ParamTable<TemporalSettings>& temporalParams() {
         using S = TemporalSettings;
         ParamTable<S> t("temporal");
         t.add("normal", &S::normal, -1.0, 1.0, "cosine",
-              "a pixel of the previous frame counts if the cosine of the angle between its normal and the "
-              "expected one "
-              "is above this; higher keeps edges, lower keeps more history on curved surfaces")
+              "Minimum cosine between a previous pixel's normal and the expected one; higher keeps edges, "
+              "lower keeps more history on curved surfaces")
             .slider(0.5, 1);
         t.add("depth", &S::depth, 0.0, 1e6, "of the distance",
-              "... and if its distance is off by less than this share of the expected one (without "
-              "`relative`: "
-              "world units); lower ghosts less, higher forgets less")
+              "Maximum deviation from the expected distance (world units without `relative`); lower ghosts "
+              "less, higher loses less history")
             .slider(0, 1, SliderScale::Logarithmic, 0.001);
         t.add("relative", &S::relative,
-              "`depth` is relative to the distance, and makes room for tilted planes");
-        t.add("search", &S::search, "where all four taps fail, look at the 3x3 pixels around");
+              "Measure `depth` relative to the distance, and allow more on tilted planes");
+        t.add("search", &S::search,
+              "Search the 3x3 neighbouring pixels if all four bilinear taps are rejected");
         t.add("demodulate", &S::demodulate,
-              "divide by the albedo before resampling, multiply after it: textures stay sharp");
+              "Divide by the albedo before resampling and multiply afterwards; keeps textures sharp");
         t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
-              "largest weight of the past; lower follows changing light sooner, higher is smoother; 0 is no "
-              "limit")
+              "Maximum number of frames that the history counts for; higher is smoother, lower follows "
+              "changing light faster; 0 is no limit")
             .slider(0, 1000, SliderScale::Logarithmic, 1);
-        t.add(
-            "grey_restart", &S::greyRestart,
-            "where there is no history: a grey of weight 1, to which the frame's sample is added, instead of "
-            "that sample alone; softens the black of new pixels");
-        t.add("grey", &S::grey, 0.0, 1e6, "cd/m^2", "the grey of `grey_restart`").slider(0, 2);
-        t.add("grey_misses", &S::greyMisses, "`grey_restart` holds where nothing is hit, too");
+        t.add("grey_restart", &S::greyRestart,
+              "Start pixels without history from a grey of weight 1; softens the black of new pixels");
+        t.add("grey", &S::grey, 0.0, 1e6, "cd/m^2",
+              "Brightness of the grey of `grey_restart`; higher is brighter")
+            .slider(0, 2);
+        t.add("grey_misses", &S::greyMisses, "Use `grey_restart` for pixels that hit nothing, too");
         t.add("identity", &S::identity,
-              "a pixel of the previous frame counts if it saw the same object; off: objects that touch may "
-              "share "
-              "their history");
+              "Reject history of another object; off: objects that touch may share history");
         t.add("show_disocclusion", &S::showDisocclusion,
-              "show why pixels have no history: blue nothing hit, yellow off screen, red no valid tap");
+              "Show why pixels have no history: blue: nothing hit, yellow: off screen, red: no valid tap");
         return t;
     }();
     return table;

@@ -12,8 +12,8 @@ const ParamTable<TaaSettings>& taaParams() {
     static const auto table = [] {
         ParamTable<TaaSettings> t("taa");
         t.add("frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
-              "that the picture is a mean over, for smooth edges with --jitter frame; more is smoother and "
-              "softer, 1 is off")
+              "Frames that are averaged to smooth edges (with --jitter frame); more is smoother and softer, "
+              "1 is off")
             .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();
