@@ -1,4 +1,4 @@
-# CPack: three Debian packages from the components of LimpidInstall.cmake. scripts/package.sh builds them.
+# CPack: Debian packages from the components of LimpidInstall.cmake. scripts/package.sh builds them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limpid)
 set(CPACK_PACKAGE_VENDOR "The Limpid authors")
@@ -12,9 +12,13 @@ set(CPACK_COMPONENTS_ALL library development)
 if(LIMPID_APPS)
   list(APPEND CPACK_COMPONENTS_ALL program)
 endif()
+if(TARGET limpid_python_denoise)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblimpid0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
@@ -38,4 +42,11 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS mesa-vulkan-drivers)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any Vulkan device
  Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
  pictures, on GPUs and on CPUs.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limpid)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}), python3, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "real-time denoisers for any Vulkan device, for Python
+ NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
+ scenes, and compares pictures.")
 include(CPack)

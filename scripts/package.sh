@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# package.sh [CMAKE OPTION ...]: builds the Debian packages limpid, liblimpid0 and liblimpid-dev into build/packages. With
-# -DLIMPID_APPS=OFF the library's two.
+# package.sh [CMAKE OPTION ...]: builds the Debian packages limpid, liblimpid0, liblimpid-dev and python3-limpid into
+# build/packages.
+# With -DLIMPID_APPS=OFF only the library's two.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh dpkg-dev

@@ -13,5 +13,7 @@ void addDatasetCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
+/// Hidden: what the installation and packages are made with. Last, since it lists the others.
+void addManualCommands(CLI::App& app);
 
 }  // namespace limpid::cli

@@ -161,7 +161,7 @@ void denoiseFiles(const DenoiseOptions& o) {
 
 void addDenoiseCommand(CLI::App& app) {
     CLI::App* command =
-        app.add_subcommand("denoise", "Clean EXR frames that have the layers of docs/layers.md");
+        app.add_subcommand("denoise", "Denoise EXR frames that have the layers of docs/layers.md");
     auto o = std::make_shared<DenoiseOptions>();
     command->add_option("IN", o->input, "Input: frame.exr, or frame.%04d.exr for all existing frames")
         ->required();

@@ -147,9 +147,9 @@ void printText(const std::vector<gpu::DeviceInfo>& devices) {
 }  // namespace
 
 void addInfoCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "info",
-        "List devices, integrators, denoisers, built-in scenes and every parameter; or what a scene holds");
+    CLI::App* command = app.add_subcommand("info",
+                                           "List devices, integrators, denoisers, built-in scenes and all "
+                                           "parameters, or the contents of a scene");
     auto asJson = std::make_shared<bool>(false);
     auto scene = std::make_shared<std::string>();
     command->add_option("SCENE", *scene, "Show the cameras, animations, lights and sizes of this scene");

@@ -56,6 +56,7 @@ int run(int argc, char** argv) {
     addBenchCommand(app);
     addViewCommand(app);
     addInfoCommand(app);
+    addManualCommands(app);
     refuseNonFinite(app);
     try {
         app.parse(argc, argv);

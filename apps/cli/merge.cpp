@@ -67,8 +67,7 @@ void merge(const MergeOptions& o) {
 }  // namespace
 
 void addMergeCommand(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("merge", "Put the shards of a render together (limpid render --shard)");
+    CLI::App* command = app.add_subcommand("merge", "Merge the shards of a render (limpid render --shard)");
     auto options = std::make_shared<MergeOptions>();
     command
         ->add_option(

@@ -100,7 +100,7 @@ void run([[maybe_unused]] const ViewOptions& o) {
 
 void addViewCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "view", "A window to fly through a scene, with every integrator, denoiser and parameter");
+        "view", "Open a window to fly through a scene and try every integrator, denoiser and parameter");
     auto o = std::make_shared<ViewOptions>();
     addSceneOptions(*command, o->scene);
     addPipelineOptions(*command, o->pipeline, "the last one; at first path", "the last one; at first none");

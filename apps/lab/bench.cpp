@@ -247,7 +247,7 @@ void addBenchCommand(CLI::App& app) {
     CLI::App* bench = app.add_subcommand("bench", "Measure speed and convergence");
     bench->require_subcommand(1);
     auto options = std::make_shared<BenchOptions>();
-    CLI::App* trace = bench->add_subcommand("trace", "Milliseconds per sample and rays per second");
+    CLI::App* trace = bench->add_subcommand("trace", "Measure milliseconds per sample and rays per second");
     addCommon(*trace, options);
     trace->add_option("--frames", options->frames, "Number of launches timed; more is steadier (16)")
         ->check(CLI::Range(1, 100000));
@@ -260,7 +260,7 @@ void addBenchCommand(CLI::App& app) {
         runTrace(*options);
     });
     CLI::App* converge = bench->add_subcommand(
-        "convergence", "Noisy and converged pictures, and PSNR by samples; writes PNG, EXR and a plot");
+        "convergence", "Measure PSNR by number of samples; writes pictures (PNG, EXR) and a plot");
     addCommon(*converge, options);
     converge
         ->add_option(

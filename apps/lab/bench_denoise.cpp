@@ -117,7 +117,7 @@ void run(const DenoiseBench& o) {
 
 void addDenoiseBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
-        "denoise", "Milliseconds of every pass of a frame under a moving camera, and the bytes it moves");
+        "denoise", "Time every pass of a frame under a moving camera, and count the bytes it moves");
     auto o = std::make_shared<DenoiseBench>();
     command->add_option("--scene", o->scene.scene, "Scene to render (builtin:cornell)");
     command->add_option("--env", o->scene.environment, "Environment map: .hdr or .exr, latitude-longitude");

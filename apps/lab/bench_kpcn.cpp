@@ -189,7 +189,7 @@ void run(const KpcnBench& o) {
 void addKpcnBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "kpcn",
-        "Milliseconds of the network's layers, and operations a second beside those of a plain product");
+        "Time the layers of the network, and compare its operations per second with a plain matrix product");
     auto o = std::make_shared<KpcnBench>();
     command->add_option("--scene", o->scene, "Scene to render (builtin:cornell)");
     command->add_option("--weights", o->weights, "Weights file instead of the one that comes with Limpid");

@@ -132,7 +132,7 @@ void run(const LaunchesBench& o) {
 
 void addLaunchesBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
-        "launches", "The same samples in many launches of few or in few launches of many: time and PSNR");
+        "launches", "Measure time and PSNR by samples per launch, for the same total of samples");
     auto o = std::make_shared<LaunchesBench>();
     command->add_option("--scene", o->scene, "Scene to render (builtin:cornell)");
     command->add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));

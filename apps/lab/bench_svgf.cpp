@@ -184,8 +184,8 @@ void run(const SvgfBench& o) {
 }  // namespace
 
 void addSvgfBench(CLI::App& bench) {
-    CLI::App* command = bench.add_subcommand(
-        "svgf", "SVGF: time per stage, against the scene's triangles, and against the levels");
+    CLI::App* command =
+        bench.add_subcommand("svgf", "Time SVGF: per stage, by number of triangles, and by number of levels");
     auto o = std::make_shared<SvgfBench>();
     command->add_option("--scene", o->scene,
                         "Scene for the measurement of stages and levels (builtin:cornell-spheres)");

@@ -168,7 +168,7 @@ void run(const DatasetOptions& o) {
 
 void addDatasetCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "dataset", "Pictures of many scenes with few and with many samples, to train networks on");
+        "dataset", "Render many scenes with few and with many samples, to train networks on");
     auto o = std::make_shared<DatasetOptions>();
     ExampleSettings& example = o->example;
     command->add_option("-o,--output", o->folder, "Output folder")->required();

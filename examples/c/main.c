@@ -1,6 +1,6 @@
-/* Limpid with pictures in host memory, in C99: no Vulkan in this program. It paints a noisy picture in which a disc moves
- * over a floor, denoises it frame by frame, prints the PSNR of the last frame before and after, and writes noisy.ppm and
- * clean.ppm.
+/* Limpid with pictures in host memory, in C99: no Vulkan in this program. It paints noisy pictures in which a disc
+ * moves before a wall, denoises them frame by frame, prints the PSNR of the last one before and after, and writes
+ * noisy.ppm and clean.ppm.
  *
  *     limpid-c [DEVICE]      a part of a GPU's name, or cpu
  */
@@ -22,7 +22,7 @@ static float uniform(void) {
     return (float)(state >> 8) / 16777216.0f;
 }
 
-/* An orthographic camera looks along -z: one unit of the world is one pixel. The disc is nearer than the wall behind it. */
+/* An orthographic camera looks along -z: one unit of the world is one pixel. The disc is nearer than the wall. */
 static void paint(int frame) {
     const float step = 4.0f, discX = 80.0f + step * (float)frame, discY = 90.0f;
     for (int i = 0; i < PIXELS; ++i) {

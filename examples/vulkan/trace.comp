@@ -1,6 +1,6 @@
 #version 460
-// One noisy frame of a scene that moves, and what a denoiser wants to know of it. One path a pixel: the surface that is
-// seen, one diffuse bounce in a random direction, and the sky with its small sun, which that direction rarely finds.
+// One noisy frame of a scene that moves, and what a denoiser wants to know of it. One path a pixel: the surface that
+// is seen, one diffuse bounce in a random direction, and the sky with its small sun, which it rarely finds.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 const int radianceOut = 0;  // scattered light, albedo in it; the sky

@@ -17,7 +17,7 @@
  *
  * Rules for all of it:
  * - Structs begin with `size`, which is sizeof of the struct as the caller was compiled. Zero is the default of every
- *   other member, so that `limpid_denoiser_desc desc = {sizeof desc};` is complete. Later versions add members at the end.
+ *   other member, so that `limpid_denoiser_desc desc = {sizeof desc};` is complete. Later versions append members.
  * - Functions return a limpid_result and throw nothing. limpid_last_error() says more of the calling thread's last
  *   failure.
  * - Strings are UTF-8. Memory that is passed in is read during the call only.
@@ -51,7 +51,7 @@ LIMPID_API uint32_t limpid_version(void);
 
 typedef enum limpid_result {
     LIMPID_OK = 0,
-    LIMPID_ERROR_INVALID_ARGUMENT = 1, /* of the caller: a null pointer, a wrong size, an unknown name, a missing input */
+    LIMPID_ERROR_INVALID_ARGUMENT = 1, /* a null pointer, a wrong size, an unknown name, a missing input */
     LIMPID_ERROR_UNSUPPORTED = 2,      /* the device lacks something */
     LIMPID_ERROR_OUT_OF_MEMORY = 3,    /* of the device or the host */
     LIMPID_ERROR_DEVICE_LOST = 4,      /* destroy everything that was made on the device */
@@ -95,8 +95,8 @@ LIMPID_API void limpid_device_destroy(limpid_device* device);
 LIMPID_API const char* limpid_device_name(const limpid_device* device);
 
 /* What the driver has compiled so far, to be stored and given back in the next run of the program: then nothing is
- * compiled again. With `data` NULL, `size` is set to the number of bytes; otherwise up to `size` bytes are written, and
- * `size` is set to how many. */
+ * compiled again. With `data` NULL, `size` is set to the number of bytes; otherwise up to `size` bytes are written,
+ * and `size` is set to how many. */
 LIMPID_API limpid_result limpid_device_pipeline_cache(const limpid_device* device, void* data, size_t* size);
 /* Before the first denoiser is made. Data of another device or driver, or damaged ones, are ignored. */
 LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device, const void* data, size_t size);
@@ -106,24 +106,24 @@ LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device
 typedef struct limpid_denoiser limpid_denoiser;
 
 typedef enum limpid_method {
-    LIMPID_METHOD_SVGF = 0,     /* spatiotemporal variance-guided filtering: the best of the three */
-    LIMPID_METHOD_ATROUS = 1,   /* temporal accumulation, then the edge-avoiding a-trous filter */
-    LIMPID_METHOD_TEMPORAL = 2  /* temporal accumulation alone: each pixel's mean follows its surface */
+    LIMPID_METHOD_SVGF = 0,    /* spatiotemporal variance-guided filtering: the best of the three */
+    LIMPID_METHOD_ATROUS = 1,  /* temporal accumulation, then the edge-avoiding a-trous filter */
+    LIMPID_METHOD_TEMPORAL = 2 /* temporal accumulation alone: each pixel's mean follows its surface */
 } limpid_method;
 
 /* Images of a frame, by what they hold. Which a method needs, and what it costs to leave one out, is in
  * docs/embedding.md. */
 typedef enum limpid_input {
-    LIMPID_INPUT_RADIANCE = 0,          /* rgb: light that is scattered towards the eye; with two signals diffuse light.
-                                           Needed. */
-    LIMPID_INPUT_SPECULAR = 1,          /* rgb: specular light. Needed with two signals. */
-    LIMPID_INPUT_EMISSION = 2,          /* rgb: what the camera sees directly (emitters, sky): not filtered */
-    LIMPID_INPUT_ALBEDO = 3,            /* rgb: diffuse albedo, 0 to 1, textures in it */
-    LIMPID_INPUT_ALBEDO_SPECULAR = 4,   /* rgb: pre-integrated reflectance of the specular lobe, 0 to 1 */
-    LIMPID_INPUT_NORMAL = 5,            /* limpid_normal_encoding, limpid_space. Needed. */
-    LIMPID_INPUT_DEPTH = 6,             /* limpid_depth. Needed. */
-    LIMPID_INPUT_MOTION = 7,            /* limpid_motion_unit and so on. Without it, only the camera moves. */
-    LIMPID_INPUT_PREVIOUS_NORMAL = 8,   /* as the normal: of the same surface point in the previous frame */
+    LIMPID_INPUT_RADIANCE = 0,        /* rgb: light that is scattered towards the eye; with two signals diffuse light.
+                                         Needed. */
+    LIMPID_INPUT_SPECULAR = 1,        /* rgb: specular light. Needed with two signals. */
+    LIMPID_INPUT_EMISSION = 2,        /* rgb: what the camera sees directly (emitters, sky): not filtered */
+    LIMPID_INPUT_ALBEDO = 3,          /* rgb: diffuse albedo, 0 to 1, textures in it */
+    LIMPID_INPUT_ALBEDO_SPECULAR = 4, /* rgb: pre-integrated reflectance of the specular lobe, 0 to 1 */
+    LIMPID_INPUT_NORMAL = 5,          /* limpid_normal_encoding, limpid_space. Needed. */
+    LIMPID_INPUT_DEPTH = 6,           /* limpid_depth. Needed. */
+    LIMPID_INPUT_MOTION = 7,          /* limpid_motion_unit and so on. Without it, only the camera moves. */
+    LIMPID_INPUT_PREVIOUS_NORMAL = 8, /* as the normal: of the same surface point in the previous frame */
     LIMPID_INPUT_REFLECTION_MOTION = 9, /* as the motion: of what a flat mirror shows */
     LIMPID_INPUT_ID = 10,               /* r: a number for each object (Vulkan: unsigned integers) */
     LIMPID_INPUT_MAX = 32               /* room for more */
@@ -152,8 +152,8 @@ typedef enum limpid_space {
 typedef enum limpid_depth {
     LIMPID_DEPTH_DISTANCE = 0, /* along the pixel's ray, from the eye, world units */
     LIMPID_DEPTH_LINEAR = 1,   /* along the view axis, from the eye, world units; the sign is ignored */
-    LIMPID_DEPTH_DEVICE = 2    /* of the depth buffer; the projection matrix says how (reversed, infinite). Where nothing
-                                  is seen it has its far value: 0 if reversed, else 1. */
+    LIMPID_DEPTH_DEVICE = 2 /* of the depth buffer; the projection matrix says how (reversed, infinite). Where nothing
+                               is seen it has its far value: 0 if reversed, else 1. */
 } limpid_depth;
 
 typedef enum limpid_motion_unit {
@@ -181,10 +181,11 @@ typedef struct limpid_denoiser_desc {
     size_t size;
     limpid_method method;
     uint32_t width, height; /* pixels of all images */
-    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse, SPECULAR specular light; twice the time. */
+    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse, SPECULAR specular light; twice the time.
+     */
     uint32_t signals;
-    /* Not 0: radiance comes without albedo in it, and leaves without. Then the albedo inputs are not needed, and COLOR is
-     * the sum of the signals and emission. */
+    /* Not 0: radiance comes without albedo in it, and leaves without. Then the albedo inputs are not needed, and COLOR
+     * is the sum of the signals and emission. */
     int32_t demodulated;
     limpid_normal_encoding normal_encoding;
     limpid_space normal_space;
@@ -217,8 +218,8 @@ LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const lim
 /* NULL is ignored. What it has recorded must be done on the device. */
 LIMPID_API void limpid_denoiser_destroy(limpid_denoiser* denoiser);
 
-/* Device memory that a denoiser of this kind allocates for its images, in bytes: needs no device. `for_gpu` 0: on CPUs.
- * RADIANCE and SPECULAR as outputs take 16 bytes a pixel each on top, where they are wanted. */
+/* Device memory that a denoiser of this kind allocates for its images, in bytes: needs no device. `for_gpu` 0: on
+ * CPUs. RADIANCE and SPECULAR as outputs take 16 bytes a pixel each on top, where they are wanted. */
 LIMPID_API limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t for_gpu, uint64_t* bytes);
 
 /* The frames that follow are of another size. History starts anew. */
@@ -245,8 +246,8 @@ typedef struct limpid_parameter {
 /* Those that a method heeds, from 0 on. LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings live for ever. */
 LIMPID_API limpid_result limpid_method_parameter(limpid_method method, uint32_t index, limpid_parameter* parameter);
 
-/* Takes effect with the next frame. Bools are 0 and 1. LIMPID_ERROR_INVALID_ARGUMENT if there is no such parameter or the
- * value is outside its range. */
+/* Takes effect with the next frame. Bools are 0 and 1. LIMPID_ERROR_INVALID_ARGUMENT if there is no such parameter or
+ * the value is outside its range. */
 LIMPID_API limpid_result limpid_denoiser_set(limpid_denoiser* denoiser, const char* name, double value);
 LIMPID_API limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, const char* name, double* value);
 
@@ -261,7 +262,7 @@ typedef struct limpid_host_image {
 } limpid_host_image;
 
 typedef struct limpid_host_output {
-    float* data; /* NULL: not wanted */
+    float* data;         /* NULL: not wanted */
     uint32_t components; /* 3 or 4 */
     size_t pixel_stride, row_stride;
 } limpid_host_output;
@@ -282,8 +283,8 @@ typedef struct limpid_timing {
     double milliseconds;
 } limpid_timing;
 
-/* Time of each pass on the device, of the latest frame that is known to be done. With `timings` NULL, `count` is set to
- * the number of passes; otherwise up to `count` are written, and `count` is set to how many. */
+/* Time of each pass on the device, of the latest frame that is known to be done. With `timings` NULL, `count` is set
+ * to the number of passes; otherwise up to `count` are written, and `count` is set to how many. */
 LIMPID_API limpid_result limpid_denoiser_timings(limpid_denoiser* denoiser, limpid_timing* timings, uint32_t* count);
 
 #ifdef __cplusplus

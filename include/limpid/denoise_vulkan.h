@@ -1,22 +1,22 @@
 /* Limpid's denoisers inside a Vulkan program: they use its device and record into its command buffers.
  *
  * The device needs Vulkan 1.3 with the features synchronization2, maintenance4, scalarBlockLayout and
- * shaderStorageImageExtendedFormats; limpid_vulkan_enable_features() switches them on in a chain of yours. The queue must
- * compute. No function is linked: all are loaded through your vkGetInstanceProcAddr.
+ * shaderStorageImageExtendedFormats; limpid_vulkan_enable_features() switches them on in a chain of yours. The queue
+ * must compute. No function is linked: all are loaded through your vkGetInstanceProcAddr.
  *
- * Limpid never submits, waits or owns a queue. limpid_record() writes into a command buffer that is recording, outside of a
- * render pass. What it orders, exactly:
+ * Limpid never submits, waits or owns a queue. limpid_record() writes into a command buffer that is recording, outside
+ * of a render pass. What it orders, exactly:
  * - Before its passes stands one vkCmdPipelineBarrier2. For each image, an image barrier from `stages_before` and
- *   `access_before` to the compute shader stage; sampled images stay in `layout`, outputs go into GENERAL. And a memory
- *   barrier from compute shaders and copies to compute shaders and copies, which orders it behind the denoiser's earlier
- *   frames in the same queue.
+ *   `access_before` to the compute shader stage; sampled images stay in `layout`, outputs go into GENERAL. And a
+ * memory barrier from compute shaders and copies to compute shaders and copies, which orders it behind the denoiser's
+ * earlier frames in the same queue.
  * - After its passes stands one with an image barrier for each output, from the compute shader stage to `stages_after`
  *   and `access_after`, and from GENERAL into `layout_after`. Inputs may be overwritten by what waits for the compute
  *   shader stage.
  * - Queue ownership is not transferred. Frames of one denoiser must run in the order in which they were recorded.
  * - Compute and descriptor state of the command buffer (bound pipeline and sets of the compute bind point) is lost.
- * What a frame uses is used again `frames_in_flight` frames later: before you record frame n, frame n - frames_in_flight
- * must be done on the device. (Wait for its fence, as you do for your own resources.)
+ * What a frame uses is used again `frames_in_flight` frames later: before you record frame n, frame n -
+ * frames_in_flight must be done on the device. (Wait for its fence, as you do for your own resources.)
  */
 #ifndef LIMPID_DENOISE_VULKAN_H
 #define LIMPID_DENOISE_VULKAN_H
@@ -51,9 +51,9 @@ typedef struct limpid_vulkan_device_desc {
     int32_t debug_utils; /* not 0: VK_EXT_debug_utils is enabled; objects and passes get names */
     limpid_message_callback message;
     void* message_user;
-    /* Both or none. None: Limpid allocates one VkDeviceMemory for each of its some twenty images. `allocate` gives a block
-     * of a memory type of `requirements` with all of `properties`; where these have the host-visible bit, `mapped` must
-     * be set. */
+    /* Both or none. None: Limpid allocates one VkDeviceMemory for each of its some twenty images. `allocate` gives a
+     * block of a memory type of `requirements` with all of `properties`; where these have the host-visible bit,
+     * `mapped` must be set. */
     VkResult (*allocate)(void* user, const VkMemoryRequirements* requirements, VkMemoryPropertyFlags properties,
                          const char* name, limpid_vulkan_memory* block);
     void (*free)(void* user, const limpid_vulkan_memory* block);
@@ -64,16 +64,16 @@ typedef struct limpid_vulkan_device_desc {
 LIMPID_API limpid_result limpid_device_adopt(const limpid_vulkan_device_desc* desc, limpid_device** device);
 
 typedef struct limpid_vulkan_image {
-    VkImage image; /* VK_NULL_HANDLE: there is no such image */
+    VkImage image;    /* VK_NULL_HANDLE: there is no such image */
     VkImageView view; /* two-dimensional, one level, one layer, identity swizzle; of width x height pixels */
-    /* Inputs: any format that can be sampled (usage SAMPLED), floats or normalised; of LIMPID_INPUT_ID unsigned integers.
-     * Outputs (usage STORAGE): VK_FORMAT_R16G16B16A16_SFLOAT or VK_FORMAT_R32G32B32A32_SFLOAT. */
+    /* Inputs: any format that can be sampled (usage SAMPLED), floats or normalised; of LIMPID_INPUT_ID unsigned
+     * integers. Outputs (usage STORAGE): VK_FORMAT_R16G16B16A16_SFLOAT or VK_FORMAT_R32G32B32A32_SFLOAT. */
     VkFormat format;
     /* Inputs: in which it is and stays; 0: VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL. Outputs: in which it is; 0:
      * VK_IMAGE_LAYOUT_UNDEFINED. */
     VkImageLayout layout;
-    /* What wrote an input, or last used an output. 0 and 0: nothing to wait for (a barrier of yours, or a semaphore, has
-     * ordered it). */
+    /* What wrote an input, or last used an output. 0 and 0: nothing to wait for (a barrier of yours, or a semaphore,
+     * has ordered it). */
     VkPipelineStageFlags2 stages_before;
     VkAccessFlags2 access_before;
     /* Outputs only: what will use it, and in which layout; 0: VK_IMAGE_LAYOUT_GENERAL. */
@@ -90,8 +90,8 @@ typedef struct limpid_vulkan_frame {
     int32_t reset; /* not 0: a cut; history starts with this frame */
 } limpid_vulkan_frame;
 
-/* Records one frame. On failure nothing that matters has been recorded; the command buffer may be submitted. A frame that
- * was recorded must run: if you drop its command buffer, destroy the denoiser. */
+/* Records one frame. On failure nothing that matters has been recorded; the command buffer may be submitted. A frame
+ * that was recorded must run: if you drop its command buffer, destroy the denoiser. */
 LIMPID_API limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                        const limpid_vulkan_frame* frame);
 

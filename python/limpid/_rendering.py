@@ -59,7 +59,7 @@ def render(scene, width, height, spp=64, **options):
 
     options:
     seed: another one, other noise; the same gives the same picture on the same device. Default: 0.
-    denoiser: None, or "history", "atrous", "svgf" or "kpcn": what cleans the picture before it is returned as "color".
+    denoiser: None, or "temporal", "atrous", "svgf" or "kpcn": what cleans the picture before it is returned as "color".
     parameters: a mapping of names to values: {"pathtrace.max_depth": 4}; 'limpid info' lists them.
     device: as in limpid.Denoiser. environment: path of a lat-long .hdr or .exr.
     camera: of the scene's, its name or number; default: the first.

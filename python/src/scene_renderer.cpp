@@ -15,17 +15,6 @@
 namespace limpid::python {
 namespace {
 
-Pipeline pipelineOf(const std::string& denoiser) {
-    if (denoiser.empty()) return {};
-    std::string names;
-    for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.kind != Pipeline::Kind::Denoised) continue;
-        if (pipeline.name() == denoiser) return pipeline;
-        names += " " + std::string(pipeline.name());
-    }
-    throw UsageError("there is no denoiser '" + denoiser + "'; the denoisers are" + names);
-}
-
 Jitter jitterOf(const std::string& name, const Pipeline& pipeline) {
     if (name.empty()) return defaultJitter(pipeline);
     for (const Jitter jitter : {Jitter::Pixel, Jitter::Frame, Jitter::Off})
@@ -38,7 +27,7 @@ RenderSettings settingsOf(const RenderOptions& o) {
     settings.extent = {o.width, o.height};
     settings.seed = o.seed;
     settings.samplesPerLaunch = std::min(o.samples, 4u);  // what every device does
-    settings.pipeline = pipelineOf(o.denoiser);
+    settings.pipeline = parsePipeline("path", o.denoiser.empty() ? "none" : o.denoiser);
     settings.jitter = jitterOf(o.jitter, settings.pipeline);
     settings.layers = true;
     for (const std::string& text : o.assignments) assign(settings, text);
@@ -112,7 +101,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderO
         throw UsageError("fps: 0.001 to 1000000 frames per second are possible");
     const std::lock_guard lock(device_->mutex);
     gpu::Device& on = device_->device;
-    loadNetwork(on, settings_.pipeline.denoiser, o.weights, settings_.denoisers);
+    settings_.networks = loadNetworks(on, settings_.pipeline.denoiser, o.weights, settings_.denoisers);
     const scene::SceneData data = scene::buildSceneData(scene_);
     gpuScene_.emplace(on, data, scene::TraceOptions{scene::automaticTracer(on.info()), {}});
     const scene::Camera camera = cameraOf(o, scene_);

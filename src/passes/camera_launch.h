@@ -1,5 +1,4 @@
-// What passes that trace primary rays have in common: the camera, the points in the pixels, the random
-// numbers.
+// Shared by all passes that trace primary rays: the camera, the jitter, the random numbers.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
@@ -9,7 +8,7 @@ namespace limpid {
 
 /// Where in its pixel a primary ray goes. The first sample since the last reset goes through the centre.
 enum class Jitter : uint32_t {
-    Pixel = JITTER_PIXEL,  ///< anywhere, each pixel by its own random numbers
+    Pixel = JITTER_PIXEL,  ///< a random point for each pixel
     Frame = JITTER_FRAME,  ///< one point for all pixels, another for each sample: Halton in bases 2 and 3
     Off = JITTER_OFF,      ///< the centre
 };
@@ -18,14 +17,14 @@ enum class Jitter : uint32_t {
 struct CameraLaunch {
     gpu::Extent extent;
     CameraParams camera;
-    CameraParams previousCamera;  ///< of the previous frame of a sequence, for motion
+    CameraParams previousCamera;  ///< camera of the previous frame of a sequence, for motion
     bool hasPrevious = false;     ///< false: no previous frame, all motion is invalid
     uint32_t firstSample = 0;     ///< samples per pixel since the last reset, before this launch
-    uint32_t stream = 0;          ///< of random numbers; in a still the number of the launch
+    uint32_t stream = 0;          ///< stream of random numbers; in a still, the launch's number
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
-    uint64_t samplesBefore = 0;  ///< of each pixel in the mean, before this launch
-    bool samplerTea = false;     ///< instead of PCG (shaders/common/rng.glsl)
+    uint64_t samplesBefore = 0;  ///< per pixel in the mean, before this launch
+    bool samplerTea = false;     ///< --sampler tea instead of PCG (shaders/common/rng.glsl)
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {

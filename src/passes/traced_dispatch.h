@@ -10,13 +10,13 @@
 
 namespace limpid {
 
-/// The same pass for either tracer.
+/// The shaders of one pass for both tracers.
 struct TracerShaders {
     const gpu::ShaderCode& compute;
     const gpu::ShaderCode& rayGeneration;
 };
 
-/// Records the pass with the scene's bindings and constants, to which those given here are added.
+/// Records the pass with the scene's bindings and constants in addition to those given here.
 void dispatchTraced(gpu::FrameGraph& graph, const scene::GpuScene& scene, std::string_view pass,
                     const TracerShaders& shaders, const std::vector<gpu::Binding>& images,
                     std::span<const std::byte> params, const std::vector<gpu::ConstantValue>& constants,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# embed.sh TEST SOURCE BUILD LIBDIR: one test of Limpid as other programs meet it. CTest runs them (label embed), "install"
-# first: it installs the library into BUILD/tests/embed/prefix, and the others build programs against that. CC, CXX and
-# CMAKE_GENERATOR are those of the build.
+# embed.sh TEST SOURCE BUILD LIBDIR: one test of Limpid as other programs meet it. CTest runs them (label embed),
+# "install" first: it installs the library into BUILD/tests/embed/prefix, and the others build programs against that.
+# CXX and CMAKE_GENERATOR are those of the build.
 set -euo pipefail
 test=$1 source=$2 build=$3 libdir=$4
 work=$build/tests/embed
@@ -35,15 +35,16 @@ pictures() {
     [ "$(sha256sum "$@" | cut -d ' ' -f 1 | sort -u | wc -l)" -eq $# ] || fail "two of $* are the same"
 }
 
-[ "$test" = install ] || [ -e "$prefix/$libdir/liblimpid.so" ] || fail "the library is not in $prefix: run embed_install"
+[ "$test" = install ] || [ -e "$prefix/$libdir/liblimpid.so" ] || fail "no library in $prefix: run embed_install"
 rm -rf "$own"
 mkdir -p "$own"
 case $test in
     install)
         rm -rf "$prefix"
-        for component in library development; do cmake --install "$build" --prefix "$prefix" --component $component; done
-        readelf -d "$prefix/$libdir/liblimpid.so" | grep -qF 'SONAME' || fail "no SONAME"
-        readelf -d "$prefix/$libdir/liblimpid.so" | grep -qF '[liblimpid.so.0]' || fail "the SONAME is not liblimpid.so.0"
+        cmake --install "$build" --prefix "$prefix" --component library
+        cmake --install "$build" --prefix "$prefix" --component development
+        readelf -d "$prefix/$libdir/liblimpid.so" | grep SONAME | grep -qF '[liblimpid.so.0]' ||
+            fail "the SONAME is not liblimpid.so.0"
         for file in include/limpid/denoise{.h,.hpp,_vulkan.h,_vulkan.hpp} "$libdir"/liblimpid.so.0 \
             "$libdir"/pkgconfig/limpid.pc "$libdir"/cmake/limpid/limpidConfig{,Version}.cmake; do
             [ -e "$prefix/$file" ] || fail "$file is not installed"
@@ -59,8 +60,8 @@ case $test in
     pkg_config)
         cp -a "$prefix" "$own/moved"
         export PKG_CONFIG_PATH=$own/moved/$libdir/pkgconfig
-        [ "$(pkg-config --modversion limpid)" = "$(sed -n 's/^project(limpid VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")" ] \
-            || fail "another version than the project's"
+        version=$(sed -n 's/^project(limpid VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
+        [ "$(pkg-config --modversion limpid)" = "$version" ] || fail "another version than the project's, $version"
         ${CC:-cc} -std=c99 $(pkg-config --cflags limpid) -o "$own/version" "$source/tests/embed/consumer/version.c" \
             $(pkg-config --libs limpid)
         LD_LIBRARY_PATH=$own/moved/$libdir "$own/version"
@@ -71,7 +72,8 @@ case $test in
         consumer
         ;;
     symbols)
-        nm -D --defined-only "$prefix/$libdir/liblimpid.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' | LC_ALL=C sort >"$own/symbols"
+        nm -D --defined-only "$prefix/$libdir/liblimpid.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' |
+            LC_ALL=C sort >"$own/symbols"
         ! grep -v '^limpid_' "$own/symbols" || fail "exported, and not of the interface"
         ${CC:-cc} -std=c99 $(pkg-config --cflags limpid) -o "$own/abi" "$source/tests/embed/abi.c"
         { cat "$own/symbols"; "$own/abi"; } >"$own/abi.txt"

@@ -151,8 +151,8 @@ bool haveHdrFlip(const CompareOptions& options, const std::filesystem::path& tes
 
 void addCompareCommand(CLI::App& app) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = app.add_subcommand(
-        "compare", "Measure how far pictures, or sequences of them, are from their reference");
+    CLI::App* command =
+        app.add_subcommand("compare", "Measure the error of pictures or sequences against a reference");
     command
         ->add_option("TEST", arguments->test,
                      "Picture to measure: EXR, HDR, PNG or JPEG; or a sequence, as in test.%04d.exr")

@@ -261,9 +261,9 @@ void ClipWriter::send(const image::ByteImage& frame) {
     }
 }
 
-void ClipWriter::add(const image::Image& beauty) {
+void ClipWriter::add(const image::Image& beauty, std::span<const float> subject) {
     // One exposure for all: measured anew in each frame, a clip would flicker.
-    if (!format_.stops) format_.stops = image::autoExposure(beauty);
+    if (!format_.stops) format_.stops = image::autoExposure(beauty, subject);
     const image::Image encoded =
         format_.shownAsIs ? image::displayEncode(beauty, 0.0f) : image::tonemap(beauty, *format_.stops);
     const image::ByteImage bytes = image::toBytes(encoded);

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "image/image.h"
@@ -38,9 +39,10 @@ class ClipWriter {
     ClipWriter(const ClipWriter&) = delete;
     ClipWriter& operator=(const ClipWriter&) = delete;
 
-    /// The next frame, linear radiance, of the format's size. Throws Error with ffmpeg's last words if it has
-    /// failed.
-    void add(const image::Image& beauty);
+    /// The next frame, linear radiance, of the format's size. `subject`: of each pixel, the share of its
+    /// samples that met a surface, which automatic exposure is measured on; may be empty. Throws Error with
+    /// ffmpeg's last words if it has failed.
+    void add(const image::Image& beauty, std::span<const float> subject);
     /// To be called once, after the last frame. Throws as add() does.
     void finish();
 

@@ -36,7 +36,7 @@ void writeDump(const fs::path& output, const std::vector<std::pair<std::string, 
 
 void writeFrame(const RenderJob& job, uint64_t frame, const PictureFormat& format,
                 const RenderedLayers& layers, const std::map<std::string, std::string>& metadata) {
-    if (job.clip) return job.clip->add(beautyOf(layers));
+    if (job.clip) return job.clip->add(beautyOf(layers), surfaceShare(layers));
     writePicture(FramePattern(job.options.output).format(static_cast<int>(frame)), format, layers, metadata);
 }
 

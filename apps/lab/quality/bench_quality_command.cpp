@@ -305,7 +305,7 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
 
 void addQualityBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
-        "quality", "Denoised sequences against converged ones: PSNR, SSIM, FLIP, flicker");
+        "quality", "Compare denoised sequences with converged ones: PSNR, SSIM, FLIP, flicker");
     auto o = std::make_shared<QualityOptions>();
     addSequenceOptions(*command, o);
     command->add_option("--integrator", o->integrator,

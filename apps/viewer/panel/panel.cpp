@@ -96,7 +96,7 @@ void drawPresets(PanelState& state, Controls& controls) {
         if (controls.button(preset.name.c_str())) {
             const bool fits = preset.isFor(state.render.pipeline);
             if (!fits) state.render.pipeline = preset.pipeline();
-            applyPreset(state.render, preset.name);
+            applyOnlyPreset(state.render, preset.name);
             state.jitter = jitterChoice(preset.jitter, state.render.pipeline);
         }
         if (ImGui::IsItemHovered()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/text/format.h"
@@ -33,7 +34,13 @@ std::vector<InstanceParameter> listParameters(limpid_method method) {
     return all;
 }
 
-void checkEnum(const char* what, int value, int last) {
+/// A caller in C may have put any number where an enumerator belongs: it is looked at as the number that it
+/// is.
+template <typename Enum>
+void checkEnum(const char* what, const Enum& given, int last) {
+    int value = 0;
+    static_assert(sizeof(given) == sizeof(value));
+    std::memcpy(&value, &given, sizeof(value));
     if (value < 0 || value > last) throw UsageError(formatText("{}: {} is none of its values", what, value));
 }
 

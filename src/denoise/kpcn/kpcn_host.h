@@ -13,22 +13,23 @@ namespace limpid::denoise {
 /// Whether Limpid was built with oneDNN.
 bool kpcnHostAvailable();
 
-/// A part of a picture: `columns` x `rows` pixels, of which those from (left, top) on, `width` x `height`,
-/// are wanted.
+/// A part of a picture: `columns` x `rows` pixels. Only `width` x `height` of them, from (left, top) on, are
+/// computed; the rest is the border.
 struct KpcnHostTile {
     uint32_t columns, rows, left, top, width, height;
 };
 
-/// One run at a time.
+/// Not thread-safe: one run at a time.
 class KpcnHost {
   public:
     /// Throws Error without oneDNN.
     explicit KpcnHost(const KpcnWeights& weights);
     ~KpcnHost();
 
-    /// `channels`: what the network sees, in slabs of 16; `light`: what is averaged, four floats a pixel;
-    /// `faces`: the normal and whether there is none, four signed bytes a pixel (kpcn_features.glsl); all of
-    /// the whole part. `clean`: four floats a pixel, of the wanted ones; its rows begin every `pitch` pixels.
+    /// `channels`: the network's input, in slabs of 16. `light`: the light to average, four floats per pixel.
+    /// `faces`: the normal and a flag for no normal, four signed bytes per pixel (kpcn_features.glsl). These
+    /// three cover the whole part. `clean`: the output, four floats per pixel, only the computed pixels; its
+    /// rows are `pitch` pixels apart.
     void run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,
              std::span<const float> light, std::span<const uint32_t> faces, std::span<float> clean,
              size_t pitch);

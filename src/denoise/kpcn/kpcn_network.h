@@ -15,38 +15,38 @@ namespace limpid::denoise {
 /// How a network is computed. Sums are always in single precision.
 enum class KpcnPrecision {
     Float,     ///< weights and channels in single precision
-    Half,      ///< ... in half precision
-    Matrices,  ///< ... multiplied by cooperative matrices
+    Half,      ///< weights and channels in half precision
+    Matrices,  ///< half precision, multiplied by cooperative matrices
     Host       ///< in single precision by the host, with oneDNN: on CPUs, where Limpid was built with it
 };
 std::string_view toString(KpcnPrecision precision);
 
-/// The fastest that the device has; of GPUs Float unless `half`.
+/// The fastest that the device supports; on GPUs Float unless `half`.
 KpcnPrecision kpcnPrecision(const gpu::DeviceInfo& device, bool half);
 
-/// The weights in the order in which the passes read them: of each slab of 16 inputs, of each tap, of each
-/// input, all outputs, as many as make whole slabs. The input after the last is always 1: its weights at the
-/// centre are the bias. Hidden layers pass it on.
+/// The weights in the order in which the passes read them, from the outermost index: slab of 16 inputs, tap,
+/// input, output (padded to whole slabs). One additional input is always 1; its weights at the centre tap are
+/// the bias. Hidden layers pass it on.
 class KpcnNetwork {
   public:
     KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPrecision precision);
 
     struct Layer {
-        uint32_t inputSlabs, outputTiles;  ///< of 16 channels
-        uint32_t weights;                  ///< where they begin in the buffer, by 8
+        uint32_t inputSlabs, outputTiles;  ///< number of slabs of 16 channels
+        uint32_t weights;                  ///< offset in the buffer, in units of 8
     };
     /// 0: diffuse, 1: specular. Hidden layers, then the output.
     const std::vector<Layer>& layers(size_t side) const { return layers_[side]; }
     const gpu::Buffer& weights() const { return buffer_; }
-    /// Of KpcnPrecision::Host.
+    /// Only for KpcnPrecision::Host.
     KpcnHost& host() const { return *host_; }
     KpcnPrecision precision() const { return precision_; }
     uint32_t kernelWidth() const { return kernelWidth_; }
-    /// KpcnWeights::facing.
+    /// Same as KpcnWeights::facing.
     float facing() const { return facing_; }
-    /// Of hidden layers and inputs, the most.
+    /// Maximum over inputs and hidden layers.
     uint32_t slabs() const { return slabs_; }
-    /// Bytes that one buffer may have on the device.
+    /// Maximum size of a buffer on the device, bytes.
     uint64_t maxBytes() const { return maxBytes_; }
 
   private:

@@ -10,58 +10,59 @@ namespace limpid::denoise {
 
 /// A pixel's channels lie in slabs of 16 (docs/kpcn.md, "On the device").
 const uint KPCN_SLAB = 16u;
-/// Of a convolution, along each axis.
+/// Taps of a convolution along each axis.
 const uint KPCN_TAPS = 5u;
-/// What a network sees of a pixel; one channel more is always 1 and brings the bias.
+/// Input channels per pixel. One more channel is always 1; its weights are the bias.
 const uint KPCN_INPUT_CHANNELS = 34u;
 const uint KPCN_INPUT_SLABS = 3u;
 /// Added to albedo before light is divided by it.
 const float KPCN_EPSILON = 0.00316f;
 
-/// Of the levels after the kernels: what is another surface.
-const float KPCN_LEVEL_NORMAL = 64.0f;  // sharpness of the tolerance of normals
-const float KPCN_LEVEL_DEPTH = 0.005f;  // tolerated difference of distance, of the distance
-const float KPCN_LEVEL_ALBEDO = 0.05f;  // ... and of albedo, component by component
+/// For the filter levels after the kernels: when a neighbour counts as another surface.
+const float KPCN_LEVEL_NORMAL = 64.0f;  // sharpness of the comparison of normals
+const float KPCN_LEVEL_DEPTH = 0.005f;  // tolerated difference of distance, relative
+const float KPCN_LEVEL_ALBEDO = 0.05f;  // tolerated difference of albedo, per component
 
-/// Where a pass works. Pixels are those of the picture.
+/// The region that a pass computes, in pixels of the picture.
 struct KpcnRegion {
     int left, top;         // the first pixel to compute
-    int width, height;     // of what is computed
-    int originX, originY;  // the first pixel of the buffers
-    int pitch, rows;       // of the buffers
+    int width, height;     // size of the region to compute
+    int originX, originY;  // first pixel that the buffers contain
+    int pitch, rows;       // size of the buffers
     int pictureWidth, pictureHeight;
 };
 
 struct KpcnFeaturesParams {
     KpcnRegion region;
-    float ofMean;   // from mean squared deviations to variances of means: 1 / (samples - 1), 0 for one sample
+    float ofMean;  // factor from mean squared deviation to variance of the mean: 1 / (samples - 1); 0 for one
+                   // sample
     uint specular;  // which side
 };
 
 struct KpcnLayerParams {
     KpcnRegion region;
-    uint inputSlabs;   // of the layer before
-    uint outputTiles;  // slabs of this one
-    uint weights;      // where they begin in the buffer, by 8
-    uint kernelWidth;  // of the last layer: pixels
-    float facing;      // of the last layer: KpcnWeights::facing
+    uint inputSlabs;   // slabs of the previous layer
+    uint outputTiles;  // slabs of this layer
+    uint weights;      // offset in the buffer, in units of 8
+    uint kernelWidth;  // last layer only: pixels
+    float facing;      // last layer only: KpcnWeights::facing
 };
 
 struct KpcnReduceParams {
-    int width, height;  // of the source
+    int width, height;  // size of the source
 };
 
 struct KpcnLevelParams {
     int width, height;
     int step;        // pixels
-    float phiColor;  // deviations that luminances may differ by
+    float phiColor;  // tolerated difference of luminance, deviations
     uint specular;   // which side
 };
 
 struct KpcnComposeParams {
     int width, height;
     float ofMean;          // as in KpcnFeaturesParams
-    float standardErrors;  // how far clean luminance may be from the noisy one; 0: as far as it likes
+    float standardErrors;  // maximum deviation of clean from noisy luminance; 0: no limit
 };
 
 #ifdef __cplusplus

@@ -19,14 +19,14 @@ struct KpcnLayer {
 struct KpcnWeights {
     uint32_t kernelWidth = 0;                     ///< pixels; odd
     std::array<std::vector<KpcnLayer>, 2> sides;  ///< diffuse, specular: hidden layers, then the output
-    /// Least cosine between a pixel's normal and those of what its kernel takes in; -2: no condition. Of the
-    /// network, since it holds in training, too.
+    /// Minimum cosine between a pixel's normal and those of the pixels that its kernel averages; -2: no
+    /// condition. It belongs to the network because it applies in training, too.
     float facing = 0.5f;
 };
 
-/// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is no such network,
-/// lacks or has more tensors than its shape says or others, or holds numbers that are not finite or beyond
-/// half precision.
+/// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is not such a
+/// network, has missing, additional or other tensors than its shape says, or contains numbers that are not
+/// finite or outside the range of half precision.
 KpcnWeights readKpcnWeights(const std::filesystem::path& path);
 
 }  // namespace limpid::denoise

@@ -1,4 +1,4 @@
-// The denoisers that need no network, from their stages: what one frame of each records.
+// The denoisers without a network, composed of stages: each function records one frame.
 #pragma once
 
 #include "denoise/methods/atrous/atrous.h"
@@ -8,7 +8,7 @@
 
 namespace limpid::denoise {
 
-/// One struct per technique; a denoiser heeds its own.
+/// One struct per technique; a denoiser uses its own.
 struct FilterSettings {
     TemporalSettings temporal;
     AtrousSettings atrous;

@@ -177,7 +177,8 @@ ShaderBinding Reflector::image(const spvc_reflected_resource& resource) const {
     return result;
 }
 
-/// texture2D and utexture2D. What is read has no declared format, only floats or unsigned integers as components.
+/// texture2D and utexture2D. What is read has no declared format, only floats or unsigned integers as
+/// components.
 ShaderBinding Reflector::sampledImage(const spvc_reflected_resource& resource) const {
     ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
     const std::string name(result.name);

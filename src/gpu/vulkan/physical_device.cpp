@@ -58,7 +58,7 @@ constexpr const char* listedExtensions[] = {
     VK_KHR_SWAPCHAIN_EXTENSION_NAME,
 };
 
-/// What the `pipeline` tracer needs; the last is only there because the first demands it.
+/// What the `hardware` tracer needs; the last is only there because the first demands it.
 constexpr const char* rayTracingExtensions[] = {
     VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,

@@ -8,19 +8,19 @@
 
 namespace limpid {
 
-/// The mean of `countBefore` samples in `before` and `countAdded` in `added` goes to `after`, all within one
-/// frame. Alpha as below.
+/// Writes the mean of `countBefore` samples in `before` and `countAdded` samples in `added` to `after`, all
+/// within one frame. Alpha is as in the function below.
 struct AccumulateStep {
     gpu::ImageHandle before, added, after;
-    float countBefore = 0.0f;  ///< 0: `before` is not looked at
+    float countBefore = 0.0f;  ///< 0: `before` is not read
     float countAdded = 1.0f;
     VarianceOf varianceOf = VarianceOf::Nothing;
 };
 void accumulateStep(gpu::FrameGraph& graph, const std::string& name, const AccumulateStep& step);
 
 /// Adds `added` (mean of `countAdded` samples; alpha: their mean squared deviation) to the history `name`,
-/// which holds the mean of `countBefore` samples, and returns the new mean. countBefore = 0 starts anew. All
-/// images are rgba32f; with VarianceOf::Nothing alpha is averaged like the rest.
+/// which holds the mean of `countBefore` samples, and returns the new mean. countBefore = 0 starts a new
+/// mean. All images are rgba32f; with VarianceOf::Nothing alpha is averaged like the rest.
 gpu::ImageHandle accumulate(gpu::FrameGraph& graph, const std::string& name, gpu::ImageHandle added,
                             uint64_t countBefore, uint32_t countAdded, VarianceOf varianceOf);
 

@@ -13,7 +13,7 @@ struct AccumulateParams {
     float countBefore;  // samples in the mean so far
     float countAdded;   // samples in this launch
     vec3 weights;       // the alpha channel is the variance of dot(value, weights)
-    uint perComponent;  // 1: of the components' mean instead
+    uint perComponent;  // 1: alpha is the mean variance of the components instead
 };
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-// The ambient-occlusion pass: how open the surroundings of each point of a G-buffer are.
+// The ambient-occlusion pass: the unoccluded share of rays from each point of a G-buffer.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace limpid {
 
-/// What a user may set; the table below is where range and meaning stand.
+/// User settings; the table below gives ranges and descriptions.
 struct AmbientOcclusionSettings {
     float radius = 0.2f;
     int rays = 4;
@@ -19,20 +19,20 @@ struct AmbientOcclusionSettings {
 };
 const ParamTable<AmbientOcclusionSettings>& ambientOcclusionParams();
 
-/// The random numbers: of the G-buffer's launch. They are not those that the G-buffer draws.
+/// Seed and stream of the G-buffer's launch. The numbers drawn differ from those of the G-buffer.
 struct AmbientOcclusionLaunch {
     uint32_t stream = 0;
     uint32_t seed = 0;
     bool samplerTea = false;
 };
 
-/// rgba32f. rgb: the share of rays that meet nothing, 0..1, as grey; 1 where the camera sees nothing; alpha
-/// 0. Rays are cosine-weighted around the shading normal; those that lead into the surface count as stopped.
+/// rgba32f. rgb: the share of rays that hit nothing, 0..1, as grey; 1 where the camera sees nothing. alpha:
+/// 0. Rays are cosine-weighted around the shading normal. Rays that point into the surface count as occluded.
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
                                   const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer);
-/// ... into images made before, for frames of several launches. The last of them has the result, the others
-/// are of the rays before.
+/// The same into existing images, for frames of several launches. The last image has the result; the others
+/// hold the intermediate sums of earlier rays.
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
                                   const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer,
@@ -43,12 +43,12 @@ std::vector<gpu::ImageHandle> makeAmbientOcclusionImages(gpu::FrameGraph& graph,
 
 /// Ambient occlusion as light that denoisers can clean: rgba32f images that the caller makes.
 struct AmbientOcclusionSignal {
-    gpu::ImageHandle diffuse;                                     ///< the open share; 0 where nothing is seen
-    gpu::ImageHandle albedo;                                      ///< 1; 0 where nothing is seen
-    gpu::ImageHandle emission;                                    ///< 1 where nothing is seen, else 0
+    gpu::ImageHandle diffuse;   ///< the unoccluded share; 0 where nothing is seen
+    gpu::ImageHandle albedo;    ///< 1; 0 where nothing is seen
+    gpu::ImageHandle emission;  ///< 1 where nothing is seen, else 0
     gpu::ImageHandle specular, albedoSpecular, reflectionMotion;  ///< 0
 };
-/// `openness`: of ambientOcclusion(); `depth`: of its G-buffer.
+/// `openness`: result of ambientOcclusion(). `depth`: from its G-buffer.
 void ambientOcclusionSignal(gpu::FrameGraph& graph, gpu::ImageHandle openness, gpu::ImageHandle depth,
                             const AmbientOcclusionSignal& into);
 

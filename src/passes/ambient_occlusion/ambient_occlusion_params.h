@@ -13,12 +13,12 @@ struct AmbientOcclusionParams {
     SceneParams scene;
     uint width;
     uint height;
-    uint stream;  // of random numbers
+    uint stream;  // stream of random numbers
     uint seed;
-    uint firstRay;  // of this dispatch; those before are in `before`
-    uint rays;      // of this dispatch, per pixel
-    float reach;    // of a ray, world units
-    float divisor;  // of the sum of open rays: their number in the last dispatch, 1 in others
+    uint firstRay;  // first ray of this dispatch; earlier ones are in `before`
+    uint rays;      // per pixel in this dispatch
+    float reach;    // length of a ray, world units
+    float divisor;  // divides the sum of unoccluded rays: number of rays in the last dispatch, else 1
 };
 
 struct AmbientOcclusionSignalParams {

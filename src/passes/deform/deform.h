@@ -1,4 +1,4 @@
-// Bringing the scene to a moment: uploads what moved, poses vertices on the device, refits their trees.
+// Moves the scene to a point in time: uploads what moved, poses vertices on the device, refits their trees.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
@@ -8,7 +8,7 @@
 namespace limpid {
 
 /// Records the passes "deform/pose", "deform/refit" and, for the `hardware` tracer, "deform/structures".
-/// Later passes of this graph see the scene as `frame` says; so do later frames.
+/// Later passes of this graph, and later frames, see the scene in the state of `frame`.
 void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame);
 
 }  // namespace limpid

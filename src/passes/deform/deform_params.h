@@ -8,9 +8,9 @@ namespace limpid {
 #endif
 
 struct RefitParams {
-    uint first;  // of refitNodes
+    uint first;  // first entry of refitNodes
     uint count;
-    uint firstNode;  // of nodeBounds: the node that its first entry belongs to
+    uint firstNode;  // node of the first entry of nodeBounds
 };
 
 struct ExpandParams {

@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-/// What a user may set; the table below is where range and meaning stand.
+/// User settings; the table below gives ranges and descriptions.
 struct GBufferSettings {
     bool light = true;
     bool shadows = true;
@@ -18,25 +18,25 @@ struct GBufferSettings {
 };
 const ParamTable<GBufferSettings>& gbufferParams();
 
-/// Of one sample; rgba32f, alpha 0 unless said otherwise. The layers that follow from the first hit are those
-/// of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample: on CPUs bit for bit
-/// (but for the sign of 0), elsewhere up to rounding. The other layers are empty.
+/// Images of one sample; rgba32f with alpha 0 unless stated otherwise. Layers that depend only on the first
+/// hit equal those of PathtraceLayers (passes/pathtrace/pathtrace.h) for the same launch of one sample: bit
+/// for bit on CPUs (except for the sign of 0), up to rounding elsewhere. The other layers are empty.
 struct GBufferImages : LayerSet<gpu::ImageHandle> {
-    /// Radiance that the surface scatters of what one light sends to it: an unbiased
-    /// estimate of light scattered once. A perfectly smooth mirror or pane shows nothing.
+    /// Radiance scattered at the surface from one sampled light: an unbiased estimate of single scattering.
+    /// Perfectly smooth mirrors and panes are black.
     gpu::ImageHandle light;
     gpu::ImageHandle position;         ///< xyz: world space; a: magnitude, for offsetRay(); all 0 at a miss
-    gpu::ImageHandle geometricNormal;  ///< of the triangle: unit, on the viewer's side; 0 at a miss
+    gpu::ImageHandle geometricNormal;  ///< the triangle's unit normal on the viewer's side; 0 at a miss
     gpu::ImageHandle counters;         ///< rg32ui: rays and rejected samples since the last reset
 };
 
 GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
                       const CameraLaunch& launch);
-/// ... into images made before, for frames of several launches. `countersBefore` are those of the launch
-/// before.
+/// The same into existing images, for frames of several launches. `countersBefore`: counters of the previous
+/// launch.
 void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
              const CameraLaunch& launch, gpu::ImageHandle countersBefore, const GBufferImages& into);
-/// `given`, and new images for all that it lacks but the counters.
+/// Completes `given` with new images for all empty handles except the counters.
 GBufferImages makeGBufferImages(gpu::FrameGraph& graph, gpu::Extent extent, GBufferImages given = {});
 
 }  // namespace limpid

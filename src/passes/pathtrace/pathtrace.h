@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-/// What a user may set; the table below is where range and meaning stand.
+/// User settings; the table below gives ranges and descriptions.
 struct PathtraceSettings {
     int maxDepth = 8;
     int maxTransmissionDepth = 32;
@@ -34,7 +34,7 @@ struct PathtraceLayers : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle counters;  ///< rg32ui: rays and rejected samples since the last reset
 };
 struct PathtraceBeauty {
-    gpu::ImageHandle beauty;  ///< mean radiance of the launch's samples; a: the share that met a surface
+    gpu::ImageHandle beauty;  ///< mean radiance of the launch's samples; a: the share that hit a surface
     gpu::ImageHandle counters;
 };
 
@@ -44,12 +44,12 @@ PathtraceBeauty pathtraceBeauty(gpu::FrameGraph& graph, const scene::GpuScene& s
 /// Every layer.
 PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch);
-/// ... into images made before, for frames of several launches. `countersBefore` are those of the launch
-/// before.
+/// The same into existing images, for frames of several launches. `countersBefore`: counters of the previous
+/// launch.
 void pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
                      const PathtraceLaunch& launch, gpu::ImageHandle countersBefore,
                      const PathtraceLayers& into);
-/// All images but the counters; their names begin with `prefix`.
+/// All images except the counters; their names begin with `prefix`.
 PathtraceLayers makePathtraceLayers(gpu::FrameGraph& graph, const std::string& prefix, gpu::Extent extent);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// The beauty alone: the fast path of `--pipeline path`. The same for every tracer.
+// The beauty alone: the fast path of `--integrator path`. The same for every tracer.
 const bool SPLIT_LOBES = false;
 #include "passes/pathtrace/pathtrace.glsl"
 

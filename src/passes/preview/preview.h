@@ -1,5 +1,5 @@
-// The preview pass: what the G-buffer saw, shaded as in a modelling program. No light of the scene takes
-// part.
+// The preview pass: shades the first hits of the G-buffer as a modelling program does, without the scene's
+// lights.
 #pragma once
 
 #include "passes/gbuffer/gbuffer.h"

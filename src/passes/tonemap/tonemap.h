@@ -1,4 +1,4 @@
-// The tone-mapping pass: linear radiance to what a screen shows.
+// The tone-mapping pass: converts linear radiance to display values.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"

@@ -11,7 +11,7 @@ namespace limpid {
 struct TonemapParams {
     uint width;
     uint height;
-    float scale;  // of radiance, before the curve
+    float scale;  // factor for radiance, before the curve
 };
 
 #ifdef __cplusplus

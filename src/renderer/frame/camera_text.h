@@ -1,4 +1,4 @@
-// The camera as text, exact, for the attribute "limpid.camera" of EXR files: denoisers need it.
+// The camera as lossless text, for the attribute "limpid.camera" of EXR files, which denoisers need.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ inline constexpr const char* cameraAttribute = "limpid.camera";
 /// CameraParams has them.
 std::string cameraText(const CameraParams& camera);
 
-/// Empty if the text is not of that form, or a number in it is not finite.
+/// Returns nothing if the text does not have that form, or a number in it is not finite.
 std::optional<CameraParams> parseCameraText(std::string_view text);
 
 }  // namespace limpid

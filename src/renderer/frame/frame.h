@@ -1,4 +1,4 @@
-// The whole frame as one recipe.
+// Records all passes of one frame.
 #pragma once
 
 #include <cstddef>
@@ -13,27 +13,27 @@
 
 namespace limpid {
 
-/// Where a render stands.
+/// The inputs of one frame.
 struct FrameInput {
     CameraParams camera;
     CameraParams previousCamera;
-    bool hasPrevious = false;                    ///< there is a previous frame, from which motion is told
+    bool hasPrevious = false;                    ///< there is a previous frame to compute motion from
     const scene::SceneFrame* moved = nullptr;    ///< what moved since the scene was last traced
     uint32_t firstSample = 0;                    ///< per pixel since the last reset, before this frame
-    uint64_t stream = 0;                         ///< of random numbers; no two launches have the same
+    uint64_t stream = 0;                         ///< stream of random numbers; unique for each launch
     uint64_t samplesBefore = 0;                  ///< per pixel, in the running means
     uint32_t samples = 1;                        ///< per pixel, in this frame
-    uint32_t launchSamples = UINT32_MAX;         ///< ... of these in one launch at most, before a denoiser
-    gpu::Backing filters = gpu::Backing::Image;  ///< of images that filters read many times over
+    uint32_t launchSamples = UINT32_MAX;         ///< maximum per launch, if a denoiser follows
+    gpu::Backing filters = gpu::Backing::Image;  ///< storage of images that filters read many times
 };
 
-/// What a frame leaves on the device; images that a pipeline does not make are empty. `path` and `direct`
-/// without layers make `beauty` and `counters`; with layers beauty is the sum of diffuse, specular and
-/// emission. These are running means without a denoiser, and this frame's own with one.
+/// The images that a frame leaves on the device; those that a pipeline does not compute are empty. `path` and
+/// `direct` without layers compute only `beauty` and `counters`; with layers, beauty is the sum of diffuse,
+/// specular and emission. Without a denoiser the images are running means; with one they are of this frame.
 struct FrameImages : PathtraceLayers {
     gpu::ImageHandle beauty;
 
-    /// Of one of frameLayers, or of beautyLayer.
+    /// The image of one of frameLayers, or of beautyLayer.
     gpu::ImageHandle& operator[](const LayerInfo& layer) {
         return layer.index == beautyLayer.index ? beauty : LayerSet::operator[](layer);
     }
@@ -42,7 +42,7 @@ struct FrameImages : PathtraceLayers {
     }
 
     gpu::ImageHandle disocclusion;  ///< denoise::TemporalImages::disocclusion
-    /// From this pass of the graph on they are the denoiser's; none without one.
+    /// Index of the denoiser's first pass in the graph; empty without a denoiser.
     std::optional<size_t> firstDenoisingPass;
 };
 

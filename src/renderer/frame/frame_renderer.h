@@ -1,5 +1,5 @@
-// Frames one after the other, by a pipeline that keeps something from frame to frame: histories of a
-// denoiser, or a mean that goes on as long as nothing changes.
+// Renders successive frames by a pipeline that keeps state between frames: the histories of a denoiser, or a
+// mean that continues until something changes.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +17,42 @@ namespace limpid {
 
 class FrameRenderer {
   public:
-    /// `samples` per pixel and frame, at least 1. The scene must outlive this.
+    /// `samples`: per pixel and frame, at least 1. The scene must outlive this.
     FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
                   uint32_t samples);
 
-    /// Renders the next frame; `moment` says what it shows. Pipelines that denoise keep their histories
-    /// whatever moves; the others start anew when camera, scene, size or settings change. Does not wait for
-    /// the device.
+    /// Renders the next frame, which shows `moment`. Denoising pipelines keep their histories when anything
+    /// moves. The others restart when camera, scene, size or settings change. Does not wait for the device.
     void render(Moment moment);
-    /// For the frames to come. Histories go on unless the samples they are made of are of another kind: then
-    /// it returns true.
+    /// Sets the settings of the following frames. Histories continue, unless their samples are of another
+    /// kind than the new ones; in that case they restart and this returns true.
     bool setSettings(const RenderSettings& settings);
 
-    /// Records what is shown of a frame, after its passes; the picture is displayed() from then on.
+    /// Records passes after those of the frame that make the displayed picture; displayed() returns it.
     using Display = std::function<gpu::ImageHandle(gpu::FrameGraph&, const FrameImages&)>;
     void setDisplay(Display display) { display_ = std::move(display); }
     gpu::ImageHandle displayed() const { return displayed_; }
     gpu::FrameGraph& graph() { return graph_; }
-    /// Per pixel, in the mean of pipelines that accumulate.
+    /// Samples per pixel in the mean, for pipelines that accumulate.
     uint64_t samplesInMean() const { return samplesInMean_; }
 
-    /// Other than the device's own, for measurements and tests.
+    /// Overrides the device's default, for measurements and tests.
     void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
 
-    /// Of the last frame; without settings.layers only what beauty is made of. Waits for the device.
+    /// Downloads the last frame; without settings.layers only the layers that make up beauty. Waits for the
+    /// device.
     RenderedLayers download();
     RenderCounters counters();
-    /// Zeros without temporal accumulation.
+    /// All zero without temporal accumulation.
     denoise::DisocclusionCounts disocclusionCounts();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
-    /// The same of the denoiser's passes alone; empty where the pipeline has none.
+    /// The same for the denoiser's passes only; empty if the pipeline has no denoiser.
     std::vector<gpu::PassTime> denoisingTimes();
-    /// Device memory of the images that the denoiser's passes wrote in the last frame, with its histories.
+    /// Device memory of the images that the denoiser's passes wrote in the last frame, including histories.
     uint64_t denoisingBytes() const;
     const gpu::FrameGraph& graph() const { return graph_; }
-    /// Of the last frame, as it lies on the device (passes/pathtrace/pathtrace.h); empty where the pipeline
-    /// makes none. Waits for the device.
+    /// Motion of the last frame in the device's format (passes/pathtrace/pathtrace.h); empty if the pipeline
+    /// computes none. Waits for the device.
     image::Image motion();
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
         return imagesOfPass(graph_, device_, pass);
@@ -68,13 +68,13 @@ class FrameRenderer {
     uint32_t samples_;
     gpu::Backing filters_;
     gpu::FrameGraph graph_;
-    std::optional<AccumulationState> state_;  ///< of the last frame
+    std::optional<AccumulationState> state_;  ///< state of the last frame
     uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved
-    uint64_t samplesInMean_ = 0;              ///< of pipelines that accumulate
+    uint64_t samplesInMean_ = 0;              ///< for pipelines that accumulate
     FrameImages images_;
     Display display_;
     gpu::ImageHandle displayed_;
-    std::vector<uint32_t> ids_;  ///< of the mean's first launch, through the pixels' centres
+    std::vector<uint32_t> ids_;  ///< ids of the mean's first launch, through the pixels' centres
 };
 
 }  // namespace limpid

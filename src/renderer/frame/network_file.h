@@ -1,4 +1,4 @@
-// Weights of denoisers that are networks: which file, and onto the device.
+// Weights of neural denoisers: finds the file and loads it onto the device.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace limpid {
 
-/// Fewer samples per pixel tell a network too little of a frame.
+/// Minimum samples per pixel of a frame for a network; fewer contain too little information.
 constexpr uint32_t minNetworkSamples = 8;
 
 /// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`, beside
-/// the program, or in ../share/limpid seen from there. Empty if there are none.
+/// the program, or in ../share/limpid relative to it. Empty if there is no such file.
 std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
-/// What the denoiser (null: none) needs, its weights read from `file`; empty: the shipped ones. Throws
-/// InputError as denoise::readKpcnWeights(), and if there is no such file; UsageError if a file is named for
-/// a denoiser that is none.
+/// Loads the network that the denoiser needs (null: none) from `file`, or from the shipped file if `file` is
+/// empty. Throws InputError like denoise::readKpcnWeights(), and if there is no such file; UsageError if a
+/// file is named for a denoiser without a network.
 denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoiser* denoiser,
                                        const std::filesystem::path& file,
                                        const denoise::DenoiserSettings& settings);

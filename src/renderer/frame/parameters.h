@@ -11,11 +11,11 @@
 
 namespace limpid {
 
-/// A technique's ParamTable, applied to where its settings lie in RenderSettings.
+/// A technique's ParamTable, applied to its settings inside RenderSettings.
 struct ParamGroup {
     std::string name;
     std::vector<ParamInfo> infos;
-    /// As ParamTable::set() and get().
+    /// Like ParamTable::set() and get().
     std::function<bool(RenderSettings&, std::string_view name, std::string_view text)> set;
     std::function<ParamValue(const RenderSettings&, size_t index)> get;
 };
@@ -25,7 +25,7 @@ const std::vector<ParamGroup>& paramGroups();
 /// "group.name=value". Throws UsageError if there is no such parameter, or on a bad value.
 void assign(RenderSettings& settings, std::string_view assignment);
 
-/// What assign() must be given to come from the defaults to these settings.
+/// The assignments that turn the defaults into these settings, for assign().
 std::vector<std::string> assignmentsOf(const RenderSettings& settings);
 
 }  // namespace limpid

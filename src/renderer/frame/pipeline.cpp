@@ -35,15 +35,15 @@ std::string_view helpOf(Integrator integrator) {
         case Integrator::Path:
             return "path tracing: all light";
         case Integrator::Direct:
-            return "path tracing of one bounce: light that reaches visible surfaces directly";
+            return "path tracing of one bounce: direct light only";
         case Integrator::AmbientOcclusion:
-            return "ambient occlusion: how open each visible point is";
+            return "ambient occlusion: the unoccluded share at each visible point";
         case Integrator::GBuffer:
-            return "visible surfaces, lit by one sample of one light";
+            return "visible surfaces with direct light from one sampled light";
         case Integrator::Preview:
             break;
     }
-    return "visible surfaces, shaded by a light at the camera: fast, to find one's way";
+    return "visible surfaces, shaded by a light at the camera: fast, for navigation";
 }
 
 bool canBeDenoised(Integrator integrator) {

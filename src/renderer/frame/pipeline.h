@@ -1,4 +1,4 @@
-// What a frame is made by: an integrator, and a denoiser that cleans what it gives.
+// A pipeline: an integrator that computes a frame, and optionally a denoiser that cleans it.
 #pragma once
 
 #include <string>
@@ -13,25 +13,25 @@ namespace limpid {
 enum class Integrator {
     Path,              ///< all light, by path tracing
     Direct,            ///< the path tracer with paths of one bounce
-    AmbientOcclusion,  ///< how open each visible point is
+    AmbientOcclusion,  ///< the unoccluded share at each visible point
     GBuffer,           ///< what the camera sees, lit by one light sample
     Preview,           ///< what the camera sees, shaded without the scene's light
 };
 
-/// All, in the order in which `limpid info` lists them.
+/// All integrators, in the order in which `limpid info` lists them.
 const std::vector<Integrator>& integrators();
 std::string_view nameOf(Integrator integrator);
 std::string_view helpOf(Integrator integrator);
-/// It gives all that denoisers read.
+/// True if the integrator writes all layers that denoisers read.
 bool canBeDenoised(Integrator integrator);
-/// Throws UsageError listing the names if there is none of this one.
+/// Throws UsageError with the list of names if the name is unknown.
 Integrator parseIntegrator(std::string_view name);
 
 /// "none" for null.
 std::string_view nameOf(const denoise::Denoiser* denoiser);
 /// "none" and the denoisers.
 std::vector<std::string_view> denoiserNames();
-/// Null for "none". Throws UsageError listing the names if there is none of this one.
+/// Null for "none". Throws UsageError with the list of names if the name is unknown.
 const denoise::Denoiser* parseDenoiser(std::string_view name);
 
 /// The path tracer alone by default.
@@ -43,20 +43,21 @@ struct Pipeline {
     std::string options() const;
     /// For titles: "ao", "ao, svgf".
     std::string title() const;
-    /// The picture is the mean of all samples since anything changed. Otherwise each frame has its own
+    /// True if the picture is the mean of all samples since the last change. Otherwise each frame has its own
     /// samples, and the denoiser keeps histories.
     bool accumulates() const { return !denoiser; }
-    /// Its denoiser is a neural network, which needs weights and frames of several samples.
+    /// True if its denoiser is a neural network, which needs weights and frames of several samples.
     bool usesNetwork() const { return denoiser && denoiser->network; }
-    /// The integrator's passes trace one primary ray per pixel and launch.
+    /// True if the integrator's passes trace one primary ray per pixel and launch.
     bool takesOneSampleALaunch() const {
         return integrator != Integrator::Path && integrator != Integrator::Direct;
     }
-    /// Its picture is radiance; otherwise values from 0 to 1, which are shown without exposure.
+    /// True if its picture is radiance. Otherwise it has values from 0 to 1, which are shown without
+    /// exposure.
     bool needsExposure() const {
         return integrator != Integrator::AmbientOcclusion && integrator != Integrator::Preview;
     }
-    /// Of layerNames(), in that order: those that an EXR file can have.
+    /// The subset of layerNames(), in that order, that an EXR file of this pipeline can have.
     std::vector<std::string> layers() const;
     bool operator==(const Pipeline&) const = default;
 };

@@ -11,43 +11,45 @@ namespace {
 const std::vector<std::string> lightIntegrators{"path", "direct", "ao"};
 
 Preset historyTrackingCourse() {
-    return {.name = "history-tracking-course",
-            .help =
-                "a course's projects \"History tracking\" and \"Denoising via the A-Trous algorithm\": means "
-                "that follow each pixel, restarted from grey, then five levels of an a-trous filter. Not as "
-                "there: the spline is symmetric, motion of objects is followed and changes the expected "
-                "distance, and what is seen directly (lights, sky) is added at the end, unfiltered",
-            .integrators = lightIntegrators,
-            .denoisers = {"atrous", "temporal"},
-            .jitter = Jitter::Off,
-            .assignments = {"temporal.normal=0.95",
-                            "temporal.depth=0.15",
-                            "temporal.relative=off",
-                            "temporal.search=off",
-                            "temporal.demodulate=off",
-                            "temporal.max_history=0",
-                            "temporal.grey_restart=on",
-                            "temporal.grey=0.5",
-                            "temporal.grey_misses=on",
-                            "temporal.identity=off",
-                            "atrous.temporal=on",
-                            "atrous.levels=5",
-                            "atrous.normal_factor=0.003",
-                            "atrous.depth_factor=0.007",
-                            "atrous.sample_target=0",
-                            "atrous.plane=off",
-                            "atrous.demodulate=on",
-                            "atrous.color_factor=0",
-                            "taa.frames=1",
-                            "pathtrace.through_mirrors=off"}};
+    return {
+        .name = "history-tracking-course",
+        .help =
+            "a course's projects \"History tracking\" and \"Denoising via the A-Trous algorithm\": means "
+            "that follow each pixel, restarted from grey, then five levels of an a-trous filter. "
+            "Differences: "
+            "the spline is symmetric; the motion of objects is followed and changes the expected distance; "
+            "directly visible lights and sky are added at the end, unfiltered",
+        .integrators = lightIntegrators,
+        .denoisers = {"atrous", "temporal"},
+        .jitter = Jitter::Off,
+        .assignments = {"temporal.normal=0.95",
+                        "temporal.depth=0.15",
+                        "temporal.relative=off",
+                        "temporal.search=off",
+                        "temporal.demodulate=off",
+                        "temporal.max_history=0",
+                        "temporal.grey_restart=on",
+                        "temporal.grey=0.5",
+                        "temporal.grey_misses=on",
+                        "temporal.identity=off",
+                        "atrous.temporal=on",
+                        "atrous.levels=5",
+                        "atrous.normal_factor=0.003",
+                        "atrous.depth_factor=0.007",
+                        "atrous.sample_target=0",
+                        "atrous.plane=off",
+                        "atrous.demodulate=on",
+                        "atrous.color_factor=0",
+                        "taa.frames=1",
+                        "pathtrace.through_mirrors=off"}};
 }
 
 Preset ambientOcclusionTutorial() {
     return {.name = "ambient-occlusion-tutorial",
             .help =
                 "C. Wyman's \"DirectX Raytracing, Tutorial 6\": G-buffer, one ambient-occlusion ray per "
-                "pixel and frame, a running mean that starts anew when anything changes. Not as there: what "
-                "the camera sees is traced and not rasterised",
+                "pixel and frame, a running mean that restarts when anything changes. Difference: primary "
+                "visibility is traced, not rasterised",
             .integrators = {"ao"},
             .denoisers = {"none", "temporal", "atrous", "svgf", "kpcn"},
             .jitter = Jitter::Off,
@@ -58,8 +60,8 @@ Preset svgfOfCis565() {
     return {.name = "svgf-cis565",
             .help =
                 "SVGF as in \"Path Tracing Denoising\", a final project of the course CIS 565: one signal "
-                "with its albedo, weights by distances of points and of normals in world units. Not as "
-                "there: the first step is 1 pixel instead of 2, variances are those of a weighted mean",
+                "with its albedo, weights by distances of points and of normals in world units. "
+                "Differences: the first step is 1 pixel instead of 2, variances are those of a weighted mean",
             .integrators = lightIntegrators,
             .denoisers = {"svgf"},
             .jitter = Jitter::Off,
@@ -90,8 +92,9 @@ Preset kpcnOfCis565() {
         .name = "kpcn-cis565",
         .help =
             "the network of \"Path Tracing Denoising\", a final project of the course CIS 565: trained for "
-            "10 epochs on 32 samples, with the inputs, rates and batches that it names, and nothing after "
-            "its kernels. Not as there: it sees the logarithm of diffuse light, and learnt from Limpid's "
+            "10 epochs on 32 samples, with the inputs, rates and batches that it names, and no filter after "
+            "its kernels. Differences: its input is the logarithm of diffuse light, and it was trained on "
+            "Limpid's "
             "random rooms and still lifes",
         .integrators = lightIntegrators,
         .denoisers = {"kpcn"},
@@ -104,7 +107,7 @@ Preset jitterCameraTutorial() {
             .help =
                 "NVIDIA's Vulkan ray tracing tutorial \"Jitter camera\": one ray per pixel and frame through "
                 "a random point of the pixel, the first through its centre, a TEA seed per pixel and frame "
-                "with a linear congruential generator, a running mean of the frames. Not as there: with "
+                "with a linear congruential generator, a running mean of the frames. Difference: with "
                 "--samples-per-launch only the very first sample goes through the centre, not all of frame 0",
             .integrators = {"path", "direct", "ao", "gbuffer"},
             .denoisers = {"none"},
@@ -117,8 +120,8 @@ Preset svgfOfThePaper() {
     return {
         .name = "svgf-paper",
         .help =
-            "Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG 2017, without what Limpid adds "
-            "to it",
+            "Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG 2017, without Limpid's "
+            "extensions",
         .integrators = lightIntegrators,
         .denoisers = {"svgf"},
         .jitter = Jitter::Off,
@@ -157,6 +160,14 @@ void checkIsFor(const std::string& preset, const char* option, std::string_view 
                      listed(names));
 }
 
+void setDefault(RenderSettings& settings, const Assignment& parameter) {
+    for (const ParamGroup& group : paramGroups()) {
+        if (group.name != parameter.group) continue;
+        const auto info = std::ranges::find(group.infos, parameter.name, &ParamInfo::name);
+        if (info != group.infos.end()) group.set(settings, info->name, toString(info->defaultValue));
+    }
+}
+
 }  // namespace
 
 bool Preset::isFor(const Pipeline& pipeline) const {
@@ -191,6 +202,12 @@ void applyPreset(RenderSettings& settings, std::string_view name) {
     const Preset& preset = findPreset(name);
     settings.jitter = preset.jitter;
     for (const std::string& text : preset.assignments) assign(settings, text);
+}
+
+void applyOnlyPreset(RenderSettings& settings, std::string_view name) {
+    for (const Preset& other : presets())
+        for (const std::string& text : other.assignments) setDefault(settings, parseAssignment(text));
+    applyPreset(settings, name);
 }
 
 Pipeline pipelineFor(std::span<const std::string> presetNames, const PipelineChoice& asked,

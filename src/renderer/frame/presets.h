@@ -1,5 +1,4 @@
-// Ways to render that a paper, a course or a tutorial describes, as --preset
-// names them.
+// Presets for --preset: settings that a paper, a course or a tutorial describes.
 #pragma once
 
 #include <span>
@@ -13,36 +12,40 @@ namespace limpid {
 
 struct Preset {
     std::string name;
-    std::string help;  ///< what it follows, and where it does not
-    /// That it is for; the first of each unless another one is asked for.
+    std::string help;  ///< its source, and where it deviates from it
+    /// Supported integrators and denoisers; the first of each is the default.
     std::vector<std::string> integrators, denoisers;
     Jitter jitter = Jitter::Off;
-    /// Without a denoiser: the mean in single precision, launch after launch.
+    /// Without a denoiser: accumulate in single precision, launch after launch.
     bool progressive = false;
     std::vector<std::string> assignments;  ///< as for assign()
 
     bool isFor(const Pipeline& pipeline) const;
-    /// The first of each.
+    /// The default integrator and denoiser.
     Pipeline pipeline() const;
 };
 
 const std::vector<Preset>& presets();
 
-/// Throws UsageError listing the presets if there is none of this name.
+/// Throws UsageError with the list of presets if the name is unknown.
 const Preset& findPreset(std::string_view name);
 
-/// Its jitter and parameters; integrator and denoiser stay. What the user chose besides
-/// is set after this.
+/// Sets jitter and parameters, but not integrator and denoiser. Set the user's other choices after this.
 void applyPreset(RenderSettings& settings, std::string_view name);
 
-/// As after --integrator and --denoiser; "" where the user says nothing.
+/// ... after every parameter that some preset sets has its default again: a preset that was applied before
+/// leaves nothing.
+void applyOnlyPreset(RenderSettings& settings, std::string_view name);
+
+/// Values of --integrator and --denoiser; "" if not given.
 struct PipelineChoice {
     std::string integrator, denoiser;
 };
 
-/// What the user asked for. What is left open is the last preset's first integrator and denoiser that all
-/// presets are for; without presets it is that of `otherwise`, as far as the two go together. Throws
-/// UsageError as parsePipeline(), and if one of the presets is for others: it would be ignored.
+/// The pipeline of the user's choice. An integrator or denoiser that is not given is the first one of the
+/// last preset that all presets support. Without presets it is that of `otherwise`, if the two can be
+/// combined. Throws UsageError like parsePipeline(), and if a preset does not support the result and would be
+/// ignored.
 Pipeline pipelineFor(std::span<const std::string> presetNames, const PipelineChoice& asked,
                      const Pipeline& otherwise);
 

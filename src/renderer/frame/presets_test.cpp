@@ -35,6 +35,19 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
     }
 }
 
+TEST(Presets, OneAfterAnotherIsTheOther) {
+    for (const Preset& first : presets()) {
+        for (const Preset& second : presets()) {
+            RenderSettings both, alone;
+            applyOnlyPreset(both, first.name);
+            applyOnlyPreset(both, second.name);
+            applyOnlyPreset(alone, second.name);
+            EXPECT_EQ(assignmentsOf(both), assignmentsOf(alone)) << first.name << ", " << second.name;
+            EXPECT_EQ(both.jitter, alone.jitter);
+        }
+    }
+}
+
 TEST(Presets, TheCoursesHistoryRestartsFromGreyEverywhereAndTracksAnyObject) {
     RenderSettings settings;
     applyPreset(settings, "history-tracking-course");

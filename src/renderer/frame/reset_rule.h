@@ -1,4 +1,4 @@
-// When a running mean must start anew.
+// When a running mean must restart.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ namespace limpid {
 struct AccumulationState {
     CameraParams camera{};
     RenderSettings settings;
-    uint64_t sceneVersion = 0;  ///< counted up by whoever changes the scene
+    uint64_t sceneVersion = 0;  ///< incremented by whoever changes the scene
 };
 
 bool sameCamera(const CameraParams& a, const CameraParams& b);
 
 /// True if samples taken under `before` must not be averaged with samples under `now`: the camera's matrix or
-/// field of view, the size, any setting, or the scene has changed. (Samples per launch change no pixel's
-/// distribution, and what denoisers do nothing that is accumulated.)
+/// field of view, the size, any setting, or the scene has changed. (Samples per launch do not
+/// change the distribution of a pixel, and the output of denoisers is not accumulated.)
 bool mustReset(const AccumulationState& before, const AccumulationState& now);
 
 }  // namespace limpid

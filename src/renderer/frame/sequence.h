@@ -1,4 +1,4 @@
-// A scene over time: which moment each frame of a sequence shows.
+// A scene over time: the point in time that each frame of a sequence shows.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@ namespace limpid {
 
 struct SequenceTiming {
     double framesPerSecond = 30.0;
-    double start = 0.0;  ///< seconds, of frame 0
+    double start = 0.0;  ///< time of frame 0, seconds
 
     double timeOf(uint64_t frame) const { return start + static_cast<double>(frame) / framesPerSecond; }
 };
 
-/// Every frame can be asked for alone, in any order: it knows the one before it.
+/// Frames can be requested in any order: each also contains the state of the previous frame.
 class Sequence {
   public:
-    /// `scene` is what `data` was built from, and outlives this. `camera` is one of the scene's, or free;
-    /// `path` replaces it.
+    /// `data` was built from `scene`, which must outlive this. `camera` is a camera of the scene or a free
+    /// one; `path` replaces it.
     Sequence(const scene::Scene& scene, const scene::SceneData& data, scene::Camera camera,
              std::optional<scene::CameraPath> path, const SequenceTiming& timing);
 
-    /// For pictures of this size. Motion is invalid in frame 0 and where the camera path cuts.
+    /// The state for a picture of this size. Motion is invalid in frame 0 and at cuts of the camera path.
     Moment moment(uint64_t frame, gpu::Extent extent) const;
     /// The camera alone.
     CameraParams camera(uint64_t frame, gpu::Extent extent) const {

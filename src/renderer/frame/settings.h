@@ -1,4 +1,4 @@
-// What decides a frame's pixels, besides the scene.
+// Everything besides the scene that determines a frame's pixels.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,15 @@
 
 namespace limpid {
 
-/// Means of many samples cover the pixel. Histories follow one point of it: jitter per pixel would flip what
-/// a silhouette's pixels see from frame to frame. A network keeps no history, and its guides are means.
+/// Means of many samples need jitter to cover the pixel. Histories follow one point of it: with jitter per
+/// pixel, pixels at silhouettes would see another surface in each frame. A network keeps no history, and its
+/// guides are means.
 inline Jitter defaultJitter(const Pipeline& pipeline) {
     const bool means = pipeline.accumulates() || pipeline.usesNetwork();
     return means ? Jitter::Pixel : Jitter::Off;
 }
 
-/// As after --jitter.
+/// The value for --jitter.
 inline const char* toString(Jitter jitter) {
     return jitter == Jitter::Pixel ? "pixel" : jitter == Jitter::Frame ? "frame" : "off";
 }
@@ -38,7 +39,7 @@ struct RenderSettings {
     denoise::DenoiserSettings denoisers;
     denoise::DenoiserNetworks networks;
 
-    /// Those of the path tracer, as the integrator uses them: `direct` has one bounce at most.
+    /// The path tracer's settings as the integrator uses them: `direct` has at most one bounce.
     PathtraceSettings pathsTraced() const {
         PathtraceSettings traced = pathtrace;
         if (pipeline.integrator == Integrator::Direct) traced.maxDepth = std::min(traced.maxDepth, 1);

@@ -1,5 +1,5 @@
-// A progressive still: frames are launched until the wanted number of samples is in the mean, then nothing
-// costs.
+// A progressive still: frames are launched until the mean has the requested number of samples. After that the
+// device is idle.
 #pragma once
 
 #include <cstdint>
@@ -28,28 +28,28 @@ struct Moment {
     CameraParams camera;
     std::optional<CameraParams> previousCamera;  ///< empty: the first frame, or a cut; all motion is invalid
     std::optional<scene::SceneFrame> scene;      ///< empty: nothing moves but the camera
-    uint64_t number = 0;                         ///< of the frame: another one, other noise
+    uint64_t number = 0;                         ///< of the frame; selects the random numbers
 };
 
-/// What settings.samplesPerLaunch comes to: CPUs have a limit, and some integrators take one.
+/// The effective settings.samplesPerLaunch: CPUs have a limit, and some integrators take one sample only.
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
 
-/// The images that the pass of this name wrote in the graph's last frame, and those it found there from the
-/// frame before, by name, for --dump; throws UsageError listing the passes if there is none.
+/// For --dump: the images, by name, that the named pass wrote in the graph's last frame, and the history
+/// images that it read. Throws UsageError with the list of passes if there is no such pass.
 std::vector<std::pair<std::string, image::Image>> imagesOfPass(gpu::FrameGraph& graph, gpu::Device& device,
                                                                const std::string& pass);
 
-/// Of a graph's last frame; images that are empty stay out. `samples` per pixel are in the means. Waits for
-/// the device.
+/// Downloads a graph's last frame without its empty images. `samples`: samples per pixel in the means. Waits
+/// for the device.
 RenderedLayers downloadLayers(gpu::FrameGraph& graph, gpu::Device& device, const FrameImages& images,
                               uint64_t samples);
 
 class ProgressiveStill {
   public:
-    /// `maxSamples` per pixel. The scene must outlive this.
+    /// `maxSamples`: per pixel. The scene must outlive this.
     ProgressiveStill(gpu::Device& device, scene::GpuScene& scene, uint64_t maxSamples);
 
-    /// Takes the camera and the settings from now on; resets the mean if the reset rule says so.
+    /// Sets camera and settings; resets the mean if the reset rule requires it.
     void update(const CameraParams& camera, const RenderSettings& settings, uint64_t sceneVersion = 0);
     /// Goes to a frame of a sequence and starts a new mean.
     void update(Moment moment, const RenderSettings& settings);
@@ -76,9 +76,9 @@ class ProgressiveStill {
     AccumulationState state_;
     std::optional<CameraParams> previousCamera_;
     std::optional<scene::SceneFrame> moved_;  ///< since the last launch
-    uint64_t number_ = 0;                     ///< of the frame of a sequence
+    uint64_t number_ = 0;                     ///< number of the sequence's frame
     FrameImages images_;
-    std::vector<uint32_t> ids_;  ///< of frame 0, whose first sample goes through the pixel's centre
+    std::vector<uint32_t> ids_;  ///< ids of frame 0, whose first sample goes through the pixel's centre
     uint64_t samples_ = 0;
     uint32_t frame_ = 0;
 };

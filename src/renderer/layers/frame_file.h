@@ -1,4 +1,4 @@
-// A frame for denoisers from an EXR file with our layers (docs/layers.md).
+// Reads a frame for denoisers from an EXR file with Limpid's layers (docs/layers.md).
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@
 
 namespace limpid {
 
-/// The frame that the file holds. `sequence`: it has a frame before it. Throws InputError if the camera is
-/// missing, or layers that denoising needs (base/layers/layer_table.h: Need), listing all of these. Missing
-/// layers that are advised in a sequence are added to `lacking`: without `id` there is one object, without
-/// `prevNormal` nothing turns. With the layers of variance, and of as many samples as the attribute
-/// "limpid.samples" says; of 32 without it.
+/// The frame in the file, with its variance layers. `sequence`: a previous frame exists. Throws InputError if
+/// the camera is missing, or layers that denoising needs (base/layers/layer_table.h: Need), and lists them
+/// all. Missing layers that are advised for a sequence are added to `lacking`: without `id`, everything
+/// counts as one object; without `prevNormal`, nothing rotates. The number of samples is the attribute
+/// "limpid.samples", or 32 without it.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<const LayerInfo*>& lacking);
 
-/// Throws InputError listing the layers of variance (LayerInfo::varianceInFiles) that the file lacks:
-/// networks need them.
+/// Throws InputError with a list of the missing variance layers (LayerInfo::varianceInFiles), which networks
+/// need.
 void requireVariances(const image::LayeredImage& file, const std::filesystem::path& name);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// From downloaded means to the layers of an EXR file (docs/layers.md).
+// Converts downloaded means to the layers of an EXR file (docs/layers.md).
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@
 
 namespace limpid {
 
-/// Depth of a pixel that sees nothing, in files.
+/// Depth in files of a pixel that hits nothing.
 inline constexpr float missDepth = noValue;
 
-/// Running means as they come from the device, four floats a pixel (base/layers/layer_table.h says which);
-/// `ids` are instance and material, two a pixel. Layers that were not computed are empty.
+/// Running means as downloaded from the device, four floats per pixel (described in
+/// base/layers/layer_table.h). `ids` are instance and material, two per pixel. Layers that were not computed
+/// are empty.
 struct RenderedLayers : LayerSet<std::vector<float>, std::vector<uint32_t>> {
     gpu::Extent extent;
     uint64_t samples = 0;
-    /// Alpha of a path-traced beauty: the share of the samples that met a surface. `depth` says it of others.
+    /// Alpha of a path-traced beauty is the share of samples that hit a surface; for others `depth` gives it.
     std::vector<float> beauty;
 
-    /// Of one of frameLayers that is a mean, or of beautyLayer.
+    /// The values of one of frameLayers that is a mean, or of beautyLayer.
     std::vector<float>& operator[](const LayerInfo& layer) {
         return layer.index == beautyLayer.index ? beauty : LayerSet::operator[](layer);
     }
@@ -36,17 +37,17 @@ struct RenderedLayers : LayerSet<std::vector<float>, std::vector<uint32_t>> {
 /// to the layers that have one.
 const std::vector<std::string>& layerNames();
 
-/// Splits "diffuse,normal" or "all". Throws UsageError listing the names on one that does not exist.
+/// Splits "diffuse,normal" or "all". Throws UsageError with the list of names if one is unknown.
 std::vector<std::string> parseLayers(std::string_view list);
 
 /// The beauty, three components: diffuse + specular + emission, exact in float32 if layers were computed.
 image::Image beautyOf(const RenderedLayers& layers);
 
-/// Of each pixel, the share of the samples that met a surface, one component; empty where nothing says it.
+/// For each pixel, the share of the samples that hit a surface, one component; empty if it is unknown.
 std::vector<float> surfaceShare(const RenderedLayers& layers);
 
-/// Channels for an EXR file: beauty as R G B A plus those of the layers named that were computed.
-/// `colorStorage` is that of Stored::Color.
+/// Channels for an EXR file: beauty as R G B A, and the named layers that were computed. `colorStorage` is
+/// used for Stored::Color.
 image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vector<std::string>& names,
                                    image::Storage colorStorage);
 

@@ -1,4 +1,4 @@
-// Exact sums of a frame's samples, block by block, whoever renders the blocks and in whatever order.
+// Exact sums of a frame's samples, block by block, independent of who renders the blocks and in which order.
 #pragma once
 
 #include <cstdint>
@@ -26,20 +26,20 @@ inline constexpr double squareLimit = 0x1p63;
 /// The sums of one layer.
 struct LayerSums {
     const LayerInfo* info = nullptr;  ///< one that is a mean; beautyLayer where layers are not computed
-    bool squares = false;             ///< summed too, for the variance
+    bool squares = false;             ///< squares are summed, too, for the variance
     std::vector<Int128> values;  ///< by pixel: the components, then the square if there is one; empty: all 0
 
     size_t planes() const { return info->meanComponents() + (squares ? 1 : 0); }
 };
 
-/// Gives the means of a layer, four floats a pixel (base/layers/layer_table.h says which).
+/// Returns the means of a layer, four floats per pixel (base/layers/layer_table.h says which).
 using MeansOf = std::function<std::vector<float>(const LayerInfo&)>;
 
-/// What a block's samples cost and lost.
+/// Counters of a block's samples.
 struct SampleCounts {
     uint64_t rays = 0;      ///< closest-hit and shadow rays
     uint64_t rejected = 0;  ///< samples dropped because they were NaN or infinite
-    uint64_t clamped = 0;   ///< means of blocks that were beyond the limits above, or no numbers
+    uint64_t clamped = 0;   ///< block means that were NaN or beyond the limits above
 
     SampleCounts& operator+=(const SampleCounts& other);
 };
@@ -50,13 +50,12 @@ struct FrameSums {
     BlockPlan plan;
     std::vector<LayerSums> layers;
     std::vector<bool> blocks;  ///< by number: whether it is in the sums
-    uint64_t partSamples = 0;  ///< of a block that was not finished: for a picture, not for a file
+    uint64_t partSamples = 0;  ///< samples of an unfinished block; used for pictures, not for files
     bool wantsIds = false;
-    std::vector<uint32_t> ids;  ///< instance and material, two a pixel; empty until block 0 is in
+    std::vector<uint32_t> ids;  ///< instance and material per pixel; empty until block 0 is added
     SampleCounts counts;
 
-    /// Sums that are zero and take no memory yet, of what the layers named (layers.h; none: beauty alone) are
-    /// made of.
+    /// Sums that are zero and take no memory yet, for the named layers (layers.h; none: beauty only).
     FrameSums(gpu::Extent extent, const BlockPlan& plan, const std::vector<std::string>& layerNames);
 
     uint64_t samples() const;  ///< per pixel, in the sums
@@ -64,14 +63,15 @@ struct FrameSums {
     bool complete() const { return blockCount() == blocks.size(); }
     uint64_t pixels() const { return uint64_t{extent.width} * extent.height; }
 
-    /// Adds the means of a block's samples. Throws Error if the block is in already, or a part of one is.
+    /// Adds the means of a block's samples. Throws Error if the block was added before, or part of a block
+    /// was.
     void addBlock(uint32_t block, const MeansOf& meansOf);
-    /// Adds `samples` of a block that is not finished. No block can be added any more.
+    /// Adds `samples` of an unfinished block. After this no block can be added.
     void addPart(uint32_t samples, const MeansOf& meansOf);
-    /// Adds the other's blocks. Both are of the same frame and layers; throws Error if a block is in both.
+    /// Adds the other's blocks. Both must have the same frame and layers. Throws Error if a block is in both.
     void merge(const FrameSums& other);
 
-    /// The means, as the layers of a picture. Without block 0 there is nothing at any pixel, by `ids`. Throws
+    /// The means, as the layers of a picture. Without block 0, `ids` say that no pixel hit anything. Throws
     /// Error if there are no samples.
     RenderedLayers means() const;
 

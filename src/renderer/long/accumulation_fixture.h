@@ -20,7 +20,7 @@ inline AccumulationHeader smallHeader() {
     return header;
 }
 
-/// Means of `layer` in a block: the same for the same arguments; from -2 to 2, the fourth not negative.
+/// Random means of `layer` in a block, equal for equal arguments: from -2 to 2, the fourth not negative.
 inline std::vector<float> randomMeans(const LayerInfo& layer, uint32_t block, uint64_t pixels) {
     std::seed_seq seed(layer.name.begin(), layer.name.end());
     std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// How the samples of a frame are divided, the same for every process that renders a part of them.
+// Divides the samples of a frame into blocks, in the same way for every process that renders some of them.
 #pragma once
 
 #include <algorithm>
@@ -6,10 +6,10 @@
 
 namespace limpid {
 
-/// Samples per pixel in a block: what is summed on the device in float32 before it goes into the exact sums
-/// (renderer/long/accumulation.h), what a killed render loses at most, and the least that a shard gets.
-/// Fetching a block costs a fast GPU as much as some samples, hence larger blocks where there are many of
-/// them. Depends on nothing else, so that any two devices divide a render alike.
+/// Samples per pixel in a block. A block is summed on the device in float32 and then added to the exact sums
+/// (renderer/long/accumulation.h). It is also the most that a killed render loses, and the least that a shard
+/// gets. On a fast GPU, downloading a block costs as much time as some samples, so blocks are larger if there
+/// are many samples. The size depends on nothing else, so all devices divide a render alike.
 inline constexpr uint32_t blockSamplesFor(uint64_t samples) {
     return samples < 4096 ? 64 : 256;
 }
@@ -17,9 +17,9 @@ inline constexpr uint32_t blockSamplesFor(uint64_t samples) {
 inline constexpr uint64_t maxSamplesPerPixel = uint64_t{1} << 24;
 inline constexpr uint32_t maxBlockSamples = 1u << 16;
 
-/// A frame's samples, in blocks, in launches. A launch never straddles two blocks; the last block, and the
-/// last launch of each, may be short. Random numbers depend on the launch's number in the frame, so the plan
-/// is part of what decides the pixels.
+/// Divides a frame's samples into blocks, and blocks into launches. A launch never spans two blocks. The last
+/// block, and the last launch of each block, may be short. Random numbers depend on the launch's number in
+/// the frame, so the plan affects the pixels.
 struct BlockPlan {
     uint64_t samples = 1;        ///< per pixel: 1 to maxSamplesPerPixel
     uint32_t blockSamples = 64;  ///< 1 to maxBlockSamples
@@ -31,11 +31,11 @@ struct BlockPlan {
             std::min<uint64_t>(blockSamples, samples - uint64_t{block} * blockSamples));
     }
     uint32_t launchesOf(uint32_t block) const { return (samplesOf(block) - 1) / launchSamples + 1; }
-    /// Number, in the frame, of the block's first launch.
+    /// Number of the block's first launch in the frame.
     uint32_t firstLaunch(uint32_t block) const {
         return block * static_cast<uint32_t>((blockSamples - 1) / launchSamples + 1);
     }
-    /// Of the whole frame.
+    /// Number of launches of the whole frame.
     uint64_t launches() const {
         return uint64_t{firstLaunch(blocks() - 1)} + uint64_t{launchesOf(blocks() - 1)};
     }

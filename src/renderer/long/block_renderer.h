@@ -11,7 +11,7 @@
 
 namespace limpid {
 
-/// The plan of a frame; the samples per launch are those of the settings where block and device allow.
+/// The plan of a frame. Samples per launch are those of the settings, limited by block and device.
 BlockPlan planBlocks(const gpu::Device& device, const RenderSettings& settings, uint64_t samples);
 
 class BlockRenderer {
@@ -27,11 +27,11 @@ class BlockRenderer {
     /// is true before a launch. Returns how many samples were rendered: plan.samplesOf(block), or fewer.
     uint32_t render(uint32_t block, const std::function<bool(uint32_t)>& proceed);
 
-    /// Adds what the last render() rendered, a whole block or a part. Waits for the device.
+    /// Adds the samples of the last render(), a whole block or a part of one. Waits for the device.
     void addTo(FrameSums& sums);
 
     bool hasLaunched() const { return launched_; }
-    /// Of all blocks that were added to sums.
+    /// Total over all blocks that were added to sums.
     const SampleCounts& counts() const { return counts_; }
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
     std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
@@ -50,7 +50,7 @@ class BlockRenderer {
     Moment moment_;
     FrameImages images_;
     uint32_t block_ = 0, launchesDone_ = 0, samplesDone_ = 0;
-    std::vector<uint32_t> ids_;  ///< of the frame's first launch, whose first sample goes through the centre
+    std::vector<uint32_t> ids_;  ///< ids of the first launch, whose first sample goes through the centre
     SampleCounts counts_;
     bool launched_ = false;
 };

@@ -1,4 +1,4 @@
-// The file that a killed render goes on from.
+// The file from which a killed render continues.
 #pragma once
 
 #include <chrono>
@@ -16,20 +16,20 @@ class Checkpoint {
     const std::filesystem::path& path() const { return path_; }
     bool exists() const;
 
-    /// What the file holds, checked against `ours`. Throws InputError if it cannot be read, is of another
-    /// render (naming what differs) or of another shard; warns if it comes from another device.
+    /// Reads the file and checks it against `ours`. Throws InputError if it cannot be read, or belongs to
+    /// another render (naming the difference) or another shard. Warns if it comes from another device.
     Accumulation load(const AccumulationHeader& ours) const;
 
-    /// Writes the file, whole or not at all.
+    /// Writes the file completely or not at all.
     void save(const AccumulationHeader& header, const FrameSums& sums);
-    /// Writes it unless that would take more than a twentieth of the time.
+    /// Writes the file, unless writing would take more than a twentieth of the time.
     void saveIfDue(const AccumulationHeader& header, const FrameSums& sums);
 
   private:
     using Clock = std::chrono::steady_clock;
     std::filesystem::path path_;
     Clock::time_point saved_ = Clock::now();
-    Clock::duration cost_{};  ///< of the last time
+    Clock::duration cost_{};  ///< duration of the last save
 };
 
 }  // namespace limpid

@@ -1,5 +1,5 @@
-// Fixed-point numbers of 128 bits, in which sums are exact: neither the order of the terms nor how they are
-// grouped changes a bit of the result.
+// 128-bit fixed-point numbers, whose sums are exact: neither the order nor the grouping of the terms changes
+// the result.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,8 @@ namespace limpid {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 Uint128;
 
-/// The integer nearest to value * 2^fraction; halves go away from zero. |value| < 2^(126 - fraction).
+/// The integer nearest to value * 2^fraction; halves are rounded away from zero. |value| < 2^(126 -
+/// fraction).
 inline Int128 toFixed(double value, int fraction) {
     constexpr uint64_t one = uint64_t{1} << 52;
     const uint64_t bits = std::bit_cast<uint64_t>(value);
@@ -33,7 +34,7 @@ inline long double fromFixed(Int128 value, int fraction) {
     return std::ldexp(static_cast<long double>(value), -fraction);
 }
 
-/// Modulo 2^128: sums read from a file may be anything, and must not be undefined behaviour.
+/// Modulo 2^128: sums read from a file may have any value, and adding them must not be undefined behaviour.
 inline Int128 addFixed(Int128 a, Int128 b) {
     return static_cast<Int128>(static_cast<Uint128>(a) + static_cast<Uint128>(b));
 }

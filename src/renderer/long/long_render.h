@@ -1,5 +1,5 @@
-// A still or a sequence from its first block to its last picture: with a time limit, with checkpoints, in
-// shards, or plainly. All ways give the same bits.
+// Renders a still or a sequence: with a time limit, with checkpoints, in shards, or without any of them. The
+// result is the same to the bit.
 #pragma once
 
 #include <chrono>
@@ -13,14 +13,14 @@
 
 namespace limpid {
 
-/// What a long render asks of its caller.
+/// Callbacks of a long render.
 struct LongRenderEvents {
-    /// Samples per pixel that this run has launched, over all frames.
+    /// Called with the samples per pixel that this run has launched so far, over all frames.
     std::function<void(uint64_t samples)> progress;
-    /// To be called with the sums that a picture, or a shard's file, is made of: whole, or of a still that
-    /// ran out of time.
+    /// Called with the sums for a picture or a shard's file. They are complete, unless a still ran out of
+    /// time.
     std::function<void(uint64_t frame, const FrameSums& sums)> finish;
-    /// Whether what finish() made of a frame is still there. A frame without it is rendered again.
+    /// Whether the output of finish() for a frame still exists. If not, the frame is rendered again.
     std::function<bool(uint64_t frame)> isThere;
 };
 
@@ -28,22 +28,23 @@ class LongRender {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// `header` says which render, frames and shard; its `frame` and `finished` are where to start.
+    /// `header` describes the render, the frames and the shard; rendering starts at its `frame` and
+    /// `finished`.
     LongRender(BlockRenderer& renderer, const Sequence& sequence, AccumulationHeader header);
 
-    /// No launch begins after this time, but that a still has one.
+    /// No launch starts after this time, except that a still gets at least one.
     void setDeadline(Clock::time_point deadline) { deadline_ = deadline; }
-    /// Writes checkpoints from now on; with `resume`, goes on where the file left off, if there is one.
-    /// Throws as Checkpoint does.
+    /// Writes checkpoints from now on. With `resume`, continues from the file if it exists. Throws like
+    /// Checkpoint.
     void setCheckpoint(Checkpoint checkpoint, bool resume);
 
-    /// Of all frames of the shard, samples per pixel that are still to be made.
+    /// Remaining samples per pixel over all frames of the shard.
     uint64_t samplesToDo() const;
-    /// Renders what is to be done. False if time ran out first.
+    /// Renders the rest. Returns false if time ran out first.
     bool run(const LongRenderEvents& events);
 
     uint64_t blocksFinished() const { return blocks_; }  ///< by this run
-    uint64_t framesFinished() const;                     ///< of this shard, by this run and those before
+    uint64_t framesFinished() const;                     ///< of this shard, including earlier runs
     uint64_t framesToDo() const { return finished_.size(); }
     double renderSeconds() const { return seconds_; }
     const AccumulationHeader& header() const { return header_; }
@@ -65,7 +66,7 @@ class LongRender {
     AccumulationHeader header_;
     std::optional<Clock::time_point> deadline_;
     std::optional<Checkpoint> checkpoint_;
-    std::optional<FrameSums> resumed_;  ///< of header_.frame
+    std::optional<FrameSums> resumed_;  ///< sums of header_.frame
     std::vector<bool> finished_;        ///< by number within the shard; a still is one frame
     uint64_t launched_ = 0;             ///< samples per pixel
     uint64_t blocks_ = 0;

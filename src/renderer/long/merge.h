@@ -1,4 +1,4 @@
-// Shards of a still put together.
+// Merges the shards of a still.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace limpid {
 
-/// Reads the files and adds them up; holds two of them at a time. Throws InputError naming the file and the
-/// reason if one cannot be read, is of another render than the first, is of a sequence, or has a block that
-/// an earlier one has; and if all together lack blocks, naming those and the shards they belong to. Warns
-/// where files come from different devices.
+/// Adds the sums of all files, with at most two of them in memory. Throws InputError with the file and the
+/// reason if a file cannot be read, belongs to another render than the first or to a sequence, or contains a
+/// block of an earlier file. Also throws if blocks are missing, naming them and their shards. Warns if files
+/// come from different devices.
 Accumulation mergeAccumulations(std::span<const std::filesystem::path> files);
 
 }  // namespace limpid

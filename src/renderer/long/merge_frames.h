@@ -1,4 +1,4 @@
-// Shards of a sequence put together.
+// Merges the shards of a sequence.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace limpid {
 
-/// What a frame's EXR file says about the render it is from, as string attributes: the render's hash, the
-/// frame's number and how many there are. Empty for a still.
+/// String attributes of a frame's EXR file that identify its render: the render's hash, the frame's number
+/// and the number of frames. Empty for a still.
 std::map<std::string, std::string> frameMetadata(const AccumulationHeader& header, uint64_t frame);
 
-/// Copies the frames of all inputs (EXR files with frameMetadata()) to `output`, byte for byte; returns how
-/// many there are. Nothing is written before all are checked. Throws InputError naming a file and the reason
-/// if an input has no frames, or a frame cannot be read, says nothing of its render, is of another render
-/// than the first, carries another number than its name, or is in an earlier input too; and if all together
-/// lack frames, naming those.
+/// Copies the frames of all inputs (EXR files with frameMetadata()) to `output`, byte for byte; returns
+/// their number. Checks all frames before it writes any. Throws InputError with the file and the reason if an
+/// input has no frames, or a frame cannot be read, does not identify its render, belongs to another render
+/// than the first, contains another number than its name, or is also in an earlier input. Also throws if
+/// frames are missing, naming them.
 int mergeFrames(std::span<const FramePattern> inputs, const FramePattern& output);
 
 }  // namespace limpid

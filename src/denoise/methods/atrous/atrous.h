@@ -1,5 +1,5 @@
-// The edge-avoiding a-trous filter: levels of a 5x5 B3 spline with growing holes, weighted by geometry, over
-// light without albedo. docs/denoising.md has the formulas and the paper.
+// The edge-avoiding a-trous filter: levels of a 5x5 B3 spline whose taps move apart, weighted by geometry.
+// It filters light without albedo. docs/denoising.md has the formulas and the paper.
 #pragma once
 
 #include "base/params.h"
@@ -8,7 +8,7 @@
 
 namespace limpid::denoise {
 
-/// What a user may set; atrousParams() is where range and meaning stand.
+/// User settings; atrousParams() gives ranges and descriptions.
 struct AtrousSettings {
     bool temporal = true;
     int levels = 5;
@@ -22,8 +22,8 @@ struct AtrousSettings {
 };
 const ParamTable<AtrousSettings>& atrousParams();
 
-/// Scattered light, rgba32f: a mean over frames, whose number is in alpha (`second` empty), or the sum of two
-/// images of one frame.
+/// Scattered light, rgba32f: either a mean over frames with their number in alpha (`second` is empty), or the
+/// sum of two images of one frame.
 struct AtrousLight {
     gpu::ImageHandle first, second;
 };

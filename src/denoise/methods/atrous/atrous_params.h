@@ -12,7 +12,7 @@ struct AtrousDemodulateParams {
     CameraParams camera;
     uint width;
     uint height;
-    uint plane;       // the geometry's depth is along `forward`, not along the ray
+    uint plane;       // depth is measured along `forward`, not along the ray
     uint demodulate;  // 0: light is filtered with its albedo
 };
 
@@ -29,7 +29,7 @@ struct AtrousLevelParams {
     int step;           // pixels
     float normalScale;  // 2 log2(e) / (step^2 normal_factor)
     float depthScale;   // sqrt(log2(e) / depth_factor)
-    vec2 toScreen;      // 2 / width, -2 / height: there is no division to spare for every tap
+    vec2 toScreen;      // 2 / width, -2 / height; saves a division per tap
     float fade;         // 4^(level - 1) / sample_target
     float colorScale;   // 4^(level - 1) log2(e) / color_factor
 };

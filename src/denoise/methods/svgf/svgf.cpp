@@ -412,9 +412,10 @@ const ParamTable<SvgfSettings>& svgfParams() {
         t.add("wide", &S::wide, "5x5 taps per pass; off: 3x3, half the reach in half the time");
         t.add("phi_color", &S::phiColor, 1e-6, 1e9, "deviations",
               "Tolerated difference of luminance; higher smooths across shadows");
-        t.add("phi_normal", &S::phiNormal, 1e-6, 1e5, "",
-              "Exponent on the cosine of normals; lower smooths across edges (with `position`: tolerated "
-              "distance of normals; higher smooths across edges)");
+        t.add(
+            "phi_normal", &S::phiNormal, 1e-6, 1e5, "",
+            "Sharpness of the comparison of normals; lower smooths across edges (with `position`: tolerated "
+            "distance of normals; higher smooths across edges)");
         t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
               "Tolerated difference of distance, relative to the surface's slope (with `position`: distance "
               "of points in world units); higher smooths across steps");

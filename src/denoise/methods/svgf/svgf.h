@@ -1,6 +1,6 @@
 // Spatiotemporal variance-guided filtering: C. Schied et al., "Spatiotemporal Variance-Guided Filtering:
-// Real-Time Reconstruction for Path-Traced Global Illumination", HPG 2017. The steps and formulas, and what
-// is added to the paper, are in docs/denoising.md.
+// Real-Time Reconstruction for Path-Traced Global Illumination", HPG 2017. The steps and formulas, and the
+// additions to the paper are in docs/denoising.md.
 #pragma once
 
 #include "base/params.h"
@@ -9,7 +9,7 @@
 
 namespace limpid::denoise {
 
-/// What a user may set; svgfParams() is where range and meaning stand.
+/// User settings; svgfParams() gives ranges and descriptions.
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
@@ -39,15 +39,15 @@ struct SvgfSettings {
 };
 const ParamTable<SvgfSettings>& svgfParams();
 
-/// One frame: the clean beauty, rgba32f, alpha 1. Passes, each once for every signal ("joint", or "diffuse"
-/// and "specular") where a signal is named: "svgf/surfaces", "svgf/reproject SIGNAL", "svgf/tiles SIGNAL"
-/// (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag SIGNAL" (neither
-/// without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on, "svgf/modulate". Histories:
-/// "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it
-/// is fed back, "svgf/SIGNAL stable".
+/// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
+/// for "joint", or for "diffuse" and "specular". Passes: "svgf/surfaces", "svgf/reproject SIGNAL",
+/// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag
+/// SIGNAL" (neither without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on,
+/// "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color",
+/// "svgf/SIGNAL moments" and, unless it is fed back, "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
-/// The same, and the filtered signals by themselves: rgba32f, with albedo, without emission, alpha 1.
+/// The same, and each filtered signal: rgba32f, with albedo, without emission, alpha 1.
 struct SvgfImages {
     gpu::ImageHandle beauty;
     gpu::ImageHandle diffuse;   ///< without `separate`: all light that was filtered

@@ -12,31 +12,31 @@ namespace limpid::denoise {
 #endif
 
 LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
-// Pixels one below the other, a step apart, that an invocation of a level filters. Rows of invocations are
-// rows of pixels, whole cache lines at any step; with more pixels there is room for too few invocations.
+// Number of pixels in a column, a step apart, that one invocation of a level filters. A row of invocations
+// filters a row of pixels, so it reads whole cache lines at any step. More pixels per invocation leave too
+// few invocations in flight.
 LIMPID_CONST int SVGF_COLUMN = 3;
-// In place of a deviation.
+// Special values in place of a deviation.
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // of history: 2 is the first, but for rounding
-LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // less would change little, and cost as much memory traffic
-LIMPID_CONST float SVGF_MIN_SLOPE =
-    0.05;  // cosine: surfaces seen at a more grazing angle have this one's slope
-LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // of the distance: tolerated where a surface faces the viewer
-LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // of the luminance: tolerated where there is no noise
+LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // length of history; 2 is the first, minus rounding
+LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // smaller lags change little and cost as much memory traffic
+LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angles use the slope of this one
+LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;      // minimum tolerance, relative to the distance
+LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
 struct SvgfSizeParams {
     uint width;
     uint height;
 };
 
-/// What tiles make of moments.
+/// How tiles interpret the moments.
 struct SvgfLagParams {
-    float steadyShare;  // of the samples' variance that fast minus slow mean has
+    float steadyShare;  // variance of (fast mean - slow mean) / variance of the samples
     float antilag;
-    float antilagNoise;  // deviations of a tile that are no lag
-    float antilagPixel;  // deviations that one pixel may say
+    float antilagNoise;  // deviations of a tile that count as noise
+    float antilagPixel;  // maximum contribution of one pixel, in deviations
 };
 
 struct SvgfReprojectParams {
@@ -52,7 +52,7 @@ struct SvgfReprojectParams {
     float alphaMoments;
     float alphaFast;
     float longest;             // frames
-    float stabilisationAlpha;  // 1 if there is no stable light of before
+    float stabilisationAlpha;  // 1 if there is no stabilised history
     SvgfLagParams lag;
 };
 
@@ -79,7 +79,7 @@ struct SvgfFilterParams {
     float phiColor;
     float normalScale;         // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;          // log2(e) / phi_depth
-    float stabilisationNoise;  // deviations that the stable light of before may differ by
+    float stabilisationNoise;  // tolerated difference from the stabilised history
 };
 
 struct SvgfModulateParams {
@@ -89,7 +89,7 @@ struct SvgfModulateParams {
 };
 
 #ifndef __cplusplus
-/// What a deviation is multiplied by: the longer the history, the less noise its mean has.
+/// Factor for a deviation: the mean of a longer history has less noise.
 float svgfBoost(bool boost, float frames) {
     return boost ? 2.0 * inversesqrt(max(frames, 1.0)) : 1.0;
 }

@@ -11,7 +11,7 @@
 
 namespace limpid::denoise {
 
-/// What a user may set; temporalParams() is where range and meaning stand.
+/// User settings; temporalParams() gives ranges and descriptions.
 struct TemporalSettings {
     float normal = 0.95f;
     float depth = 0.02f;
@@ -36,8 +36,8 @@ struct TemporalImages {
 };
 
 /// One frame. The three images besides `disocclusion` are histories of the graph ("temporal/color",
-/// "temporal/normal_depth", "temporal/albedo_id"): what they held in the previous frame is read, and nothing
-/// needs clearing when the camera moves.
+/// "temporal/normal_depth", "temporal/albedo_id"): the pass reads their contents of the previous frame.
+/// They need no clearing when the camera moves.
 TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
                                     const TemporalSettings& settings);
 
@@ -46,7 +46,7 @@ struct DisocclusionCounts {
     uint64_t nothingHit = 0, offScreen = 0, noValidTap = 0;
     uint64_t rejected = 0;  ///< samples that were NaN or infinite
 };
-/// Of the image `disocclusion`, as downloaded.
+/// Counts the pixels of the downloaded image `disocclusion`.
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion);
 
 }  // namespace limpid::denoise

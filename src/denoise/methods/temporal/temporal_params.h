@@ -11,8 +11,8 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-// The image `temporal/disocclusion`: why a pixel has no history; the bit is added where its sample was
-// rejected.
+// Values of the image `temporal/disocclusion`: why a pixel has no history. SAMPLE_REJECTED is a bit that is
+// added if the pixel's sample was rejected.
 LIMPID_CONST uint DISOCCLUSION_NONE = 0u;
 LIMPID_CONST uint DISOCCLUSION_NOTHING_HIT = 1u;
 LIMPID_CONST uint DISOCCLUSION_OFF_SCREEN = 2u;  // or behind the previous eye, or there is no previous frame
@@ -32,7 +32,7 @@ struct TemporalParams {
     uint greyRestart;
     uint greyMisses;
     float grey;        // cd/m^2
-    uint identity;     // 0: instances do not count
+    uint identity;     // 0: instances are not compared
     float maxHistory;  // frames; infinite: no limit
 };
 

@@ -1,4 +1,4 @@
-// The last step of methods that keep no albedo apart: scattered light plus emission.
+// The last step of methods that do not separate the albedo: scattered light plus emission.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
@@ -6,7 +6,7 @@
 namespace limpid::denoise {
 
 /// Beauty, rgba32f, alpha 1. `scattered` and `emission` are rgba32f; `disocclusion` is
-/// TemporalImages::disocclusion, in colours instead of light if `showDisocclusion`.
+/// TemporalImages::disocclusion; with `showDisocclusion` its causes are shown as colours instead of light.
 gpu::ImageHandle compose(gpu::FrameGraph& graph, gpu::ImageHandle scattered, gpu::ImageHandle emission,
                          gpu::ImageHandle disocclusion, bool showDisocclusion);
 

@@ -10,7 +10,7 @@ namespace limpid::denoise {
 struct ComposeParams {
     uint width;
     uint height;
-    uint showDisocclusion;  // colours instead of light where there is no history
+    uint showDisocclusion;  // show colours instead of light where there is no history
 };
 
 #ifdef __cplusplus

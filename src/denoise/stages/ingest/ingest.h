@@ -1,4 +1,4 @@
-// The ingest pass: another renderer's images, in the encodings it has, become what the denoisers read.
+// The ingest pass: converts another renderer's images from its encodings to those that the denoisers read.
 #pragma once
 
 #include <array>
@@ -8,15 +8,16 @@
 
 namespace limpid::denoise {
 
-/// Images of a frame, by limpid_input (limpid/denoise.h). Empty handles: the caller does not have them.
+/// Images of a frame, indexed by limpid_input (limpid/denoise.h). A handle is empty if the caller does not
+/// have that image.
 struct IngestImages {
     gpu::ImageHandle radiance, specular, emission, albedo, albedoSpecular;
     gpu::ImageHandle normal, depth, motion, previousNormal, reflectionMotion;
     gpu::ImageHandle id;  ///< unsigned integers
 };
 
-/// Passes: "ingest", and "ingest/ids" if there are any. `params` but for `present`, which follows from the
-/// images. Radiance, normal and depth must be there.
+/// Passes: "ingest", and "ingest/ids" if there are any. `params.present` is ignored; it is
+/// derived from the images. Radiance, normal and depth are required.
 DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestParams params);
 
 }  // namespace limpid::denoise

@@ -35,12 +35,12 @@ struct IngestParams {
     vec4 previousClipX;  // rows of the previous frame's matrix from world to clip space
     vec4 previousClipY;  // y points down
     vec4 previousClipW;
-    vec4 deviceDepth;  // of the projection matrix: rows z and w, columns z and w: zz, zw, wz, ww
+    vec4 deviceDepth;  // elements zz, zw, wz, ww (row, column) of the projection matrix
     vec3 viewX;        // axes of view space in the world
     vec3 viewY;
     vec3 viewZ;
-    vec2 motionToPixels;     // to the position in the previous frame minus the position now
-    float motionToDistance;  // likewise of the third component; 0: motion has none
+    vec2 motionToPixels;     // scales motion to previous minus current position
+    float motionToDistance;  // scales the third component; 0: motion has none
     float farDepth;
     vec2 jitter;  // pixels
     uint width;
