@@ -35,7 +35,7 @@ constexpr std::array<Denoiser, 4> all{
              recordFilter<recordAtrous>, atrousGroups},
     Denoiser{"svgf", "spatiotemporal variance-guided filtering: blurs where and as much as there is noise",
              recordFilter<recordSvgf>, svgfGroups},
-    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, of some 32 samples",
+    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples",
              recordKpcn, kpcnGroups, true}};
 
 }  // namespace
