@@ -32,21 +32,22 @@ using image::LayeredImage;
 
 struct DenoiseOptions {
     std::string input, output, denoiser, exposure = "auto", dump, weights;
-    std::vector<std::string> presets, assignments;
+    std::string preset;
+    std::vector<std::string> assignments;
     DeviceChoice device;
     bool json = false;
 };
 
 /// That of --denoiser, else of --preset.
 const denoise::Denoiser& chosenDenoiser(const DenoiseOptions& o) {
-    const Pipeline pipeline = pipelineFor(o.presets, {.integrator = {}, .denoiser = o.denoiser}, {});
+    const Pipeline pipeline = pipelineFor(o.preset, {.integrator = {}, .denoiser = o.denoiser}, {});
     if (pipeline.denoiser) return *pipeline.denoiser;
     throw UsageError("--denoiser is missing; it is one of " + listOfDenoisers());
 }
 
 denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
     RenderSettings settings;
-    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings.denoisers;
 }
@@ -172,7 +173,7 @@ void addDenoiseCommand(CLI::App& app) {
     command->add_option("--denoiser", o->denoiser,
                         "Denoiser: " + listOfDenoisers() + "; required unless --preset names one");
     refuseMethodOption(*command);
-    command->add_option("--preset", o->presets,
+    command->add_option("--preset", o->preset,
                         "Use a denoiser with the settings of a paper or course; 'limpid info' lists them; "
                         "other options override it");
     command->add_option("--set", o->assignments,

@@ -30,7 +30,8 @@ struct ViewOptions {
     std::optional<uint64_t> maxSamples;
     std::optional<int> shrink;
     std::string settings = "auto", animation, weights, screenshot, controls, shaders;
-    std::vector<std::string> presets, assignments;
+    std::string preset;
+    std::vector<std::string> assignments;
     uint32_t width = 1280, height = 720, seed = 0;
     uint64_t frames = 0, loseDeviceAt = 0;
 };
@@ -62,12 +63,14 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
     settings.maxSamples = o.maxSamples.value_or(settings.maxSamples);
     settings.shrink = o.shrink.value_or(settings.shrink);
     settings.render.extent = {o.width, o.height};
-    settings.render.pipeline = pipelineFor(o.presets, o.pipeline, settings.render.pipeline);
+    settings.render.pipeline = pipelineFor(o.preset, o.pipeline, settings.render.pipeline);
     settings.render.seed = o.seed;
     if (!o.scene.camera.empty()) settings.startCamera = "--camera " + viewer::quoted(o.scene.camera);
     if (!o.scene.eye.empty()) settings.startCamera += eyeOptions(o.scene);
-    for (const std::string& preset : o.presets) applyPreset(settings.render, preset);
-    if (!o.presets.empty()) settings.jitter = settings.render.jitter;
+    if (!o.preset.empty()) {
+        applyOnlyPreset(settings.render, o.preset);
+        settings.jitter = settings.render.jitter;
+    }
     for (const std::string& text : o.assignments) assign(settings.render, text);
     return settings;
 }
@@ -106,7 +109,7 @@ void addViewCommand(CLI::App& app) {
     addPipelineOptions(*command, o->pipeline, "the last one; at first path", "the last one; at first none");
     command->add_flag("--preview", o->preview,
                       "Start with the fast preview: first hits, shaded by a light at the camera");
-    command->add_option("--preset", o->presets,
+    command->add_option("--preset", o->preset,
                         "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
     command->add_option("--set", o->assignments,
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");

@@ -28,14 +28,15 @@ struct DenoiseBench {
     SceneChoice scene{.scene = "builtin:cornell"};
     std::string cameraPath = "shake";
     PipelineChoice pipeline;
-    std::vector<std::string> presets, assignments;
+    std::string preset;
+    std::vector<std::string> assignments;
     uint32_t width = 640, height = 360, frames = 100, warmup = 20;
     bool json = false;
     std::string filters = "auto", weights;
 };
 
 Pipeline pipelineOf(const DenoiseBench& o) {
-    return pipelineFor(o.presets, o.pipeline, parsePipeline("path", "atrous"));
+    return pipelineFor(o.preset, o.pipeline, parsePipeline("path", "atrous"));
 }
 
 /// Bytes per second of a copy between images larger than any cache.
@@ -67,7 +68,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     settings.extent = {o.width, o.height};
     settings.pipeline = pipelineOf(o);
     settings.jitter = Jitter::Off;
-    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     settings.networks = loadNetworks(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
@@ -124,7 +125,7 @@ void addDenoiseBench(CLI::App& bench) {
     command->add_option("--camera-path", o->cameraPath,
                         "Camera path: a JSON file, orbit, dolly or shake (shake)");
     addPipelineOptions(*command, o->pipeline, "path, or the preset's", "atrous, or the preset's");
-    command->add_option("--preset", o->presets,
+    command->add_option("--preset", o->preset,
                         "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
     command->add_option("--set", o->assignments,
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");

@@ -27,8 +27,8 @@ constexpr int maxLevels = 8;
 
 struct SvgfBench {
     DeviceChoice device;
-    std::string scene = "builtin:cornell-spheres", folder;
-    std::vector<std::string> presets, assignments;
+    std::string scene = "builtin:cornell-spheres", folder, preset;
+    std::vector<std::string> assignments;
     uint32_t width = 640, height = 360, frames = 30, warmup = 10;
     bool json = false;
 };
@@ -70,9 +70,9 @@ Stages stagesOf(const std::map<std::string, PassCost>& costs) {
 RenderSettings settingsOf(const SvgfBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
-    settings.pipeline = pipelineFor(o.presets, {"path", "svgf"}, {});
+    settings.pipeline = pipelineFor(o.preset, {"path", "svgf"}, {});
     settings.jitter = Jitter::Off;
-    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings;
 }
@@ -189,7 +189,7 @@ void addSvgfBench(CLI::App& bench) {
     auto o = std::make_shared<SvgfBench>();
     command->add_option("--scene", o->scene,
                         "Scene for the measurement of stages and levels (builtin:cornell-spheres)");
-    command->add_option("--preset", o->presets,
+    command->add_option("--preset", o->preset,
                         "Preset of SVGF from a paper or course; 'limpid info' lists them");
     command->add_option("--set", o->assignments,
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");

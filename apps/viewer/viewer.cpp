@@ -116,6 +116,7 @@ class Viewer {
     void savePath();
     void saveLights();
     void writeControls();
+    void noteRendering(bool now);
     /// Runs what may fail for reasons of the user's; says so in the window. Whether it did not.
     template <typename Function>
     bool attempt(const Function& function);
@@ -144,6 +145,7 @@ class Viewer {
     int ownShrink_ = 0;       ///< where none is chosen
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
+    bool rendering_ = false;  ///< this picture, or the last one
     Clock::time_point messageSince_{};
 };
 
@@ -590,13 +592,18 @@ void Viewer::writeControls() {
     const std::string text =
         fmt::format(
             "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n"
-            "scenes\t{}\n",
+            "scenes\t{}\nrendering\t{}\n",
             facts_.frames, facts_.samplesInMean, facts_.fault, facts_.message, facts_.probe, values,
-            facts_.comparedWith, scenesShown_) +
+            facts_.comparedWith, scenesShown_, rendering_ ? "yes" : "no") +
         controls_.text();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);
+}
+
+/// Told before a frame begins: while it is computed, nothing else is written.
+void Viewer::noteRendering(bool now) {
+    if (std::exchange(rendering_, now) != now && now) writeControls();
 }
 
 void Viewer::run() {
@@ -621,6 +628,7 @@ void Viewer::run() {
         const CameraParams camera = cameraNow();
         const bool main = mustRender(camera);
         bool other = false;
+        noteRendering(main);
         if (main) {
             render(camera);
         } else if (main_ && panel_.running && comparison_.mustRender(panel_, camera, false)) {

@@ -139,6 +139,11 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output,
                 HasSubstr("the presets are ambient-occlusion-tutorial history-tracking-course"));
+    // One preset describes a whole method: a second one would override parts of it.
+    result = run("render builtin:cornell -o " + path("a.png") +
+                 " --preset history-tracking-course --preset ambient-occlusion-tutorial");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("--preset"));
     // A preset that the pipeline would ignore.
     result = run("render builtin:cornell -o " + path("a.png") + " --denoiser kpcn --preset svgf-paper");
     EXPECT_EQ(result.code, 2);

@@ -147,7 +147,7 @@ class DrivenViewer {
         std::string last;
         waitFor("the picture to settle", [&] {
             const std::string now = fact("frames") + " " + fact("samples");
-            const bool same = now == last;
+            const bool same = now == last && fact("rendering") == "no";
             last = now;
             std::this_thread::sleep_for(std::chrono::milliseconds(400));
             return same;

@@ -102,7 +102,7 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
                     "default: pixel, but off with denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
     addPipelineOptions(command, o.pipeline, "path, or the preset's", "none, or the preset's");
-    command.add_option("--preset", o.presets,
+    command.add_option("--preset", o.preset,
                        "Use all settings of a paper, course or tutorial, as in svgf-paper; 'limpid info' "
                        "lists them; other options override it");
     command.add_option("--set", o.assignments,
@@ -126,7 +126,7 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
 }
 
 Pipeline pipelineOf(const RenderOptions& o) {
-    return pipelineFor(o.presets, o.pipeline, {});
+    return pipelineFor(o.preset, o.pipeline, {});
 }
 
 bool hasIndependentFrames(const Pipeline& pipeline) {
@@ -134,8 +134,7 @@ bool hasIndependentFrames(const Pipeline& pipeline) {
 }
 
 bool isProgressive(const RenderOptions& o) {
-    const bool byPreset = std::ranges::any_of(
-        o.presets, [](const std::string& preset) { return findPreset(preset).progressive; });
+    const bool byPreset = !o.preset.empty() && findPreset(o.preset).progressive;
     return o.progressive || (byPreset && !isLongRender(o.longRender));
 }
 
@@ -147,7 +146,7 @@ RenderSettings settingsOf(const RenderOptions& o) {
     settings.pipeline = pipelineOf(o);
     settings.jitter = defaultJitter(settings.pipeline);
     settings.layers = !o.layers.empty();
-    for (const std::string& preset : o.presets) applyPreset(settings, preset);
+    applyPreset(settings, o.preset);
     if (!o.jitter.empty()) settings.jitter = parseJitter(o.jitter);
     if (!o.sampler.empty()) settings.pathtrace.samplerTea = o.sampler == "tea";
     if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;

@@ -27,7 +27,8 @@ struct RenderOptions {
     int maxDepth = -1;  // -1: the parameter's own default
     PipelineChoice pipeline;
     std::string sampler, jitter, exposure = "auto", layers, dump, weights;  ///< "": as the preset says
-    std::vector<std::string> presets, assignments;
+    std::string preset;
+    std::vector<std::string> assignments;
     bool progressive = false, floatExr = false, json = false;
 };
 

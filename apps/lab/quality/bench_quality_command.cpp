@@ -35,7 +35,8 @@ namespace {
 struct QualityOptions {
     DeviceChoice device;
     MethodChoice methods;
-    std::vector<std::string> scenes, presets, assignments;
+    std::string preset;
+    std::vector<std::string> scenes, assignments;
     std::string integrator, environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder,
                                          referenceFolder, weights;
     uint32_t width = 640, height = 360, samples = 1;
@@ -50,8 +51,8 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     common.layers = true;  // the noisy frames are judged too
     for (const std::string& denoiser : o.methods.denoisers)
         common.pipeline.integrator =
-            pipelineFor(o.presets, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
-    for (const std::string& preset : o.presets) applyPreset(common, preset);
+            pipelineFor(o.preset, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
+    applyPreset(common, o.preset);
     common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // as the references
     for (const std::string& text : o.assignments) assign(common, text);
     return methodsOf(o.methods, common);
@@ -254,15 +255,12 @@ void complete(QualityOptions& o, const CLI::App& command) {
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
     if (!o.methods.denoisers.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        const bool fits = std::ranges::all_of(o.presets, [&](const std::string& preset) {
-            const std::vector<std::string>& names = findPreset(preset).denoisers;
-            return std::ranges::find(names, denoiser.name) != names.end();
-        });
+        const bool fits = o.preset.empty() || findPreset(o.preset).isForDenoiser(denoiser.name);
         if (fits && (!denoiser.network || o.samples >= minNetworkSamples))
             o.methods.denoisers.emplace_back(denoiser.name);
     }
     if (o.methods.denoisers.empty())
-        throw UsageError("--preset: no denoiser is left that all of them are for");
+        throw UsageError("--preset " + o.preset + ": is for no denoiser that can be measured");
 }
 
 void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>& o) {
@@ -315,7 +313,7 @@ void addQualityBench(CLI::App& bench) {
     refusePipelineOption(*command);
     command->add_option("--weights", o->weights,
                         "Weights file for kpcn instead of the one that comes with Limpid");
-    command->add_option("--preset", o->presets,
+    command->add_option("--preset", o->preset,
                         "Preset of a denoiser from a paper or course (repeatable); 'limpid info' lists them");
     command->add_option("--set", o->assignments,
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");

@@ -68,7 +68,7 @@ RenderSettings withDenoiser(RenderSettings settings, const std::string& name) {
 /// Jitter stays as the references have it.
 void applyPresetTo(RenderSettings& settings, const std::string& preset) {
     pipelineFor(
-        std::span(&preset, 1),
+        preset,
         {std::string(nameOf(settings.pipeline.integrator)), std::string(nameOf(settings.pipeline.denoiser))},
         {});
     const Jitter jitter = settings.jitter;

@@ -141,23 +141,11 @@ bool contains(const std::vector<std::string>& names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
 }
 
-/// The last preset's first name that all presets have; its first if they have none in common.
-std::string commonName(std::span<const std::string> presetNames, std::vector<std::string> Preset::*namesOf) {
-    const std::vector<std::string>& last = findPreset(presetNames.back()).*namesOf;
-    for (const std::string& name : last) {
-        const bool common = std::ranges::all_of(presetNames, [&](const std::string& preset) {
-            return contains(findPreset(preset).*namesOf, name);
-        });
-        if (common) return name;
-    }
-    return last.front();
-}
-
-void checkIsFor(const std::string& preset, const char* option, std::string_view name,
+void checkIsFor(const Preset& preset, const char* option, std::string_view name,
                 const std::vector<std::string>& names) {
     if (contains(names, name)) return;
-    throw UsageError("--preset " + preset + ": is not for " + option + " " + std::string(name) + ", but for" +
-                     listed(names));
+    throw UsageError("--preset " + preset.name + ": is not for " + option + " " + std::string(name) +
+                     ", but for" + listed(names));
 }
 
 void setDefault(RenderSettings& settings, const Assignment& parameter) {
@@ -171,8 +159,11 @@ void setDefault(RenderSettings& settings, const Assignment& parameter) {
 }  // namespace
 
 bool Preset::isFor(const Pipeline& pipeline) const {
-    return contains(integrators, nameOf(pipeline.integrator)) &&
-           contains(denoisers, nameOf(pipeline.denoiser));
+    return contains(integrators, nameOf(pipeline.integrator)) && isForDenoiser(nameOf(pipeline.denoiser));
+}
+
+bool Preset::isForDenoiser(std::string_view denoiser) const {
+    return contains(denoisers, denoiser);
 }
 
 Pipeline Preset::pipeline() const {
@@ -199,6 +190,7 @@ const Preset& findPreset(std::string_view name) {
 }
 
 void applyPreset(RenderSettings& settings, std::string_view name) {
+    if (name.empty()) return;
     const Preset& preset = findPreset(name);
     settings.jitter = preset.jitter;
     for (const std::string& text : preset.assignments) assign(settings, text);
@@ -210,22 +202,19 @@ void applyOnlyPreset(RenderSettings& settings, std::string_view name) {
     applyPreset(settings, name);
 }
 
-Pipeline pipelineFor(std::span<const std::string> presetNames, const PipelineChoice& asked,
-                     const Pipeline& otherwise) {
-    const bool open = presetNames.empty();
+Pipeline pipelineFor(std::string_view presetName, const PipelineChoice& asked, const Pipeline& otherwise) {
+    const Preset* const preset = presetName.empty() ? nullptr : &findPreset(presetName);
+    const Pipeline offered = preset ? preset->pipeline() : otherwise;
     std::string integrator = asked.integrator, denoiser = asked.denoiser;
-    if (integrator.empty())
-        integrator = open ? nameOf(otherwise.integrator) : commonName(presetNames, &Preset::integrators);
-    if (denoiser.empty())
-        denoiser = open ? nameOf(otherwise.denoiser) : commonName(presetNames, &Preset::denoisers);
-    if (open && !canBeDenoised(parseIntegrator(integrator))) {
+    if (integrator.empty()) integrator = nameOf(offered.integrator);
+    if (denoiser.empty()) denoiser = nameOf(offered.denoiser);
+    if (!preset && !canBeDenoised(parseIntegrator(integrator))) {
         if (asked.denoiser.empty()) denoiser = nameOf(nullptr);
         if (asked.integrator.empty() && parseDenoiser(denoiser)) integrator = nameOf(Integrator::Path);
     }
-    for (const std::string& each : presetNames) {
-        const Preset& preset = findPreset(each);
-        checkIsFor(each, "--integrator", nameOf(parseIntegrator(integrator)), preset.integrators);
-        checkIsFor(each, "--denoiser", nameOf(parseDenoiser(denoiser)), preset.denoisers);
+    if (preset) {
+        checkIsFor(*preset, "--integrator", nameOf(parseIntegrator(integrator)), preset->integrators);
+        checkIsFor(*preset, "--denoiser", nameOf(parseDenoiser(denoiser)), preset->denoisers);
     }
     return parsePipeline(integrator, denoiser);
 }

@@ -1,7 +1,6 @@
 // Presets for --preset: settings that a paper, a course or a tutorial describes.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +20,7 @@ struct Preset {
     std::vector<std::string> assignments;  ///< as for assign()
 
     bool isFor(const Pipeline& pipeline) const;
+    bool isForDenoiser(std::string_view denoiser) const;
     /// The default integrator and denoiser.
     Pipeline pipeline() const;
 };
@@ -30,7 +30,8 @@ const std::vector<Preset>& presets();
 /// Throws UsageError with the list of presets if the name is unknown.
 const Preset& findPreset(std::string_view name);
 
-/// Sets jitter and parameters, but not integrator and denoiser. Set the user's other choices after this.
+/// Sets jitter and parameters, but not integrator and denoiser. Set the user's other choices after this. ""
+/// changes nothing.
 void applyPreset(RenderSettings& settings, std::string_view name);
 
 /// ... after every parameter that some preset sets has its default again: a preset that was applied before
@@ -42,11 +43,9 @@ struct PipelineChoice {
     std::string integrator, denoiser;
 };
 
-/// The pipeline of the user's choice. An integrator or denoiser that is not given is the first one of the
-/// last preset that all presets support. Without presets it is that of `otherwise`, if the two can be
-/// combined. Throws UsageError like parsePipeline(), and if a preset does not support the result and would be
-/// ignored.
-Pipeline pipelineFor(std::span<const std::string> presetNames, const PipelineChoice& asked,
-                     const Pipeline& otherwise);
+/// The pipeline of the user's choice. An integrator or denoiser that is not given is the preset's first.
+/// Without a preset ("") it is that of `otherwise`, if the two can be combined. Throws UsageError like
+/// parsePipeline(), and if the preset does not support the result and would be ignored.
+Pipeline pipelineFor(std::string_view presetName, const PipelineChoice& asked, const Pipeline& otherwise);
 
 }  // namespace limpid
