@@ -28,7 +28,7 @@ json devicesJson(const std::vector<gpu::DeviceInfo>& devices) {
         for (const auto& [name, value] : device.limits) limits[name] = value;
         list.push_back({{"index", device.index},
                         {"name", device.name},
-                        {"type", device.type},
+                        {"type", nameOf(device.type)},
                         {"driver", device.driver},
                         {"api_version", device.apiVersion},
                         {"memory_bytes", device.memoryBytes},
@@ -96,7 +96,7 @@ json scenesJson() {
 }
 
 void printDevice(const gpu::DeviceInfo& device) {
-    fmt::print("{}: {} ({}, {}, Vulkan {}, {:.1f} GiB)\n", device.index, device.name, device.type,
+    fmt::print("{}: {} ({}, {}, Vulkan {}, {:.1f} GiB)\n", device.index, device.name, nameOf(device.type),
                device.driver, device.apiVersion,
                static_cast<double>(device.memoryBytes) / (1024.0 * 1024.0 * 1024.0));
     if (!device.usable) fmt::print("   not usable: {}\n", device.whyNot);

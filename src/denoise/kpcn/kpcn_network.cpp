@@ -59,7 +59,7 @@ std::string_view toString(KpcnPrecision precision) {
 }
 
 KpcnPrecision kpcnPrecision(const gpu::DeviceInfo& device, bool half) {
-    if (device.type == "cpu" && kpcnHostAvailable()) return KpcnPrecision::Host;
+    if (device.type == gpu::DeviceType::Cpu && kpcnHostAvailable()) return KpcnPrecision::Host;
     if (!half) return KpcnPrecision::Float;
     return device.cooperativeMatrices ? KpcnPrecision::Matrices : KpcnPrecision::Half;
 }

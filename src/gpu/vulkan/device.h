@@ -36,10 +36,15 @@ class Unsupported : public Error {
 };
 
 /// What `limpid info` lists of a physical device.
+/// In the order in which a device is chosen.
+enum class DeviceType { Discrete, Integrated, Virtual, Other, Cpu };
+/// "discrete", "integrated", "virtual", "other", "cpu".
+std::string_view nameOf(DeviceType type);
+
 struct DeviceInfo {
     uint32_t index = 0;
     std::string name;
-    std::string type;    ///< "discrete", "integrated", "virtual", "cpu", "other"
+    DeviceType type = DeviceType::Other;
     std::string driver;  ///< driver name and version
     std::string apiVersion;
     uint64_t memoryBytes = 0;  ///< the largest device-local heap
@@ -89,7 +94,7 @@ class Device {
     Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const;
-    bool isCpu() const { return info().type == "cpu"; }
+    bool isCpu() const { return info().type == DeviceType::Cpu; }
     /// Messages of the validation layer so far (warnings and errors, not performance advice). Tests want 0.
     uint64_t validationMessages() const;
     /// Device memory that is allocated now, staging and all.

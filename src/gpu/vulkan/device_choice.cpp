@@ -14,7 +14,7 @@ namespace {
 std::string describe(const std::vector<DeviceInfo>& infos) {
     std::string text;
     for (const DeviceInfo& info : infos) {
-        text += formatText("\n  {}: {} ({}){}", info.index, info.name, info.type,
+        text += formatText("\n  {}: {} ({}){}", info.index, info.name, nameOf(info.type),
                            info.usable ? "" : ", unusable: it lacks " + info.whyNot);
     }
     return text;
@@ -27,20 +27,20 @@ std::string lowerCase(std::string_view text) {
     return lower;
 }
 
-int rank(const DeviceInfo& info) {
-    constexpr std::string_view order[] = {"discrete", "integrated", "virtual", "other", "cpu"};
-    return static_cast<int>(std::ranges::find(order, info.type) - std::begin(order));
-}
-
 bool matches(const DeviceInfo& info, const std::string& select) {
     if (select.empty()) return true;
-    if (lowerCase(select) == "cpu") return info.type == "cpu";
+    if (lowerCase(select) == "cpu") return info.type == DeviceType::Cpu;
     const bool number = std::ranges::all_of(select, [](unsigned char c) { return std::isdigit(c); });
     if (number) return std::to_string(info.index) == select;
     return lowerCase(info.name).find(lowerCase(select)) != std::string::npos;
 }
 
 }  // namespace
+
+std::string_view nameOf(DeviceType type) {
+    constexpr std::string_view names[] = {"discrete", "integrated", "virtual", "other", "cpu"};
+    return names[static_cast<size_t>(type)];
+}
 
 size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select) {
     if (infos.empty()) {
@@ -53,7 +53,7 @@ size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& sele
     for (size_t i = 0; i < infos.size(); ++i) {
         if (!matches(infos[i], select)) continue;
         anyMatch = true;
-        if (infos[i].usable && (!best || (select.empty() && rank(infos[i]) < rank(infos[*best])))) best = i;
+        if (infos[i].usable && (!best || (select.empty() && infos[i].type < infos[*best].type))) best = i;
     }
     if (best) return *best;
     const std::string list = describe(infos);

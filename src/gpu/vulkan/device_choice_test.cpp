@@ -14,7 +14,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-DeviceInfo described(uint32_t index, const char* name, const char* type, bool usable = true) {
+DeviceInfo described(uint32_t index, const char* name, DeviceType type, bool usable = true) {
     DeviceInfo info;
     info.index = index;
     info.name = name;
@@ -24,10 +24,11 @@ DeviceInfo described(uint32_t index, const char* name, const char* type, bool us
     return info;
 }
 TEST(DeviceChoice, FollowsTheRules) {
-    const std::vector<DeviceInfo> infos{
-        described(0, "llvmpipe (LLVM 15)", "cpu"), described(1, "Old GPU", "discrete", false),
-        described(2, "Intel UHD", "integrated"), described(3, "NVIDIA H200", "discrete"),
-        described(4, "NVIDIA H200", "discrete")};
+    const std::vector<DeviceInfo> infos{described(0, "llvmpipe (LLVM 15)", DeviceType::Cpu),
+                                        described(1, "Old GPU", DeviceType::Discrete, false),
+                                        described(2, "Intel UHD", DeviceType::Integrated),
+                                        described(3, "NVIDIA H200", DeviceType::Discrete),
+                                        described(4, "NVIDIA H200", DeviceType::Discrete)};
     EXPECT_EQ(chooseIndex(infos, ""), 3u);
     EXPECT_EQ(chooseIndex(infos, "cpu"), 0u);
     EXPECT_EQ(chooseIndex(infos, "CPU"), 0u);

@@ -74,18 +74,18 @@ struct Properties {
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
 };
 
-std::string_view typeName(VkPhysicalDeviceType type) {
+DeviceType deviceType(VkPhysicalDeviceType type) {
     switch (type) {
         case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-            return "discrete";
+            return DeviceType::Discrete;
         case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-            return "integrated";
+            return DeviceType::Integrated;
         case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-            return "virtual";
+            return DeviceType::Virtual;
         case VK_PHYSICAL_DEVICE_TYPE_CPU:
-            return "cpu";
+            return DeviceType::Cpu;
         default:
-            return "other";
+            return DeviceType::Other;
     }
 }
 
@@ -191,7 +191,7 @@ void inspectRayTracing(const InstanceFunctions& vk, PhysicalDevice& device,
     // Drivers that emulate ray tracing on shader cores: NVIDIA's on data-centre GPUs offers no ray queries,
     // and on GeForce 10 and 16 it does.
     const std::string& name = device.info.name;
-    device.info.rayTracingCores = device.info.rayTracing && device.info.type != "cpu" &&
+    device.info.rayTracingCores = device.info.rayTracing && device.info.type != DeviceType::Cpu &&
                                   extensions.contains(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
                                   name.find("GTX") == std::string::npos;
     VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
@@ -279,7 +279,7 @@ PhysicalDevice inspect(const InstanceFunctions& vk, VkPhysicalDevice handle, uin
     DeviceInfo& info = device.info;
     info.index = index;
     info.name = basics.deviceName;
-    info.type = typeName(basics.deviceType);
+    info.type = deviceType(basics.deviceType);
     info.apiVersion = versionText(basics.apiVersion);
     info.memoryBytes = deviceLocalBytes(vk, handle);
     device.limits = basics.limits;
