@@ -3,12 +3,12 @@
 // reference program. Its loops are in image/flip_rows.h.
 #include "image/metrics/flip/flip.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -96,6 +96,22 @@ constexpr size_t radiusOf(double pixelsPerDegree) {
 
 }  // namespace
 
+/// Some rows of one picture, filtered along the rows, and as many on either side as filters of columns reach.
+/// A band stays in a processor's cache, where the whole picture would not.
+struct LinearFlip::Band {
+    Band(const LinearFlip& flip, size_t begin, size_t end)
+        : first(static_cast<int64_t>(begin) - static_cast<int64_t>(flip.margin_)),
+          rows(end - begin + 2 * flip.margin_),
+          stride(flip.stride_),
+          values(std::make_unique_for_overwrite<float[]>(PlaneCount * rows * stride)) {}
+    float* row(int plane, int64_t y) const {
+        return &values[(static_cast<size_t>(plane) * rows + static_cast<size_t>(y - first)) * stride];
+    }
+    int64_t first;
+    size_t rows, stride;
+    std::unique_ptr<float[]> values;
+};
+
 /// One row of one picture, filtered both ways.
 struct LinearFlip::RowBuffers {
     explicit RowBuffers(size_t width) : values(8 * flipPadded(width)) {
@@ -137,20 +153,9 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
     point_ = zeroPadded(weightsOf(featureRadius, 1.0,
                                   [&](int x) { return curve(x) / (curve(x) > 0.0 ? positive : -negative); }));
     largest_ = largestColorDistance();
-    for (Planes* planes : {&test_, &reference_})
-        planes->resize(PlaneCount * stride_ * (height_ + 2 * margin_));
 }
 
-float* LinearFlip::row(Planes& planes, int plane, int64_t y) const {
-    const size_t line = static_cast<size_t>(y + static_cast<int64_t>(margin_));
-    return &planes[(static_cast<size_t>(plane) * (height_ + 2 * margin_) + line) * stride_];
-}
-
-const float* LinearFlip::row(const Planes& planes, int plane, int64_t y) const {
-    return row(const_cast<Planes&>(planes), plane, y);
-}
-
-void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, Planes& planes, int64_t y) const {
+void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, const Band& band, int64_t y) const {
     const FlipRows& loops = flipRows();
     // Each of Y, Cx and Cz with its ends repeated, as far as filters look.
     const size_t length = stride_ + 2 * margin_;
@@ -162,14 +167,14 @@ void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, Planes&
         std::fill_n(v + width_, stride_ - width_ + margin_, v[width_ - 1]);
     }
     const auto even = [&](const Weights& weights, int plane, float middle = 1.0f) {
-        return FlipEven{weights.values.data(), middle, row(planes, plane, y)};
+        return FlipEven{weights.values.data(), middle, band.row(plane, y)};
     };
     const size_t features = std::max({smooth_.reach, edge_.reach, point_.reach, luma_.reach});
     loops.filter(values[0], 1,
                  {features,
                   3,
                   {even(smooth_, Smooth), even(point_, Point, 0.0f), even(luma_, Luma)},
-                  {edge_.values.data(), row(planes, Edge, y)}},
+                  {edge_.values.data(), band.row(Edge, y)}},
                  stride_);
     loops.filter(values[1], 1, {redGreen_.reach, 1, {even(redGreen_, RedGreen)}, {}}, stride_);
     loops.filter(values[2], 1,
@@ -186,59 +191,69 @@ LinearFlip::Weights LinearFlip::zeroPadded(std::vector<float> values) const {
     return {std::move(values), reach};
 }
 
-void LinearFlip::filterRows(const Image& picture, Planes& planes) const {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, height_, 16), [&](const auto& rows) {
-        std::vector<float> padded(3 * (stride_ + 2 * margin_));
-        for (size_t y = rows.begin(); y != rows.end(); ++y)
-            filterRow(&picture.pixels[3 * width_ * y], padded, planes, static_cast<int64_t>(y));
-    });
+LinearFlip::Band LinearFlip::filterRows(const Image& picture, size_t begin, size_t end) const {
+    Band band(*this, begin, end);
+    std::vector<float> padded(3 * (stride_ + 2 * margin_));
     const auto last = static_cast<int64_t>(height_) - 1;
-    for (int plane = 0; plane < PlaneCount; ++plane) {
-        for (int64_t i = 1; i <= static_cast<int64_t>(margin_); ++i) {
-            std::copy_n(row(planes, plane, 0), stride_, row(planes, plane, -i));
-            std::copy_n(row(planes, plane, last), stride_, row(planes, plane, last + i));
+    int64_t filtered = -1;
+    for (int64_t y = band.first; y < band.first + static_cast<int64_t>(band.rows); ++y) {
+        // The picture's first and last row are repeated beyond its ends.
+        const int64_t inside = std::clamp<int64_t>(y, 0, last);
+        if (inside == filtered) {
+            for (int plane = 0; plane < PlaneCount; ++plane)
+                std::copy_n(band.row(plane, y - 1), stride_, band.row(plane, y));
+        } else {
+            filterRow(&picture.pixels[3 * width_ * static_cast<size_t>(inside)], padded, band, y);
         }
+        filtered = inside;
     }
+    return band;
 }
 
-void LinearFlip::smoothColumn(const Planes& planes, int plane, const Weights& weights, int64_t y,
+void LinearFlip::smoothColumn(const Band& band, int plane, const Weights& weights, int64_t y,
                               float* result) const {
-    flipRows().filter(row(planes, plane, y), static_cast<ptrdiff_t>(stride_),
+    flipRows().filter(band.row(plane, y), static_cast<ptrdiff_t>(stride_),
                       {weights.reach, 1, {{weights.values.data(), 1.0f, result}}, {}}, stride_);
 }
 
-void LinearFlip::filterColumns(const Planes& planes, int64_t y, RowBuffers& buffers) const {
+void LinearFlip::filterColumns(const Band& band, int64_t y, RowBuffers& buffers) const {
     const FlipRow& out = buffers.row;
-    smoothColumn(planes, Edge, smooth_, y, out.edgeX);
-    smoothColumn(planes, Point, smooth_, y, out.pointX);
-    flipRows().filter(row(planes, Smooth, y), static_cast<ptrdiff_t>(stride_),
+    smoothColumn(band, Edge, smooth_, y, out.edgeX);
+    smoothColumn(band, Point, smooth_, y, out.pointX);
+    flipRows().filter(band.row(Smooth, y), static_cast<ptrdiff_t>(stride_),
                       {std::max(edge_.reach, point_.reach),
                        1,
                        {{point_.values.data(), 0.0f, out.pointY}},
                        {edge_.values.data(), out.edgeY}},
                       stride_);
-    smoothColumn(planes, Luma, luma_, y, out.y);
-    smoothColumn(planes, RedGreen, redGreen_, y, out.cx);
+    smoothColumn(band, Luma, luma_, y, out.y);
+    smoothColumn(band, RedGreen, redGreen_, y, out.cx);
     // A sum of two Gaussians; each of them is separable, their sum is not.
-    smoothColumn(planes, BlueYellow, blueYellow_, y, out.cz);
-    smoothColumn(planes, BlueYellowSecond, blueYellowSecond_, y, buffers.second);
+    smoothColumn(band, BlueYellow, blueYellow_, y, out.cz);
+    smoothColumn(band, BlueYellowSecond, blueYellowSecond_, y, buffers.second);
     for (size_t x = 0; x < stride_; ++x)
         out.cz[x] = buffers.second[x] + blueYellowShare_ * (out.cz[x] - buffers.second[x]);
 }
 
-void LinearFlip::compare(const Image& test, const Image& reference, Image& map) {
+void LinearFlip::compareBand(const Image& test, const Image& reference, size_t begin, size_t end,
+                             Image& map) const {
+    const Band testBand = filterRows(test, begin, end), referenceBand = filterRows(reference, begin, end);
+    RowBuffers a(width_), b(width_);
+    std::vector<float> errors(stride_);
+    for (size_t y = begin; y != end; ++y) {
+        filterColumns(testBand, static_cast<int64_t>(y), a);
+        filterColumns(referenceBand, static_cast<int64_t>(y), b);
+        flipRows().errors(a.row, b.row, largest_, stride_, errors.data());
+        std::copy_n(errors.begin(), width_, &map.pixels[y * width_]);
+    }
+}
+
+void LinearFlip::compare(const Image& test, const Image& reference, Image& map) const {
     checkComparable(test, reference);
-    filterRows(test, test_);
-    filterRows(reference, reference_);
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, height_, 16), [&](const auto& rows) {
-        RowBuffers a(width_), b(width_);
-        std::vector<float> errors(stride_);
-        for (size_t y = rows.begin(); y != rows.end(); ++y) {
-            filterColumns(test_, static_cast<int64_t>(y), a);
-            filterColumns(reference_, static_cast<int64_t>(y), b);
-            flipRows().errors(a.row, b.row, largest_, stride_, errors.data());
-            std::copy_n(errors.begin(), width_, &map.pixels[y * width_]);
-        }
+    constexpr size_t bandRows =
+        64;  // more would not fit into a cache, fewer would filter margins for nothing
+    tbb::parallel_for(size_t{0}, (height_ + bandRows - 1) / bandRows, [&](size_t band) {
+        compareBand(test, reference, band * bandRows, std::min((band + 1) * bandRows, height_), map);
     });
 }
 

@@ -9,14 +9,14 @@
 namespace limpid::image {
 
 /// flip() of images that are not encoded: linear display values in [0,1]. Saves HDR-FLIP an encoding that
-/// LDR-FLIP would undo at once; its memory serves for all exposures.
+/// LDR-FLIP would undo at once.
 class LinearFlip {
   public:
     /// For images of this size.
     LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree);
 
     /// Sets `map`, an image of one component, to the error of each pixel.
-    void compare(const Image& test, const Image& reference, Image& map);
+    void compare(const Image& test, const Image& reference, Image& map) const;
 
   private:
     /// The weights at 1, 2 .. of filters that are symmetric or antisymmetric; their middle follows from their
@@ -27,16 +27,14 @@ class LinearFlip {
     };
     /// What rows are filtered to before columns are: filters, and the plane that they look at.
     enum Plane { Edge, Smooth, Point, Luma, RedGreen, BlueYellow, BlueYellowSecond, PlaneCount };
-    using Planes = std::vector<float>;
+    struct Band;
     struct RowBuffers;
 
-    float* row(Planes& planes, int plane, int64_t y) const;
-    const float* row(const Planes& planes, int plane, int64_t y) const;
-    void filterRows(const Image& picture, Planes& planes) const;
-    void filterRow(const float* rgb, std::vector<float>& padded, Planes& planes, int64_t y) const;
-    void filterColumns(const Planes& planes, int64_t y, RowBuffers& buffers) const;
-    void smoothColumn(const Planes& planes, int plane, const Weights& weights, int64_t y,
-                      float* result) const;
+    void compareBand(const Image& test, const Image& reference, size_t begin, size_t end, Image& map) const;
+    Band filterRows(const Image& picture, size_t begin, size_t end) const;
+    void filterRow(const float* rgb, std::vector<float>& padded, const Band& band, int64_t y) const;
+    void filterColumns(const Band& band, int64_t y, RowBuffers& buffers) const;
+    void smoothColumn(const Band& band, int plane, const Weights& weights, int64_t y, float* result) const;
     Weights zeroPadded(std::vector<float> values) const;
 
     size_t width_, height_;
@@ -45,7 +43,6 @@ class LinearFlip {
     Weights smooth_, edge_, point_, luma_, redGreen_, blueYellow_, blueYellowSecond_;
     float blueYellowShare_ = 1.0f;  ///< of the first of the two
     float largest_ = 1.0f;          ///< distance of two colours: green to blue
-    Planes test_, reference_;
 };
 
 }  // namespace limpid::image
