@@ -56,7 +56,7 @@ class TemporalPassTest : public DenoiseTest, public testing::WithParamInterface<
                 result = all.denoisers.temporal;
             } else {
                 EXPECT_TRUE(
-                    denoise::temporalParams().set(result, word.substr(0, equals), word.substr(equals + 1)));
+                    denoise::temporal::params().set(result, word.substr(0, equals), word.substr(equals + 1)));
             }
         }
         return result;

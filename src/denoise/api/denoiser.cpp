@@ -22,21 +22,13 @@ DenoiserOutput recordKpcn(gpu::FrameGraph& graph, const DenoiserInput& input,
             {}};
 }
 
-constexpr std::array<std::string_view, 2> temporalGroups{"temporal", "taa"};
-constexpr std::array<std::string_view, 3> atrousGroups{"temporal", "atrous", "taa"};
-constexpr std::array<std::string_view, 2> svgfGroups{"svgf", "taa"};
-
 constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
 
-constexpr std::array<Denoiser, 4> all{
-    Denoiser{"temporal", "each pixel's running mean follows its surface through camera and object motion",
-             recordFilter<recordTemporal>, temporalGroups},
-    Denoiser{"atrous", "temporal accumulation, then the edge-avoiding a-trous filter",
-             recordFilter<recordAtrous>, atrousGroups},
-    Denoiser{"svgf", "spatiotemporal variance-guided filtering: blurs where and as much as there is noise",
-             recordFilter<recordSvgf>, svgfGroups},
-    Denoiser{"kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples",
-             recordKpcn, kpcnGroups, true}};
+#define LIMPID_ROW(method) Denoiser{#method, method::help, recordFilter<method::record>, method::groups},
+constexpr std::array all{LIMPID_METHODS(LIMPID_ROW) Denoiser{
+    "kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples", recordKpcn,
+    kpcnGroups, true}};
+#undef LIMPID_ROW
 
 }  // namespace
 

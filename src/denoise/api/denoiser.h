@@ -17,7 +17,7 @@
 
 #include "denoise/api/denoiser_input.h"
 #include "denoise/kpcn/kpcn.h"
-#include "denoise/methods/recipes.h"
+#include "denoise/methods/methods.h"
 
 namespace limpid::denoise {
 

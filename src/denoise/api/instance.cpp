@@ -11,22 +11,26 @@
 namespace limpid::denoise {
 namespace {
 
-/// Calls `visit(table, settings)` for each group that the method heeds.
+// limpid_method counts the methods in the order in which src/denoise/CMakeLists.txt lists them.
+#define LIMPID_NAME(method) std::string_view(#method),
+constexpr std::array methodNames{LIMPID_METHODS(LIMPID_NAME)};
+#undef LIMPID_NAME
+static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_METHOD_ATROUS] == "atrous" &&
+              methodNames[LIMPID_METHOD_TEMPORAL] == "temporal");
+
+/// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>
-void forEachGroup(Settings& settings, limpid_method method, const Visit& visit) {
-    if (method == LIMPID_METHOD_SVGF) {
-        visit(svgfParams(), settings.svgf);
-    } else {
-        visit(temporalParams(), settings.temporal);
-        if (method == LIMPID_METHOD_ATROUS) visit(atrousParams(), settings.atrous);
-    }
-    visit(taaParams(), settings.taa);
+void forEachGroupOf(limpid_method method, Settings& settings, const Visit& visit) {
+    const std::span<const std::string_view> groups = methods()[static_cast<size_t>(method)].groups;
+    forEachGroup(settings, [&](const auto& table, auto& group) {
+        if (std::ranges::find(groups, table.group()) != groups.end()) visit(table, group);
+    });
 }
 
 std::vector<InstanceParameter> listParameters(limpid_method method) {
     std::vector<InstanceParameter> all;
     FilterSettings settings;
-    forEachGroup(settings, method, [&](const auto& table, auto&) {
+    forEachGroupOf(method, settings, [&](const auto& table, auto&) {
         for (const ParamInfo& info : table.infos()) all.push_back({table.group() + "." + info.name, info});
     });
     // limpid_denoiser_desc::signals says it.
@@ -44,6 +48,10 @@ void checkEnum(const char* what, const Enum& given, int last) {
     if (value < 0 || value > last) throw UsageError(formatText("{}: {} is none of its values", what, value));
 }
 
+void checkMethod(const limpid_method& method) {
+    checkEnum("method", method, static_cast<int>(methods().size()) - 1);
+}
+
 bool isParameter(const std::string& group, const std::string& parameter, std::string_view name) {
     return name.size() == group.size() + 1 + parameter.size() && name.starts_with(group) &&
            name[group.size()] == '.' && name.ends_with(parameter);
@@ -56,16 +64,19 @@ bool isParameter(const std::string& group, const std::string& parameter, std::st
 }  // namespace
 
 const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
-    static const std::array<std::vector<InstanceParameter>, 3> all{listParameters(LIMPID_METHOD_SVGF),
-                                                                   listParameters(LIMPID_METHOD_ATROUS),
-                                                                   listParameters(LIMPID_METHOD_TEMPORAL)};
-    checkEnum("method", method, LIMPID_METHOD_TEMPORAL);
+    static const std::vector<std::vector<InstanceParameter>> all = [] {
+        std::vector<std::vector<InstanceParameter>> lists;
+        for (size_t i = 0; i < methods().size(); ++i)
+            lists.push_back(listParameters(static_cast<limpid_method>(i)));
+        return lists;
+    }();
+    checkMethod(method);
     return all[static_cast<size_t>(method)];
 }
 
 void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value) {
     bool found = false;
-    forEachGroup(settings, method, [&](const auto& table, auto& group) {
+    forEachGroupOf(method, settings, [&](const auto& table, auto& group) {
         for (const ParamInfo& info : table.infos()) {
             if (found || !isParameter(table.group(), info.name, name)) continue;
             found = true;
@@ -83,7 +94,7 @@ void setParameter(FilterSettings& settings, limpid_method method, std::string_vi
 
 double parameter(const FilterSettings& settings, limpid_method method, std::string_view name) {
     std::optional<double> result;
-    forEachGroup(settings, method, [&](const auto& table, const auto& group) {
+    forEachGroupOf(method, settings, [&](const auto& table, const auto& group) {
         for (size_t i = 0; i < table.infos().size(); ++i) {
             if (!isParameter(table.group(), table.infos()[i].name, name)) continue;
             result = std::visit([](auto value) { return static_cast<double>(value); }, table.get(group, i));
@@ -94,7 +105,7 @@ double parameter(const FilterSettings& settings, limpid_method method, std::stri
 }
 
 void check(const limpid_denoiser_desc& desc) {
-    checkEnum("method", desc.method, LIMPID_METHOD_TEMPORAL);
+    checkMethod(desc.method);
     checkEnum("normal_encoding", desc.normal_encoding, LIMPID_NORMAL_OCTAHEDRAL_UNORM);
     checkEnum("normal_space", desc.normal_space, LIMPID_SPACE_VIEW);
     checkEnum("depth", desc.depth, LIMPID_DEPTH_DEVICE);
@@ -155,9 +166,8 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     input.filters = filters;
     FilterSettings used = settings;
     used.svgf.separate = desc.signals == 2;
-    if (desc.method == LIMPID_METHOD_TEMPORAL) return {recordTemporal(graph, input, used).beauty, {}, {}};
-    if (desc.method == LIMPID_METHOD_ATROUS) return {recordAtrous(graph, input, used).beauty, {}, {}};
-    if (!signalsToo) return {recordSvgf(graph, input, used).beauty, {}, {}};
+    if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
+        return {methods()[static_cast<size_t>(desc.method)].record(graph, input, used).beauty, {}, {}};
     const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);
     return {antialias(graph, input, filtered.beauty, used.taa), filtered.diffuse, filtered.specular};
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "denoise/methods/recipes.h"
+#include "denoise/methods/methods.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "limpid/denoise.h"
 

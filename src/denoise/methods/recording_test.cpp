@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
-#include "denoise/methods/recipes.h"
+#include "denoise/methods/methods.h"
 #include "denoise/stages/ingest/ingest.h"
 
 namespace limpid::denoise {
@@ -28,7 +28,7 @@ std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& 
     IngestParams params{};
     params.width = extent.width;
     params.height = extent.height;
-    recordSvgf(graph, ingest(graph, images, params), settings);
+    svgf::record(graph, ingest(graph, images, params), settings);
     std::vector<std::string> names;
     for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
     return names;
@@ -74,7 +74,7 @@ TEST(RecordingTest, AnImageIsSampledOrStoredNotBoth) {
     params.height = extent.height;
     DenoiserInput input = ingest(graph, images, params);
     input.emission = image;  // bound as a storage image
-    EXPECT_THROW(recordSvgf(graph, input, {}), Error);
+    EXPECT_THROW(svgf::record(graph, input, {}), Error);
 }
 
 }  // namespace

@@ -20,24 +20,26 @@ ParamGroup groupOf(const ParamTable<Settings>& table, Select select) {
 }  // namespace
 
 const std::vector<ParamGroup>& paramGroups() {
-    static const std::vector<ParamGroup> all{
-        groupOf(
-            pathtraceParams(), [](auto& s) -> auto& { return s.pathtrace; }),
-        groupOf(
-            gbufferParams(), [](auto& s) -> auto& { return s.gbuffer; }),
-        groupOf(
-            ambientOcclusionParams(), [](auto& s) -> auto& { return s.ambientOcclusion; }),
-        groupOf(
-            denoise::temporalParams(), [](auto& s) -> auto& { return s.denoisers.temporal; }),
-        groupOf(
-            denoise::atrousParams(), [](auto& s) -> auto& { return s.denoisers.atrous; }),
-        groupOf(
-            denoise::svgfParams(), [](auto& s) -> auto& { return s.denoisers.svgf; }),
-        groupOf(
-            denoise::kpcnParams(), [](auto& s) -> auto& { return s.denoisers.kpcn; }),
-        groupOf(
-            denoise::taaParams(), [](auto& s) -> auto& { return s.denoisers.taa; }),
-    };
+    static const std::vector<ParamGroup> all = [] {
+        std::vector<ParamGroup> groups;
+        const auto add = [&](const auto& table, auto select) { groups.push_back(groupOf(table, select)); };
+        add(
+            pathtraceParams(), [](auto& s) -> auto& { return s.pathtrace; });
+        add(
+            gbufferParams(), [](auto& s) -> auto& { return s.gbuffer; });
+        add(
+            ambientOcclusionParams(), [](auto& s) -> auto& { return s.ambientOcclusion; });
+#define LIMPID_ADD(method) \
+    add(                   \
+        denoise::method::params(), [](auto& s) -> auto& { return s.denoisers.method; });
+        LIMPID_METHODS(LIMPID_ADD)
+#undef LIMPID_ADD
+        add(
+            denoise::kpcnParams(), [](auto& s) -> auto& { return s.denoisers.kpcn; });
+        add(
+            denoise::taaParams(), [](auto& s) -> auto& { return s.denoisers.taa; });
+        return groups;
+    }();
     return all;
 }
 

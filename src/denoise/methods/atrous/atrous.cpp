@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "atrous_demodulate.comp.h"
@@ -11,6 +12,7 @@
 #include "atrous_modulate.comp.h"
 #include "atrous_modulate_buffers.comp.h"
 #include "denoise/methods/atrous/atrous_params.h"
+#include "denoise/methods/methods.h"
 
 namespace limpid::denoise {
 namespace {
@@ -20,15 +22,15 @@ using gpu::Extent;
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
-struct Signal {
+struct Demodulated {
     ImageHandle light;     ///< half4: demodulated; alpha: something is seen
     ImageHandle geometry;  ///< two words: octahedral normal, depth
 };
 
-Signal demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
+Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                   const AtrousSettings& settings) {
     const Extent extent = graph.extent(input.albedo);
-    const Signal signal{
+    const Demodulated signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
     const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u,
@@ -56,15 +58,13 @@ uint32_t invocations(uint32_t pixels, int step, uint32_t block) {
     return (pixels + span - 1) / span * static_cast<uint32_t>(step);
 }
 
-/// The shader takes powers of 2.
-constexpr float log2e = 1.44269504f;
-
-ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Signal& signal, int number,
+ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Demodulated& signal, int number,
                   const AtrousSettings& settings) {
     const Extent extent = graph.extent(signal.light);
     const std::string name = "atrous/level " + std::to_string(number);
     const ImageHandle filtered = graph.transient(name, gpu::Format::RGBA16Float, extent, input.filters);
     const int step = 1 << (number - 1);
+    constexpr float log2e = std::numbers::log2e_v<float>;  // the shader takes powers of 2
     AtrousLevelParams params{};
     params.camera = input.camera;
     params.width = extent.width;
@@ -114,7 +114,7 @@ ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle 
 
 }  // namespace
 
-const ParamTable<AtrousSettings>& atrousParams() {
+const ParamTable<AtrousSettings>& atrous::params() {
     static const auto table = [] {
         using S = AtrousSettings;
         ParamTable<S> t("atrous");
@@ -145,10 +145,23 @@ const ParamTable<AtrousSettings>& atrousParams() {
 
 ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                          const AtrousSettings& settings) {
-    Signal signal = demodulate(graph, input, light, settings);
+    Demodulated signal = demodulate(graph, input, light, settings);
     for (int number = 1; number <= settings.levels; ++number)
         signal.light = level(graph, input, signal, number, settings);
     return modulate(graph, input, signal.light, settings);
+}
+
+DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input,
+                              const FilterSettings& settings) {
+    if (!settings.atrous.temporal)
+        return {antialias(graph, input,
+                          filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous),
+                          settings.taa),
+                {}};
+    const TemporalImages accumulated = accumulateTemporally(graph, input, settings.temporal);
+    if (settings.temporal.showDisocclusion) return composeTemporal(graph, input, accumulated, settings);
+    const gpu::ImageHandle filtered = filterAtrous(graph, input, {accumulated.color, {}}, settings.atrous);
+    return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion};
 }
 
 }  // namespace limpid::denoise

@@ -2,13 +2,11 @@
 // It filters light without albedo. docs/denoising.md has the formulas and the paper.
 #pragma once
 
-#include "base/params.h"
-#include "denoise/api/denoiser_input.h"
-#include "gpu/graph/frame_graph.h"
+#include "denoise/methods/method.h"
 
 namespace limpid::denoise {
 
-/// User settings; atrousParams() gives ranges and descriptions.
+/// User settings; atrous::params() gives ranges and descriptions.
 struct AtrousSettings {
     bool temporal = true;
     int levels = 5;
@@ -20,7 +18,6 @@ struct AtrousSettings {
     float colorFactor = 0.0f;
     bool operator==(const AtrousSettings&) const = default;
 };
-const ParamTable<AtrousSettings>& atrousParams();
 
 /// Scattered light, rgba32f: either a mean over frames with their number in alpha (`second` is empty), or the
 /// sum of two images of one frame.
@@ -32,5 +29,14 @@ struct AtrousLight {
 /// "atrous/demodulate", "atrous/level 1" and so on, "atrous/modulate".
 gpu::ImageHandle filterAtrous(gpu::FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                               const AtrousSettings& settings);
+
+/// As methods.h lists it.
+namespace atrous {
+using Settings = AtrousSettings;
+inline constexpr std::string_view help = "temporal accumulation, then the edge-avoiding a-trous filter";
+inline constexpr std::array<std::string_view, 3> groups{"temporal", "atrous", "taa"};
+const ParamTable<Settings>& params();
+DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
+}  // namespace atrous
 
 }  // namespace limpid::denoise

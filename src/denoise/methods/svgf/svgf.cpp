@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "denoise/methods/methods.h"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "svgf_antilag.comp.h"
 #include "svgf_antilag_buffers.comp.h"
@@ -353,7 +354,7 @@ class Svgf {
 
 }  // namespace
 
-const ParamTable<SvgfSettings>& svgfParams() {
+const ParamTable<SvgfSettings>& svgf::params() {
     static const auto table = [] {
         using S = SvgfSettings;
         ParamTable<S> t("svgf");
@@ -438,6 +439,11 @@ ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const Svgf
 
 SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {
     return Svgf(graph, input, settings).record(true);
+}
+
+DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
+                            const FilterSettings& settings) {
+    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
 }
 
 }  // namespace limpid::denoise

@@ -3,13 +3,11 @@
 // additions to the paper are in docs/denoising.md.
 #pragma once
 
-#include "base/params.h"
-#include "denoise/api/denoiser_input.h"
-#include "gpu/graph/frame_graph.h"
+#include "denoise/methods/method.h"
 
 namespace limpid::denoise {
 
-/// User settings; svgfParams() gives ranges and descriptions.
+/// User settings; svgf::params() gives ranges and descriptions.
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
@@ -37,7 +35,6 @@ struct SvgfSettings {
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;
 };
-const ParamTable<SvgfSettings>& svgfParams();
 
 /// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
 /// for "joint", or for "diffuse" and "specular". Passes: "svgf/surfaces", "svgf/reproject SIGNAL",
@@ -55,5 +52,15 @@ struct SvgfImages {
 };
 SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const SvgfSettings& settings);
+
+/// As methods.h lists it.
+namespace svgf {
+using Settings = SvgfSettings;
+inline constexpr std::string_view help =
+    "spatiotemporal variance-guided filtering: blurs where and as much as there is noise";
+inline constexpr std::array<std::string_view, 2> groups{"svgf", "taa"};
+const ParamTable<Settings>& params();
+DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
+}  // namespace svgf
 
 }  // namespace limpid::denoise

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "denoise/methods/methods.h"
+#include "denoise/stages/compose/compose.h"
 #include "temporal_accumulate.comp.h"
 
 namespace limpid::denoise {
@@ -27,7 +29,7 @@ TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const 
 
 }  // namespace
 
-const ParamTable<TemporalSettings>& temporalParams() {
+const ParamTable<TemporalSettings>& temporal::params() {
     static const auto table = [] {
         using S = TemporalSettings;
         ParamTable<S> t("temporal");
@@ -106,6 +108,20 @@ DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
         counts.rejected += (value & SAMPLE_REJECTED) != 0;
     }
     return counts;
+}
+
+DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
+                               const TemporalImages& accumulated, const FilterSettings& settings) {
+    const bool showDisocclusion = settings.temporal.showDisocclusion;
+    const gpu::ImageHandle beauty =
+        compose(graph, accumulated.color, input.emission, accumulated.disocclusion, showDisocclusion);
+    return {showDisocclusion ? beauty : antialias(graph, input, beauty, settings.taa),
+            accumulated.disocclusion};
+}
+
+DenoiserOutput temporal::record(gpu::FrameGraph& graph, const DenoiserInput& input,
+                                const FilterSettings& settings) {
+    return composeTemporal(graph, input, accumulateTemporally(graph, input, settings.temporal), settings);
 }
 
 }  // namespace limpid::denoise

@@ -4,14 +4,12 @@
 
 #include <span>
 
-#include "base/params.h"
-#include "denoise/api/denoiser_input.h"
+#include "denoise/methods/method.h"
 #include "denoise/methods/temporal/temporal_params.h"
-#include "gpu/graph/frame_graph.h"
 
 namespace limpid::denoise {
 
-/// User settings; temporalParams() gives ranges and descriptions.
+/// User settings; temporal::params() gives ranges and descriptions.
 struct TemporalSettings {
     float normal = 0.95f;
     float depth = 0.02f;
@@ -26,7 +24,6 @@ struct TemporalSettings {
     bool showDisocclusion = false;
     bool operator==(const TemporalSettings&) const = default;
 };
-const ParamTable<TemporalSettings>& temporalParams();
 
 struct TemporalImages {
     gpu::ImageHandle color;         ///< rgba32f: mean of diffuse + specular, cd/m^2; number of frames in it
@@ -48,5 +45,19 @@ struct DisocclusionCounts {
 };
 /// Counts the pixels of the downloaded image `disocclusion`.
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion);
+
+/// The beauty of what was accumulated, or why pixels have no history if the settings ask for that.
+DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
+                               const TemporalImages& accumulated, const FilterSettings& settings);
+
+/// As methods.h lists it.
+namespace temporal {
+using Settings = TemporalSettings;
+inline constexpr std::string_view help =
+    "each pixel's running mean follows its surface through camera and object motion";
+inline constexpr std::array<std::string_view, 2> groups{"temporal", "taa"};
+const ParamTable<Settings>& params();
+DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
+}  // namespace temporal
 
 }  // namespace limpid::denoise

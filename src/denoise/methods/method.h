@@ -1,0 +1,28 @@
+// What the list of methods (methods.h) needs of each. A method's header has a namespace of the method's name,
+// with
+//
+//     using Settings = ...;                           user settings
+//     const ParamTable<Settings>& params();           their names, ranges and descriptions
+//     inline constexpr std::string_view help = ...;   one sentence, for `limpid info`
+//     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
+//     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "base/params.h"
+#include "denoise/api/denoiser_input.h"
+#include "gpu/graph/frame_graph.h"
+
+namespace limpid::denoise {
+
+struct FilterSettings;
+
+/// What a method leaves of one frame.
+struct DenoiserOutput {
+    gpu::ImageHandle beauty;        ///< rgba32f: clean radiance with emission; alpha 1
+    gpu::ImageHandle disocclusion;  ///< TemporalImages::disocclusion; empty without temporal accumulation
+};
+
+}  // namespace limpid::denoise

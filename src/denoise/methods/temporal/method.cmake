@@ -1,0 +1,2 @@
+set(SOURCES temporal.cpp)
+set(SHADERS temporal_accumulate.comp)
