@@ -20,6 +20,10 @@ if(LIMPID_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERS
     target_compile_options(limpid_options INTERFACE -Wno-${WARNING})
   endforeach()
 endif()
+if(LIMPID_UNITY)
+  # A local name may then be that of another file's constant, and types of anonymous namespaces seem to come from a header.
+  target_compile_options(limpid_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
+endif()
 if(LIMPID_SANITIZE)
   target_compile_options(limpid_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)
@@ -76,6 +80,19 @@ function(limpid_use_pch NAME FROM)
   endif()
 endfunction()
 
+# With LIMPID_UNITY several files of a target are compiled as one. A clean build takes half the time, but a change of one file
+# compiles its neighbours, too; for CI.
+function(limpid_unity NAME)
+  if(LIMPID_UNITY)
+    set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
+# limpid_alone(a.cpp ...): these are compiled by themselves even then: their private names are those of other files, too.
+macro(limpid_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endmacro()
+
 # limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ...): the static library limpid_NAME, alias limpid::NAME.
 function(limpid_library NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
@@ -83,6 +100,7 @@ function(limpid_library NAME)
   add_library(limpid::${NAME} ALIAS limpid_${NAME})
   target_link_libraries(limpid_${NAME} PUBLIC ${ARG_DEPS} PRIVATE limpid_options ${ARG_PRIVATE_DEPS})
   limpid_use_pch(limpid_${NAME} limpid_pch)
+  limpid_unity(limpid_${NAME})
 endfunction()
 
 # limpid_program(NAME SOURCES a.cpp ... DEPS limpid::base ...): an executable.
@@ -92,6 +110,7 @@ function(limpid_program NAME)
   target_link_libraries(${NAME} PRIVATE limpid_options ${ARG_DEPS})
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   limpid_use_pch(${NAME} limpid_pch)
+  limpid_unity(${NAME})
 endfunction()
 
 # What embedded shaders go through. Not -O: it inlines every call and unrolls loops, which makes them larger (atrous_level
@@ -165,7 +184,7 @@ function(limpid_shader TARGET SOURCE GENERATED KIND PASSES)
     DEPENDS ${NAMED} limpid_reflect
     VERBATIM)
   set_source_files_properties(${GENERATED}/${FILE}.cpp PROPERTIES
-    OBJECT_DEPENDS ${SHADER_TABLE} SKIP_PRECOMPILE_HEADERS ON)
+    OBJECT_DEPENDS ${SHADER_TABLE} SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${TARGET} PRIVATE ${GENERATED}/${FILE}.cpp)
   if(KIND STREQUAL shader)
     set_property(TARGET ${TARGET} APPEND PROPERTY LIMPID_SHADERS "${FILE}")
@@ -231,6 +250,7 @@ function(limpid_test NAME)
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   limpid_use_pch(${NAME} limpid_test_pch)
+  limpid_unity(${NAME})
   if(ARG_LABELS STREQUAL fast)
     add_dependencies(limpid_fast_tests ${NAME})
   endif()
