@@ -1,0 +1,3 @@
+set(SOURCES bilateral.cpp)
+set(SHADERS bilateral.comp)
+set(TESTS bilateral_test.cpp)
