@@ -151,26 +151,39 @@ function(limpid_shaders TARGET)
   target_include_directories(${TARGET} PUBLIC ${GENERATED})
 endfunction()
 
-# limpid_shader(TARGET SOURCE GENERATED KIND PASSES): one of them. KIND names the templates (cmake/KIND.h.in).
+# limpid_shader_variants(TARGET SUFFIX MACRO a/b.comp ...): compiles shaders once more, with MACRO defined, and embeds each as
+# `limpid::shaders::b_SUFFIX_comp`. Its name is "a/b.comp -DMACRO".
+function(limpid_shader_variants TARGET SUFFIX MACRO)
+  foreach(SOURCE ${ARGN})
+    limpid_shader(${TARGET} ${SOURCE} ${CMAKE_CURRENT_BINARY_DIR}/shaders shader "${LIMPID_SPIRV_PASSES}" ${SUFFIX} ${MACRO})
+  endforeach()
+endfunction()
+
+# limpid_shader(TARGET SOURCE GENERATED KIND PASSES [SUFFIX MACRO]): one of them. KIND names the templates (cmake/KIND.h.in).
 function(limpid_shader TARGET SOURCE GENERATED KIND PASSES)
   get_filename_component(FILE ${SOURCE} NAME)
+  set(VARIANT "")
+  if(ARGC GREATER 5)
+    string(REPLACE "." "_${ARGV5}." FILE ${FILE})
+    set(VARIANT "-D${ARGV6}")
+  endif()
   string(MAKE_C_IDENTIFIER ${FILE} SYMBOL)
   file(RELATIVE_PATH FOLDER ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
   set(SHADER_SYMBOL ${SYMBOL})
   set(SHADER_FILE ${FILE})
-  set(SHADER_NAME ${FOLDER}/${SOURCE})
+  string(STRIP "${FOLDER}/${SOURCE} ${VARIANT}" SHADER_NAME)
   set(SHADER_TABLE ${GENERATED}/${FILE}.inc)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/${KIND}.h.in ${GENERATED}/${FILE}.h @ONLY)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/${KIND}.cpp.in ${GENERATED}/${FILE}.cpp @ONLY)
   set(NAMED ${GENERATED}/${FILE}.spv)
   set(EMBEDDED ${GENERATED}/${FILE}.embedded.spv)
-  set(REFLECT limpid_reflect ${SHADER_NAME} ${NAMED} ${EMBEDDED} ${SHADER_TABLE})
+  set(REFLECT limpid_reflect "${SHADER_NAME}" ${NAMED} ${EMBEDDED} ${SHADER_TABLE})
   if(KIND STREQUAL shader_words)
     set(REFLECT limpid_reflect --words ${EMBEDDED} ${SHADER_TABLE})
   endif()
   add_custom_command(
     OUTPUT ${NAMED}
-    COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror -MD -MF ${NAMED}.d -I ${PROJECT_SOURCE_DIR}/src
+    COMMAND ${GLSLC} --target-env=vulkan1.3 -g -Werror ${VARIANT} -MD -MF ${NAMED}.d -I ${PROJECT_SOURCE_DIR}/src
             -o ${NAMED} ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
     DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${SOURCE}
     DEPFILE ${NAMED}.d

@@ -36,6 +36,12 @@ std::string includedName(const std::string& line) {
                                                        : line.substr(first + 1, last - first - 1);
 }
 
+/// What a shader's name says: its file, and an option of the compiler, " -DMACRO", or "".
+std::pair<std::string, std::string> fileAndOption(const std::string& name) {
+    const size_t end = std::min(name.find(' '), name.size());
+    return {name.substr(0, end), name.substr(end)};
+}
+
 }  // namespace
 
 std::vector<fs::path> includedFiles(const fs::path& folder, const fs::path& source) {
@@ -64,7 +70,7 @@ ShaderReload::ShaderReload(fs::path folder) : folder_(std::move(folder)), starte
 }
 
 std::optional<ShaderReload::Time> ShaderReload::savedAt(const std::string& name) const {
-    const fs::path source = folder_ / name;
+    const fs::path source = folder_ / fileAndOption(name).first;
     std::error_code missing;
     Time latest = fs::last_write_time(source, missing);
     if (missing) return std::nullopt;
@@ -79,9 +85,10 @@ std::optional<ShaderReload::Time> ShaderReload::savedAt(const std::string& name)
 std::vector<uint32_t> ShaderReload::compile(const std::string& name) const {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> binary(std::tmpfile(), std::fclose);
     if (!binary) throw Error("no temporary file can be made");
+    const auto [file, option] = fileAndOption(name);
     const auto [output, succeeded] = runCommand(
-        fmt::format("glslc --target-env=vulkan1.3 -g -Werror -I {} -o /dev/fd/{} {}",
-                    quoted(folder_.string()), fileno(binary.get()), quoted((folder_ / name).string())));
+        fmt::format("glslc --target-env=vulkan1.3 -g -Werror{} -I {} -o /dev/fd/{} {}", option,
+                    quoted(folder_.string()), fileno(binary.get()), quoted((folder_ / file).string())));
     if (!succeeded) throw Error(output);
     std::fseek(binary.get(), 0, SEEK_END);
     std::vector<uint32_t> words(static_cast<size_t>(std::max(std::ftell(binary.get()), 0L)) /

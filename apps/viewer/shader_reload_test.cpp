@@ -9,6 +9,8 @@
 
 #include "accumulate.comp.h"
 #include "base/error.h"
+#include "svgf_surfaces.comp.h"
+#include "svgf_surfaces_buffers.comp.h"
 
 namespace limpid::viewer {
 namespace {
@@ -72,6 +74,25 @@ TEST_F(ShaderReloadInAFolder, CompilesAndReflectsWhatIsSaved) {
     EXPECT_TRUE(sameInterface(made->second->reflection, shaders::accumulate_comp.reflection));
     EXPECT_NE(made->second->hash, shaders::accumulate_comp.hash);
     EXPECT_FALSE(reload.poll(used)) << "nothing is saved since";
+}
+
+/// Of two variants of one file, as CMake compiles them (limpid_shader_variants).
+TEST_F(ShaderReloadInAFolder, CompilesVariantsOfAShader) {
+    const fs::path source = fs::path(LIMPID_SOURCE_DIR) / "src",
+                   file = "denoise/methods/svgf/shaders/svgf_surfaces.comp";
+    std::vector<fs::path> needed = includedFiles(source, source / file);
+    needed.push_back(source / file);
+    for (const fs::path& path : needed) {
+        const fs::path copy = folder / fs::relative(path, source);
+        fs::create_directories(copy.parent_path());
+        fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
+    }
+    ShaderReload reload(folder);
+    fs::last_write_time(folder / file, fs::file_time_type::clock::now() + std::chrono::hours(1));
+    const auto result = reload.poll({shaders::svgf_surfaces_comp, shaders::svgf_surfaces_buffers_comp});
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->fault, "");
+    EXPECT_EQ(result->compiled, 2);
 }
 
 TEST_F(ShaderReloadInAFolder, RefusesAnotherInterface) {

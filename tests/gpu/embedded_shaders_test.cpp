@@ -58,7 +58,8 @@ Module scanned(std::span<const uint32_t> words) {
 
 std::string titled(const testing::TestParamInfo<shaders::Listed>& listed) {
     std::string title(listed.param.code->name.substr(listed.param.code->name.rfind('/') + 1));
-    std::ranges::replace(title, '.', '_');
+    std::ranges::replace_if(
+        title, [](char c) { return c == '.' || c == ' ' || c == '-'; }, '_');
     return title;
 }
 

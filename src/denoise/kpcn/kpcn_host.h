@@ -27,7 +27,7 @@ class KpcnHost {
     ~KpcnHost();
 
     /// `channels`: the network's input, in slabs of 16. `light`: the light to average, four floats per pixel.
-    /// `faces`: the normal and a flag for no normal, four signed bytes per pixel (kpcn_features.glsl). These
+    /// `faces`: the normal and a flag for no normal, four signed bytes per pixel (kpcn_features.comp). These
     /// three cover the whole part. `clean`: the output, four floats per pixel, only the computed pixels; its
     /// rows are `pitch` pixels apart.
     void run(size_t side, const KpcnHostTile& tile, std::span<const float> channels,

@@ -36,7 +36,7 @@ bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap)
     return channel < width * width && inPicture(params.region, tap);
 }
 
-/// Whether they face the same way, or both nowhere: kpcn_features.glsl packed them.
+/// Whether they face the same way, or both nowhere: kpcn_features.comp packed them.
 bool alike(KpcnLayerParams params, uint face, uint other) {
     return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= params.facing;
 }

@@ -1,4 +1,3 @@
 set(SOURCES atrous.cpp)
-set(SHADERS
-  atrous_demodulate.comp atrous_demodulate_buffers.comp atrous_level.comp atrous_level_buffers.comp atrous_modulate.comp
-  atrous_modulate_buffers.comp)
+set(SHADERS atrous_demodulate.comp atrous_level.comp atrous_level_buffers.comp atrous_modulate.comp)
+set(BUFFER_VARIANTS atrous_demodulate.comp atrous_modulate.comp)

@@ -1,4 +1,26 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_surfaces.glsl with gpu::Backing::Image.
-#include "denoise/methods/svgf/shaders/svgf_surfaces.glsl"
+// What later passes, and the next frame, ask of a pixel's surface.
+#include "denoise/stages/guides.glsl"
+#include "denoise/methods/svgf/svgf_params.h"
+#include "shaders/common/filter_image.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, scalar) uniform Params {
+    SvgfSizeParams params;
+};
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D normal;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D depth;
+layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D ids;
+WRITE_UINT2(4, surfaces);                                              // octahedral normal | distance
+layout(set = 0, binding = 5, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
+
+void main() {
+    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= params.width || pixel.y >= params.height) return;
+    const ivec2 at = ivec2(pixel);
+    const float z = hitDistance(imageLoad(depth, at));
+    STORE_UINT2(surfaces, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(z)));
+    imageStore(instances, at, uvec4(z > 0.0 ? imageLoad(ids, at).x + 1u : 0u));
+}

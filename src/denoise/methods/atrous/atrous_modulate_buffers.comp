@@ -1,5 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-// atrous_modulate.glsl with gpu::Backing::Buffer.
-#define LIMPID_FILTER_BUFFERS
-#include "denoise/methods/atrous/atrous_modulate.glsl"
