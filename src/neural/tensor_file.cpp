@@ -1,6 +1,5 @@
 #include "neural/tensor_file.h"
 
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "base/text/format.h"
 
 namespace limpid::neural {
 namespace {
@@ -54,7 +54,9 @@ uint32_t addToChecksum(uint32_t checksum, std::span<const std::byte> bytes) {
 }
 
 std::string textOf(uint32_t checksum) {
-    return fmt::format("{:08x}", checksum);
+    std::string text(8, '0');
+    for (size_t i = text.size(); i-- > 0; checksum >>= 4) text[i] = "0123456789abcdef"[checksum & 15u];
+    return text;
 }
 
 /// What a header says of one tensor.
@@ -83,8 +85,8 @@ class Reader {
         if (const auto stated = file.metadata.find(checksumKey); stated != file.metadata.end()) {
             const std::string actual = textOf(addToChecksum(0, data_));
             if (actual != stated->second)
-                fail(fmt::format("is damaged: the checksum of its elements is {}, it states {}", actual,
-                                 stated->second));
+                fail(formatText("is damaged: the checksum of its elements is {}, it states {}", actual,
+                                stated->second));
         }
         for (const Entry& entry : entries) {
             const auto bytes = data_.subspan(entry.begin, entry.end - entry.begin);
@@ -100,8 +102,7 @@ class Reader {
         if (bytes_.size() < lengthBytes) fail("is no safetensors file: it is shorter than 8 bytes");
         uint64_t length = 0;
         std::memcpy(&length, bytes_.data(), lengthBytes);
-        if (length > maxHeaderBytes)
-            fail(fmt::format("is no safetensors file: a header of {} bytes", length));
+        if (length > maxHeaderBytes) fail(formatText("is no safetensors file: a header of {} bytes", length));
         if (length > bytes_.size() - lengthBytes) fail("is cut off within its header");
         const auto text = std::span(bytes_).subspan(lengthBytes, length);
         data_ = std::span(bytes_).subspan(lengthBytes + length);
@@ -110,7 +111,7 @@ class Reader {
         const auto checkName = [&](int depth, json::parse_event_t event, json& parsed) {
             if (depth == 1 && event == json::parse_event_t::key &&
                 !names.insert(parsed.get<std::string>()).second)
-                fail(fmt::format("'{}' stands twice in its header", parsed.get<std::string>()));
+                fail(formatText("'{}' stands twice in its header", parsed.get<std::string>()));
             return true;
         };
         const auto* first = reinterpret_cast<const char*>(text.data());
@@ -119,7 +120,7 @@ class Reader {
             if (!header.is_object()) fail("its header is no JSON object");
             return header;
         } catch (const json::exception& fault) {
-            fail(fmt::format("its header is no JSON: {}", fault.what()));
+            fail(formatText("its header is no JSON: {}", fault.what()));
         }
     }
 
@@ -127,7 +128,7 @@ class Reader {
         std::map<std::string, std::string> metadata;
         if (!value.is_object()) fail("its metadata are no JSON object");
         for (const auto& [name, text] : value.items()) {
-            if (!text.is_string()) fail(fmt::format("its metadata '{}' are no string", name));
+            if (!text.is_string()) fail(formatText("its metadata '{}' are no string", name));
             metadata[name] = text.get<std::string>();
         }
         return metadata;
@@ -136,36 +137,35 @@ class Reader {
     std::vector<uint64_t> numbersOf(const std::string& name, const json& value, const char* key) const {
         std::vector<uint64_t> numbers;
         const auto found = value.find(key);
-        if (found == value.end() || !found->is_array()) fail(fmt::format("'{}' has no {}", name, key));
+        if (found == value.end() || !found->is_array()) fail(formatText("'{}' has no {}", name, key));
         for (const json& number : *found) {
             if (!number.is_number_unsigned())
-                fail(fmt::format("'{}': its {} are no whole numbers", name, key));
+                fail(formatText("'{}': its {} are no whole numbers", name, key));
             numbers.push_back(number.get<uint64_t>());
         }
         return numbers;
     }
 
     Entry entryOf(const std::string& name, const json& value) const {
-        if (!value.is_object()) fail(fmt::format("'{}' is no JSON object", name));
+        if (!value.is_object()) fail(formatText("'{}' is no JSON object", name));
         const auto type = value.find("dtype");
-        if (type == value.end() || !type->is_string()) fail(fmt::format("'{}' has no dtype", name));
+        if (type == value.end() || !type->is_string()) fail(formatText("'{}' has no dtype", name));
         const std::optional<ElementType> known = typeNamed(type->get<std::string>());
         if (!known)
-            fail(fmt::format("'{}' has elements of type {}; F16 and F32 can be read", name,
-                             type->get<std::string>()));
+            fail(formatText("'{}' has elements of type {}; F16 and F32 can be read", name,
+                            type->get<std::string>()));
         const std::vector<uint64_t> offsets = numbersOf(name, value, "data_offsets");
         if (offsets.size() != 2)
-            fail(fmt::format("'{}' has {} data_offsets in place of 2", name, offsets.size()));
+            fail(formatText("'{}' has {} data_offsets in place of 2", name, offsets.size()));
         Entry entry{name, *known, numbersOf(name, value, "shape"), offsets[0], offsets[1]};
         if (entry.shape.size() > maxDimensions)
-            fail(
-                fmt::format("'{}' has {} dimensions, more than {}", name, entry.shape.size(), maxDimensions));
+            fail(formatText("'{}' has {} dimensions, more than {}", name, entry.shape.size(), maxDimensions));
         if (entry.begin > entry.end || entry.end > data_.size())
-            fail(fmt::format("'{}' ends at byte {} of {}: the file is cut off, or its header wrong", name,
-                             entry.end, data_.size()));
+            fail(formatText("'{}' ends at byte {} of {}: the file is cut off, or its header wrong", name,
+                            entry.end, data_.size()));
         const std::optional<uint64_t> size = sizeOf(entry.type, entry.shape);
         if (!size || *size != entry.end - entry.begin)
-            fail(fmt::format("'{}': its shape does not fit its {} bytes", name, entry.end - entry.begin));
+            fail(formatText("'{}': its shape does not fit its {} bytes", name, entry.end - entry.begin));
         return entry;
     }
 
@@ -175,11 +175,11 @@ class Reader {
         uint64_t place = 0;
         for (const Entry& entry : entries) {
             if (entry.begin != place)
-                fail(fmt::format("'{}' begins at byte {}, the tensor before it ends at {}", entry.name,
-                                 entry.begin, place));
+                fail(formatText("'{}' begins at byte {}, the tensor before it ends at {}", entry.name,
+                                entry.begin, place));
             place = entry.end;
         }
-        if (place != data_.size()) fail(fmt::format("its tensors end at byte {} of {}", place, data_.size()));
+        if (place != data_.size()) fail(formatText("its tensors end at byte {} of {}", place, data_.size()));
     }
 
     const std::filesystem::path& path_;
@@ -193,8 +193,8 @@ std::string headerOf(const TensorFile& file) {
     uint32_t checksum = 0;
     for (const auto& [name, tensor] : file.tensors) {
         if (name == metadataKey || sizeOf(tensor.type, tensor.shape) != tensor.bytes.size())
-            throw Error(fmt::format("tensor '{}' has {} bytes, which do not fit its shape", name,
-                                    tensor.bytes.size()));
+            throw Error(formatText("tensor '{}' has {} bytes, which do not fit its shape", name,
+                                   tensor.bytes.size()));
         const uint64_t end = place + tensor.bytes.size();
         header[name] = {
             {"dtype", nameOf(tensor.type)}, {"shape", tensor.shape}, {"data_offsets", {place, end}}};
@@ -222,7 +222,7 @@ uint64_t Tensor::elements() const {
 Tensor makeTensor(ElementType type, std::vector<uint64_t> shape, const std::vector<float>& values) {
     Tensor tensor{type, std::move(shape), std::vector<std::byte>(values.size() * bytesOf(type))};
     if (sizeOf(type, tensor.shape) != tensor.bytes.size())
-        throw Error(fmt::format("{} values do not fit a tensor's shape", values.size()));
+        throw Error(formatText("{} values do not fit a tensor's shape", values.size()));
     for (size_t i = 0; i < values.size(); ++i) {
         const uint16_t half = glm::packHalf1x16(values[i]);
         const void* const element =

@@ -1,7 +1,6 @@
 #include "base/files/file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/text/format.h"
 
 namespace limpid {
 namespace fs = std::filesystem;
@@ -69,7 +69,7 @@ std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
     const std::streamoff size = stream.tellg();
     if (size < 0) throw InputError(path, "cannot be read");
     if (static_cast<uint64_t>(size) > maxBytes) {
-        throw InputError(path, fmt::format("is {} bytes long, more than the {} accepted", size, maxBytes));
+        throw InputError(path, formatText("is {} bytes long, more than the {} accepted", size, maxBytes));
     }
     std::vector<std::byte> bytes(static_cast<size_t>(size));
     stream.seekg(0);

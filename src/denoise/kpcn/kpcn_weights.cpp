@@ -1,12 +1,11 @@
 #include "denoise/kpcn/kpcn_weights.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/text/format.h"
 #include "denoise/kpcn/kpcn_params.h"
 #include "neural/tensor_file.h"
 
@@ -24,6 +23,12 @@ struct Shape {
     float facing;
 };
 
+std::string textOf(const std::vector<uint64_t>& shape) {
+    std::vector<std::string> lengths;
+    for (const uint64_t length : shape) lengths.push_back(std::to_string(length));
+    return joinText(lengths);
+}
+
 class Reader {
   public:
     explicit Reader(const std::filesystem::path& path) : path_(path), file_(neural::readTensorFile(path)) {}
@@ -38,15 +43,15 @@ class Reader {
             uint32_t inputs = KPCN_INPUT_CHANNELS;
             for (uint32_t i = 0; i < shape.hidden; ++i) {
                 result.sides[side].push_back(
-                    layer(fmt::format("{}.hidden.{}", names[side], i), inputs, shape.channels));
+                    layer(formatText("{}.hidden.{}", names[side], i), inputs, shape.channels));
                 inputs = shape.channels;
             }
             result.sides[side].push_back(
-                layer(fmt::format("{}.output", names[side]), inputs, shape.width * shape.width));
+                layer(formatText("{}.output", names[side]), inputs, shape.width * shape.width));
         }
         if (!file_.tensors.empty())
-            fail(fmt::format("holds a tensor '{}', which its shape has no place for",
-                             file_.tensors.begin()->first));
+            fail(formatText("holds a tensor '{}', which its shape has no place for",
+                            file_.tensors.begin()->first));
         return result;
     }
 
@@ -61,7 +66,7 @@ class Reader {
         const auto number = [&](const char* name, uint32_t max) {
             if (!shape.is_object() || !shape.contains(name) || !shape[name].is_number_unsigned() ||
                 shape[name].get<uint64_t>() < 1 || shape[name].get<uint64_t>() > max)
-                fail(fmt::format("its metadata limpid.shape has no '{}' from 1 to {}", name, max));
+                fail(formatText("its metadata limpid.shape has no '{}' from 1 to {}", name, max));
             return shape[name].get<uint32_t>();
         };
         const Shape result{number("hidden", maxHidden), number("channels", maxChannels),
@@ -75,21 +80,21 @@ class Reader {
         if (!shape.contains("facing")) return KpcnWeights{}.facing;
         const json& facing = shape["facing"];
         if (!facing.is_number() || !(facing.get<float>() >= minFacing && facing.get<float>() <= 1.0f))
-            fail(fmt::format("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
+            fail(formatText("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
         return facing.get<float>();
     }
 
     /// Taken out of the file, so that what is left is too much.
     std::vector<float> take(const std::string& name, const std::vector<uint64_t>& shape) {
         const auto found = file_.tensors.find(name);
-        if (found == file_.tensors.end()) fail(fmt::format("lacks the tensor '{}'", name));
+        if (found == file_.tensors.end()) fail(formatText("lacks the tensor '{}'", name));
         if (found->second.shape != shape)
-            fail(fmt::format("the tensor '{}' has the shape ({}), not ({})", name,
-                             fmt::join(found->second.shape, ", "), fmt::join(shape, ", ")));
+            fail(formatText("the tensor '{}' has the shape ({}), not ({})", name, textOf(found->second.shape),
+                            textOf(shape)));
         const std::vector<float> values = neural::valuesOf(found->second);
         if (!std::ranges::all_of(values, [](float v) { return std::abs(v) <= largestHalf; }))
-            fail(fmt::format("the tensor '{}' holds numbers that are not finite or beyond half precision",
-                             name));
+            fail(formatText("the tensor '{}' holds numbers that are not finite or beyond half precision",
+                            name));
         file_.tensors.erase(found);
         return values;
     }
