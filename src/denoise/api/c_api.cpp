@@ -1,6 +1,5 @@
 // The C interface (limpid/denoise.h): devices, denoisers, parameters.
-#include <new>
-
+#include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
 #include "denoise/api/c_handles.h"
 #include "denoise/stages/output/output.h"
@@ -10,50 +9,13 @@ using namespace limpid::denoise;
 
 namespace {
 
-thread_local std::string lastError;
-
 /// Looks along -z and along +z: as matrices of a perspective and of an orthographic camera.
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
 
-MessageCallback callbackOf(limpid_message_callback message, void* user) {
-    if (!message) return {};
-    return [message, user](MessageLevel level, const std::string& text) {
-        message(user, static_cast<limpid_message_level>(level), text.c_str());
-    };
-}
-
 }  // namespace
 
 namespace limpid::denoise {
-
-limpid_result resultOfException() noexcept {
-    const auto say = [](const char* text, limpid_result result) noexcept {
-        try {
-            lastError = text;
-        } catch (...) {
-            lastError.clear();
-        }
-        return result;
-    };
-    try {
-        throw;
-    } catch (const gpu::DeviceLost& error) {
-        return say(error.what(), LIMPID_ERROR_DEVICE_LOST);
-    } catch (const gpu::OutOfMemory& error) {
-        return say(error.what(), LIMPID_ERROR_OUT_OF_MEMORY);
-    } catch (const gpu::Unsupported& error) {
-        return say(error.what(), LIMPID_ERROR_UNSUPPORTED);
-    } catch (const UsageError& error) {
-        return say(error.what(), LIMPID_ERROR_INVALID_ARGUMENT);
-    } catch (const std::bad_alloc&) {
-        return say("out of host memory", LIMPID_ERROR_OUT_OF_MEMORY);
-    } catch (const std::exception& error) {
-        return say(error.what(), LIMPID_ERROR_FAILED);
-    } catch (...) {
-        return say("unknown failure", LIMPID_ERROR_FAILED);
-    }
-}
 
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc) {
     return {.framesInFlight = desc.frames_in_flight == 0 ? 2 : desc.frames_in_flight,
@@ -139,19 +101,13 @@ uint32_t limpid_version(void) {
 }
 
 const char* limpid_last_error(void) {
-    return lastError.c_str();
+    return lastErrorText();
 }
 
 limpid_result limpid_device_create(const limpid_device_desc* desc, limpid_device** device) {
     return guarded([&] {
         required(device, "device") = nullptr;
-        const limpid_device_desc d = desc ? wholeStruct(desc, "limpid_device_desc") : limpid_device_desc{};
-        gpu::DeviceOptions options;
-        options.select = d.select ? d.select : "";
-        options.validation = d.validation != 0;
-        options.readsEnvironment = false;
-        options.messages = callbackOf(d.message, d.message_user);
-        *device = new limpid_device{std::make_shared<gpu::Device>(options), false};
+        *device = new limpid_device{openDevice(desc), false};
     });
 }
 
@@ -223,17 +179,7 @@ limpid_result limpid_method_parameter(limpid_method method, uint32_t index, limp
     return guarded([&] {
         const std::vector<InstanceParameter>& all = parametersOf(method);
         if (index >= all.size()) throw UsageError(formatText("the method has {} parameters", all.size()));
-        const InstanceParameter& p = all[index];
-        const ParamValue& value = p.info.defaultValue;
-        required(parameter, "parameter") = {p.name.c_str(),
-                                            std::holds_alternative<bool>(value)  ? LIMPID_PARAMETER_BOOL
-                                            : std::holds_alternative<int>(value) ? LIMPID_PARAMETER_INT
-                                                                                 : LIMPID_PARAMETER_FLOAT,
-                                            std::visit([](auto v) { return static_cast<double>(v); }, value),
-                                            p.info.minimum,
-                                            p.info.maximum,
-                                            p.info.unit.c_str(),
-                                            p.info.help.c_str()};
+        required(parameter, "parameter") = describe(all[index]);
     });
 }
 

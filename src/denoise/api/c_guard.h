@@ -11,6 +11,9 @@
 
 namespace limpid::denoise {
 
+/// Of the calling thread's last failure; "" if there was none.
+const char* lastErrorText() noexcept;
+
 /// Stores the message of the calling thread and tells the code of the exception that is being handled.
 limpid_result resultOfException() noexcept;
 

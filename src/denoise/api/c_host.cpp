@@ -1,40 +1,12 @@
 // The C interface's frames in host memory.
-#include <cmath>
-
 #include "denoise/api/c_guard.h"
 #include "denoise/api/c_handles.h"
+#include "denoise/api/host_pixels.h"
 
 using namespace limpid;
 using namespace limpid::denoise;
 
 namespace {
-
-/// Strides in bytes, with their defaults.
-struct Layout {
-    size_t pixel, row;
-};
-
-template <typename HostImage>
-Layout layoutOf(const HostImage& image, uint32_t width, const char* name, uint32_t fewest) {
-    if (image.components < fewest || image.components > 4)
-        throw UsageError(formatText("the image '{}' has {} components: {} to 4 are possible", name,
-                                    image.components, fewest));
-    const size_t pixel = image.pixel_stride ? image.pixel_stride : image.components * sizeof(float);
-    return {pixel, image.row_stride ? image.row_stride : width * pixel};
-}
-
-/// Four components a pixel: those that are not there are 0.
-std::vector<float> readPixels(const limpid_host_image& image, uint32_t width, uint32_t height,
-                              const char* name) {
-    const Layout layout = layoutOf(image, width, name, 1);
-    std::vector<float> pixels(size_t{4} * width * height);
-    const auto* bytes = reinterpret_cast<const std::byte*>(image.data);
-    for (size_t y = 0; y < height; ++y)
-        for (size_t x = 0; x < width; ++x)
-            std::memcpy(&pixels[4 * (y * width + x)], bytes + y * layout.row + x * layout.pixel,
-                        image.components * sizeof(float));
-    return pixels;
-}
 
 std::vector<uint32_t> toUnsigned(const std::vector<float>& pixels) {
     std::vector<uint32_t> result;
@@ -42,16 +14,6 @@ std::vector<uint32_t> toUnsigned(const std::vector<float>& pixels) {
     for (const float value : pixels)
         result.push_back(value >= 0.0f && value < 4294967040.0f ? static_cast<uint32_t>(value) : 0);
     return result;
-}
-
-void writePixels(const limpid_host_output& image, const std::vector<float>& pixels, uint32_t width,
-                 uint32_t height, const char* name) {
-    const Layout layout = layoutOf(image, width, name, 3);
-    auto* bytes = reinterpret_cast<std::byte*>(image.data);
-    for (size_t y = 0; y < height; ++y)
-        for (size_t x = 0; x < width; ++x)
-            std::memcpy(bytes + y * layout.row + x * layout.pixel, &pixels[4 * (y * width + x)],
-                        image.components * sizeof(float));
 }
 
 IngestImages uploadInputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,

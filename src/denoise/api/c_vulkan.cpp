@@ -1,6 +1,7 @@
 // The C interface inside Vulkan programs (limpid/denoise_vulkan.h).
 #include <array>
 
+#include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
 #include "denoise/api/c_handles.h"
 #include "denoise/stages/output/output.h"
@@ -181,11 +182,7 @@ limpid_result limpid_device_adopt(const limpid_vulkan_device_desc* desc, limpid_
         adopted.queueFamily = d.queue_family;
         adopted.debugUtils = d.debug_utils != 0;
         adopted.memory = hooksOf(d);
-        if (d.message)
-            adopted.messages = [message = d.message, user = d.message_user](MessageLevel level,
-                                                                            const std::string& text) {
-                message(user, static_cast<limpid_message_level>(level), text.c_str());
-            };
+        adopted.messages = callbackOf(d.message, d.message_user);
         *device = new limpid_device{std::make_shared<gpu::Device>(adopted), true};
     });
 }

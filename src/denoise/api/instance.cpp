@@ -27,12 +27,10 @@ void forEachGroupOf(limpid_method method, Settings& settings, const Visit& visit
     });
 }
 
-std::vector<InstanceParameter> listParameters(limpid_method method) {
+std::vector<InstanceParameter> listOf(limpid_method method) {
     std::vector<InstanceParameter> all;
     FilterSettings settings;
-    forEachGroupOf(method, settings, [&](const auto& table, auto&) {
-        for (const ParamInfo& info : table.infos()) all.push_back({table.group() + "." + info.name, info});
-    });
+    forEachGroupOf(method, settings, [&](const auto& table, auto&) { listParameters(table, all); });
     // limpid_denoiser_desc::signals says it.
     std::erase_if(all, [](const InstanceParameter& p) { return p.name == "svgf.separate"; });
     return all;
@@ -52,11 +50,6 @@ void checkMethod(const limpid_method& method) {
     checkEnum("method", method, static_cast<int>(methods().size()) - 1);
 }
 
-bool isParameter(const std::string& group, const std::string& parameter, std::string_view name) {
-    return name.size() == group.size() + 1 + parameter.size() && name.starts_with(group) &&
-           name[group.size()] == '.' && name.ends_with(parameter);
-}
-
 [[noreturn]] void failUnknown(std::string_view name) {
     throw UsageError(formatText("the method has no parameter '{}'", name));
 }
@@ -67,7 +60,7 @@ const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
     static const std::vector<std::vector<InstanceParameter>> all = [] {
         std::vector<std::vector<InstanceParameter>> lists;
         for (size_t i = 0; i < methods().size(); ++i)
-            lists.push_back(listParameters(static_cast<limpid_method>(i)));
+            lists.push_back(listOf(static_cast<limpid_method>(i)));
         return lists;
     }();
     checkMethod(method);
@@ -77,17 +70,7 @@ const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
 void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value) {
     bool found = false;
     forEachGroupOf(method, settings, [&](const auto& table, auto& group) {
-        for (const ParamInfo& info : table.infos()) {
-            if (found || !isParameter(table.group(), info.name, name)) continue;
-            found = true;
-            if (!(value >= info.minimum && value <= info.maximum))
-                throw UsageError(formatText("{}: {} is outside its range {} to {}", name, value, info.minimum,
-                                            info.maximum));
-            const bool isFloat = std::holds_alternative<float>(info.defaultValue);
-            const std::string text = isFloat ? formatText("{}", static_cast<float>(value))
-                                             : formatText("{}", static_cast<int>(value));
-            table.set(group, info.name, text);
-        }
+        found = found || setNumber(table, group, name, value);
     });
     if (!found) failUnknown(name);
 }
@@ -95,10 +78,7 @@ void setParameter(FilterSettings& settings, limpid_method method, std::string_vi
 double parameter(const FilterSettings& settings, limpid_method method, std::string_view name) {
     std::optional<double> result;
     forEachGroupOf(method, settings, [&](const auto& table, const auto& group) {
-        for (size_t i = 0; i < table.infos().size(); ++i) {
-            if (!isParameter(table.group(), table.infos()[i].name, name)) continue;
-            result = std::visit([](auto value) { return static_cast<double>(value); }, table.get(group, i));
-        }
+        if (!result) result = getNumber(table, group, name);
     });
     if (!result) failUnknown(name);
     return *result;

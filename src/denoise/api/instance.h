@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "denoise/api/parameter_numbers.h"
 #include "denoise/methods/methods.h"
 #include "denoise/stages/ingest/ingest.h"
 #include "limpid/denoise.h"
@@ -16,11 +17,6 @@ struct InstanceOutputs {
     gpu::ImageHandle color, radiance, specular;
 };
 
-/// One parameter of a method, in its table.
-struct InstanceParameter {
-    std::string name;  ///< "svgf.alpha"
-    ParamInfo info;
-};
 const std::vector<InstanceParameter>& parametersOf(limpid_method method);
 
 /// Throws UsageError if there is none of this name, or the value is outside its range.
