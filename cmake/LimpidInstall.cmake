@@ -1,5 +1,6 @@
 # What `cmake --install` puts where. Its components are also the Debian packages (LimpidPackages.cmake):
-# library: liblimpid.so.0; development: headers, CMake package, pkg-config; program: limpid and its weights.
+# library: liblimpid.so.0; development: headers, CMake package, pkg-config; neural and neural_development: the same of
+# liblimpid-neural.so.0; weights: what the network needs; program: limpid.
 include(CMakePackageConfigHelpers)
 
 set(LIMPID_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/limpid)
@@ -7,7 +8,7 @@ set(LIMPID_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/limpid)
 install(TARGETS limpid_denoise EXPORT limpidTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/limpid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+  COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "neural.*" EXCLUDE)
 
 # find_package(limpid)
 install(EXPORT limpidTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
@@ -19,9 +20,29 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/install/limpidConfigVersi
 install(FILES ${PROJECT_BINARY_DIR}/install/limpidConfig.cmake ${PROJECT_BINARY_DIR}/install/limpidConfigVersion.cmake
   DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
 
+# The program looks for them in ../share/limpid, the library where src/denoise/api/network/CMakeLists.txt says.
+if(LIMPID_APPS OR TARGET limpid_neural)
+  install(FILES ${PROJECT_SOURCE_DIR}/weights/kpcn.safetensors ${PROJECT_SOURCE_DIR}/weights/kpcn-cis565.safetensors
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/limpid COMPONENT weights)
+endif()
+
 # pkg-config: its paths follow from where limpid.pc lies, so that a moved prefix still works.
 file(RELATIVE_PATH LIMPID_PREFIX_FROM_PC
   ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-configure_file(${PROJECT_SOURCE_DIR}/cmake/limpid.pc.in ${PROJECT_BINARY_DIR}/install/limpid.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/install/limpid.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-  COMPONENT development)
+# limpid_install_pc(NAME DESCRIPTION COMPONENT): NAME.pc for libNAME.so.
+function(limpid_install_pc NAME DESCRIPTION COMPONENT)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/limpid.pc.in ${PROJECT_BINARY_DIR}/install/${NAME}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/install/${NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+    COMPONENT ${COMPONENT})
+endfunction()
+limpid_install_pc(limpid "Real-time denoisers for any Vulkan device" development)
+
+if(TARGET limpid_neural)
+  install(TARGETS limpid_neural EXPORT limpidNeuralTargets
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT neural NAMELINK_COMPONENT neural_development)
+  install(FILES ${PROJECT_SOURCE_DIR}/include/limpid/neural.h ${PROJECT_SOURCE_DIR}/include/limpid/neural.hpp
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limpid COMPONENT neural_development)
+  # limpidConfig.cmake takes it in where it lies beside.
+  install(EXPORT limpidNeuralTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT neural_development)
+  limpid_install_pc(limpid-neural "Kernel-predicting denoising network for any Vulkan device" neural_development)
+endif()

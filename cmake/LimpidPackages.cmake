@@ -12,6 +12,12 @@ set(CPACK_COMPONENTS_ALL library development)
 if(LIMPID_APPS)
   list(APPEND CPACK_COMPONENTS_ALL program)
 endif()
+if(LIMPID_APPS OR TARGET limpid_neural)
+  list(APPEND CPACK_COMPONENTS_ALL weights)
+endif()
+if(TARGET limpid_neural)
+  list(APPEND CPACK_COMPONENTS_ALL neural neural_development)
+endif()
 if(TARGET limpid_python_denoise)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -35,9 +41,31 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}),
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "real-time denoisers for any Vulkan device, to build programs with
  Headers for C and C++, a CMake package and a pkg-config file.")
 
+set(CPACK_DEBIAN_NEURAL_PACKAGE_NAME liblimpid-neural0)
+set(CPACK_DEBIAN_NEURAL_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_NEURAL_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_NEURAL_DESCRIPTION "denoising network for any Vulkan device
+ Cleans pictures of path tracers with a trained network that predicts kernels:
+ single frames of about 32 samples per pixel, in host memory.")
+
+set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_NAME liblimpid-neural-dev)
+set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_DEPENDS
+  "liblimpid-neural0 (= ${PROJECT_VERSION}), liblimpid-dev (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_DESCRIPTION "denoising network for any Vulkan device, to build programs with
+ Headers for C and C++, the component 'neural' of Limpid's CMake package and a
+ pkg-config file.")
+
+set(CPACK_DEBIAN_WEIGHTS_PACKAGE_NAME limpid-weights)
+set(CPACK_DEBIAN_WEIGHTS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_WEIGHTS_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_WEIGHTS_DESCRIPTION "weights of Limpid's denoising network
+ Trained weights, which the program limpid and its library liblimpid-neural
+ read.")
+
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME limpid)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS libvulkan1)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS mesa-vulkan-drivers)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any Vulkan device
  Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
@@ -46,6 +74,9 @@ set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limpid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}), python3, python3-numpy")
+if(TARGET limpid_neural)
+  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${PROJECT_VERSION})")
+endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "real-time denoisers for any Vulkan device, for Python
  NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
  scenes, and compares pictures.")

@@ -48,6 +48,28 @@ function(limpid_optional NAME PACKAGE DEBIAN LOSS)
   set(LIMPID_HAVE_${NAME} ${${PACKAGE}_FOUND} PARENT_SCOPE)
 endfunction()
 
+# limpid_find_neural(): sets LIMPID_HAVE_ONEDNN, and LIMPID_HAVE_NEURAL to whether liblimpid-neural is built: if
+# LIMPID_NEURAL is on and all that it needs is there. (The programs have the network without oneDNN, too: in shaders.)
+macro(limpid_find_neural)
+  set(LIMPID_HAVE_NEURAL ${LIMPID_NEURAL})
+  if(LIMPID_NEURAL AND NOT LIMPID_APPS)
+    set(LOSS "there is no liblimpid-neural")
+    limpid_optional(TBB TBB libtbb-dev ${LOSS})
+    limpid_optional(GLM glm libglm-dev ${LOSS})
+    limpid_optional(NLOHMANN nlohmann_json nlohmann-json3-dev ${LOSS})
+    limpid_optional(ZLIB ZLIB zlib1g-dev ${LOSS})
+    if(NOT (LIMPID_HAVE_TBB AND LIMPID_HAVE_GLM AND LIMPID_HAVE_NLOHMANN AND LIMPID_HAVE_ZLIB))
+      set(LIMPID_HAVE_NEURAL OFF)
+    endif()
+  endif()
+  if(LIMPID_APPS OR LIMPID_NEURAL)
+    limpid_optional(ONEDNN oneDNN libdnnl-dev "networks are slower on CPUs, and there is no liblimpid-neural")
+    if(NOT LIMPID_HAVE_ONEDNN)
+      set(LIMPID_HAVE_NEURAL OFF)
+    endif()
+  endif()
+endmacro()
+
 # With LIMPID_PCH these headers are parsed once: a clean build takes two thirds of the time. Off by default, so that a file
 # must include what it uses.
 set(LIMPID_PCH_HEADERS
@@ -101,6 +123,26 @@ function(limpid_library NAME)
   target_link_libraries(limpid_${NAME} PUBLIC ${ARG_DEPS} PRIVATE limpid_options ${ARG_PRIVATE_DEPS})
   limpid_use_pch(limpid_${NAME} limpid_pch)
   limpid_unity(limpid_${NAME})
+endfunction()
+
+# limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): libFILE.so.0, limpid::NAME for programs that include
+# include/limpid. What it needs is in it; it exports what the version script EXPORTS lists.
+function(limpid_shared_library NAME FILE EXPORTS)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  set(TARGET limpid_${NAME})
+  set(SCRIPT ${CMAKE_CURRENT_SOURCE_DIR}/${EXPORTS})
+  add_library(${TARGET} SHARED ${ARG_SOURCES} ${EXPORTS})
+  add_library(limpid::${NAME} ALIAS ${TARGET})
+  target_link_libraries(${TARGET} PRIVATE limpid_options ${ARG_DEPS})
+  target_include_directories(${TARGET} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_options(${TARGET} PRIVATE -Wl,--version-script=${SCRIPT})
+  if(NOT LIMPID_SANITIZE)
+    target_link_options(${TARGET} PRIVATE -Wl,--no-undefined)  # the sanitizers' own come from the program
+  endif()
+  set_target_properties(${TARGET} PROPERTIES
+    OUTPUT_NAME ${FILE} EXPORT_NAME ${NAME} VERSION ${PROJECT_VERSION} SOVERSION 0
+    POSITION_INDEPENDENT_CODE OFF LINK_DEPENDS ${SCRIPT})
 endfunction()
 
 # limpid_program(NAME SOURCES a.cpp ... DEPS limpid::base ...): an executable.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # package.sh [CMAKE OPTION ...]: builds the Debian packages limpid, liblimpid0, liblimpid-dev and python3-limpid into
-# build/packages.
-# With -DLIMPID_APPS=OFF only the library's two.
+# build/packages; for the network liblimpid-neural0, liblimpid-neural-dev and limpid-weights, too.
+# With -DLIMPID_APPS=OFF only the library's two; with -DLIMPID_NEURAL=ON besides, the network's three.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh dpkg-dev

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # embed.sh TEST SOURCE BUILD LIBDIR: one test of Limpid as other programs meet it. CTest runs them (label embed),
-# "install" first: it installs the library into BUILD/tests/embed/prefix, and the others build programs against that.
+# "install" first: it installs the libraries into BUILD/tests/embed/prefix, and the others build programs against that.
 # CXX and CMAKE_GENERATOR are those of the build.
 set -euo pipefail
 test=$1 source=$2 build=$3 libdir=$4
@@ -35,6 +35,25 @@ pictures() {
     [ "$(sha256sum "$@" | cut -d ' ' -f 1 | sort -u | wc -l)" -eq $# ] || fail "two of $* are the same"
 }
 
+# soname FILE NAME
+soname() { readelf -d "$prefix/$libdir/$1" | grep SONAME | grep -qF "[$2]" || fail "the SONAME is not $2"; }
+installed() {
+    local file
+    for file in "$@"; do
+        [ -e "$prefix/$file" ] || fail "$file is not installed"
+    done
+}
+# abi LIBRARY PREFIX PROGRAM FILE: LIBRARY exports what begins with PREFIX, and that, with what PROGRAM.c prints, is FILE.
+abi() {
+    nm -D --defined-only "$prefix/$libdir/$1.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' |
+        LC_ALL=C sort >"$own/symbols"
+    ! grep -v "^$2" "$own/symbols" || fail "exported, and not of the interface"
+    ${CC:-cc} -std=c99 $(pkg-config --cflags limpid) -o "$own/abi" "$source/tests/embed/$3.c"
+    { cat "$own/symbols"; "$own/abi"; } >"$own/abi.txt"
+    diff -u "$source/tests/embed/$4" "$own/abi.txt" || fail "the ABI has changed: lines may be added to
+$4, where they follow what was there in their struct; anything else is another SONAME"
+}
+
 [ "$test" = install ] || [ -e "$prefix/$libdir/liblimpid.so" ] || fail "no library in $prefix: run embed_install"
 rm -rf "$own"
 mkdir -p "$own"
@@ -43,19 +62,17 @@ case $test in
         rm -rf "$prefix"
         cmake --install "$build" --prefix "$prefix" --component library
         cmake --install "$build" --prefix "$prefix" --component development
-        readelf -d "$prefix/$libdir/liblimpid.so" | grep SONAME | grep -qF '[liblimpid.so.0]' ||
-            fail "the SONAME is not liblimpid.so.0"
-        for file in include/limpid/denoise{.h,.hpp,_vulkan.h,_vulkan.hpp} "$libdir"/liblimpid.so.0 \
-            "$libdir"/pkgconfig/limpid.pc "$libdir"/cmake/limpid/limpidConfig{,Version}.cmake; do
-            [ -e "$prefix/$file" ] || fail "$file is not installed"
-        done
+        soname liblimpid.so liblimpid.so.0
+        installed include/limpid/denoise{.h,.hpp,_vulkan.h,_vulkan.hpp} "$libdir"/liblimpid.so.0 \
+            "$libdir"/pkgconfig/limpid.pc "$libdir"/cmake/limpid/limpidConfig{,Version}.cmake
+        [ ! -e "$prefix/include/limpid/neural.h" ] || fail "neural.h is installed without its library"
         ;;
     find_package)
         configure "$source/tests/embed/consumer" "$own"
         consumer
-        refuses "no component 'neural'; it has: denoise" \
-            configure "$source/tests/embed/consumer" "$own/neural" -D COMPONENT=neural
-        configure "$source/tests/embed/consumer" "$own/optional" -D COMPONENT=neural -D OPTIONAL=ON
+        refuses "no component 'other'; it has: denoise" \
+            configure "$source/tests/embed/consumer" "$own/other" -D COMPONENT=other
+        configure "$source/tests/embed/consumer" "$own/optional" -D COMPONENT=other -D OPTIONAL=ON
         ;;
     pkg_config)
         cp -a "$prefix" "$own/moved"
@@ -72,13 +89,33 @@ case $test in
         consumer
         ;;
     symbols)
-        nm -D --defined-only "$prefix/$libdir/liblimpid.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' |
-            LC_ALL=C sort >"$own/symbols"
-        ! grep -v '^limpid_' "$own/symbols" || fail "exported, and not of the interface"
-        ${CC:-cc} -std=c99 $(pkg-config --cflags limpid) -o "$own/abi" "$source/tests/embed/abi.c"
-        { cat "$own/symbols"; "$own/abi"; } >"$own/abi.txt"
-        diff -u "$source/tests/embed/abi-0.2.txt" "$own/abi.txt" || fail "the ABI has changed: lines may be added to
-abi-0.2.txt, where they follow what was there in their struct; anything else is another SONAME"
+        abi liblimpid limpid_ abi abi-0.2.txt
+        ;;
+    neural_install)
+        for component in neural neural_development weights; do
+            cmake --install "$build" --prefix "$prefix" --component $component
+        done
+        soname liblimpid-neural.so liblimpid-neural.so.0
+        installed include/limpid/neural{.h,.hpp} "$libdir"/liblimpid-neural.so.0 "$libdir"/pkgconfig/limpid-neural.pc \
+            share/limpid/kpcn{,-cis565}.safetensors
+        ;;
+    neural_find_package)
+        configure "$source/tests/embed/consumer" "$own" -D COMPONENT=neural
+        cmake --build "$own"
+        "$own/network_wrapper"
+        ;;
+    neural_pkg_config)
+        cp -a "$prefix" "$own/moved"
+        export PKG_CONFIG_PATH=$own/moved/$libdir/pkgconfig
+        ${CC:-cc} -std=c99 $(pkg-config --cflags limpid-neural) -o "$own/network" \
+            "$source/tests/embed/consumer/network.c" $(pkg-config --libs limpid-neural)
+        LD_LIBRARY_PATH=$own/moved/$libdir "$own/network"
+        rm -r "$own/moved/share"
+        refuses "kpcn.safetensors: the weights that come with Limpid are neither there" \
+            env LD_LIBRARY_PATH="$own/moved/$libdir" "$own/network"
+        ;;
+    neural_symbols)
+        abi liblimpid-neural limpid_network_ abi_neural abi-neural-0.2.txt
         ;;
     example_c)
         configure "$source/examples/c" "$own"
