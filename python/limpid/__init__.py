@@ -1,19 +1,21 @@
 """Limpid: denoisers and a path tracer for any Vulkan device, with NumPy arrays in and out.
 
-denoise() cleans a still, Denoiser the frames of a sequence, compare() measures how far a picture is from its
-reference, render() and render_sequence() path-trace a scene. docs/python.md has examples.
+denoise() cleans a still, Denoiser the frames of a sequence, Network single frames by a trained network. compare()
+measures how far a picture is from its reference, render() and render_sequence() path-trace a scene. docs/python.md has
+examples.
 """
 
 from limpid._camera import look_at, perspective
 from limpid._denoise import version as _version
 from limpid._denoising import Denoiser, Device, Parameter, denoise, parameters
 from limpid._error import Error
+from limpid._network import Network
 from limpid._rendering import builtin_scenes, compare, render, render_sequence
 
 __version__ = _version()
 __all__ = [
-    "Denoiser", "Device", "Error", "Parameter", "builtin_scenes", "compare", "denoise", "look_at", "parameters",
-    "perspective", "render", "render_sequence",
+    "Denoiser", "Device", "Error", "Network", "Parameter", "builtin_scenes", "compare", "denoise", "look_at",
+    "parameters", "perspective", "render", "render_sequence",
 ]
 
 for _name in __all__:

@@ -11,6 +11,7 @@ __all__: list[str]
 _Image = NDArray[np.float32]
 _Matrix = NDArray[np.float64]
 _Method = Literal["svgf", "atrous", "temporal"]
+_StillMethod = Literal["svgf", "atrous", "temporal", "kpcn"]
 _Output = Literal["color", "radiance", "specular"]
 _Path = str | PathLike[str]
 
@@ -117,6 +118,38 @@ class Denoiser:
     def get(self, name: str) -> bool | int | float: ...
     def timings(self) -> dict[str, float]: ...
 
+class Network:
+    def __init__(
+        self,
+        weights: _Path | None = None,
+        *,
+        device: Device | str | int | None = None,
+        parameters: Mapping[str, float] | None = None,
+    ) -> None: ...
+    @property
+    def device_name(self) -> str: ...
+    @property
+    def precision(self) -> str: ...
+    def denoise(
+        self,
+        diffuse: ArrayLike,
+        normal: ArrayLike,
+        depth: ArrayLike,
+        *,
+        diffuse_variance: ArrayLike,
+        specular: ArrayLike | None = None,
+        specular_variance: ArrayLike | None = None,
+        emission: ArrayLike | None = None,
+        albedo: ArrayLike | None = None,
+        albedo_variance: ArrayLike | None = None,
+        normal_variance: ArrayLike | None = None,
+        depth_variance: ArrayLike | None = None,
+        samples: int = 32,
+    ) -> _Image: ...
+    def parameters(self) -> dict[str, Parameter]: ...
+    def set(self, name: str, value: float) -> None: ...
+    def get(self, name: str) -> bool | int | float: ...
+
 @overload
 def denoise(
     radiance: ArrayLike,
@@ -151,11 +184,11 @@ def denoise(
     projection: ArrayLike | None = None,
     jitter: tuple[float, float] = (0.0, 0.0),
     outputs: _Output = "color",
-    method: _Method = "svgf",
+    method: _StillMethod = "svgf",
     device: Device | str | int | None = None,
     **options: Any,
 ) -> _Image: ...
-def parameters(method: _Method = "svgf") -> dict[str, Parameter]: ...
+def parameters(method: _StillMethod = "svgf") -> dict[str, Parameter]: ...
 def compare(
     test: ArrayLike, reference: ArrayLike, *, exposure: float | Literal["auto"] = "auto"
 ) -> dict[str, float]: ...

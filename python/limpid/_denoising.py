@@ -28,14 +28,25 @@ class Parameter(NamedTuple):
     help: str
 
 
-def parameters(method="svgf"):
-    """The parameters of a method, by name: a dict of limpid.Parameter. They are those of 'limpid info'."""
-    number = _arrays.choose("method", method, _denoise.METHODS)
+def parameters_of(rows):
+    """By name, of what an extension module lists: (name, type, default, minimum, maximum, unit, help)."""
     result = {}
-    for name, kind, default, *rest in _denoise.parameters(number):
+    for name, kind, default, *rest in rows:
         default = _TYPES[kind](default)
         result[name] = Parameter(name, type(default), default, *rest)
     return result
+
+
+def parameter_value(kind, number):
+    """A number of the library's as a bool, int or float."""
+    return _TYPES[kind.__name__](number)
+
+
+def parameters(method="svgf"):
+    """The parameters of a method, "kpcn" too, by name: a dict of limpid.Parameter. They are those of 'limpid info'."""
+    if method == "kpcn":
+        return _network().parameters()
+    return parameters_of(_denoise.parameters(_arrays.choose("method", method, _denoise.METHODS)))
 
 
 class Device:
@@ -269,12 +280,18 @@ class Denoiser:
     def get(self, name):
         """The value of a parameter: a bool, int or float, as its type is."""
         value = self._handle.get(name)
-        return _TYPES[self.parameters()[name].type.__name__](value)
+        return parameter_value(self.parameters()[name].type, value)
 
     def timings(self):
         """Milliseconds on the device of each pass of the latest frame, by the pass's name, in order. Empty unless the
         denoiser was made with timings=True."""
         return dict(self._handle.timings())
+
+
+def _network():
+    from limpid import _network as module  # which imports this one
+
+    return module
 
 
 def _check_side(name, value):
@@ -295,7 +312,18 @@ def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=Non
 
     Images are as Denoiser.denoise() takes them; there are two signals if specular is given. `options` are those of
     limpid.Denoiser. Sequences need a limpid.Denoiser, which learns from frame to frame.
+
+    method: one of limpid.Denoiser's, or "kpcn", the trained network for stills of about 32 samples per pixel. Then
+    `options` are the variances, samples and parameters of limpid.Network and its denoise(); radiance is its diffuse
+    light; albedo_specular, id, the cameras and jitter are not looked at. It loads its weights in each call: for
+    several stills make a limpid.Network.
     """
+    if method == "kpcn":
+        if outputs != "color":
+            raise ValueError(f"outputs: {outputs!r} is none of 'color', all that 'kpcn' has")
+        network = _network().Network(options.pop("weights", None), device=device,
+                                     parameters=options.pop("parameters", None))
+        return network.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo, **options)
     size = _arrays.image("radiance", radiance, _COMPONENTS["radiance"]).shape
     denoiser = Denoiser(size[1], size[0], method, device=device, signals=1 if specular is None else 2, **options)
     return denoiser.denoise(radiance, normal, depth, specular=specular, emission=emission, albedo=albedo,

@@ -14,36 +14,18 @@
 #include <utility>
 #include <vector>
 
+#include "c_interface.h"
 #include "limpid/denoise.h"
-#include "python_error.h"
 
 namespace py = pybind11;
 
 namespace {
 
-struct Failure : std::runtime_error {
-    Failure(const char* message, limpid_result what) : std::runtime_error(message), result(what) {}
-    limpid_result result;
-};
+using namespace limpid::python;
 
 /// On the thread that made the call.
 void check(limpid_result result) {
     if (result != LIMPID_OK) throw Failure(limpid_last_error(), result);
-}
-
-const char* codeOf(limpid_result result) {
-    switch (result) {
-        case LIMPID_ERROR_INVALID_ARGUMENT:
-            return "invalid_argument";
-        case LIMPID_ERROR_UNSUPPORTED:
-            return "unsupported";
-        case LIMPID_ERROR_OUT_OF_MEMORY:
-            return "out_of_memory";
-        case LIMPID_ERROR_DEVICE_LOST:
-            return "device_lost";
-        default:
-            return "failed";
-    }
 }
 
 const char* nameOf(limpid_message_level level) {
@@ -105,23 +87,7 @@ class Device {
     std::unique_ptr<limpid_device, Destroy> handle_;  ///< goes first: its end may have messages
 };
 
-using Array = py::array_t<float>;
 using Matrices = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-/// Where the values of an array of (height, width, components) lie.
-template <typename Image, typename Data>
-Image hostImage(Data* data, const Array& array) {
-    // Strides along an axis of length 1 mean nothing in NumPy; 0 is the C interface's default.
-    const auto stride = [&](int axis) {
-        return array.shape(axis) > 1 ? static_cast<size_t>(array.strides(axis)) : 0;
-    };
-    Image image{};
-    image.data = data;
-    image.components = static_cast<uint32_t>(array.shape(2));
-    image.pixel_stride = stride(1);
-    image.row_stride = stride(0);
-    return image;
-}
 
 void copyMatrix(const float* from, float (&to)[16]) {
     std::copy(from, from + 16, to);
@@ -160,7 +126,8 @@ class Denoiser {
         frame.reset = reset ? 1 : 0;
         frame.camera = cameraOf(camera, jitter);
         for (const auto& [input, array] : inputs) {
-            checkInput(input, array);
+            if (input >= LIMPID_INPUT_MAX) throw std::invalid_argument("there is no such input");
+            checkReadable(array, width_, height_);
             frame.inputs[input] = hostImage<limpid_host_image>(array.data(), array);
         }
         py::list results;
@@ -212,17 +179,6 @@ class Denoiser {
     uint32_t height() const { return height_; }
 
   private:
-    void checkInput(uint32_t input, const Array& array) const {
-        if (input >= LIMPID_INPUT_MAX) throw std::invalid_argument("there is no such input");
-        const bool shaped = array.ndim() == 3 && array.shape(0) == py::ssize_t{height_} &&
-                            array.shape(1) == py::ssize_t{width_} && array.shape(2) >= 1 &&
-                            array.shape(2) <= 4;
-        const auto forwards = [&](int axis) { return array.shape(axis) == 1 || array.strides(axis) > 0; };
-        const bool adjacent = array.shape(2) == 1 || array.strides(2) == py::ssize_t{sizeof(float)};
-        if (!shaped || !forwards(0) || !forwards(1) || !adjacent)
-            throw std::invalid_argument("an input's shape or strides cannot be read");
-    }
-
     struct Destroy {
         void operator()(limpid_denoiser* denoiser) const { limpid_denoiser_destroy(denoiser); }
     };
@@ -255,17 +211,10 @@ limpid_denoiser_desc describe(int method, uint32_t width, uint32_t height, uint3
     return desc;
 }
 
-/// Name, type, default, minimum, maximum, unit, help.
-using Parameter = std::tuple<std::string, std::string, double, double, double, std::string, std::string>;
-
 std::vector<Parameter> parameters(int method) {
-    constexpr const char* types[] = {"bool", "int", "float"};
-    std::vector<Parameter> all;
-    limpid_parameter p{};
-    while (limpid_method_parameter(static_cast<limpid_method>(method), static_cast<uint32_t>(all.size()),
-                                   &p) == LIMPID_OK)
-        all.emplace_back(p.name, types[p.type], p.default_value, p.minimum, p.maximum, p.unit, p.help);
-    return all;
+    return listParameters([method](uint32_t index, limpid_parameter* p) {
+        return limpid_method_parameter(static_cast<limpid_method>(method), index, p);
+    });
 }
 
 using Names = std::vector<std::pair<const char*, int>>;
@@ -324,13 +273,7 @@ std::string version() {
 }  // namespace
 
 PYBIND11_MODULE(_denoise, m) {
-    py::register_local_exception_translator([](std::exception_ptr thrown) {
-        try {
-            if (thrown) std::rethrow_exception(thrown);
-        } catch (const Failure& failure) {
-            limpid::python::raiseError(failure.what(), codeOf(failure.result));
-        }
-    });
+    translateFailures();
     using Unlocked = py::call_guard<py::gil_scoped_release>;
     m.def("version", version);
     m.def("parameters", parameters);

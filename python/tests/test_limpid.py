@@ -358,6 +358,70 @@ class DenoiseTest(unittest.TestCase):
         self.assertGreater(during, 5)
 
 
+class NetworkTest(unittest.TestCase):
+    DEVICE = os.environ.get("LIMPID_TEST_DEVICE", "cpu")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.noisy = limpid.render("builtin:cornell", 24, 16, spp=16, device=device())
+        names = ("diffuse", "specular", "emission", "albedo", "normal", "depth", "diffuse_variance",
+                 "specular_variance", "albedo_variance", "normal_variance", "depth_variance")
+        cls.inputs = {name: cls.noisy[name] for name in names}
+        cls.inputs["samples"] = 16
+        try:
+            cls.network = limpid.Network(device=cls.DEVICE)
+        except ImportError as error:  # built without oneDNN
+            raise unittest.SkipTest(str(error))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.network = None
+
+    def test_is_what_render_does_itself(self):
+        clean = self.network.denoise(**self.inputs)
+        self.assertEqual((clean.shape, clean.dtype), ((16, 24, 3), np.float32))
+        weights = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.safetensors")
+        own = limpid.render("builtin:cornell", 24, 16, spp=16, device=device(), denoiser="kpcn", weights=weights)
+        np.testing.assert_allclose(clean, own["color"], rtol=2e-3, atol=1e-4)
+
+    def test_denoise_has_it_as_a_method(self):
+        inputs = dict(self.inputs)
+        light = inputs.pop("diffuse")
+        clean = limpid.denoise(light, **inputs, method="kpcn", device=device(), parameters={"kpcn.levels": 0},
+                               view=self.noisy["view"], projection=self.noisy["projection"])
+        self.network.set("kpcn.levels", 0)
+        np.testing.assert_array_equal(clean, self.network.denoise(**self.inputs))
+        self.network.set("kpcn.levels", self.network.parameters()["kpcn.levels"].default)
+        self.assertGreater(mse(clean, self.network.denoise(**self.inputs)), 0.0)
+        with self.assertRaises(ValueError):
+            limpid.denoise(light, **inputs, method="kpcn", device=device(), outputs=("color",))
+
+    def test_parameters_are_the_networks(self):
+        self.assertEqual(limpid.parameters("kpcn"), self.network.parameters())
+        self.assertEqual(self.network.get("kpcn.tile"), 512)
+        for name, value in (("svgf.alpha", 0.5), ("kpcn.tile", 0), ("kpcn.errors", float("nan"))):
+            with self.assertRaises(limpid.Error) as caught:
+                self.network.set(name, value)
+            self.assertEqual(caught.exception.code, "invalid_argument")
+            self.assertIn(name, str(caught.exception))
+
+    def test_wrong_arguments_are_named(self):
+        flat = self.inputs["depth"]
+        for name, value in (("diffuse", flat), ("normal", flat), ("depth", self.inputs["normal"]), ("normal", None),
+                            ("specular_variance", None), ("diffuse_variance", flat[1:]), ("samples", 0)):
+            with self.subTest(name), self.assertRaises(ValueError) as caught:
+                self.network.denoise(**{**self.inputs, name: value})
+            self.assertTrue(str(caught.exception).startswith(name + ":"), str(caught.exception))
+        with self.assertRaises(limpid.Error) as caught:
+            self.network.denoise(**{**self.inputs, "diffuse": np.full_like(self.inputs["diffuse"], np.nan)})
+        self.assertEqual(caught.exception.code, "invalid_argument")
+
+    def test_weights_that_are_missing_are_named(self):
+        with self.assertRaises(limpid.Error) as caught:
+            limpid.Network("there is no such file", device=self.DEVICE)
+        self.assertIn("there is no such file", str(caught.exception))
+
+
 class CameraTest(unittest.TestCase):
     def test_look_at_puts_the_target_in_front(self):
         view = limpid.look_at((1, 2, 3), (1, 2, -1))
@@ -504,6 +568,14 @@ class PackageTest(unittest.TestCase):
         text = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
         self.assertIn("limpid.render and limpid.compare are missing", text)
         self.assertIn(limpid.__version__, text)
+
+    def test_denoising_works_without_the_network(self):
+        code = ("import sys; sys.modules['limpid._neural'] = None\n"
+                "import limpid\n"
+                "try: limpid.Network()\n"
+                "except ImportError as error: print(error)\n")
+        text = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+        self.assertIn("limpid.Network and the method 'kpcn' are missing", text)
 
     def test_version_has_three_numbers(self):
         self.assertEqual(len([int(part) for part in limpid.__version__.split(".")]), 3)

@@ -44,7 +44,7 @@ class StubTest(unittest.TestCase):
             self.assertEqual(described(self.stub[name]), actual(getattr(limpid, name)), name)
 
     def test_methods_have_the_same_parameters(self):
-        for cls in ("Denoiser", "Device", "Error"):
+        for cls in ("Denoiser", "Device", "Error", "Network"):
             methods = {n.name: n for n in self.stub[cls].body if isinstance(n, ast.FunctionDef)}
             real = {n: v for n, v in vars(getattr(limpid, cls)).items() if n == "__init__" or not n.startswith("_")}
             self.assertEqual(set(methods), set(real), cls)
