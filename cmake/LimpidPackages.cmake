@@ -76,6 +76,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}), python3, python3-numpy")
 if(TARGET limpid_neural)
   string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${PROJECT_VERSION})")
+  get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # where dpkg-shlibdeps finds it
+  list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_NEURAL_DIR})
 endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "real-time denoisers for any Vulkan device, for Python
  NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
