@@ -97,6 +97,28 @@ TEST_F(IngestTest, MotionOfTheCameraFollowsFromItsMatrices) {
     }
 }
 
+/// Where nothing is seen: antialiasing follows a sky at infinity.
+TEST_F(IngestTest, TheSkyMovesAsTheCameraTurns) {
+    Given given = still();
+    std::fill(given.depth.begin(), given.depth.end(), 0.0f);
+    given.before.forward = glm::normalize(given.before.forward + 0.1f * given.before.right);
+    const glm::dmat4 toClip = projectionOf(given.before) * viewOf(given.before);
+    const CameraParams& c = given.frame.camera;
+    const std::vector<float> motion = run(given, {}, false).motion, asGiven = run(given, {}, true).motion;
+    for (size_t p = 0; p < given.frame.pixelCount(); ++p) {
+        const double px = static_cast<double>(p % width) + 0.5, py = static_cast<double>(p / width) + 0.5;
+        const glm::dvec3 v = glm::dvec3(c.forward) + (2 * px / width - 1) * glm::dvec3(c.right) +
+                             (1 - 2 * py / height) * glm::dvec3(c.up);
+        const glm::dvec4 before = toClip * glm::dvec4(v, 0.0);
+        ASSERT_NEAR(motion[4 * p], (0.5 * before.x / before.w + 0.5) * width - px, 0.02) << "pixel " << p;
+        ASSERT_NEAR(motion[4 * p + 1], (0.5 * before.y / before.w + 0.5) * height - py, 0.02)
+            << "pixel " << p;
+        ASSERT_EQ(motion[4 * p + 2], 0.0f);
+        ASSERT_EQ(motion[4 * p + 3], 1.0f);
+        for (size_t i = 0; i < 2; ++i) ASSERT_EQ(asGiven[4 * p + i], given.motion[4 * p + i]);
+    }
+}
+
 TEST_F(IngestTest, LinearAndDeviceDepth) {
     for (const bool reversed : {false, true}) {
         for (const bool device : {false, true}) {

@@ -84,25 +84,25 @@ float previousDistance(vec3 position) {
     return params.previousCamera.orthographic != 0u ? dot(toPoint, params.previousCamera.forward) : length(toPoint);
 }
 
-/// Of a point that stands still, in pixels; w 0 if it was behind the previous eye.
-vec4 motionOfStill(vec3 position, vec2 pixel) {
-    const vec4 p = vec4(position, 1.0);
-    const float w = dot(params.previousClipW, p);
-    const vec2 before = vec2(dot(params.previousClipX, p), dot(params.previousClipY, p)) / w;
+/// Of a point that stands still (w 1), or of a direction to the sky (w 0), in pixels; 0 if it was behind the previous eye.
+vec4 motionOfStill(vec4 point, vec2 pixel) {
+    const float w = dot(params.previousClipW, point);
+    if (!(w > 0.0)) return vec4(0.0);
+    const vec2 before = vec2(dot(params.previousClipX, point), dot(params.previousClipY, point)) / w;
     const vec2 pixelBefore = (0.5 * before + 0.5) * vec2(params.width, params.height);
-    return vec4(pixelBefore - pixel - 0.5, 0.0, w > 0.0 ? 1.0 : 0.0);
+    return vec4(pixelBefore - pixel - 0.5, 0.0, 1.0);
 }
 
-vec4 motionOf(ivec2 at, vec3 position, float distance) {
+vec4 motionOf(ivec2 at, vec4 point, float distance) {
     vec4 result;
     if (has(INGEST_MOTION)) {
         const vec3 moved = texelFetch(motionIn, at, 0).xyz;
         result = vec4(moved.xy * params.motionToPixels, moved.z * params.motionToDistance, 1.0);
         if (params.motionToDistance != 0.0) return result;
     } else {
-        result = motionOfStill(position, vec2(at));
+        result = motionOfStill(point, vec2(at));
     }
-    result.z = previousDistance(position) - distance;
+    if (point.w != 0.0) result.z = previousDistance(point.xyz) - distance;
     return result;
 }
 
@@ -127,9 +127,10 @@ void main() {
     imageStore(previousNormal, at, vec4(nBefore, 0.0));
     imageStore(depth, at, vec4(distance, seen ? 1.0 : 0.0, 0.0, 0.0));
 
-    const bool moves = seen && params.hasPrevious != 0u;
-    imageStore(motion, at, moves ? motionOf(at, positionOf(distance, v, onScreen), distance) : vec4(0.0));
-    const bool reflects = moves && has(INGEST_REFLECTION_MOTION);
+    const bool moves = params.hasPrevious != 0u;
+    const vec4 point = seen ? vec4(positionOf(distance, v, onScreen), 1.0) : vec4(v, 0.0);
+    imageStore(motion, at, moves ? motionOf(at, point, distance) : vec4(0.0));
+    const bool reflects = seen && moves && has(INGEST_REFLECTION_MOTION);
     const vec4 mirrored = reflects ? texelFetch(reflectionMotionIn, at, 0) : vec4(0.0);
     // All zero says that there is no reflection to follow.
     const float valid = mirrored.xyz != vec3(0.0) ? 1.0 : 0.0;
