@@ -1,144 +1,16 @@
-// The C interface inside a Vulkan program: on its device, in its command buffers. The program is played by a
-// device of the tests, whose validation layer watches both.
+// The C interface inside a Vulkan program (vulkan_program.h).
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <map>
 
-#include "denoise/api/c_handles.h"
-#include "gpu/vulkan/device_impl.h"
-#include "gpu/vulkan/memory/image.h"
-#include "limpid/denoise_vulkan.h"
-#include "tests/denoise/denoise_fixture.h"
-#include "tests/embed/synthetic_camera.h"
+#include "tests/embed/vulkan_program.h"
 
 namespace limpid::test {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr uint32_t width = 40, height = 24;
-
-/// Images of one frame on the program's device, and the frame as limpid_record() takes it.
-struct ProgramFrame {
-    gpu::FrameGraph graph;  ///< keeps the images
-    limpid_vulkan_frame frame = {sizeof frame};
-    gpu::ImageHandle color;
-};
-
-class VulkanFramesTest : public DenoiseTest {
-  protected:
-    void SetUp() override {
-        DenoiseTest::SetUp();
-        if (IsSkipped() || adopted_) return;
-        ASSERT_EQ(adopt({}), LIMPID_OK) << limpid_last_error();
-    }
-    void TearDown() override {
-        if (!IsSkipped()) device().waitIdle();
-        for (limpid_denoiser* denoiser : denoisers_) limpid_denoiser_destroy(denoiser);
-        DenoiseTest::TearDown();
-    }
-    static void TearDownTestSuite() { limpid_device_destroy(std::exchange(adopted_, nullptr)); }
-
-    const gpu::Context& program() { return *device().impl().context; }
-
-    limpid_result adopt(limpid_vulkan_device_desc desc) {
-        limpid_device_destroy(std::exchange(adopted_, nullptr));
-        desc.size = sizeof desc;
-        desc.instance = program().instance();
-        desc.physical_device = program().physicalDevice();
-        desc.device = program().device();
-        desc.queue_family = program().queueFamily();
-        desc.get_instance_proc_addr = gpu::systemLoader();
-        desc.debug_utils = program().hasDebugUtils();
-        return limpid_device_adopt(&desc, &adopted_);
-    }
-
-    limpid_denoiser* create(limpid_denoiser_desc desc = {}) {
-        desc.size = sizeof desc;
-        if (desc.width == 0) desc.width = width, desc.height = height;
-        desc.signals = 2;
-        desc.motion_depth = LIMPID_MOTION_DISTANCE;
-        limpid_denoiser* denoiser = nullptr;
-        EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &denoiser), LIMPID_OK) << limpid_last_error();
-        denoisers_.push_back(denoiser);
-        return denoiser;
-    }
-
-    limpid_vulkan_image imageOf(ProgramFrame& f, gpu::ImageHandle handle, VkFormat format) {
-        const gpu::Image& image = f.graph.imageOnDevice(device(), handle);
-        limpid_vulkan_image result = {};
-        result.image = image.image.get();
-        result.view = image.view.get();
-        result.format = format;
-        result.layout = VK_IMAGE_LAYOUT_GENERAL;
-        result.stages_before = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-        result.access_before = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        return result;
-    }
-
-    /// `number`: of the sequence. The images are on the device when this returns.
-    std::unique_ptr<ProgramFrame> upload(const SyntheticScene& scene, int number,
-                                         gpu::Extent extent = {width, height}) {
-        auto f = std::make_unique<ProgramFrame>();
-        const HostFrame host = scene.frame(number, extent.width, extent.height, 1);
-        std::vector<float> depths(host.pixelCount());
-        std::vector<uint32_t> ids(host.pixelCount());
-        for (size_t p = 0; p < host.pixelCount(); ++p) {
-            depths[p] = host.depth[4 * p + 1] > 0.0f ? host.depth[4 * p] / host.depth[4 * p + 1] : 0.0f;
-            ids[p] = host.ids[2 * p];
-        }
-        f->graph.beginFrame();
-        std::map<limpid_input, gpu::ImageHandle> inputs;
-        const auto add = [&](limpid_input input, gpu::Format format, std::span<const std::byte> pixels) {
-            inputs[input] = f->graph.transient("program/" + std::to_string(input), format, extent);
-            f->graph.upload(inputs[input], pixels);
-        };
-        constexpr auto color = gpu::Format::RGBA32Float;
-        add(LIMPID_INPUT_RADIANCE, color, gpu::bytesOf(host.diffuse));
-        add(LIMPID_INPUT_SPECULAR, color, gpu::bytesOf(host.specular));
-        add(LIMPID_INPUT_EMISSION, color, gpu::bytesOf(host.emission));
-        add(LIMPID_INPUT_ALBEDO, color, gpu::bytesOf(host.albedo));
-        add(LIMPID_INPUT_ALBEDO_SPECULAR, color, gpu::bytesOf(host.albedoSpecular));
-        add(LIMPID_INPUT_NORMAL, color, gpu::bytesOf(host.normal));
-        add(LIMPID_INPUT_DEPTH, gpu::Format::R32Float, gpu::bytesOf(depths));
-        add(LIMPID_INPUT_MOTION, color, gpu::bytesOf(host.motion));
-        add(LIMPID_INPUT_PREVIOUS_NORMAL, color, gpu::bytesOf(host.previousNormal));
-        add(LIMPID_INPUT_ID, gpu::Format::R32Uint, gpu::bytesOf(ids));
-        f->color = f->graph.transient("program/color", color, extent);
-        f->graph.upload(f->color, gpu::bytesOf(host.diffuse));
-        f->graph.execute(device());
-        for (const auto& [input, handle] : inputs)
-            f->frame.inputs[input] = imageOf(*f, handle, VK_FORMAT_R32G32B32A32_SFLOAT);
-        limpid_vulkan_image& output = f->frame.outputs[LIMPID_OUTPUT_COLOR];
-        output = imageOf(*f, f->color, VK_FORMAT_R32G32B32A32_SFLOAT);
-        output.layout_after = VK_IMAGE_LAYOUT_GENERAL;
-        output.stages_after = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-        output.access_after = VK_ACCESS_2_TRANSFER_READ_BIT;
-        f->frame.camera = matricesOf(host.camera, host.camera);
-        return f;
-    }
-
-    /// Records by `record` into a command buffer of the program's, submits it and waits.
-    void run(const std::function<void(VkCommandBuffer)>& record) { device().impl().transfer().run(record); }
-
-    std::vector<float> pixels(ProgramFrame& f) { return f.graph.downloadFloat(device(), f.color); }
-
-    std::vector<float> denoiseSequence(limpid_denoiser* denoiser, const SyntheticScene& scene, int frames) {
-        std::vector<float> last;
-        for (int number = 0; number < frames; ++number) {
-            const auto f = upload(scene, number);
-            run([&](VkCommandBuffer commands) {
-                EXPECT_EQ(limpid_record(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
-            });
-            last = pixels(*f);
-        }
-        return last;
-    }
-
-    inline static limpid_device* adopted_ = nullptr;  ///< of all tests: each shader is compiled once
-    std::vector<limpid_denoiser*> denoisers_;
-};
+using VulkanFramesTest = VulkanProgramTest;
 
 const SyntheticOptions movingObject{.objectMoves = true};
 
