@@ -20,13 +20,19 @@ struct Result {
     std::string output;  ///< stdout and stderr
 };
 
-class CliTest : public testing::Test {
+/// `Base`: a fixture that the tests need besides.
+template <typename Base>
+class ProgramTest : public Base {
   protected:
     void SetUp() override {
+        Base::SetUp();
         folder_ = fs::temp_directory_path() / ("limpid_cli_test." + std::to_string(::getpid()));
         fs::create_directories(folder_);
     }
-    void TearDown() override { fs::remove_all(folder_); }
+    void TearDown() override {
+        fs::remove_all(folder_);
+        Base::TearDown();
+    }
 
     static Result run(const std::string& arguments) {
         return runProgram(std::string("'") + LIMPID_PROGRAM + "' " + arguments);
@@ -58,5 +64,6 @@ class CliTest : public testing::Test {
 
     fs::path folder_;
 };
+using CliTest = ProgramTest<testing::Test>;
 
 }  // namespace limpid
