@@ -118,7 +118,6 @@ constexpr auto onMessage = [](auto, auto, const VkDebugUtilsMessengerCallbackDat
     ++*static_cast<int*>(count);
     return VK_FALSE;
 };
-
 int main(int argc, char** argv) try {
     bool validate = false, two = false;
     for (int i = 1; i < argc; ++i) (argv[i] == std::string("--two") ? two : validate) = true;
