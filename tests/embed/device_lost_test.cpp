@@ -13,19 +13,18 @@ namespace {
 using testing::HasSubstr;
 
 /// Functions that can fail, and those that destroy what they make.
-#define FAILING_FUNCTIONS(X)                                                                       \
-    X(AllocateMemory)                                                                              \
-    X(CreateBuffer)                                                                                \
-    X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
-        X(CreateImageView) X(CreatePipelineCache) X(CreatePipelineLayout) X(CreateQueryPool)       \
-            X(CreateShaderModule) X(AllocateDescriptorSets) X(BindBufferMemory) X(BindImageMemory) \
-                X(GetPipelineCacheData) X(GetQueryPoolResults) X(MapMemory) X(ResetDescriptorPool)
-#define DESTROYING_FUNCTIONS(X)                                                                  \
-    X(FreeMemory)                                                                                \
-    X(DestroyBuffer)                                                                             \
-    X(DestroyPipeline) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)    \
-        X(DestroyImageView) X(DestroyPipelineCache) X(DestroyPipelineLayout) X(DestroyQueryPool) \
-            X(DestroyShaderModule)
+// clang-format off
+#define FAILING_FUNCTIONS(X) \
+    X(AllocateMemory) X(CreateBuffer) X(CreateComputePipelines) X(CreateDescriptorPool) \
+    X(CreateDescriptorSetLayout) X(CreateImage) X(CreateImageView) X(CreatePipelineCache) \
+    X(CreatePipelineLayout) X(CreateQueryPool) X(CreateShaderModule) X(AllocateDescriptorSets) \
+    X(BindBufferMemory) X(BindImageMemory) X(GetPipelineCacheData) X(GetQueryPoolResults) X(MapMemory) \
+    X(ResetDescriptorPool)
+#define DESTROYING_FUNCTIONS(X) \
+    X(FreeMemory) X(DestroyBuffer) X(DestroyPipeline) X(DestroyDescriptorPool) \
+    X(DestroyDescriptorSetLayout) X(DestroyImage) X(DestroyImageView) X(DestroyPipelineCache) \
+    X(DestroyPipelineLayout) X(DestroyQueryPool) X(DestroyShaderModule)
+// clang-format on
 
 // Vulkan's functions take no pointer of ours: the driver's state is the program's. Pipelines are made by
 // several threads.

@@ -84,7 +84,7 @@ float previousDistance(vec3 position) {
     return params.previousCamera.orthographic != 0u ? dot(toPoint, params.previousCamera.forward) : length(toPoint);
 }
 
-/// Of a point that stands still (w 1), or of a direction to the sky (w 0), in pixels; 0 if it was behind the previous eye.
+/// Of a point that stands still, or of a direction (w 0: the sky), in pixels; 0 if it was behind the previous eye.
 vec4 motionOfStill(vec4 point, vec2 pixel) {
     const float w = dot(params.previousClipW, point);
     if (!(w > 0.0)) return vec4(0.0);
