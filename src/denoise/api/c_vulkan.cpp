@@ -1,5 +1,7 @@
 // The C interface inside Vulkan programs (limpid/denoise_vulkan.h).
+#include <algorithm>
 #include <array>
+#include <bit>
 
 #include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
@@ -147,6 +149,12 @@ bool wantsSignals(const limpid_vulkan_frame& frame) {
            frame.outputs[LIMPID_OUTPUT_SPECULAR].image != VK_NULL_HANDLE;
 }
 
+/// What a warm-up has of a side of the picture. lavapipe compiles a shader anew for images whose sides are
+/// powers of two where before they were not.
+uint32_t fewPixels(uint32_t size) {
+    return std::min(size, std::has_single_bit(size) ? 16u : 15u);
+}
+
 limpid_denoiser& forRecording(limpid_denoiser* denoiser, VkCommandBuffer commands) {
     if (!commands) throw UsageError("commands is NULL");
     limpid_denoiser& d = required(denoiser, "denoiser");
@@ -210,8 +218,8 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
         limpid_denoiser& d = forRecording(denoiser, commands);
         const limpid_vulkan_frame frame = wholeStruct(given, "limpid_vulkan_frame");
         limpid_denoiser_desc few = d.desc;
-        few.width = std::min(few.width, 16u);
-        few.height = std::min(few.height, 16u);
+        few.width = fewPixels(few.width);
+        few.height = fewPixels(few.height);
         auto graph = std::make_unique<gpu::FrameGraph>(
             gpu::GraphOptions{.framesInFlight = 1, .prefix = "limpid/warm up/", .timestamps = false});
         graph->beginFrame();
