@@ -2,6 +2,7 @@
 # library: liblimpid.so.0; development: headers, CMake package, pkg-config; neural and neural_development: the same of
 # liblimpid-neural.so.0; weights: what the network needs; program: limpid.
 include(CMakePackageConfigHelpers)
+find_program(LIMPID_GZIP gzip REQUIRED)
 
 set(LIMPID_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/limpid)
 

@@ -3,6 +3,9 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limpid)
 set(CPACK_PACKAGE_VENDOR "The Limpid authors")
 set(CPACK_PACKAGE_CONTACT "The Limpid authors <limpid@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own, below
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(LIMPID_DEB_VERSION ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -23,63 +26,93 @@ if(TARGET limpid_python_denoise)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# The Python module's library is in another of these packages, which its dependencies below name.
+get_target_property(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS limpid_denoise BINARY_DIR)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblimpid0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "real-time denoisers for any Vulkan device
- Filters noisy pictures of path tracers, frame by frame: SVGF and others. They
- record into the command buffers of a program with a Vulkan device of its own,
- or take pictures in host memory.")
+Filters noisy pictures of path tracers, frame by frame: SVGF and others. They
+record into the command buffers of a program with a Vulkan device of its own,
+or take pictures in host memory.")
+# ldconfig runs when the library comes or goes.
+file(WRITE ${PROJECT_BINARY_DIR}/install/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/install/triggers)
 # The loader is opened when a device is made, so that dpkg-shlibdeps does not see it.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libvulkan1)
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblimpid-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}), libvulkan-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblimpid0 (= ${LIMPID_DEB_VERSION}), libvulkan-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "real-time denoisers for any Vulkan device, to build programs with
- Headers for C and C++, a CMake package and a pkg-config file.")
+Headers for C and C++, a CMake package and a pkg-config file.")
 
 set(CPACK_DEBIAN_NEURAL_PACKAGE_NAME liblimpid-neural0)
 set(CPACK_DEBIAN_NEURAL_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_NEURAL_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_NEURAL_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${LIMPID_DEB_VERSION})")
+set(CPACK_DEBIAN_NEURAL_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/install/triggers)
 set(CPACK_DEBIAN_NEURAL_DESCRIPTION "denoising network for any Vulkan device
- Cleans pictures of path tracers with a trained network that predicts kernels:
- single frames of about 32 samples per pixel, in host memory.")
+Cleans pictures of path tracers with a trained network that predicts kernels:
+single frames of about 32 samples per pixel, in host memory.")
 
 set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_NAME liblimpid-neural-dev)
 set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_PACKAGE_DEPENDS
-  "liblimpid-neural0 (= ${PROJECT_VERSION}), liblimpid-dev (= ${PROJECT_VERSION})")
+  "liblimpid-neural0 (= ${LIMPID_DEB_VERSION}), liblimpid-dev (= ${LIMPID_DEB_VERSION})")
 set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_DESCRIPTION "denoising network for any Vulkan device, to build programs with
- Headers for C and C++, the component 'neural' of Limpid's CMake package and a
- pkg-config file.")
+Headers for C and C++, the component 'neural' of Limpid's CMake package and a
+pkg-config file.")
 
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_NAME limpid-weights)
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_WEIGHTS_DESCRIPTION "weights of Limpid's denoising network
- Trained weights, which the program limpid and its library liblimpid-neural
- read.")
+Trained weights, which the program limpid and its library liblimpid-neural
+read.")
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME limpid)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${LIMPID_DEB_VERSION})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS mesa-vulkan-drivers)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any Vulkan device
- Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
- pictures, on GPUs and on CPUs.")
+Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
+pictures, on GPUs and on CPUs.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limpid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${PROJECT_VERSION}), python3, python3-numpy")
-if(TARGET limpid_neural)
-  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${PROJECT_VERSION})")
-  get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # where dpkg-shlibdeps finds it
-  list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_NEURAL_DIR})
+if(TARGET limpid_python_denoise)
+  # An extension module fits one minor version of Python.
+  math(EXPR LIMPID_NEXT_PYTHON "${LIMPID_PYTHON_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${LIMPID_DEB_VERSION}), python3-numpy, \
+python3 (>= 3.${LIMPID_PYTHON_MINOR}), python3 (<< 3.${LIMPID_NEXT_PYTHON})")
+  if(TARGET limpid_neural)
+    string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${LIMPID_DEB_VERSION})")
+    get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # where dpkg-shlibdeps finds it
+    list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_NEURAL_DIR})
+  endif()
 endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "real-time denoisers for any Vulkan device, for Python
- NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
- scenes, and compares pictures.")
+NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
+scenes, and compares pictures.")
 include(CPack)
+
+# Packs a file without its name and time: here and now, since the library alone may be built and installed.
+function(limpid_gzip FILE RESULT)
+  execute_process(COMMAND ${LIMPID_GZIP} -9nc ${FILE} OUTPUT_FILE ${RESULT} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# Licence and changes, where Debian has them: usr/share/doc/PACKAGE.
+string(TIMESTAMP LIMPID_DEB_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/changelog.Debian.in ${PROJECT_BINARY_DIR}/install/changelog.Debian @ONLY)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+limpid_gzip(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_BINARY_DIR}/install/changelog.gz)
+limpid_gzip(${PROJECT_BINARY_DIR}/install/changelog.Debian ${PROJECT_BINARY_DIR}/install/changelog.Debian.gz)
+foreach(COMPONENT ${CPACK_COMPONENTS_ALL})
+  string(TOUPPER ${COMPONENT} UPPER)
+  set(DOCUMENTS ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${UPPER}_PACKAGE_NAME})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${DOCUMENTS} RENAME copyright COMPONENT ${COMPONENT})
+  install(FILES ${PROJECT_BINARY_DIR}/install/changelog.gz ${PROJECT_BINARY_DIR}/install/changelog.Debian.gz
+    DESTINATION ${DOCUMENTS} COMPONENT ${COMPONENT})
+endforeach()
