@@ -27,10 +27,13 @@ class Sheet:
         for i, line in enumerate(lines):
             self.text(x + width / 2, middle + 16 * i, line, 13 if i == 0 else 11, weight="bold" if i == 0 else "normal")
 
-    def arrow(self, *points, dashed=False):
+    def line(self, *points, dashed=False, end=""):
         path = "M" + "L".join(f"{x} {y}" for x, y in points)
         dash = ' stroke-dasharray="5 4"' if dashed else ""
-        self.parts.append(f'<path d="{path}" fill="none" stroke="{LINE}" stroke-width="1.5" marker-end="url(#tip)"{dash}/>')
+        self.parts.append(f'<path d="{path}" fill="none" stroke="{LINE}" stroke-width="1.5"{end}{dash}/>')
+
+    def arrow(self, *points, dashed=False):
+        self.line(*points, dashed=dashed, end=' marker-end="url(#tip)"')
 
     def write(self, path):
         head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" width="{self.width}" '
@@ -43,38 +46,40 @@ class Sheet:
 
 def frame():
     """One frame with SVGF: which pass reads what, and what stays for the next frame."""
-    s = Sheet(940, 420)
+    s = Sheet(984, 462)
     s.text(24, 30, "One frame with SVGF", 16, "start", "bold")
-    s.box(24, 60, 150, 56, "plain", "scene", "moved by deform")
-    s.box(24, 150, 150, 56, "plain", "camera", "now and one frame ago")
-    s.box(220, 100, 150, 66, "pass", "path tracer", "1 sample per pixel")
-    s.box(420, 54, 150, 50, "image", "diffuse, specular", "noisy light")
-    s.box(420, 114, 150, 50, "image", "guides", "albedo, normal, depth, id")
-    s.box(420, 174, 150, 50, "image", "motion", "where it was")
-    s.box(420, 234, 150, 40, "image", "emission")
+    s.box(24, 60, 154, 56, "plain", "scene", "moved by deform")
+    s.box(24, 150, 154, 56, "plain", "camera", "now and one frame ago")
+    s.box(222, 100, 150, 66, "pass", "path tracer", "1 sample per pixel")
+    s.box(420, 54, 156, 50, "image", "diffuse, specular", "noisy light")
+    s.box(420, 114, 156, 50, "image", "guides", "albedo, normal, depth, id")
+    s.box(420, 174, 156, 50, "image", "motion", "where it was")
+    s.box(420, 234, 156, 40, "image", "emission")
     for y in (79, 139, 199, 254):
-        s.arrow((370, 133), (395, 133), (395, y), (419, y))
-    s.arrow((174, 88), (196, 88), (196, 126), (219, 126))
-    s.arrow((174, 178), (196, 178), (196, 142), (219, 142))
-    s.box(624, 74, 140, 56, "pass", "reproject", "follow each surface,", "mean and moments")
-    s.box(624, 156, 140, 44, "pass", "anti-lag", "drop what changed")
-    s.box(624, 226, 140, 44, "pass", "variance", "moments, or neighbours")
-    s.box(624, 296, 140, 56, "pass", "a-trous", "levels of step", "1, 2, 4, 8, 16")
+        s.arrow((372, 133), (396, 133), (396, y), (419, y))
+    s.arrow((178, 88), (200, 88), (200, 126), (221, 126))
+    s.arrow((178, 178), (200, 178), (200, 142), (221, 142))
+    s.box(620, 74, 152, 56, "pass", "reproject", "follow each surface,", "mean and moments")
+    s.box(620, 156, 152, 44, "pass", "anti-lag", "drop what changed")
+    s.box(620, 226, 152, 44, "pass", "variance", "moments or neighbours")
+    s.box(620, 296, 152, 72, "pass", "4 levels", "a-trous filter of", "step 1, 2, 4, 8;", "the last one stabilises")
     for y in (79, 139, 199):
-        s.arrow((570, y), (597, y), (597, 102), (623, 102))
-    s.arrow((694, 130), (694, 155))
-    s.arrow((694, 200), (694, 225))
-    s.arrow((694, 270), (694, 295))
-    s.box(420, 304, 150, 56, "history", "histories", "mean, moments, count,", "last frame's guides")
-    s.arrow((624, 320), (571, 320), dashed=True)
-    s.text(598, 312, "level 1", 11)
-    s.arrow((420, 332), (402, 332), (402, 390), (800, 390), (800, 92), (765, 92), dashed=True)
-    s.text(610, 382, "read by the next frame", 11)
-    s.box(806, 226, 126, 44, "pass", "compose", "× albedo, + emission")
-    s.box(806, 302, 126, 44, "result", "clean frame")
-    s.arrow((764, 338), (785, 338), (785, 248), (805, 248))
-    s.arrow((869, 270), (869, 301))
-    s.arrow((570, 262), (590, 262), (590, 206), (869, 206), (869, 225))
+        s.arrow((576, y), (598, y), (598, 102), (619, 102))
+    for top, bottom in ((130, 155), (200, 225), (270, 295)):
+        s.arrow((696, top), (696, bottom))
+    s.box(400, 294, 176, 72, "history", "histories", "mean before the levels,", "moments, count,",
+          "last frame's guides")
+    s.box(400, 386, 176, 44, "history", "stable light", "after the last level")
+    s.arrow((620, 254), (606, 254), (606, 330), (577, 330), dashed=True)
+    s.arrow((696, 368), (696, 408), (577, 408), dashed=True)
+    s.line((400, 408), (384, 408), dashed=True)
+    s.arrow((400, 330), (384, 330), (384, 446), (808, 446), (808, 92), (773, 92), dashed=True)
+    s.text(696, 438, "read by the next frame", 11)
+    s.box(824, 226, 136, 44, "pass", "modulate", "× albedo, + emission")
+    s.box(824, 302, 136, 44, "result", "clean frame")
+    s.arrow((772, 332), (790, 332), (790, 248), (823, 248))
+    s.arrow((892, 270), (892, 301))
+    s.arrow((576, 262), (588, 262), (588, 213), (892, 213), (892, 225))
     return s
 
 
@@ -104,27 +109,28 @@ def atrous():
 
 def networks():
     """Both sides of KPCN."""
-    s = Sheet(940, 380)
+    s = Sheet(948, 392)
     s.text(24, 30, "KPCN: one network for each kind of light", 16, "start", "bold")
     for side, top in (("diffuse", 60), ("specular", 200)):
         divided = "÷ (albedo + 0.00316)" if side == "diffuse" else "log(1 + x)"
         back = "× (albedo + 0.00316)" if side == "diffuse" else "exp(x) − 1"
-        s.box(24, top, 116, 56, "image", side, "32 samples")
-        s.box(164, top, 130, 56, "pass", "transform", divided)
-        s.box(311, top - 8, 144, 72, "plain", "34 channels", "light, albedo, normal,", "depth, each with gradients", "and variance")
-        s.box(472, top, 120, 56, "pass", "8 convolutions", "5×5, 100 channels,", "ReLU")
-        s.box(616, top, 120, 56, "pass", "convolution", "5×5, 441 channels", "softmax")
-        s.box(616, top + 76, 120, 40, "pass", "21×21 kernel", "weighted mean")
-        s.box(760, top + 68, 150, 56, "pass", "transform back", back)
-        for x, end in ((140, 163), (294, 310), (455, 471), (592, 615)):
+        s.box(24, top, 96, 56, "image", side, "32 samples")
+        s.box(138, top, 144, 56, "pass", "transform", divided)
+        s.box(300, top - 8, 162, 72, "plain", "34 channels", "light, albedo, normal,",
+              "depth; the gradients", "and variance of each")
+        s.box(480, top, 130, 56, "pass", "8 convolutions", "5×5, 100 channels,", "ReLU")
+        s.box(628, top, 126, 56, "pass", "convolution", "5×5, 441 channels,", "softmax")
+        s.box(628, top + 76, 126, 40, "pass", "21×21 kernel", "weighted mean")
+        s.box(772, top + 68, 144, 56, "pass", "transform back", back)
+        for x, end in ((120, 137), (282, 299), (462, 479), (610, 627)):
             s.arrow((x, top + 28), (end, top + 28))
-        s.arrow((676, top + 56), (676, top + 75))
-        s.arrow((229, top + 56), (229, top + 96), (615, top + 96))
+        s.arrow((691, top + 56), (691, top + 75))
+        s.arrow((210, top + 56), (210, top + 96), (627, top + 96))
         s.text(420, top + 90, "the light itself", 11)
-        s.arrow((736, top + 96), (759, top + 96))
-    s.box(670, 336, 240, 34, "result", "sum + emission = clean frame")
-    s.arrow((835, 184), (926, 184), (926, 353), (911, 353))
-    s.arrow((835, 324), (835, 335))
+        s.arrow((754, top + 96), (771, top + 96))
+    s.box(660, 344, 256, 34, "result", "sum + emission = clean frame")
+    s.arrow((916, 156), (930, 156), (930, 361), (917, 361))
+    s.arrow((844, 324), (844, 343))
     return s
 
 
