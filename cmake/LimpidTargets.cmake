@@ -125,8 +125,8 @@ function(limpid_library NAME)
   limpid_unity(limpid_${NAME})
 endfunction()
 
-# limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): libFILE.so.0, limpid::NAME for programs that include
-# include/limpid. What it needs is in it; it exports what the version script EXPORTS lists.
+# limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): libFILE.so.0, limpid::NAME for programs that
+# include include/limpid. What it needs is in it; it exports what the version script EXPORTS lists.
 function(limpid_shared_library NAME FILE EXPORTS)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   set(TARGET limpid_${NAME})

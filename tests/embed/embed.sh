@@ -43,7 +43,7 @@ installed() {
         [ -e "$prefix/$file" ] || fail "$file is not installed"
     done
 }
-# abi LIBRARY PREFIX PROGRAM FILE: LIBRARY exports what begins with PREFIX, and that, with what PROGRAM.c prints, is FILE.
+# abi LIBRARY PREFIX PROGRAM FILE: LIBRARY exports only PREFIX*; FILE lists that and what PROGRAM.c prints.
 abi() {
     nm -D --defined-only "$prefix/$libdir/$1.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' |
         LC_ALL=C sort >"$own/symbols"
