@@ -1,4 +1,4 @@
-// How Limpid fails: exceptions inside, exit codes at the edge (apps/cli/main.cpp).
+// Error handling: exceptions inside the library, exit codes at the program's edge (apps/cli/main.cpp).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ enum class ExitCode { Done = 0, Failed = 1, Usage = 2, BadInput = 3 };
 /// Base of every exception that Limpid throws on purpose; what() is a sentence for the user.
 class Error : public std::runtime_error {
   public:
-    // Inline: tools of the build throw it without linking limpid::base.
+    // Inline, so that build tools can throw it without linking limpid::base.
     explicit Error(const std::string& message, ExitCode code = ExitCode::Failed)
         : std::runtime_error(message), code_(code) {}
     ExitCode code() const { return code_; }
@@ -22,14 +22,14 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
-/// The command line, or a parameter, makes no sense. Exit code 2; the message is one line.
+/// The command line or a parameter is invalid. Exit code 2; the message is one line.
 class UsageError : public Error {
   public:
     explicit UsageError(const std::string& message);
 };
 
-/// An input file could not be read. Exit code 3; the message is "file: fault", the file's name as a terminal
-/// can show it (base/text/terminal_text.h).
+/// An input file could not be read. Exit code 3; the message is "file: fault", with the file's name escaped
+/// for a terminal (base/text/terminal_text.h).
 class InputError : public Error {
   public:
     InputError(const std::filesystem::path& file, const std::string& fault);

@@ -1,4 +1,4 @@
-// Half-precision numbers (IEEE 754 binary16) on the host.
+// Half-precision numbers (IEEE 754 binary16) on the CPU.
 #pragma once
 
 #include <bit>

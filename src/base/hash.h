@@ -1,4 +1,4 @@
-// A 64-bit hash of bytes: to tell contents apart, and to notice damage. Not against forgery.
+// A 64-bit hash of bytes, to compare contents and to detect damage. Not cryptographic.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@
 namespace limpid {
 
 /// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo, http://www.isthe.com/chongo/tech/comp/fnv/) over little-endian
-/// words of eight bytes instead of bytes, each step followed by x ^= x >> 32, without which the highest bits
-/// of a word would meet no others. Every step is one-to-one in the state and in the word, so a change inside
-/// one word always changes the hash. The length counts: trailing zeros are told apart.
+/// words of eight bytes instead of bytes, with x ^= x >> 32 after each step; without it, the highest bits of
+/// a word would never reach the lower bits. Every step is one-to-one in the state and in the word, so a
+/// change within one word always changes the hash. The length is hashed too, so trailing zeros matter.
 class Hash64 {
   public:
-    /// Appends bytes; how a stream is cut into calls does not matter.
+    /// Appends bytes. The result does not depend on how a stream is split into calls.
     void add(std::span<const std::byte> bytes);
     void add(std::string_view text) { add(std::as_bytes(std::span(text))); }
 
-    /// Appends a value's bytes, or the number of values and then their bytes. T has no padding.
+    /// Appends a value's bytes, or the number of values and then their bytes. T must have no padding.
     template <typename T>
     void addValue(const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -35,7 +35,7 @@ class Hash64 {
         add(std::as_bytes(std::span(values)));
     }
 
-    /// Of all bytes so far.
+    /// The hash of all bytes so far.
     uint64_t value() const;
 
   private:
@@ -46,7 +46,7 @@ class Hash64 {
     std::array<std::byte, 8> rest_{};  ///< the last length_ % 8 bytes
 };
 
-/// Sixteen hexadecimal digits.
+/// Returns sixteen hexadecimal digits.
 std::string hashText(uint64_t hash);
 
 }  // namespace limpid

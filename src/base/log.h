@@ -1,4 +1,4 @@
-// Messages for the user, on stderr; stdout belongs to results.
+// Messages for the user, on stderr; stdout is reserved for results.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ using Level = MessageLevel;
 /// Messages below this level are dropped. Default: Info.
 void setLevel(Level level);
 
-/// Control characters of the message are escaped, all but line feeds and tabs. A MessageCallback.
+/// Writes a message. Escapes its control characters except line feeds and tabs. Usable as a MessageCallback.
 void write(Level level, const std::string& message);
 
 template <typename... Args>

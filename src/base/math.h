@@ -1,5 +1,5 @@
-// The vector types of both sides: these names mean the same in C++ (here) and in GLSL. Those of glm where it
-// is there; what the denoising library alone is built without it only stores them.
+// Vector types with the same names in C++ (here) and in GLSL. Uses glm's types if available. The standalone
+// denoising library is built without glm and only stores vectors.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Parameter tables: name, default, range, unit, one line of help, stated once per technique.
+// Parameter tables: name, default, range, unit and one line of help, declared once per technique.
 // The table drives `--set group.name=value`, `limpid info` and the viewer's sliders.
 #pragma once
 
@@ -26,18 +26,19 @@ struct ParamInfo {
     double minimum = 0.0;
     double maximum = 1.0;
     std::string unit;   ///< "" if it has none
-    std::string help;   ///< one line: what it is, and what more of it does
-    SliderSpan slider;  ///< of the window
+    std::string help;   ///< one line: what it does, and the effect of a larger value
+    SliderSpan slider;  ///< for the window
 };
 
-/// Text to the type of `like`. Throws UsageError naming `name` if the text is no such value.
+/// Converts text to the type of `like`. Throws UsageError naming `name` if the text is not a valid value.
 ParamValue parseParam(std::string_view name, std::string_view text, const ParamValue& like);
 std::string toString(const ParamValue& value);
-/// Throws UsageError naming the parameter and its range if `value` is outside it (NaN and infinity always
-/// are).
+/// Throws UsageError naming the parameter and its range if `value` is outside it. NaN and infinity always
+/// are.
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value);
 
-/// The parameters of the technique whose settings are the struct `Settings`. Defaults are the struct's own.
+/// The parameters of the technique whose settings are the struct `Settings`. The defaults are those of the
+/// struct.
 template <typename Settings>
 class ParamTable {
   public:
@@ -58,8 +59,8 @@ class ParamTable {
         return add(std::move(name), member, 0.0, 1.0, "", std::move(help));
     }
 
-    /// What the window's slider of the parameter added last runs over, where usefulSpan() does not suit it.
-    /// `smallest`: of a logarithmic one from 0 on.
+    /// Sets the range of the window's slider for the parameter added last, where usefulSpan() does not suit
+    /// it. `smallest` is for logarithmic sliders that start at 0.
     ParamTable& slider(double min, double max, SliderScale scale = SliderScale::Linear,
                        double smallest = 0.0) {
         infos_.back().slider = {min, max, scale, smallest};
@@ -70,7 +71,8 @@ class ParamTable {
     const std::vector<ParamInfo>& infos() const { return infos_; }
     ParamValue get(const Settings& settings, size_t index) const { return getters_[index](settings); }
 
-    /// Returns false if the table has no such name. Throws UsageError on a bad text or a value out of range.
+    /// Returns false if the table has no such name. Throws UsageError if the text is invalid or the value out
+    /// of range.
     bool set(Settings& settings, std::string_view name, std::string_view text) const {
         for (size_t i = 0; i < infos_.size(); ++i) {
             if (infos_[i].name != name) continue;
@@ -89,7 +91,7 @@ class ParamTable {
     std::vector<std::function<ParamValue(const Settings&)>> getters_;
 };
 
-/// "group.name=value" in its three parts. Throws UsageError if the text is not of that form.
+/// The three parts of "group.name=value". Throws UsageError if the text does not have that form.
 struct Assignment {
     std::string group, name, value;
 };

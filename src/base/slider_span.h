@@ -1,4 +1,4 @@
-// What a slider runs over: the part of a parameter's range that is useful, on the scale that suits it.
+// The range of a slider: the useful part of a parameter's range, on a suitable scale.
 #pragma once
 
 namespace limpid {
@@ -6,18 +6,18 @@ namespace limpid {
 enum class SliderScale { Linear, Logarithmic };
 
 struct SliderSpan {
-    double min = 0.0, max = 1.0;  ///< inside the range; other values of the range are typed
+    double min = 0.0, max = 1.0;  ///< within the parameter's range; values beyond must be typed
     SliderScale scale = SliderScale::Linear;
-    double smallest = 0.0;  ///< of a logarithmic one from 0 on: the least value above 0
+    double smallest = 0.0;  ///< for a logarithmic slider that starts at 0: the smallest value above 0
 };
 
-/// For a parameter about which nothing more is known: the whole range where that is handy, otherwise two
-/// decades around the default. `whole`: of whole numbers.
+/// Returns a default range for a parameter: the whole range if it is small enough, otherwise two decades
+/// around the default. `whole`: the parameter is an integer.
 SliderSpan usefulSpan(double minimum, double maximum, double initial, bool whole);
 
-/// Where the slider stands, 0 to 1. Values outside the span stand at its ends.
+/// Returns the slider's position, 0 to 1, for a value. Values outside the span are clamped.
 double sliderPosition(const SliderSpan& span, double value);
-/// The reverse, rounded to three digits. The left end of a logarithmic slider from 0 on is 0.
+/// The inverse, rounded to three digits. The left end of a logarithmic slider that starts at 0 is 0.
 double sliderValue(const SliderSpan& span, double position);
 
 }  // namespace limpid

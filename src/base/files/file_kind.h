@@ -1,4 +1,4 @@
-// What a file's first bytes say about it: for messages about files of the wrong kind.
+// Recognises files by their first bytes, for messages about files of the wrong kind.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace limpid {
 
-/// How a file that is not of the kind wanted begins: "it begins with 89 50 4e 47, as a PNG picture does", "it
-/// is empty".
+/// Describes how a file of the wrong kind begins: "it begins with 89 50 4e 47, as a PNG picture does", "it is
+/// empty".
 std::string describeBeginning(std::span<const std::byte> bytes);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// Something for each layer of a frame: its image on the device, its pixels in memory.
+// Holds one value for each layer of a frame, such as its image on the device or its pixels in memory.
 #pragma once
 
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace limpid {
 
-/// A member for each of frameLayers, by its name: `set.depth`. Those of integers are a Uint, all others a
-/// Float.
+/// One member for each of frameLayers, with the layer's name: `set.depth`. Integer layers are a Uint, all
+/// others a Float.
 template <typename Float, typename Uint = Float>
 struct LayerSet {
 #define LIMPID_LAYER_MEMBER(layer, ...) \
@@ -18,7 +18,7 @@ struct LayerSet {
     LIMPID_LAYERS(LIMPID_LAYER_MEMBER)
 #undef LIMPID_LAYER_MEMBER
 
-    /// Calls visit(layer, member) for each, in the table's order.
+    /// Calls visit(layer, member) for each layer, in the table's order.
     template <typename Visit>
     void forEach(Visit&& visit) {
         visitAll(*this, visit);
@@ -28,7 +28,8 @@ struct LayerSet {
         visitAll(*this, visit);
     }
 
-    /// Throws std::out_of_range unless `layer` is one of frameLayers and its member a Float.
+    /// Returns the layer's member. Throws std::out_of_range unless `layer` is one of frameLayers and its
+    /// member a Float.
     Float& operator[](const LayerInfo& layer) {
         return find(*this, layer);
     }

@@ -1,5 +1,5 @@
-// The layers of a frame: each has one row here, and all that lists layers follows from the rows. To add one,
-// add its row, and write it in the shader of the path tracer (a variable of the row's name).
+// The layers of a frame: one row per layer. Everything that lists layers is generated from the rows. To add
+// a layer, add its row, and write it in the path tracer's shader (a variable with the row's name).
 #pragma once
 
 #include <array>
@@ -10,61 +10,63 @@
 
 namespace limpid {
 
-/// How a layer's channels are stored in EXR files.
+/// How EXR files store a layer's channels.
 enum class Stored : uint8_t {
-    Color,  ///< half, or float where the user asks for float colours
+    Color,  ///< half, or float if the user chooses float colours
     Float,
     Uint,
 };
 
-/// What a pixel of a layer is made of: four floats in memory, or two integers for FirstSample. "The
-/// components" are those that files have (LayerInfo::suffixes).
+/// How a pixel of a layer is computed: four floats in memory, or two integers for FirstSample. "The
+/// components" are those in files (LayerInfo::suffixes).
 enum class Mean : uint8_t {
     OfAll,    ///< the mean over all samples
-    OfHits,   ///< over those that hit something. In memory: the mean over all, misses as 0, and after the
-              ///< components the share of samples that hit
-    OfValid,  ///< over those that have a value; in memory likewise, with the share of samples that have one
+    OfHits,   ///< the mean over samples that hit something. In memory: the mean over all with misses as 0,
+              ///< followed by the share of samples that hit
+    OfValid,  ///< the mean over samples that have a value; in memory like OfHits, with the share of samples
+              ///< that have one
     FirstSample,  ///< no mean: the value of the first sample
     Count,        ///< no mean: the number of samples
 };
 
-/// What the mean squared deviation over the samples is of. A layer that has one holds it in its fourth float.
+/// The quantity whose mean squared deviation over the samples is stored in the layer's fourth float.
 enum class VarianceOf : uint8_t { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
-/// Whether a file must have the layer to be denoised.
+/// Whether denoising a file requires the layer.
 enum class Need : uint8_t {
     Always,
-    InSequences,  ///< if there is a frame before
-    Advised,      ///< in sequences the result is worse without it: LayerInfo::without
+    InSequences,  ///< required if there is a previous frame
+    Advised,      ///< sequences look worse without it: see LayerInfo::without
     Optional,
 };
 
 struct LayerInfo {
-    std::string_view member;    ///< of LayerSet; the variable of the shaders that write or read it
-    std::string_view name;      ///< in files and of --aov; empty in a row: as `member`
-    std::string_view suffixes;  ///< a letter for each component: files have the channels `name`.`letter`
+    std::string_view member;    ///< name in LayerSet, and of the variable in shaders that write or read it
+    std::string_view name;      ///< name in files and for --aov; empty in a row: same as `member`
+    std::string_view suffixes;  ///< one letter per component: files have the channels `name`.`letter`
     Stored stored = Stored::Color;
     Mean mean = Mean::OfAll;
     VarianceOf varianceOf = VarianceOf::Nothing;
-    bool varianceInFiles = false;  ///< files can have its variance: the channel `name`.variance
+    bool varianceInFiles = false;  ///< files can contain its variance, as channel `name`.variance
     bool inBeauty = false;         ///< beauty is the sum of these layers
-    bool ofFirstHit = false;       ///< follows from the first surface alone: the G-buffer pass writes it too
+    bool ofFirstHit = false;       ///< depends on the first hit alone, so the G-buffer pass writes it too
     Need need = Need::Optional;
-    std::string_view without;  ///< what goes wrong where an advised layer is missing
-    std::string_view help;     ///< as in docs/layers.md
-    size_t index = 0;          ///< in layerTable
+    std::string_view without;  ///< what goes wrong without an advised layer
+    std::string_view help;     ///< help text, as in docs/layers.md
+    size_t index = 0;          ///< index in layerTable
 
     constexpr bool isMean() const { return mean != Mean::FirstSample && mean != Mean::Count; }
-    /// The mean in files is the one in memory divided by the share of samples after it.
+    /// True if memory holds a share of samples. The mean in files is the one in memory divided by that share.
     constexpr bool hasShare() const { return mean == Mean::OfHits || mean == Mean::OfValid; }
-    /// Floats of a pixel in memory that are means: the components, and the share if there is one.
+    /// Number of floats in memory that are means: the components, and the share if there is one.
     constexpr size_t meanComponents() const { return suffixes.size() + (hasShare() ? 1 : 0); }
 };
 
-/// In files, in the place of a depth or a motion where no sample has one.
+/// Value in files for a depth or motion where no sample has one.
 inline constexpr float noValue = 1e10f;
 
-/// The layers that a frame has as images, LAYER(member, columns of LayerInfo that differ from its defaults).
+/// The layers that a frame stores as images: LAYER(member, the columns of LayerInfo that differ from its
+/// defaults).
 // clang-format off
 #define LIMPID_LAYERS(LAYER)                                                                                      \
     LAYER(diffuse,                                                                                                \
@@ -112,8 +114,8 @@ inline constexpr float noValue = 1e10f;
           .help = "number of the instance plus one at the pixel's centre, 0: nothing")
 // clang-format on
 
-/// All layers that an EXR file can have, in the order of docs/layers.md: beauty; the images above; what is
-/// told about them.
+/// All layers that an EXR file can have, in the order of docs/layers.md: beauty; the images above; derived
+/// layers.
 inline constexpr auto layerTable = [] {
 #define LIMPID_LAYER_ROW(layer, ...) LayerInfo{.member = #layer, __VA_ARGS__},
     std::array rows{
@@ -142,7 +144,7 @@ inline constexpr const LayerInfo& beautyLayer = layerTable.front();
 inline constexpr const LayerInfo& varianceLayer = layerTable[layerTable.size() - 2];
 inline constexpr const LayerInfo& samplesLayer = layerTable.back();
 
-/// The layers that a frame has as images.
+/// The layers that a frame stores as images.
 inline constexpr std::span<const LayerInfo> frameLayers =
     std::span(layerTable).subspan<1, layerTable.size() - 3>();
 

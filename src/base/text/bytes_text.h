@@ -1,4 +1,4 @@
-// Amounts of memory in words.
+// Formats amounts of memory.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace limpid {
 
-/// "12.5 MiB", in the largest unit up to GiB of which there is at least one.
+/// Returns text such as "12.5 MiB", in the largest unit up to GiB of which there is at least one.
 std::string bytesText(uint64_t bytes);
 
 }  // namespace limpid

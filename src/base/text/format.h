@@ -1,4 +1,4 @@
-// Messages from parts, where {fmt} is not at hand: the denoising library has no dependency but Vulkan.
+// Formats messages without {fmt}: the denoising library has no dependency but Vulkan.
 #pragma once
 
 #include <concepts>
@@ -27,19 +27,19 @@ std::string argumentText(const T& value) {
         return std::to_string(value);
 }
 
-/// `pattern` with its "{}" replaced, in turn, by `arguments`.
+/// Returns `pattern` with its "{}" replaced by `arguments`, in order.
 std::string replacePlaceholders(std::string_view pattern, const std::vector<std::string>& arguments);
 
 }  // namespace detail
 
-/// formatText("{} of {}", 1, "two") is "1 of two". There are no other placeholders than {}. Numbers have as
-/// few digits as tell them apart from all others of their type.
+/// formatText("{} of {}", 1, "two") returns "1 of two". {} is the only placeholder. Numbers are printed with
+/// the fewest digits that distinguish them from all others of their type.
 template <typename... Args>
 std::string formatText(std::string_view pattern, const Args&... args) {
     return detail::replacePlaceholders(pattern, {detail::argumentText(args)...});
 }
 
-/// "a, b, c".
+/// Returns "a, b, c".
 std::string joinText(const std::vector<std::string>& parts, std::string_view separator = ", ");
 
 }  // namespace limpid

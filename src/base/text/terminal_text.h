@@ -1,4 +1,4 @@
-// Text of unknown origin (names of files and of what is in them), made fit for a terminal.
+// Makes text of unknown origin (file names, names in files) safe to print on a terminal.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace limpid {
 
-/// What happens to a line feed or a tab.
+/// How line feeds and tabs are treated.
 enum class LineBreaks { Escape, Keep };
 
-/// `text` in which control characters (below 0x20, 0x7f, and U+0080 to U+009F) and bytes that are not UTF-8
-/// stand as \x1b: a file's name can neither move the cursor nor pretend to be a message of ours.
+/// Returns `text` with control characters (below 0x20, 0x7f, and U+0080 to U+009F) and bytes that are not
+/// UTF-8 written like \x1b. So a file's name can neither move the cursor nor imitate our messages.
 std::string terminalText(std::string_view text, LineBreaks breaks = LineBreaks::Escape);
 
 }  // namespace limpid
