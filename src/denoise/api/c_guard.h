@@ -1,4 +1,5 @@
-// The edge of the C interface: exceptions become result codes, versioned structs become whole ones.
+// The boundary of the C interface: turns exceptions into result codes and versioned structs into complete
+// ones.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ const char* lastErrorText() noexcept;
 /// Stores the message of the calling thread and tells the code of the exception that is being handled.
 limpid_result resultOfException() noexcept;
 
-/// Runs `action`; nothing is thrown.
+/// Runs `action` and returns the result code. Does not throw.
 template <typename Action>
 limpid_result guarded(const Action& action) noexcept {
     try {
@@ -34,7 +35,8 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
-/// A struct of any version: members that the caller does not know are 0; members that we do not know must be.
+/// Converts a struct of any version: members that the caller does not know become 0; members that we do not
+/// know must be 0.
 template <typename T>
 T wholeStruct(const T* given, const char* name) {
     const size_t size = required(given, name).size;

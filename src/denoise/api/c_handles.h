@@ -1,4 +1,4 @@
-// What stands behind the C interface's handles.
+// The objects behind the C interface's handles.
 #pragma once
 
 #include <memory>
@@ -11,15 +11,15 @@
 
 struct limpid_device {
     std::shared_ptr<limpid::gpu::Device> device;
-    bool adopted = false;  ///< a device of the caller's: frames are recorded, not executed
+    bool adopted = false;  ///< the caller's own device: frames are recorded, not executed
 };
 
 struct limpid_denoiser {
     limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& desc);
 
-    /// Reads and clears that a cut was asked for; the frame's own word counts, too.
+    /// Returns true if a history reset was requested, for this frame or earlier, and clears the request.
     bool startsAnew(bool reset);
-    /// A frame has been recorded for real.
+    /// Call it when a frame has really been recorded.
     void finish() { hasPrevious = true; }
 
     std::shared_ptr<limpid::gpu::Device> device;
@@ -27,24 +27,24 @@ struct limpid_denoiser {
     limpid_denoiser_desc desc;
     limpid::denoise::FilterSettings settings;
     limpid::gpu::FrameGraph graph;
-    bool hasPrevious = false;                  ///< a frame has been recorded since the last cut
-    std::vector<limpid::gpu::PassTime> times;  ///< that limpid_denoiser_timings() told last
-    std::vector<std::unique_ptr<limpid::gpu::FrameGraph>> warmUps;  ///< may be under way on the device
+    bool hasPrevious = false;                  ///< a frame has been recorded since the last reset
+    std::vector<limpid::gpu::PassTime> times;  ///< as last returned by limpid_denoiser_timings()
+    std::vector<std::unique_ptr<limpid::gpu::FrameGraph>> warmUps;  ///< may still be executing on the device
 };
 
 namespace limpid::denoise {
 
-/// The options of a denoiser's graph.
+/// Returns the options of a denoiser's graph.
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 
-/// Records a frame of inputs that do not exist: what prepare() and memory need to know.
+/// Records a frame with placeholder inputs, to find out what prepare() and memory need.
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
                     gpu::Backing filters, bool orthographic, bool signalsToo);
 
-/// Throws UsageError if an input that the method needs is not there.
+/// Throws UsageError if an input that the method requires is missing.
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images);
 
-/// By limpid_input.
+/// `input` is a limpid_input.
 gpu::ImageHandle& imageOf(IngestImages& images, size_t input);
 
 }  // namespace limpid::denoise

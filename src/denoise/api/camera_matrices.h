@@ -1,4 +1,4 @@
-// A camera from the matrices that renderers have.
+// Derives a camera from a renderer's matrices.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@ using Matrix = std::array<double, 16>;  ///< column-major
 
 struct CameraMatrices {
     CameraParams params{};
-    std::array<vec4, 3> clip{};  ///< rows x, y and w of the matrix from world to clip space; y points down
-    std::array<vec3, 3> axes{};  ///< of view space in the world
-    vec4 deviceDepth{};          ///< of the projection: elements zz, zw, wz, ww (row, column)
+    std::array<vec4, 3> clip{};  ///< rows x, y and w of the world-to-clip matrix; y points down
+    std::array<vec3, 3> axes{};  ///< axes of view space in world space
+    vec4 deviceDepth{};          ///< elements zz, zw, wz, ww (row, column) of the projection
     bool reversed = false;       ///< depth is 0 at the far end
 };
 
-/// `view` from world to view space, rigid; `projection` to clip space, perspective or orthographic, also
-/// off-centre. Throws UsageError if a matrix is singular or has a NaN.
+/// `view` maps world to view space and is rigid; `projection` maps to clip space and is perspective or
+/// orthographic, possibly off-centre. Throws UsageError if a matrix is singular or contains NaN.
 CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&projection)[16], bool yUp,
                                   uint32_t height);
 

@@ -1,13 +1,13 @@
-// Every denoiser by name, and how to run one inside any renderer:
+// Lists every denoiser by name. To run one inside any renderer:
 //
-//     denoise::DenoiserSettings settings;            // or from --set and --preset
-//     graph.beginFrame();
-//     denoise::DenoiserInput input = ...;            // your images, or denoise::upload(graph, hostFrame)
-//     const auto& method = *denoise::findDenoiser("atrous");
-//     const gpu::ImageHandle beauty = method.record(graph, input, settings, {}).beauty;
-//     graph.execute(device);
+// denoise::DenoiserSettings settings;            // or from --set and --preset
+// graph.beginFrame();
+// denoise::DenoiserInput input = ...;            // your images, or denoise::upload(graph, hostFrame)
+// const auto& method = *denoise::findDenoiser("atrous");
+// const gpu::ImageHandle beauty = method.record(graph, input, settings, {}).beauty;
+// graph.execute(device);
 //
-// One FrameGraph holds one sequence: its histories. Frames must come in order; at a cut, mark all motion
+// One FrameGraph holds the histories of one sequence. Frames must come in order; at a cut, mark all motion
 // invalid or call graph.resetHistories().
 #pragma once
 
@@ -26,25 +26,25 @@ struct DenoiserSettings : FilterSettings {
     bool operator==(const DenoiserSettings&) const = default;
 };
 
-/// Trained networks, on the device that executes the graph. Null where no denoiser needs it.
+/// Trained networks, on the device that executes the graph. Null if no denoiser needs it.
 struct DenoiserNetworks {
     std::shared_ptr<const KpcnNetwork> kpcn;
     bool operator==(const DenoiserNetworks&) const = default;
 };
 
 struct Denoiser {
-    std::string_view name;  ///< as after --denoiser
+    std::string_view name;  ///< as for --denoiser
     std::string_view help;
     /// Records one frame. Throws Error if a network is missing.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const DenoiserSettings&,
                              const DenoiserNetworks&);
-    /// Parameter groups that it heeds.
+    /// The parameter groups that it uses.
     std::span<const std::string_view> groups;
     bool network = false;  ///< needs one of DenoiserNetworks, and frames with variances of several samples
 };
 
 std::span<const Denoiser> denoisers();
-/// Null if there is none of that name.
+/// Returns null if there is no denoiser of that name.
 const Denoiser* findDenoiser(std::string_view name);
 
 }  // namespace limpid::denoise

@@ -1,4 +1,4 @@
-// What every denoiser reads.
+// The inputs of every denoiser.
 #pragma once
 
 #include "base/layers/layer_set.h"
@@ -9,20 +9,19 @@
 namespace limpid::denoise {
 
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size, rgba32f; `ids` is
-/// rg32ui: instance, material; UINT32_MAX where nothing is seen. What the components hold is in
-/// docs/denoising.md, "What a frame gives"; rays go through the pixels' centres. NaN and infinity are
-/// allowed: such radiance is rejected, such a distance or motion counts as missing, and so does such a normal
-/// (SVGF takes it as +Z).
+/// rg32ui: instance and material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives",
+/// describes the components. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance
+/// is rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
-    /// Per pixel, in these means. Alpha of diffuse, specular, albedo and normal is the mean squared deviation
-    /// over them, of the luminance (of normals the components' mean), and of depth its own; only networks
-    /// look at it.
+    /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
+    /// squared deviation over these samples: of the luminance, for normals the mean of the components, for
+    /// depth its own. Only networks read it.
     uint32_t samples = 1;
-    gpu::Backing filters = gpu::Backing::Image;  ///< gpu::filterBacking(device)
+    gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
 };
 
-/// The frame's images on the device; zeros for optional layers that are empty. Throws Error if an image of
+/// Uploads the frame's images; optional layers that are empty become zeros. Throws Error if an image of
 /// `frame` has another size than the frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
 

@@ -1,4 +1,4 @@
-// One frame of what denoisers read, in host memory: from EXR files, from other renderers, in tests.
+// One frame of denoiser inputs in host memory, from EXR files, other renderers or tests.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace limpid::denoise {
 
-/// A member for each layer of base/layers/layer_table.h: four floats a pixel (of `ids` two integers), row 0
-/// first; docs/denoising.md says what each is. Optional layers may be empty: zeros. The fourth float of
-/// diffuse, specular, albedo, normal and depth is read by networks only (DenoiserInput::samples).
+/// A member for each layer of base/layers/layer_table.h: four floats per pixel (two integers for `ids`), row
+/// 0 first. docs/denoising.md describes them. Optional layers may be empty, which means zeros. Only networks
+/// read the fourth float of diffuse, specular, albedo, normal and depth (DenoiserInput::samples).
 struct HostFrame : LayerSet<std::vector<float>, std::vector<uint32_t>> {
     uint32_t width = 0, height = 0;
     CameraParams camera{};

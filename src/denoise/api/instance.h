@@ -1,4 +1,4 @@
-// A denoiser as others embed it: what limpid/denoise.h opens, with exceptions in place of result codes.
+// A denoiser for embedding: the C++ side of limpid/denoise.h, with exceptions in place of result codes.
 #pragma once
 
 #include <memory>
@@ -12,30 +12,30 @@
 
 namespace limpid::denoise {
 
-/// What a frame leaves, rgba32f; empty where the method has none.
+/// A frame's outputs, rgba32f; empty if the method does not produce them.
 struct InstanceOutputs {
     gpu::ImageHandle color, radiance, specular;
 };
 
 const std::vector<InstanceParameter>& parametersOf(limpid_method method);
 
-/// Throws UsageError if there is none of this name, or the value is outside its range.
+/// Throws UsageError if there is no such parameter, or the value is outside its range.
 void setParameter(FilterSettings& settings, limpid_method method, std::string_view name, double value);
 double parameter(const FilterSettings& settings, limpid_method method, std::string_view name);
 
-/// Throws Error if a value is none of its enumeration, or the size is 0.
+/// Throws Error if an enumeration's value is invalid, or the size is 0.
 void check(const limpid_denoiser_desc& desc);
 
-/// What of the ingest pass's parameters follows from conventions and cameras. `hasPrevious`: this frame has a
-/// predecessor.
+/// Returns the ingest pass's parameters that follow from conventions and cameras. `hasPrevious`: there is a
+/// previous frame.
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious);
 
-/// Records a frame, needs no device. `outputs`: which are wanted, by limpid_output.
+/// Records a frame; needs no device. `outputs`: which limpid_output images are wanted.
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                             const FilterSettings& settings, const IngestImages& images,
                             const IngestParams& params, gpu::Backing filters, bool signalsToo);
 
-/// The name of an input, for messages and debuggers: "radiance".
+/// Returns the name of an input for messages and debuggers, such as "radiance".
 const char* inputName(size_t input);
 
 }  // namespace limpid::denoise
