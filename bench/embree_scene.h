@@ -1,4 +1,4 @@
-// A diffuse scene in Embree, with the tables that a native path tracer wants: one cache line a triangle.
+// A diffuse scene in Embree, with tables laid out for a native path tracer: one cache line per triangle.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -11,16 +11,17 @@
 
 namespace limpid::bench {
 
-/// What shading needs of a triangle, in world space.
+/// What shading needs to know about a triangle, in world space.
 struct alignas(64) TriangleRecord {
     vec3 v0;
-    float
-        magnitude;  ///< the largest coordinate of the three vertices: its rounding decides how far rays start
+    float magnitude;  ///< the largest coordinate of the three vertices: its rounding error sets the offset of
+                      ///< ray origins
     vec3 edge1;
     uint32_t material;
     vec3 edge2;
-    float lightDensity;  ///< per area, with which next-event estimation draws a point here; 0: no light
-    vec3 normal;         ///< unit, of the side that the winding calls front
+    float lightDensity;  ///< probability density per area with which next-event estimation samples a point
+                         ///< here; 0: not a light
+    vec3 normal;         ///< unit; on the side that the winding order calls front
 };
 static_assert(sizeof(TriangleRecord) == 64);
 
@@ -45,13 +46,16 @@ struct LightRecord {
 /// Owns Embree's device and scene. Built with RTC_BUILD_QUALITY_HIGH and no other flag.
 class EmbreeScene {
   public:
-    /// `data` is what buildSceneData() made of `scene`: the light tables come from there, so that both
-    /// tracers draw the same lights. Throws Error naming the feature if the scene has more than Lambertian
-    /// triangles, some of which emit, or if Embree fails.
+    /// `data` must be the result of buildSceneData(scene): the light tables come from there, so that both
+    /// tracers sample the same lights. Throws Error, naming the feature, if the scene has anything but
+    /// Lambertian triangles, some of which emit; or if Embree fails.
     EmbreeScene(const scene::Scene& scene, const scene::SceneData& data);
 
     RTCScene handle() const { return scene_.get(); }
-    const std::vector<TriangleRecord>& triangles() const { return triangles_; }  ///< by Embree's primitive
+    const std::vector<TriangleRecord>& triangles() const {
+        return triangles_;
+    }  ///< indexed by Embree's
+       ///< primitive
     const std::vector<MaterialRecord>& materials() const { return materials_; }
     const std::vector<LightRecord>& lights() const { return lights_; }
     const std::vector<scene::AliasEntry>& lightAlias() const { return lightAlias_; }
@@ -76,7 +80,7 @@ class EmbreeScene {
     std::vector<scene::AliasEntry> lightAlias_;
 };
 
-/// "3.13.5, AVX2": Embree's version and the widest instructions that it uses on this machine.
+/// Returns Embree's version and the widest instruction set it uses on this machine, such as "3.13.5, AVX2".
 std::string embreeVersion();
 
 }  // namespace limpid::bench

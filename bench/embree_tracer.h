@@ -1,5 +1,5 @@
-// The path tracer of src/passes/pathtrace for diffuse scenes, native, on Embree's single rays. It draws the
-// same random numbers in the same order, so its paths are ours up to rounding.
+// A native version of the path tracer in src/passes/pathtrace for diffuse scenes, on Embree's single rays. It
+// uses the same random numbers in the same order, so its paths are the same up to rounding.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace limpid::bench {
 
-/// One sample per pixel. Members mean what those of PathtraceLaunch and PathtraceSettings mean.
+/// One sample per pixel. The members have the same meaning as in PathtraceLaunch and PathtraceSettings.
 struct EmbreeLaunch {
     CameraParams camera;
     uint32_t width = 0;
@@ -20,9 +20,9 @@ struct EmbreeLaunch {
     uint32_t rouletteDepth = 3;
 };
 
-/// Adds each pixel's radiance to `sum` (width * height, row 0 at the top; w counts the samples that were
-/// finite) on all cores. Returns how many rays were traced, shadow rays too. Throws Error if `sum` has
-/// another size.
+/// Adds each pixel's radiance to `sum` (width * height, row 0 at the top; w counts the finite samples), using
+/// all cores. Returns the number of rays traced, including shadow rays. Throws Error if `sum` has another
+/// size.
 uint64_t traceSample(const EmbreeScene& scene, const EmbreeLaunch& launch, std::span<vec4> sum);
 
 }  // namespace limpid::bench

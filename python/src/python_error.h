@@ -1,4 +1,4 @@
-// How failures become limpid.Error.
+// Raises limpid.Error in Python for C++ exceptions.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -7,8 +7,8 @@
 
 namespace limpid::python {
 
-/// Sets the Python error indicator to limpid.Error(message, code); `code` is one of those in
-/// limpid/_error.py. The GIL is held.
+/// Sets the Python error indicator to limpid.Error(message, code). `code` is one of those in
+/// limpid/_error.py. The caller must hold the GIL.
 inline void raiseError(const std::string& message, const char* code) {
     const pybind11::object type = pybind11::module_::import("limpid._error").attr("Error");
     const pybind11::object error = type(message, code);

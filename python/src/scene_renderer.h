@@ -17,25 +17,25 @@
 
 namespace limpid::python {
 
-/// limpid/_rendering.py, render(), says what these are. Empty: not given.
+/// The options of render() in limpid/_rendering.py, which documents them. Empty: not given.
 struct RenderOptions {
     std::string scene;
     uint32_t width = 0, height = 0;
     uint32_t samples = 1;  ///< per pixel and frame
     uint32_t seed = 0;
     std::string denoiser;
-    std::vector<std::string> assignments;  ///< as --set takes them
+    std::vector<std::string> assignments;  ///< each as for --set
     std::string environment, camera;
     std::vector<float> eye, target;
     float fov = 0.0f;  ///< degrees
     std::string jitter, weights, assetRoot;
     SequenceTiming timing;
-    uint64_t frames = 1;    ///< that a built-in camera path is made for
+    uint64_t frames = 1;    ///< length of a built-in camera path
     std::string animation;  ///< empty: the first clip, if there is one
     std::string cameraPath;
 };
 
-/// Shared by all renderers on it, so that they share pipelines; they take turns.
+/// A device shared by all its renderers, so that they share pipelines; they take turns.
 struct RenderDevice {
     explicit RenderDevice(const std::string& select);
 
@@ -45,11 +45,12 @@ struct RenderDevice {
 
 class SceneRenderer {
   public:
-    /// Loads and uploads the scene.
+    /// Loads the scene and uploads it.
     SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderOptions& options);
     ~SceneRenderer();
 
-    /// All layers that there are, and the camera. With a denoiser, frames come in their order.
+    /// Renders a frame and returns all its layers and the camera. With a denoiser, frames must be rendered in
+    /// order.
     std::pair<image::LayeredImage, CameraParams> render(uint64_t frame);
 
   private:
