@@ -1,4 +1,4 @@
-// Recording one dispatch: checks against reflection.
+// Records one dispatch and checks it against the shader's reflection.
 #pragma once
 
 #include "gpu/graph/frame_graph_impl.h"
@@ -8,7 +8,7 @@ namespace limpid::gpu {
 class DispatchRecorder {
   public:
     DispatchRecorder(FrameGraph::Impl& graph, const Dispatch& dispatch);
-    /// Adds the pass to the frame. If it throws, the frame is as before.
+    /// Adds the pass to the frame. If it throws, the frame is unchanged.
     void record();
 
   private:
@@ -16,7 +16,7 @@ class DispatchRecorder {
     struct Bound {
         const ShaderBinding* variable = nullptr;
         BoundResource resource;
-        std::string name;  ///< the resource's
+        std::string name;  ///< of the resource
     };
 
     [[noreturn]] void fail(const std::string& fault) const;

@@ -1,4 +1,4 @@
-// The inside of FrameGraph: what recording leaves for execution. No Vulkan call is made here.
+// The internals of FrameGraph: the data that recording leaves for execution. Makes no Vulkan calls.
 #pragma once
 
 #include <map>
@@ -10,21 +10,22 @@ namespace limpid::gpu {
 
 class FrameExecutor;
 
-/// A compute shader, or the shaders of a ray-tracing pipeline with ray generation first, and what they
-/// declare together; kept as long as a frame or a pipeline uses it.
+/// A compute shader, or the shaders of a ray-tracing pipeline (ray generation first) with their merged
+/// declarations. Kept alive by the frames and pipelines that use it.
 struct Shader {
-    uint64_t hash = 0;  ///< of all stages; equal: the same shader
+    uint64_t hash = 0;  ///< of all stages; equal hashes mean the same shader
     using Stage = ShaderCode;
     std::string name;  ///< of the first stage
     std::vector<Stage> stages;
     ShaderReflection reflection;
-    MergedDeclarations merged;                              ///< of several stages: what `reflection` views
-    std::vector<std::shared_ptr<const ShaderCode>> owners;  ///< of replacements: what they view
+    MergedDeclarations merged;                              ///< for several stages: the data behind
+                                                            ///< `reflection`
+    std::vector<std::shared_ptr<const ShaderCode>> owners;  ///< own the data of replaced shaders
 
     bool tracesRays() const { return reflection.stage == ShaderStage::RayGeneration; }
 };
 
-/// Which device image a recorded image is. `half` tells the two of a history pair apart.
+/// Identifies the device image behind a recorded image. `half` distinguishes the two of a history pair.
 struct ImageKey {
     std::string name;
     uint32_t half = 0;
@@ -39,10 +40,11 @@ struct RecordedImage {
     std::string name;
     ImageKey key;
     Role role{};
-    ForeignImage foreign;  ///< of role Foreign
-    bool clear = false;    ///< zeroed before the first pass: of a history that is not valid
+    ForeignImage foreign;  ///< for role Foreign
+    bool clear = false;    ///< zeroed before the first pass: an invalid history
     bool written = false;
-    /// Of role Foreign: some pass samples it, or binds it as a storage image. It cannot be in both layouts.
+    /// For role Foreign: whether a pass samples it or binds it as a storage image. It cannot be in both
+    /// layouts.
     bool sampled = false, stored = false;
 
     Extent extent() const { return {key.width, key.height}; }
@@ -52,15 +54,14 @@ struct RecordedImage {
 struct BoundResource {
     uint32_t binding = 0;
     BindingKind kind{};
-    uint32_t image = 0;  ///< index of images
-    /// Of buffers; of acceleration structures where the top level lies.
+    uint32_t image = 0;  ///< index into images
+    /// A buffer, or the buffer with the top level of acceleration structures.
     std::shared_ptr<const BufferResource> buffer;
     std::shared_ptr<const StructuresResource> structures;
 };
 
 struct RecordedDispatch {
-    std::shared_ptr<const Shader>
-        shader;  ///< none: rebuilds the acceleration structures of its only resource
+    std::shared_ptr<const Shader> shader;  ///< none: rebuilds the acceleration structures, its only resource
     std::vector<BoundResource> resources;
     uint32_t paramsBinding = 0;
     size_t paramsOffset = 0, paramsSize = 0;  ///< in RecordedFrame::params; size 0: no uniform block
@@ -68,19 +69,19 @@ struct RecordedDispatch {
     std::array<uint32_t, 3> groups{};
     std::array<uint32_t, 3> workgroupSize{};
     std::function<void(std::span<const std::span<std::byte>>)>
-        host;                          ///< instead of all this: a pass of the host's
-    std::vector<uint32_t> hostImages;  ///< indices of images, in its order
+        host;                          ///< set instead of all members above if the pass runs on the CPU
+    std::vector<uint32_t> hostImages;  ///< indices into images, in the order of `host`
 };
 
-/// Data that reaches a buffer or an image before the first pass.
+/// Data that is copied to a buffer or an image before the first pass.
 struct RecordedUpload {
-    std::shared_ptr<const BufferResource> buffer;  ///< none: an image
+    std::shared_ptr<const BufferResource> buffer;  ///< none: the target is an image
     uint64_t offset = 0;                           ///< in the buffer
-    uint32_t image = 0;                            ///< index of images
+    uint32_t image = 0;                            ///< index into images
     size_t at = 0, size = 0;                       ///< in RecordedFrame::uploadData
 };
 
-/// Everything that one frame says.
+/// Everything recorded for one frame.
 struct RecordedFrame {
     uint64_t number = 0;
     std::vector<RecordedUpload> uploads;
@@ -92,22 +93,22 @@ struct RecordedFrame {
     bool executed = false;
 };
 
-/// Who touched a resource last, as far as later passes may have to wait for it.
+/// The last accesses to a resource that later passes may have to wait for.
 struct ResourceUse {
     static constexpr size_t none = SIZE_MAX;
     size_t lastWriter = none;
     std::vector<size_t> readers;  ///< since the last write
 };
 
-/// One resource of a pass.
+/// One access of a pass to a resource.
 struct Access {
-    const BufferResource* buffer = nullptr;  ///< of buffers
-    uint32_t image = 0;                      ///< index of images
+    const BufferResource* buffer = nullptr;  ///< for buffers
+    uint32_t image = 0;                      ///< index into images
     std::string name;
     bool reads = false, writes = false;
 };
 
-/// A history between frames.
+/// The state of a history between frames.
 struct HistoryState {
     Format format{};
     Extent extent;
@@ -119,16 +120,17 @@ struct HistoryState {
 struct FrameGraph::Impl {
     GraphOptions options;
     RecordedFrame frame;
-    std::set<std::string, std::less<>> names;  ///< of this frame's images
+    std::set<std::string, std::less<>> names;  ///< of images in this frame
     std::map<std::string, HistoryState> histories;
-    std::map<std::string, uint32_t> recordedHistories;  ///< of this frame, with the index of `current`
+    std::map<std::string, uint32_t> recordedHistories;  ///< in this frame, with the index of `current`
     bool resetRequested = false;
     std::map<std::string, std::shared_ptr<const Shader>, std::less<>> shaders;
     const ShaderReplacements* replacements = nullptr;
     std::vector<ResourceUse> imageUses;
     std::map<const BufferResource*, ResourceUse> bufferUses;
-    size_t lastBarrier = 0;                   ///< the last pass that waits: all before it are done by then
-    std::shared_ptr<FrameExecutor> executor;  ///< none in recording alone; only gpu/vulkan looks inside
+    size_t lastBarrier = 0;                   ///< the last pass that waits: all passes before it are finished
+                                              ///< by then
+    std::shared_ptr<FrameExecutor> executor;  ///< none if only recording; only gpu/vulkan uses its content
 
     explicit Impl(GraphOptions options);
     ~Impl();
@@ -138,17 +140,17 @@ struct FrameGraph::Impl {
     void commitHistories();
     ImageHandle addImage(RecordedImage image);
     void claimName(const std::string& name);
-    /// Index of a handle of this frame; throws Error if it is empty or of another frame.
+    /// Returns the index of a handle; throws Error if it is empty or from another frame.
     uint32_t indexOf(ImageHandle handle) const;
     std::shared_ptr<const Shader> shaderOf(const ShaderCode& code, const RayShaders* rays);
-    /// What replaces the code, or else, without an owner, the code itself.
+    /// Returns the replacement of the code, or the code itself without an owner.
     std::shared_ptr<const ShaderCode> replaced(const ShaderCode& code) const;
-    /// Finds what the pass, which comes next, has to wait for; then notes what it touches.
+    /// Determines what the next pass must wait for, then records its accesses.
     void noteAccesses(RecordedPass& pass, std::span<const Access> accesses);
     FrameExecutor& executorFor(Device& device);
-    /// For what runs the frame: checks that everything it uses lies on `device`.
+    /// Checks that everything the frame uses lies on `device`, and returns the executor that runs it.
     FrameExecutor& readyToRun(Device& device);
-    /// For downloads and times: throws Error unless a frame was executed on `device`.
+    /// For downloads and pass times: throws Error unless a frame was executed on `device`.
     FrameExecutor& executed(Device& device) const;
 };
 

@@ -1,4 +1,4 @@
-// What recording knows of what lies on a device: names and sizes. gpu/vulkan has the rest.
+// The names and sizes of device resources, as far as recording needs them. gpu/vulkan has the rest.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
     return std::as_bytes(std::span<const T>(values));
 }
 
-/// Shared by the Buffer that owns it and the frames under way that use it: destroying a Buffer never waits.
+/// Shared by the owning Buffer and the frames in flight that use it, so destroying a Buffer never waits.
 struct BufferResource {
     std::string name;
-    uint64_t size = 0;             ///< bytes, as asked for
-    std::optional<Format> format;  ///< of texel buffers
+    uint64_t size = 0;             ///< bytes, as requested
+    std::optional<Format> format;  ///< for texel buffers
 
     BufferResource() = default;
     BufferResource(const BufferResource&) = delete;
@@ -34,7 +34,7 @@ struct BufferResource {
 };
 
 /// Device memory for storage buffers, texel buffers and uniforms (Device::createStorageBuffer()). Move-only;
-/// frees itself.
+/// its destructor frees the memory.
 class Buffer {
   public:
     Buffer() = default;
@@ -43,7 +43,7 @@ class Buffer {
     Buffer& operator=(Buffer&&) noexcept = default;
 
     uint64_t size() const { return resource_ ? resource_->size : 0; }
-    /// Set if it is a texel buffer.
+    /// Empty unless it is a texel buffer.
     std::optional<Format> texelFormat() const { return resource_ ? resource_->format : std::nullopt; }
     explicit operator bool() const { return resource_ != nullptr; }
     const std::shared_ptr<const BufferResource>& resource() const { return resource_; }
@@ -52,14 +52,14 @@ class Buffer {
     std::shared_ptr<const BufferResource> resource_;
 };
 
-/// A run of triangles in a texel buffer of RGBA32Float: three texels a triangle, xyz of each a corner.
+/// A range of triangles in a texel buffer of RGBA32Float: three texels per triangle, xyz of each a vertex.
 struct TriangleTree {
-    uint32_t first = 0, count = 0;  ///< triangles; none: the tree is never hit
-    bool opaque = true;             ///< rays need not ask the any-hit shader
-    bool moves = false;             ///< its triangles change: fitted to them by each FrameGraph::rebuild()
+    uint32_t first = 0, count = 0;  ///< triangles; count 0: the tree is never hit
+    bool opaque = true;             ///< rays skip the any-hit shader
+    bool moves = false;             ///< its triangles change: each FrameGraph::rebuild() refits it
 };
 
-/// Where a tree stands; the same tree may stand in several places.
+/// The placement of a tree; a tree may have several.
 struct TreePlacement {
     uint32_t tree = 0;
     std::array<float, 12> toWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  ///< three rows
@@ -67,32 +67,33 @@ struct TreePlacement {
     bool operator==(const TreePlacement&) const = default;
 };
 
-/// What recording knows of acceleration structures.
+/// The acceleration structures' properties that recording needs.
 struct StructuresResource {
-    std::shared_ptr<const BufferResource> triangles;  ///< what the trees are built from
+    std::shared_ptr<const BufferResource> triangles;  ///< the trees are built from these
     std::shared_ptr<const BufferResource> instances;  ///< one record per placement
-    std::shared_ptr<const BufferResource> topBuffer;  ///< where the top level lies
+    std::shared_ptr<const BufferResource> topBuffer;  ///< contains the top level
 
     virtual ~StructuresResource() = default;
-    /// The bytes of a placement's record in `instances`. Throws Error if there is no such placement or tree.
+    /// Returns the bytes of a placement's record in `instances`. Throws Error if there is no such placement
+    /// or tree.
     using InstanceRecord = std::array<std::byte, 64>;
     virtual InstanceRecord instanceRecord(uint32_t placement, const TreePlacement& where) const = 0;
 };
 
-/// Acceleration structures of VK_KHR_acceleration_structure: a bottom level per tree of triangles, one top
-/// level over where the trees stand. Built on the device and compacted. In shaders a hit's gl_InstanceID is
-/// the placement and its gl_PrimitiveID counts the triangles of the tree. Move-only; frames under way keep
-/// what they need.
+/// Acceleration structures of VK_KHR_acceleration_structure: a bottom level per triangle tree, and one top
+/// level over all placements. Built on the device and compacted. In shaders, a hit's gl_InstanceID is the
+/// placement and its gl_PrimitiveID counts the triangles of the tree. Move-only; frames in flight keep what
+/// they need.
 class AccelerationStructures {
   public:
-    /// `triangles` need not live on. Throws Error if the device has no ray tracing, or naming the limit that
-    /// is exceeded.
+    /// `triangles` may be destroyed afterwards. Throws Error if the device has no ray tracing or a limit is
+    /// exceeded, naming the limit.
     AccelerationStructures(Device& device, const std::string& name, const Buffer& triangles,
                            std::span<const TriangleTree> trees, std::span<const TreePlacement> placements);
     AccelerationStructures(AccelerationStructures&&) noexcept = default;
     AccelerationStructures& operator=(AccelerationStructures&&) noexcept = default;
 
-    uint64_t byteCount() const;  ///< on the device, scratch memory included
+    uint64_t byteCount() const;  ///< on the device, including scratch memory
     uint64_t bytesSavedByCompaction() const;
 
     const std::shared_ptr<const StructuresResource>& resource() const { return resource_; }

@@ -1,5 +1,5 @@
-// Shaders as data: their SPIR-V and what reflection says of it. Needs neither a device nor SPIRV-Cross: the
-// tables are made at build time (src/gpu/reflect).
+// Shaders as data: their SPIR-V and its reflection. Needs neither a device nor SPIRV-Cross, since the tables
+// are made at build time (src/gpu/reflect).
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ enum class ShaderStage { Compute, RayGeneration, Miss, ClosestHit, AnyHit };
 
 enum class BindingKind {
     StorageImage,
-    SampledImage,  ///< read by texelFetch(), of any format: float components, or unsigned ones (Format tells)
+    SampledImage,  ///< read by texelFetch(), any format; `format` tells float from unsigned components
     StorageTexelBuffer,
     StorageBuffer,
     UniformBuffer,
@@ -26,8 +26,8 @@ enum class BindingKind {
 };
 inline constexpr size_t bindingKindCount = 6;
 
-/// Pixel and texel formats that Limpid uses. Float32x4 etc.: components of an image as the shader declares
-/// it.
+/// Pixel and texel formats that Limpid uses. Names like Float32x4 stand for the components of an image as the
+/// shader declares it.
 enum class Format {
     R32Float,
     R32Uint,
@@ -50,10 +50,10 @@ struct ShaderBinding {
     std::string_view name;
     uint32_t binding = 0;
     BindingKind kind = BindingKind::StorageImage;
-    Format format = Format::RGBA32Float;  ///< of images and texel buffers
+    Format format = Format::RGBA32Float;  ///< for images and texel buffers
     bool readable = true;                 ///< false if declared `writeonly`
     bool writable = true;                 ///< false if declared `readonly`
-    uint32_t blockSize = 0;               ///< bytes, of a uniform buffer
+    uint32_t blockSize = 0;               ///< bytes, for uniform buffers
 
     bool operator==(const ShaderBinding&) const = default;
 };
@@ -66,43 +66,44 @@ struct ShaderConstant {
     bool operator==(const ShaderConstant&) const = default;
 };
 
-/// What a shader declares, used or not. A view: of static tables, or of what else owns names and lists.
+/// Everything that a shader declares, used or not. It views static tables, or tables that another object
+/// owns.
 struct ShaderReflection {
     ShaderStage stage = ShaderStage::Compute;
-    std::span<const ShaderBinding> bindings;  ///< of descriptor set 0, in the order of their numbers
+    std::span<const ShaderBinding> bindings;  ///< of descriptor set 0, sorted by binding number
     std::span<const ShaderConstant> constants;
-    std::array<uint32_t, 3> workgroupSize{};  ///< of compute shaders
-    /// The constant ids of layout(local_size_x_id = ...); noConstant where the size is fixed.
+    std::array<uint32_t, 3> workgroupSize{};  ///< for compute shaders
+    /// The constant ids of layout(local_size_x_id = ...); noConstant if the size is fixed.
     std::array<uint32_t, 3> workgroupSizeIds{noConstant, noConstant, noConstant};
 
     static constexpr uint32_t noConstant = UINT32_MAX;
     const ShaderBinding* find(std::string_view name) const;
 };
 
-/// One shader. limpid_shaders() (cmake/LimpidTargets.cmake) embeds it as a constant of static lifetime, its
-/// SPIR-V optimised and stripped, with the reflection of what glslc wrote. A view, like ShaderReflection.
+/// One shader. limpid_shaders() (cmake/LimpidTargets.cmake) embeds it as a static constant: SPIR-V that is
+/// optimised and stripped, and the reflection of glslc's original output. A view, like ShaderReflection.
 struct ShaderCode {
     std::string_view name;  ///< path of the source below src/, for messages
     std::span<const uint32_t> words;
     ShaderReflection reflection;
-    uint64_t hash = 0;  ///< of words and reflection; equal: the same shader
+    uint64_t hash = 0;  ///< of words and reflection; equal hashes mean the same shader
 };
 
-/// Whether code that binds and dispatches the one can do so with the other.
+/// True if the same bindings and dispatches work with both shaders.
 bool sameInterface(const ShaderReflection& a, const ShaderReflection& b);
 
-/// Shaders by the names of those that they take the place of. Each pointer owns all that its ShaderCode
-/// views.
+/// Replacement shaders, by the names of the shaders they replace. Each pointer owns all data that its
+/// ShaderCode views.
 using ShaderReplacements = std::map<std::string, std::shared_ptr<const ShaderCode>, std::less<>>;
 
-/// What several stages of one pipeline declare together, bindings in the order of their numbers.
+/// The declarations of several stages of one pipeline, bindings sorted by number.
 struct MergedDeclarations {
     std::vector<ShaderBinding> bindings;
     std::vector<ShaderConstant> constants;
 };
 
-/// Adds what a stage declares. Throws Error naming `shader`, which the stage is from, if it and those before
-/// it disagree about a binding or a constant.
+/// Adds the declarations of a stage. Throws Error naming `shader`, which contains the stage, if it disagrees
+/// with earlier stages about a binding or a constant.
 void merge(MergedDeclarations& into, const ShaderReflection& stage, std::string_view shader);
 
 }  // namespace limpid::gpu

@@ -1,4 +1,4 @@
-// Textured triangles over a picture in a window: what draws an Overlay for the presenter.
+// Draws the presenter's Overlay: textured triangles over a picture in a window.
 #pragma once
 
 #include "gpu/present/presenter.h"
@@ -9,20 +9,20 @@ namespace limpid::gpu {
 
 class OverlayDrawer {
   public:
-    /// For render targets of format `target`.
+    /// `target` is the format of the render targets.
     OverlayDrawer(std::shared_ptr<const Context> context, VkFormat target);
 
-    /// Triangles of one picture under way.
+    /// The triangles of one picture in flight.
     struct Triangles {
         std::shared_ptr<BufferStorage> buffer;  ///< vertices, then indices
         uint64_t indicesAt = 0;
     };
 
     void setTexture(Transfer& transfer, Extent extent, std::span<const uint32_t> texels);
-    /// `triangles` are not in use on the device.
+    /// `triangles` must not be in use on the device.
     void upload(Triangles& triangles, const Overlay& overlay) const;
-    /// Records it over what `target` shows, which is in COLOR_ATTACHMENT_OPTIMAL layout. Nothing while there
-    /// is no texture.
+    /// Records drawing over the content of `target`, which must be in COLOR_ATTACHMENT_OPTIMAL layout. Does
+    /// nothing if there is no texture.
     void draw(VkCommandBuffer commands, const Triangles& triangles, const Overlay& overlay,
               VkImageView target, Extent extent) const;
 

@@ -1,4 +1,4 @@
-// Pictures of a frame graph in a window, with triangles over them: a user interface.
+// Shows pictures of a frame graph in a window, with triangles of a user interface on top.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace limpid::gpu {
 
 struct OverlayVertex {
     float x, y;      ///< pixels of the window, from its upper left corner
-    float u, v;      ///< of the texture, 0 to 1
-    uint32_t color;  ///< RGBA8, red in the lowest byte; multiplied with the texture's
+    float u, v;      ///< texture coordinates, 0 to 1
+    uint32_t color;  ///< RGBA8, red in the lowest byte; multiplied by the texture's colour
 };
 
-/// A run of triangles within a rectangle.
+/// A range of triangles, clipped to a rectangle.
 struct OverlayDraw {
     float left, top, right, bottom;  ///< pixels
     uint32_t firstIndex, indexCount, firstVertex;
@@ -24,39 +24,39 @@ struct OverlayDraw {
 
 struct Overlay {
     std::span<const OverlayVertex> vertices;
-    std::span<const uint16_t> indices;  ///< three a triangle, counted from a draw's first vertex
+    std::span<const uint16_t> indices;  ///< three per triangle, relative to a draw's first vertex
     std::span<const OverlayDraw> draws;
 };
 
-/// A part of a picture or of a window, from 0 to 1: its left and upper edge, and its right and lower one.
+/// A part of a picture or of a window, from 0 to 1: left, upper, right and lower edge.
 struct Rectangle {
     float left = 0.0f, top = 0.0f, right = 1.0f, bottom = 1.0f;
 };
 
-/// A picture in a part of the window.
+/// A picture shown in a part of the window.
 struct Pane {
     FrameGraph* graph = nullptr;
-    ImageHandle picture;       ///< of its last executed frame; RGBA8Unorm, not in a buffer
-    Rectangle source, target;  ///< which part of the picture, and of the window
-    bool enlarge = false;      ///< pixels stay squares instead of being smoothed
+    ImageHandle picture;       ///< from its last executed frame; RGBA8Unorm, not in a buffer
+    Rectangle source, target;  ///< the shown part of the picture, and where it goes in the window
+    bool enlarge = false;      ///< show pixels as squares instead of filtering them
 };
 
 class Presenter {
   public:
-    /// `makeSurface` gets the VkInstance and returns a VkSurfaceKHR, which belongs to the presenter from then
-    /// on; it may throw. The device must have been made with DeviceOptions::surfaceExtensions, and outlives
-    /// the presenter. Throws Error if it cannot show pictures on this surface.
+    /// `makeSurface` receives the VkInstance and returns a VkSurfaceKHR, which the presenter then owns; it
+    /// may throw. The device must have been created with DeviceOptions::surfaceExtensions and must outlive
+    /// the presenter. Throws Error if it cannot present on this surface.
     Presenter(Device& device, const std::function<uint64_t(void* instance)>& makeSurface);
     ~Presenter();
     Presenter(const Presenter&) = delete;
     Presenter& operator=(const Presenter&) = delete;
 
-    /// RGBA8 texels of what overlays are textured with.
+    /// Sets the RGBA8 texels of the texture that overlays use.
     void setTexture(Extent extent, std::span<const uint32_t> texels);
 
     /// Shows the panes, each scaled to its part of the window, later ones over earlier ones, and the overlay
-    /// over all. `window`: its size in pixels. Returns false if nothing was shown: the window has no pixels,
-    /// or has just changed its size.
+    /// on top. `window`: its size in pixels. Returns false if nothing was shown: the window has no pixels, or
+    /// has just been resized.
     bool present(std::span<const Pane> panes, Extent window, const Overlay& overlay);
 
   private:

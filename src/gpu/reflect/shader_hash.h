@@ -1,4 +1,4 @@
-// What tells shaders apart.
+// Hashes shaders to identify them.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace limpid::gpu {
 
-/// FNV-1a, 64 bits (http://www.isthe.com/chongo/tech/comp/fnv/), of the words and of all that `reflection`
-/// says. Of the latter, too, since optimised words do not tell what the shader declares and does not use.
+/// Returns the FNV-1a hash, 64 bits (http://www.isthe.com/chongo/tech/comp/fnv/), of the words and of the
+/// whole reflection. The reflection matters because optimised words lack declarations that the shader does
+/// not use.
 uint64_t hashOf(std::span<const uint32_t> words, const ShaderReflection& reflection);
 
 }  // namespace limpid::gpu

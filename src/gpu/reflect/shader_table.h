@@ -1,4 +1,4 @@
-// Shaders as C++ source, for cmake/shader.cpp.in to include.
+// Writes shaders as C++ source, which cmake/shader.cpp.in includes.
 #pragma once
 
 #include <iosfwd>
@@ -8,14 +8,14 @@
 
 namespace limpid::gpu {
 
-/// `constexpr uint32_t words[]`, eight to a line.
+/// Writes `constexpr uint32_t words[]`, eight per line.
 void writeWords(std::ostream& out, std::span<const uint32_t> words);
 
-/// `constexpr gpu::ShaderReflection reflection`, with the tables that it views, for a place inside namespace
+/// Writes `constexpr gpu::ShaderReflection reflection` and the tables it views, for use inside namespace
 /// limpid.
 void writeReflection(std::ostream& out, const ShaderReflection& reflection);
 
-/// `constexpr uint64_t hash`.
+/// Writes `constexpr uint64_t hash`.
 void writeHash(std::ostream& out, uint64_t hash);
 
 }  // namespace limpid::gpu

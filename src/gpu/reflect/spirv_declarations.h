@@ -1,4 +1,4 @@
-// SPIR-V for readers that do not know cooperative matrices.
+// Prepares SPIR-V for tools that do not know cooperative matrices.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace limpid::gpu {
 
-/// The module without what uses cooperative matrices (SPV_NV_cooperative_matrix), which SPIRV-Cross of Debian
-/// 12 cannot read: their types, all that is made of these, and the code in functions. What a module declares
-/// for the outside stays; one without such matrices stays as it is.
+/// Returns the module without cooperative matrices (SPV_NV_cooperative_matrix), which SPIRV-Cross of Debian
+/// 12 cannot read: removes their types, everything built from these, and the code in functions. The module's
+/// external declarations stay. A module without such matrices is returned unchanged.
 std::vector<uint32_t> withoutCooperativeMatrices(std::span<const uint32_t> words);
 
 }  // namespace limpid::gpu

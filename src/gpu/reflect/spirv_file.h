@@ -1,4 +1,4 @@
-// SPIR-V in files, as glslc and spirv-opt write it.
+// Reads SPIR-V files written by glslc and spirv-opt.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace limpid::gpu {
 
-/// Throws Error naming the file if it cannot be read, is empty, or holds no whole number of words.
+/// Throws Error naming the file if it cannot be read, is empty, or its size is not a multiple of four bytes.
 std::vector<uint32_t> readSpirv(const std::filesystem::path& file);
 
 }  // namespace limpid::gpu

@@ -1,5 +1,5 @@
-// The fixture of this folder's tests on a device: with validation and synchronisation validation where the
-// layer is installed. LIMPID_TEST_DEVICE selects the device as --device does; default: cpu (lavapipe).
+// The fixture of this folder's device tests. Enables validation and synchronisation validation if the layer
+// is installed. LIMPID_TEST_DEVICE selects the device like --device; default: cpu (lavapipe).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,7 +44,8 @@ struct FillParams {
 
 class GpuTest : public testing::Test {
   protected:
-    /// One device lives as long as the suite: NVIDIA's driver can be unloaded and loaded again only so often.
+    /// All tests of the suite share one device: NVIDIA's driver can only be unloaded and reloaded a limited
+    /// number of times.
     static void SetUpTestSuite() {
         if (!enumerateDevices().empty())
             driver_ = std::make_unique<Device>(DeviceOptions{.select = wantedDevice()});

@@ -1,4 +1,4 @@
-// Every VkResult is looked at, in Release builds too.
+// Checks every VkResult, in Release builds too.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace limpid::gpu {
 
-/// "VK_ERROR_DEVICE_LOST" etc.
+/// Returns the result's name, such as "VK_ERROR_DEVICE_LOST".
 std::string resultName(VkResult result);
 
-/// What the result means to a user: "out of device memory", "the device was lost ..."; "" if it has no such
-/// meaning.
+/// Returns what the result means to a user, such as "out of device memory" or "the device was lost ..."; ""
+/// for other results.
 std::string_view resultMeaning(VkResult result);
 
-/// Throws Error (DeviceLost if that is it) with the meaning, the name, the call and its place unless `result`
-/// is VK_SUCCESS.
+/// Throws Error unless `result` is VK_SUCCESS (DeviceLost if the device was lost). The message has the
+/// result's meaning and name, the call and its source location.
 void checkResult(VkResult result, const char* expression, const char* file, int line);
 
 }  // namespace limpid::gpu
 
-/// A macro only because the message names the expression, the file and the line.
+/// A macro because the message includes the expression, the file and the line.
 #define LIMPID_VK(expression) ::limpid::gpu::checkResult((expression), #expression, __FILE__, __LINE__)

@@ -1,4 +1,4 @@
-// The logical device and what every object made on it needs. Shared by the objects, so that none outlives it.
+// The logical device and everything that objects on it need. The objects share it, so that none outlives it.
 #pragma once
 
 #include <atomic>
@@ -23,13 +23,13 @@ class Context {
     VkDevice device() const { return vk_.device; }
     const DeviceFunctions& vk() const { return vk_; }
     const InstanceFunctions& instanceVk() const { return instanceVk_; }
-    /// Null on an adopted device.
+    /// Null for an adopted device.
     VkInstance instance() const { return instance_ ? instance_->handle() : VK_NULL_HANDLE; }
     VkPhysicalDevice physicalDevice() const { return physical_.handle; }
-    /// It may show pictures in windows.
+    /// True if it can present pictures in windows.
     bool presents() const { return presents_; }
     VkQueue queue() const { return queue_; }
-    /// It has a queue of its own: not on an adopted device.
+    /// True if it has a queue of its own; false for an adopted device.
     bool submits() const { return queue_ != VK_NULL_HANDLE; }
     uint32_t queueFamily() const { return physical_.queueFamily; }
     uint32_t timestampValidBits() const { return physical_.timestampValidBits; }
@@ -40,13 +40,13 @@ class Context {
     const RayTracingLimits& rayTracing() const { return physical_.rayTracing; }
     uint64_t maxBufferBytes() const;
     const VkPhysicalDeviceMemoryProperties& memoryProperties() const { return memory_; }
-    /// Bytes of device memory that are allocated now.
+    /// Bytes of device memory currently allocated.
     const std::shared_ptr<std::atomic<uint64_t>>& allocated() const { return allocated_; }
     uint64_t validationMessages() const { return instance_ ? instance_->validationMessages() : 0; }
     const MemoryHooks& memoryHooks() const { return hooks_; }
 
     bool hasDebugUtils() const { return debugUtils_; }
-    /// Names an object for validation messages and debuggers; nothing where debug utils are absent.
+    /// Names an object for validation messages and debuggers; does nothing without debug utils.
     template <typename Handle>
     void setName(Handle handle, const std::string& name) const {
         setName(objectType(handle), reinterpret_cast<uint64_t>(handle), name);
@@ -54,14 +54,14 @@ class Context {
 
     void submit(VkCommandBuffer commands, VkFence fence) const;
     void waitIdle() const;
-    /// For destructors: failures become messages.
+    /// For destructors: logs failures instead of throwing.
     void waitIdleNoThrow() const noexcept;
 
   private:
     void createDevice();
     void setName(VkObjectType type, uint64_t handle, const std::string& name) const;
 
-    std::unique_ptr<Instance> instance_;  ///< none on an adopted device
+    std::unique_ptr<Instance> instance_;  ///< none for an adopted device
     InstanceFunctions instanceVk_;
     PhysicalDevice physical_;
     VkPhysicalDeviceMemoryProperties memory_{};
@@ -70,7 +70,7 @@ class Context {
     MessageCallback messages_;
     bool debugUtils_ = false;
     VkQueue queue_ = VK_NULL_HANDLE;
-    mutable std::mutex queueMutex_;  ///< a queue takes one call at a time
+    mutable std::mutex queueMutex_;  ///< a queue must not be used by two threads at once
     bool presents_ = false;
     std::shared_ptr<std::atomic<uint64_t>> allocated_ = std::make_shared<std::atomic<uint64_t>>(0);
 };
@@ -81,10 +81,10 @@ void beginCommands(const Context& context, VkCommandBuffer commands);
 UniqueFence makeFence(const Context& context, const std::string& name);
 void waitAndReset(const Context& context, VkFence fence);
 
-/// What earlier passes wrote, later passes may use and overwrite: shaders, and builds of acceleration
-/// structures.
+/// Makes writes of earlier passes (shaders and acceleration-structure builds) visible to later passes, and
+/// lets those overwrite what was read.
 void passBarrier(const Context& context, VkCommandBuffer commands);
-/// A global memory barrier; images stay in GENERAL layout, so nothing finer is ever needed.
+/// A global memory barrier. Images stay in GENERAL layout, so image barriers are never needed.
 void memoryBarrier(const Context& context, VkCommandBuffer commands, VkPipelineStageFlags2 fromStage,
                    VkAccessFlags2 from, VkPipelineStageFlags2 toStage, VkAccessFlags2 to);
 

@@ -1,4 +1,4 @@
-// The inside of Device, for the other files of this folder.
+// The internals of Device, for other files in this folder.
 #pragma once
 
 #include <mutex>
@@ -14,7 +14,7 @@ struct Device::Impl {
     explicit Impl(std::shared_ptr<const Context> on)
         : context(std::move(on)), pipelines(std::make_shared<PipelineCache>(context)) {}
 
-    /// Made when something is first copied: an adopted device may never need it.
+    /// Created at the first copy: an adopted device may never need it.
     Transfer& transfer() {
         std::call_once(transferMade_, [&] { transfer_.emplace(context); });
         return *transfer_;

@@ -1,5 +1,5 @@
 // The Vulkan functions that Limpid calls, loaded for each instance and each device. There is no global table:
-// a device of the caller's and our own ones live side by side, and the library exports no Vulkan symbol.
+// the caller's device and our own can exist side by side, and the library exports no Vulkan symbol.
 #pragma once
 
 #include "gpu/vulkan/vk.h"
@@ -49,7 +49,7 @@ namespace limpid::gpu {
 
 #define LIMPID_FUNCTION(name) PFN_vk##name name = nullptr;
 
-/// What needs no instance. Missing functions stay null: a loader of Vulkan 1.0 has no
+/// Functions that need no instance. Missing functions are null: a Vulkan 1.0 loader has no
 /// EnumerateInstanceVersion.
 struct LoaderFunctions {
     PFN_vkGetInstanceProcAddr GetInstanceProcAddr = nullptr;
@@ -58,7 +58,7 @@ struct LoaderFunctions {
     explicit LoaderFunctions(PFN_vkGetInstanceProcAddr getInstanceProcAddr);
 };
 
-/// Those of extensions that the instance does not have stay null.
+/// Functions of missing instance extensions are null.
 struct InstanceFunctions {
     LIMPID_INSTANCE_FUNCTIONS(LIMPID_FUNCTION)
 
@@ -66,7 +66,7 @@ struct InstanceFunctions {
     InstanceFunctions(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
 };
 
-/// Those of extensions that the device does not have stay null.
+/// Functions of missing device extensions are null.
 struct DeviceFunctions {
     VkDevice device = VK_NULL_HANDLE;
     LIMPID_DEVICE_FUNCTIONS(LIMPID_FUNCTION)
@@ -77,7 +77,8 @@ struct DeviceFunctions {
 
 #undef LIMPID_FUNCTION
 
-/// Of the system's Vulkan loader, which stays open until the process ends. Null if there is none.
+/// Returns the entry point of the system's Vulkan loader, which stays loaded until the process ends. Null if
+/// there is none.
 PFN_vkGetInstanceProcAddr systemLoader();
 
 }  // namespace limpid::gpu

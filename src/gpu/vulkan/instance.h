@@ -13,9 +13,8 @@ namespace limpid::gpu {
 
 class Instance {
   public:
-    /// Null if this machine has no Vulkan loader, or the loader no driver. Throws Error if `validation` is
-    /// asked for and the layer is not installed.
-    /// `surfaceExtensions`: DeviceOptions.
+    /// Returns null if this machine has no Vulkan loader, or the loader finds no driver. Throws Error if
+    /// `validation` is requested but the layer is not installed. `surfaceExtensions`: see DeviceOptions.
     static std::unique_ptr<Instance> create(bool validation,
                                             const std::vector<std::string>& surfaceExtensions = {},
                                             const MessageCallback& messages = {});
@@ -24,15 +23,15 @@ class Instance {
     Instance& operator=(const Instance&) = delete;
 
     std::vector<VkPhysicalDevice> physicalDevices() const;
-    /// VK_EXT_debug_utils is there: objects and passes get names.
+    /// True if VK_EXT_debug_utils is available: objects and passes get names.
     bool hasDebugUtils() const { return debugUtils_; }
-    /// All surface extensions that were asked for are there.
+    /// True if all requested surface extensions are available.
     bool hasSurfaces() const { return surfaces_; }
     VkInstance handle() const { return instance_; }
     const InstanceFunctions& vk() const { return vk_; }
     uint64_t validationMessages() const { return messages_->count; }
 
-    /// What the validation layer reports goes here.
+    /// Receives the validation layer's reports.
     struct Messages {
         std::atomic<uint64_t> count = 0;
         MessageCallback callback;
@@ -42,7 +41,7 @@ class Instance {
     Instance() = default;
     void createMessenger();
 
-    /// Outlives the instance: destroying it may still produce messages.
+    /// Outlives the instance, since destroying that may still produce messages.
     std::unique_ptr<Messages> messages_ = std::make_unique<Messages>();
     VkInstance instance_ = VK_NULL_HANDLE;
     InstanceFunctions vk_;

@@ -1,4 +1,5 @@
-// What a physical device offers, what Limpid needs of it, and which one a user means.
+// Lists physical devices and their features, checks Limpid's requirements, and selects the device a user asks
+// for.
 #pragma once
 
 #include <string>
@@ -9,8 +10,8 @@
 
 namespace limpid::gpu {
 
-/// The feature structures of Vulkan 1.3, linked for a query or for device creation. Not copyable: they point
-/// at each other.
+/// The feature structures of Vulkan 1.3, chained for a query or for device creation. Not copyable: they point
+/// to each other.
 struct FeatureChain {
     FeatureChain();
     FeatureChain(const FeatureChain&) = delete;
@@ -20,7 +21,7 @@ struct FeatureChain {
     VkPhysicalDeviceVulkan11Features v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
     VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    /// Linked by linkRayTracing(): only where the driver knows their extensions.
+    /// Chained by linkRayTracing(), only if the driver knows their extensions.
     VkPhysicalDeviceAccelerationStructureFeaturesKHR accelerationStructure{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR};
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayTracingPipeline{
@@ -31,9 +32,9 @@ struct FeatureChain {
     void linkCooperativeMatrix();
 };
 
-/// What ray-tracing pipelines need to know of the device.
+/// Device properties needed by ray-tracing pipelines.
 struct RayTracingLimits {
-    uint32_t handleSize = 0, handleAlignment = 0, baseAlignment = 0;  ///< of shader-binding tables
+    uint32_t handleSize = 0, handleAlignment = 0, baseAlignment = 0;  ///< for shader-binding tables
     uint32_t scratchAlignment = 0;
     uint32_t maxInvocations = 0;
     uint64_t maxInstances = 0, maxPrimitives = 0;
@@ -45,25 +46,25 @@ struct PhysicalDevice {
     VkPhysicalDeviceLimits limits{};
     uint64_t maxAllocation = 0;
     uint64_t maxBufferSize = 0;
-    uint32_t queueFamily = 0;  ///< computes, and has timestamps
+    uint32_t queueFamily = 0;  ///< supports compute and timestamps
     uint32_t timestampValidBits = 0;
-    RayTracingLimits rayTracing;    ///< if info.rayTracing
-    bool drawsAndPresents = false;  ///< the queue draws triangles, and there are swapchains
+    RayTracingLimits rayTracing;    ///< valid if info.rayTracing
+    bool drawsAndPresents = false;  ///< the queue supports graphics, and swapchains are available
 };
 
-/// Reads everything; info.whyNot says what is missing.
+/// Queries all properties; info.whyNot lists what is missing.
 PhysicalDevice inspect(const InstanceFunctions& vk, VkPhysicalDevice handle, uint32_t index);
 std::vector<PhysicalDevice> inspectAll(const Instance& instance);
 
-/// The device that DeviceOptions::select means. Throws Error saying why there is none and listing what there
-/// is.
+/// Selects the device for DeviceOptions::select. Throws Error that explains why none matches and lists the
+/// available ones.
 PhysicalDevice choose(std::vector<PhysicalDevice> devices, const std::string& select);
-/// The index that choose() takes, of devices described only by their infos.
+/// Returns the index that choose() selects, given only the devices' infos.
 size_t chooseIndex(const std::vector<DeviceInfo>& infos, const std::string& select);
 
-/// Switches on in `wanted` what Limpid requires, and what it can use if the device has it.
+/// Enables the required features in `wanted`, and optional ones if the device has them.
 void enableFeatures(const InstanceFunctions& vk, const PhysicalDevice& device, FeatureChain& wanted);
-/// The extensions to switch on.
+/// Returns the device extensions to enable.
 std::vector<const char*> wantedExtensions(const PhysicalDevice& device);
 
 }  // namespace limpid::gpu

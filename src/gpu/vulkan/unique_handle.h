@@ -1,4 +1,4 @@
-// A Vulkan object that destroys itself with its device.
+// A Vulkan object that is destroyed with its handle.
 #pragma once
 
 #include <utility>
@@ -7,8 +7,8 @@
 
 namespace limpid::gpu {
 
-/// `destroy`: the member of DeviceFunctions that destroys it. The functions must outlive the object: they
-/// belong to the Context, which everything that is made on a device shares.
+/// `destroy` is the member of DeviceFunctions that destroys the object. The functions must outlive the
+/// object: they belong to the Context, which all objects of a device share.
 template <typename Handle, auto destroy>
 class UniqueHandle {
   public:
@@ -52,7 +52,7 @@ using UniqueAccelerationStructure =
     UniqueHandle<VkAccelerationStructureKHR, &DeviceFunctions::DestroyAccelerationStructureKHR>;
 using UniqueShaderModule = UniqueHandle<VkShaderModule, &DeviceFunctions::DestroyShaderModule>;
 
-/// What a debug name is attached to.
+/// The object types for debug names.
 constexpr VkObjectType objectType(VkBuffer) {
     return VK_OBJECT_TYPE_BUFFER;
 }

@@ -1,5 +1,5 @@
-// The Vulkan API: types, and prototypes of none of its functions (gpu/vulkan/functions.h loads them at run
-// time). Without Vulkan, Limpid still starts and says what is missing.
+// The Vulkan API: types, but no function prototypes (gpu/vulkan/functions.h loads functions at run time). So
+// without Vulkan, Limpid still starts and can report what is missing.
 #pragma once
 
 #ifndef VK_NO_PROTOTYPES

@@ -1,4 +1,4 @@
-// The inside of AccelerationStructures.
+// The internals of AccelerationStructures.
 #pragma once
 
 #include <vector>
@@ -8,44 +8,45 @@
 
 namespace limpid::gpu {
 
-/// Shared by its owner and the frames under way.
+/// Shared by its owner and the frames in flight.
 struct AccelerationStorage : StructuresResource {
     struct Tree {
         TriangleTree source;
-        UniqueAccelerationStructure handle;  ///< empty if it has no triangles
+        UniqueAccelerationStructure handle;  ///< empty if there are no triangles
         VkDeviceAddress address = 0;
-        uint64_t updateScratch = 0;  ///< offset in `scratch`, of trees that move
+        uint64_t updateScratch = 0;  ///< offset in `scratch`, for moving trees
     };
 
     std::shared_ptr<const Context> context;
     std::string name;
     std::vector<Tree> trees;
-    std::shared_ptr<const BufferStorage> treeBuffer;  ///< where all trees lie
+    std::shared_ptr<const BufferStorage> treeBuffer;  ///< contains all trees
     uint32_t placementCount = 0;
     UniqueAccelerationStructure top;
     VkAccelerationStructureKHR topHandle = VK_NULL_HANDLE;
-    std::shared_ptr<const BufferStorage> scratch;  ///< of rebuilds
+    std::shared_ptr<const BufferStorage> scratch;  ///< for rebuilds
     uint64_t topScratch = 0;                       ///< offset in `scratch`
-    bool moves = false;                            ///< some tree does
+    bool moves = false;                            ///< true if any tree moves
     uint64_t savedBytes = 0;
 
-    /// A VkAccelerationStructureInstanceKHR.
+    /// Returns a VkAccelerationStructureInstanceKHR.
     InstanceRecord instanceRecord(uint32_t placement, const TreePlacement& where) const override;
-    /// Fits the trees that move, then builds the top level. Reads what lies in `triangles` and `instances`.
+    /// Refits the moving trees, then builds the top level. Reads `triangles` and `instances`.
     void recordRebuild(VkCommandBuffer commands) const;
 };
 
-/// Builds trees and top level on the device, and waits for it.
+/// Builds trees and top level on the device, and waits until they are done.
 std::shared_ptr<const AccelerationStorage> makeAccelerationStorage(
     Device& device, const std::string& name, std::shared_ptr<const BufferResource> triangles,
     std::span<const TriangleTree> trees, std::span<const TreePlacement> placements);
 
-/// The first address in `scratch` that is aligned as builds want it. makeScratch() leaves room for that.
+/// Returns the first address in `scratch` with the alignment that builds require. makeScratch() adds the
+/// space for it.
 VkDeviceAddress scratchAddress(const BufferStorage& scratch);
 std::shared_ptr<const BufferStorage> makeScratch(const std::shared_ptr<const Context>& context,
                                                  const std::string& name, uint64_t bytes);
 
-/// What a build is told of a tree's triangles. `info` points to `geometry`, so it stays where it is.
+/// A tree's triangles as input of a build. `info` points to `geometry`, so it cannot be moved.
 struct TreeGeometry {
     TreeGeometry(const BufferStorage& triangles, const TriangleTree& tree);
     TreeGeometry(const TreeGeometry&) = delete;
@@ -57,7 +58,7 @@ struct TreeGeometry {
     VkAccelerationStructureBuildRangeInfoKHR range{};
 };
 
-/// The same of the top level.
+/// The input of a build of the top level.
 struct TopGeometry {
     TopGeometry(const BufferStorage& instances, uint32_t count, bool moves);
     TopGeometry(const TopGeometry&) = delete;

@@ -1,15 +1,13 @@
 // Runs recorded frames on a device, or records them into the caller's command buffer.
 //
-// What record() orders. Before the passes stands one vkCmdPipelineBarrier2 with
+// Synchronisation by record(): Before the passes, one vkCmdPipelineBarrier2 contains
 // - a memory barrier from compute shaders and copies (writes) to compute shaders and copies (reads and
-// writes): what the
-//   graph's earlier frames in the same queue did comes first;
+//   writes), so that the graph's earlier frames on the same queue come first;
 // - an image barrier for each imported image, from ForeignImage::stagesBefore and accessBefore to compute
-// shaders, and
-//   into GENERAL where it is bound as a storage image.
-// After the passes stands one with an image barrier for each imported image that a pass wrote, from compute
-// shaders to stagesAfter and accessAfter, and into layoutAfter. Nothing else is synchronised: no queue
-// ownership is transferred, no event or semaphore is used.
+//   shaders, and into GENERAL if it is bound as a storage image.
+// After the passes, another one contains an image barrier for each imported image that a pass wrote, from
+// compute shaders to stagesAfter and accessAfter, and into layoutAfter. Nothing else is synchronised: there
+// are no queue-ownership transfers, events or semaphores.
 #pragma once
 
 #include "gpu/vulkan/device_impl.h"
@@ -28,20 +26,20 @@ class FrameExecutor {
     const Context& context() const { return *context_; }
     void execute(const RecordedFrame& frame);
     void record(const RecordedFrame& frame, VkCommandBuffer commands);
-    /// The device image behind an image of a frame that was executed.
+    /// Returns the device image behind an image of an executed frame.
     const Image& image(const RecordedImage& recorded) const;
     std::vector<PassTime> passTimes();
     size_t pooledImages() const { return images_.size(); }
 
   private:
-    /// The device's side of a recorded image.
+    /// The device side of a recorded image.
     struct FrameImage {
-        ImagePool::Entry* pooled = nullptr;  ///< none of imported ones
+        ImagePool::Entry* pooled = nullptr;  ///< null for imported images
         VkImageView view = VK_NULL_HANDLE;
         VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;  ///< while the frame runs
-        const BufferStorage* buffer = nullptr;           ///< with Backing::Buffer
+        const BufferStorage* buffer = nullptr;           ///< set with Backing::Buffer
     };
-    /// What earlier commands may have done that the frame has to wait for.
+    /// Accesses of earlier commands that the frame must wait for.
     struct Scope {
         VkPipelineStageFlags2 stages;
         VkAccessFlags2 writes, all;
@@ -67,10 +65,10 @@ class FrameExecutor {
     std::shared_ptr<PipelineCache> pipelines_;
     std::string prefix_;
     std::vector<FrameSlot> slots_;
-    std::vector<FrameImage> frameImages_;  ///< by the index of the recorded image
+    std::vector<FrameImage> frameImages_;  ///< by index of the recorded image
     bool foreign_ = false;                 ///< frames are recorded into the caller's commands
-    std::vector<PassTime> foreignTimes_;   ///< of the latest one that is known to be done
-    uint64_t submitted_ = 0;               ///< frames so far
+    std::vector<PassTime> foreignTimes_;   ///< of the latest frame known to be finished
+    uint64_t submitted_ = 0;               ///< number of frames so far
 };
 
 }  // namespace limpid::gpu

@@ -1,5 +1,5 @@
-// What one frame under way owns: descriptors, parameters, timestamps, and commands unless they are recorded
-// into the caller's. Slots take turns.
+// The resources of one frame in flight: descriptors, parameters, timestamps, and a command buffer unless
+// frames are recorded into the caller's. Slots are used in turn.
 #pragma once
 
 #include "gpu/graph/frame_graph_impl.h"
@@ -9,29 +9,30 @@ namespace limpid::gpu {
 
 class FrameSlot {
   public:
-    /// `prefix`: before the names of what it makes.
+    /// options.prefix is put before the names of the objects created here.
     FrameSlot(std::shared_ptr<const Context> context, uint32_t index, const GraphOptions& options);
 
-    /// Waits until the slot's last frame is done, then makes room for `frame`.
+    /// Waits until the slot's last frame is finished, then prepares for `frame`.
     void begin(const RecordedFrame& frame);
     void submit(const RecordedFrame& frame);
-    /// The same around commands of the caller's, who knows that the slot's last frame is done.
-    /// Returns the times of that last frame.
+    /// Like begin(), but for the caller's commands; the caller ensures that the slot's last frame is
+    /// finished. Returns the times of that frame.
     std::vector<PassTime> beginForeign(const RecordedFrame& frame, VkCommandBuffer commands);
     void endForeign(const RecordedFrame& frame);
     void wait();
-    /// Runs the commands so far to their end, in the middle of a frame.
+    /// Submits the commands recorded so far and waits for them, in the middle of a frame.
     void flush();
 
     VkCommandBuffer commands() const { return commands_; }
     VkDescriptorSet allocateSet(VkDescriptorSetLayout layout, const std::string& name);
-    /// Copies a parameter struct into the uniform ring.
+    /// Copies a parameter struct into the uniform ring buffer.
     VkDescriptorBufferInfo pushParams(std::span<const std::byte> params);
-    /// Copies a frame's uploads to where the device can copy them from.
+    /// Copies a frame's uploads into a staging buffer.
     VkBuffer stage(std::span<const std::byte> data);
-    /// After the passes so far, the clock is read: stamp 0 before the first pass, stamp i + 1 after pass i.
+    /// Writes a timestamp after the passes so far: number 0 before the first pass, number i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
-    /// Of the slot's last frame. Waits for it if it was submitted here; otherwise it must be done.
+    /// Returns the times of the slot's last frame. Waits for it if it was submitted here; otherwise it must
+    /// be finished.
     std::vector<PassTime> passTimes();
 
   private:
@@ -50,12 +51,12 @@ class FrameSlot {
     bool timed_;
     UniqueCommandPool commandPool_;
     VkCommandBuffer ownCommands_ = VK_NULL_HANDLE;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< that are being recorded
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;  ///< currently being recorded
     UniqueFence fence_;
     bool submitted_ = false;  ///< the fence will be signalled
 
     UniqueDescriptorPool descriptors_;
-    std::array<uint32_t, bindingKindCount> descriptorCapacity_{};  ///< by BindingKind
+    std::array<uint32_t, bindingKindCount> descriptorCapacity_{};  ///< indexed by BindingKind
     uint32_t setCapacity_ = 0;
 
     std::shared_ptr<BufferStorage> params_;
@@ -66,7 +67,7 @@ class FrameSlot {
     uint32_t timestampCapacity_ = 0;
     std::vector<std::string> passNames_;  ///< of the submitted frame
 
-    /// What the frame uses, kept until it is done.
+    /// Resources that the frame uses, kept alive until it is finished.
     std::vector<std::shared_ptr<const BufferResource>> buffers_;
     std::vector<std::shared_ptr<const StructuresResource>> structures_;
 };

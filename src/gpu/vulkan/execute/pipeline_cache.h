@@ -1,5 +1,5 @@
-// Compute and ray-tracing pipelines of a device: shared by all graphs that run on it, and made by prepare(),
-// or at the first dispatch that needs them.
+// The compute and ray-tracing pipelines of a device, shared by all its graphs. Created by prepare(), or at
+// the first dispatch that needs them.
 #pragma once
 
 #include <mutex>
@@ -20,18 +20,18 @@ class PipelineCache {
         VkPipeline pipeline = VK_NULL_HANDLE;
         VkPipelineLayout layout = VK_NULL_HANDLE;
         VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        const ShaderTable* table = nullptr;  ///< of ray-tracing pipelines
+        const ShaderTable* table = nullptr;  ///< for ray-tracing pipelines
     };
 
-    /// Throws Error naming the shader if it exceeds a limit of the device. From any thread.
+    /// Throws Error naming the shader if it exceeds a limit of the device. Thread-safe.
     Pipeline get(const RecordedDispatch& dispatch);
-    /// Makes what is missing, on as many threads as the machine runs at once. From any thread.
+    /// Creates missing pipelines, on as many threads as the machine has cores. Thread-safe.
     void prepare(std::span<const RecordedDispatch> dispatches);
 
-    /// What the driver has compiled so far (VkPipelineCache), with a checksum.
+    /// Returns what the driver has compiled so far (VkPipelineCache), with a checksum.
     std::vector<std::byte> data() const;
-    /// Starts the driver's cache from what data() once gave; damaged data are ignored. Throws Error if
-    /// pipelines have been made.
+    /// Initialises the driver's cache with earlier data(); damaged data is ignored. Throws Error if pipelines
+    /// have been created.
     void load(std::span<const std::byte> data);
     size_t size() const;
 
@@ -39,7 +39,7 @@ class PipelineCache {
     struct Layouts {
         UniqueSetLayout set;
         UniquePipelineLayout pipeline;
-        std::vector<UniqueShaderModule> modules;  ///< by stage
+        std::vector<UniqueShaderModule> modules;  ///< one per stage
     };
     struct Made {
         UniquePipeline pipeline;
@@ -49,7 +49,7 @@ class PipelineCache {
 
     using Key = std::pair<uint64_t, Constants>;  ///< Shader::hash and the constants
 
-    /// Must hold `mutex_`.
+    /// `mutex_` must be held.
     const Layouts& layoutsOf(const Shader& shader);
     UniqueDriverCache makeDriverCache(std::span<const std::byte> data) const;
     Layouts makeLayouts(const Shader& shader) const;
@@ -62,12 +62,12 @@ class PipelineCache {
 
     std::shared_ptr<const Context> context_;
     UniqueDriverCache driverCache_;
-    mutable std::mutex mutex_;             ///< of what follows; elements stay where they are
-    std::map<uint64_t, Layouts> layouts_;  ///< by Shader::hash
+    mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
+    std::map<uint64_t, Layouts> layouts_;  ///< key: Shader::hash
     std::map<Key, Made> pipelines_;
 };
 
-/// The Vulkan name of a kind of binding, and of a stage.
+/// The Vulkan value of a binding kind, and of a stage.
 VkDescriptorType descriptorType(BindingKind kind);
 VkShaderStageFlagBits stageFlag(ShaderStage stage);
 

@@ -1,4 +1,4 @@
-// Ray-tracing pipelines and their shader-binding tables.
+// Creates ray-tracing pipelines and their shader-binding tables.
 #pragma once
 
 #include <span>
@@ -7,13 +7,13 @@
 
 namespace limpid::gpu {
 
-/// One ray-generation shader, one miss shader, one hit group: the regions that vkCmdTraceRaysKHR takes.
+/// One ray-generation shader, one miss shader and one hit group: the regions passed to vkCmdTraceRaysKHR.
 struct ShaderTable {
     std::shared_ptr<const BufferStorage> buffer;
     VkStridedDeviceAddressRegionKHR rayGeneration{}, miss{}, hit{};
 };
 
-/// `stages`: ray generation, miss, closest hit, any hit. Rays are traced from ray generation alone.
+/// `stages`: ray generation, miss, closest hit, any hit. Only ray generation traces rays.
 UniquePipeline makeRayPipeline(const Context& context,
                                std::span<const VkPipelineShaderStageCreateInfo> stages,
                                VkPipelineLayout layout, VkPipelineCache cache);

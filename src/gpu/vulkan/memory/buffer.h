@@ -8,12 +8,12 @@
 
 namespace limpid::gpu {
 
-/// Every BufferResource but those of tests of recording is one.
+/// The real type of every BufferResource, except in tests that only record.
 struct BufferStorage : BufferResource {
     std::shared_ptr<const Context> context;
     Memory memory;
     UniqueBuffer buffer;
-    UniqueBufferView view;   ///< of texel buffers
+    UniqueBufferView view;   ///< for texel buffers
     uint64_t allocated = 0;  ///< bytes of the VkBuffer: a multiple of 4, at least 4
 };
 
@@ -21,8 +21,8 @@ inline const BufferStorage& storageOf(const BufferResource& resource) {
     return static_cast<const BufferStorage&>(resource);
 }
 
-/// Triangles are an overlay's vertices and indices. The last four need ray tracing: what acceleration
-/// structures lie in, what their builds need, instances of a top level, shader-binding tables.
+/// Triangles holds an overlay's vertices and indices. The last four need ray tracing: storage of acceleration
+/// structures, input and scratch of their builds, instances of a top level, shader-binding tables.
 enum class BufferUse {
     Texel,
     Storage,
@@ -36,10 +36,10 @@ enum class BufferUse {
     ShaderTable
 };
 
-/// Needs ray tracing.
+/// Requires ray tracing.
 VkDeviceAddress deviceAddress(const BufferStorage& buffer);
 
-/// Throws Error naming the limit that `bytes` exceeds. The content is undefined.
+/// Throws Error naming the limit if `bytes` exceeds one. The content is undefined.
 std::shared_ptr<BufferStorage> makeBuffer(std::shared_ptr<const Context> context, const std::string& name,
                                           BufferUse use, uint64_t bytes, std::optional<Format> format = {});
 

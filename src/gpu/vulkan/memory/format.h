@@ -1,4 +1,4 @@
-// Formats as Vulkan names them.
+// Converts formats to Vulkan's.
 #pragma once
 
 #include "gpu/graph/shader.h"

@@ -1,5 +1,5 @@
-// Images on the device: storage images of one layer and one level, in GENERAL layout for all their life; or
-// texels in a buffer.
+// Images on the device: storage images of one layer and one level, always in GENERAL layout; or texels in a
+// buffer.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
@@ -13,12 +13,12 @@ struct Image {
     Memory memory;
     UniqueImage image;
     UniqueImageView view;
-    std::shared_ptr<BufferStorage> buffer;  ///< with Backing::Buffer, instead of the three
+    std::shared_ptr<BufferStorage> buffer;  ///< with Backing::Buffer, replaces the three members above
     Format format{};
     Extent extent;
 };
 
-/// In UNDEFINED layout at first. Throws Error naming the limit that the extent exceeds.
+/// The image is in UNDEFINED layout at first. Throws Error naming the limit if the extent exceeds one.
 Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
                 Backing backing = Backing::Image);
 

@@ -1,4 +1,4 @@
-// The device images behind the names of a frame graph, kept from frame to frame.
+// The device images behind the names of a frame graph, reused from frame to frame.
 #pragma once
 
 #include "gpu/graph/frame_graph_impl.h"
@@ -12,16 +12,16 @@ class ImagePool {
 
     struct Entry {
         Image image;
-        bool initialised = false;  ///< in GENERAL layout
+        bool initialised = false;  ///< it is in GENERAL layout
         uint64_t lastFrame = 0;
     };
 
-    /// The image of this key, made if there is none. References stay valid until the image is collected.
-    /// `prefix`: of its debug name.
+    /// Returns the image of this key, creating it if needed. References stay valid until the image is
+    /// collected. `prefix` goes before its debug name.
     Entry& acquire(const ImageKey& key, const std::string& prefix, uint64_t frame);
     const Image* find(const ImageKey& key) const;
-    /// Frees images that no frame has used for a while. `frame` counts submitted frames, and a while is more
-    /// of them than are under way at once.
+    /// Frees images that have not been used for a number of frames, which is larger than the number in
+    /// flight. `frame` counts submitted frames.
     void collect(uint64_t frame);
     size_t size() const { return entries_.size(); }
 

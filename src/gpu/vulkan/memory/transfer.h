@@ -1,4 +1,4 @@
-// Copies between host and device, in bounded chunks; each call waits until its copies are done.
+// Copies between host and device in chunks of bounded size. Each call waits until its copies are finished.
 #pragma once
 
 #include <functional>
@@ -17,18 +17,18 @@ class Transfer {
     void upload(const BufferStorage& buffer, std::span<const std::byte> data);
     void zero(const BufferStorage& buffer);
     void download(const BufferStorage& buffer, std::span<std::byte> data);
-    /// Tightly packed rows, row 0 first.
+    /// `data` has tightly packed rows, row 0 first.
     void download(const Image& image, std::span<std::byte> data);
 
-    /// Records commands by `record`, submits them and waits.
+    /// Records commands with `record`, submits them and waits.
     void run(const std::function<void(VkCommandBuffer)>& record);
 
   private:
-    /// A staging buffer of at least `bytes`, which is at most one chunk; kept until a larger one is needed.
+    /// Returns a staging buffer of at least `bytes`, at most one chunk; reused until a larger one is needed.
     const BufferStorage& staging(BufferUse use, uint64_t bytes);
 
     std::shared_ptr<const Context> context_;
-    std::recursive_mutex mutex_;  ///< all that lives on the device shares this: copies take turns
+    std::recursive_mutex mutex_;  ///< shared by everything on the device, so copies take turns
     UniqueCommandPool pool_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     UniqueFence fence_;
