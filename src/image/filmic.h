@@ -1,4 +1,4 @@
-// The filmic curve of the PNG view and of HDR-FLIP.
+// The filmic curve used for PNG output and HDR-FLIP.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@ namespace limpid::image {
 
 #include "image/tonemap_curve.h"
 
-/// Exposed linear radiance to linear display value in [0,1]; monotone. NaN and below 0 give 0.
-/// image/tonemap_curve.h
+/// Maps exposed linear radiance to a linear display value in [0,1]; monotone. NaN and negative values give 0.
+/// See image/tonemap_curve.h.
 inline float filmicCurve(float radiance) {
     const float positive = radiance > 0.0f ? radiance : 0.0f;
     const float x = filmicScale * std::min(positive, filmicLargest);

@@ -28,17 +28,17 @@ struct Image {
     }
 };
 
-/// How a channel is stored in an EXR file.
+/// How an EXR file stores a channel.
 enum class Storage { Half, Float, Uint };
 
-/// One EXR channel: full name ("R", "normal.X"), values as floats (or exact integers below 2^24 for Uint).
+/// One EXR channel: full name ("R", "normal.X") and values as floats (for Uint: exact integers below 2^24).
 struct Channel {
     std::string name;
     Storage storage = Storage::Half;
     std::vector<float> values;  ///< width * height
 };
 
-/// An EXR file's content: channels plus string attributes ("limpid.samples" = "16").
+/// The content of an EXR file: channels plus string attributes ("limpid.samples" = "16").
 struct LayeredImage {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -46,12 +46,12 @@ struct LayeredImage {
     std::map<std::string, std::string> metadata;
 
     const Channel* find(std::string_view name) const;
-    /// Adds the components of `image` as channels layer.suffixes[c] (layer "" for the plain names).
+    /// Adds the components of `image` as channels layer.suffixes[c] (with layer "": unprefixed names).
     void add(std::string_view layer, std::string_view suffixes, const Image& image, Storage storage);
-    /// Gathers channels layer.suffixes[c] into one Image. Throws Error if one is missing.
+    /// Returns channels layer.suffixes[c] as one Image. Throws Error if one is missing.
     Image get(std::string_view layer, std::string_view suffixes) const;
-    /// The layer that a viewer would show: the one that has R, G and B and is unnamed, else whose name ends
-    /// in "Combined" (Blender), else the first in the file's order. Empty if no layer has the three.
+    /// Returns the layer with R, G and B that a viewer would show: the unnamed one, else one whose name ends
+    /// in "Combined" (Blender), else the first in the file's order. None if no layer has all three.
     std::optional<std::string> colorLayer() const;
 };
 

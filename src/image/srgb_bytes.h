@@ -1,4 +1,4 @@
-// sRGB-encoded bytes from and to linear values, by tables. Private to src/image.
+// Converts sRGB-encoded bytes from and to linear values with tables. Private to src/image.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace limpid::image {
 
-/// The same as rounding srgbEncode(linear) * 255, without a power for each value.
+/// Gives the same results as rounding srgbEncode(linear) * 255, without a power function per value.
 class SrgbBytes {
   public:
     SrgbBytes() {
@@ -34,8 +34,8 @@ class SrgbBytes {
   private:
     static constexpr float cells = 4096.0f;
     std::array<float, 256> linear_{};
-    std::array<float, 256> from_{};      ///< the least linear value that rounds to this byte
-    std::array<uint8_t, 4097> start_{};  ///< by linear value times `cells`: where to begin to look
+    std::array<float, 256> from_{};      ///< smallest linear value that rounds to this byte
+    std::array<uint8_t, 4097> start_{};  ///< by linear value times `cells`: where the search starts
 };
 
 }  // namespace limpid::image

@@ -13,9 +13,10 @@ const float filmicB = 0.03f;
 const float filmicC = 2.43f;
 const float filmicD = 0.59f;
 const float filmicE = 0.14f;
-/// Radiance is clamped here before the curve, whose squares would overflow; the curve is 1 long before.
+/// Radiance is clamped to this before the curve, whose squares would overflow. The curve reaches 1 long
+/// before.
 const float filmicLargest = 65504.0f;
-/// The automatic exposure brings the average luminance here.
+/// The average luminance after automatic exposure.
 const float filmicKey = 0.18f;
 
 #endif

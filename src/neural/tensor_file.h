@@ -1,5 +1,6 @@
-// Named tensors in files: the format safetensors (https://github.com/huggingface/safetensors, "Format"),
-// which PyTorch's users know: 8 bytes of length, so much JSON, then the tensors' elements, all little-endian.
+// Reads and writes named tensors in the safetensors format (https://github.com/huggingface/safetensors,
+// "Format"), which PyTorch users know: 8 bytes of length, JSON of that length, then the tensors' elements,
+// all little-endian.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +18,18 @@ size_t bytesOf(ElementType type);
 
 struct Tensor {
     ElementType type = ElementType::Float32;
-    std::vector<uint64_t> shape;   ///< slowest first; none: a single element
+    std::vector<uint64_t> shape;   ///< slowest dimension first; empty: a single element
     std::vector<std::byte> bytes;  ///< elements without gaps, the last dimension fastest
 
     uint64_t elements() const;
     bool operator==(const Tensor&) const = default;
 };
 
-/// Of values in the order of Tensor::bytes. Float16 is rounded to the nearest. Throws Error if there are more
-/// or fewer than the shape says.
+/// `values` are in the order of Tensor::bytes. Float16 is rounded to nearest. Throws Error if their number
+/// does not match the shape.
 Tensor makeTensor(ElementType type, std::vector<uint64_t> shape, const std::vector<float>& values);
 
-/// In the order of Tensor::bytes.
+/// Returns the values in the order of Tensor::bytes.
 std::vector<float> valuesOf(const Tensor& tensor);
 
 struct TensorFile {
@@ -36,15 +37,15 @@ struct TensorFile {
     std::map<std::string, Tensor> tensors;
 };
 
-/// Written so that an earlier file survives a failure (base/files/file.h), with the checksum of all elements,
-/// CRC-32 in hexadecimal, as metadata "crc32". Tensors lie in the order of their names. Throws OutputError,
-/// or Error where a tensor's bytes do not fit its shape.
+/// Writes the file atomically, so that an earlier file survives a failure (base/files/file.h). Stores the
+/// checksum of all elements, CRC-32 in hexadecimal, as metadata "crc32". Sorts tensors by name. Throws
+/// OutputError, or Error if a tensor's bytes do not fit its shape.
 void writeTensorFile(const std::filesystem::path& path, const TensorFile& file);
 
-/// Throws InputError for a file that cannot be read or is no such file: a header that is cut off, over 16 MiB
-/// or not the format's JSON; names that stand twice; element types other than F16 and F32; more than 8
-/// dimensions; tensors that overlap, leave gaps or do not fill the file; elements that do not have the
-/// checksum that the metadata states (other writers state none).
+/// Throws InputError if the file cannot be read or is invalid: a header that is truncated, over 16 MiB or not
+/// the format's JSON; duplicate names; element types other than F16 and F32; more than 8 dimensions; tensors
+/// that overlap, leave gaps or do not fill the file; elements that do not match the checksum in the metadata
+/// (other programs write none).
 TensorFile readTensorFile(const std::filesystem::path& path);
 
 }  // namespace limpid::neural

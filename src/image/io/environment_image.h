@@ -1,4 +1,4 @@
-// Whatever serves as an environment map, in bounded memory.
+// Reads environment maps of any supported format, in bounded memory.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace limpid::image {
 
-/// What a pixel of an environment map takes on the host once it is on a device that is a CPU: the picture as
-/// floats (12 bytes), then with its probability for the device (16) and the alias table (8), both twice.
+/// Host memory per pixel of an environment map on a CPU device: the picture as floats (12 bytes); the pixels
+/// with their probability (16) and the alias table (8) for the device, both twice.
 inline constexpr uint64_t environmentBytesPerPixel = 12 + 2 * (16 + 8);
 
-/// Linear radiance, 3 components, from .hdr/.pic or .exr (the layer of LayeredImage::colorLayer, or "Y"), by
-/// the name's extension. Values that are no radiance (NaN, infinite, negative) become 0, with one warning. A
-/// picture that would take more than `maxMemory`, which its header tells, is scaled down to the means of
-/// whole cells while its rows are decoded, with a warning. Throws InputError.
+/// Reads linear radiance, 3 components, from .hdr/.pic or .exr (the layer of LayeredImage::colorLayer, or
+/// "Y"), chosen by the name's extension. Invalid radiance (NaN, infinite, negative) becomes 0, with one
+/// warning. If the header shows that the picture would take more than `maxMemory`, it is scaled down while
+/// its rows are decoded, with a warning: each result pixel is the mean of a whole cell. Throws InputError.
 Image readEnvironmentImage(const std::filesystem::path& path, uint64_t maxMemory = defaultImageMemory);
 
 }  // namespace limpid::image

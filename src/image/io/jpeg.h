@@ -1,4 +1,4 @@
-// JPEG through libjpeg-turbo. Private to src/image.
+// Reads JPEG with libjpeg-turbo. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,20 @@
 
 namespace limpid::image {
 
-/// RGBA. Throws InputError if it is no JPEG, is damaged in any way, claims more pixels than its bytes can
-/// hold, or has more scans than a picture needs.
+/// Returns RGBA. Throws InputError if the bytes are not a JPEG, are damaged, claim more pixels than they can
+/// hold, or have more scans than a picture needs.
 ByteImage decodeJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// What decides by how much a JPEG is scaled down.
+/// Decides how much a JPEG is scaled down.
 struct JpegBound {
-    bool isBuffered = false;  ///< all coefficients are held before a row is decoded: see checkJpeg()
-    std::function<Fits(uint64_t beside)> fits;  ///< given the bytes that decoding takes beside the pixels
+    bool isBuffered = false;  ///< all coefficients are held in memory before a row is decoded: see
+                              ///< checkJpeg()
+    std::function<Fits(uint64_t beside)> fits;  ///< gets the bytes that decoding needs besides the pixels
     uint64_t maxMemory = defaultImageMemory;
 };
 
-/// The same, scaled down by 2, 4 or 8 in the cosine transform where the bound asks for it, with a warning.
+/// Like above, but scaled down by 2, 4 or 8 during the inverse cosine transform if the bound requires it,
+/// with a warning.
 ByteImage decodeJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name,
                      const JpegBound& bound);
 

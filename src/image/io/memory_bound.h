@@ -1,4 +1,4 @@
-// How much memory one picture may take on the host, and by how much it is scaled down to stay below.
+// Bounds the host memory of one picture, and computes how far it must be scaled down.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace limpid::image {
 
-/// What --max-image-memory is by default.
+/// The default of --max-image-memory.
 inline constexpr uint64_t defaultImageMemory = uint64_t{2} << 30;
 
 struct PictureSize {
@@ -16,26 +16,26 @@ struct PictureSize {
     uint64_t pixels() const { return uint64_t{width} * height; }
 };
 
-/// Every `reduction` pixels along each axis become one; the last ones take what is left over, as in mip
+/// Averages `reduction` pixels into one along each axis; the last ones include the remainder, as in mip
 /// levels.
 inline PictureSize reduced(PictureSize size, uint32_t reduction) {
     return {std::max(1u, size.width / reduction), std::max(1u, size.height / reduction)};
 }
 
-/// Whether a picture of this size, once scaled down, stays below the bound.
+/// Returns true if a picture of this (reduced) size is within the bound.
 using Fits = std::function<bool(PictureSize)>;
 
-/// The smallest reduction that fits; above 1 with a warning. Throws InputError if not even one pixel does.
-/// `maxMemory` is for the message.
+/// Returns the smallest reduction that fits; warns if it is above 1. Throws InputError if not even one pixel
+/// fits. `maxMemory` is for the message.
 uint32_t reductionFor(const std::filesystem::path& name, PictureSize size, const Fits& fits,
                       uint64_t maxMemory);
 
-/// For pictures that cannot be scaled down while they are decoded: throws InputError, saying `why`, unless
-/// the picture fits as it is.
+/// For pictures that cannot be scaled down while decoding: throws InputError with the reason `why` if the
+/// picture does not fit at full size.
 void requireFits(const std::filesystem::path& name, PictureSize size, const Fits& fits, uint64_t maxMemory,
                  const char* why);
 
-/// The warning of both the above and JPEG, which scales itself.
+/// The warning about a reduced picture, also for JPEG, which does its own scaling.
 void warnReduced(const std::filesystem::path& name, PictureSize from, PictureSize to, uint64_t maxMemory);
 
 }  // namespace limpid::image

@@ -1,4 +1,4 @@
-// Any picture file as linear radiance.
+// Reads any supported picture file as linear radiance.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,15 @@
 namespace limpid::image {
 
 struct Picture {
-    Image linear;  ///< 3 components, Rec. 709 primaries; alpha is dropped
-    bool sceneReferred =
-        false;  ///< EXR and HDR: radiance without limit. PNG and JPEG: already exposed, in [0,1]
+    Image linear;                ///< 3 components, Rec. 709 primaries; alpha is dropped
+    bool sceneReferred = false;  ///< EXR and HDR: unbounded radiance. PNG and JPEG: already exposed, in [0,1]
 };
 
-/// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PNG or JPEG (decoded from sRGB); the
-/// file's content decides which, not its name. Values come as they are, NaN included. Throws InputError.
+/// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PNG or JPEG (decoded from sRGB),
+/// recognised by content, not by name. Values are not changed, not even NaN. Throws InputError.
 Picture readPicture(const std::filesystem::path& path);
 
-/// The same with the geometry layers that the file has (an EXR file's; others have none).
+/// A picture with the geometry layers of its file (only EXR files have any).
 struct SequencePicture {
     Picture picture;
     Geometry geometry;

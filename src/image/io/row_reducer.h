@@ -1,4 +1,4 @@
-// Scales a picture down by a whole number while its rows arrive: each cell becomes its mean.
+// Scales a picture down by an integer factor while its rows arrive: each cell becomes its mean.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ class RowReducer {
     }
 
     PictureSize size() const { return to_; }
-    /// The row of the result that row `y` is part of.
+    /// Returns the row of the result that contains row `y`.
     uint32_t rowOf(uint32_t y) const { return std::min(y / reduction_, to_.height - 1); }
 
-    /// Adds row `y`; rows come from top to bottom or from bottom to top. With the last row of a cell: the
-    /// means of row rowOf(y), until the next call; otherwise nothing.
+    /// Adds row `y`; rows come from top to bottom or from bottom to top. After the last row of a cell,
+    /// returns the means of row rowOf(y), valid until the next call; otherwise nothing.
     std::span<const float> add(uint32_t y, std::span<const float> row);
 
   private:

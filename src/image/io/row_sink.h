@@ -1,4 +1,4 @@
-// What takes the rows of a picture while it is decoded. Private to src/image.
+// Receives the rows of a picture while it is decoded. Private to src/image.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace limpid::image {
 
-/// 3 floats a pixel: linear RGB.
+/// 3 floats per pixel: linear RGB.
 struct RowSink {
-    /// Once, before anything is allocated: the size, and the bytes that decoding takes beside the file and
-    /// what the sink keeps. May throw.
+    /// Called once, before anything is allocated: the size, and the bytes that decoding needs besides the
+    /// file and the sink's own data. May throw.
     std::function<void(PictureSize size, uint64_t memory)> begin;
-    /// Every row, from top to bottom or from bottom to top; the sink may change it.
+    /// Called for every row, from top to bottom or from bottom to top; may change the row.
     std::function<void(uint32_t y, std::span<float> row)> row;
 };
 

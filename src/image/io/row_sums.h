@@ -1,4 +1,4 @@
-// Sums over pictures that are parallel and the same on every run. Private to src/image.
+// Parallel sums over pictures with the same result on every run. Private to src/image.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -9,7 +9,7 @@
 
 namespace limpid::image {
 
-/// The sum of row(y) for y < height; rows run in parallel and are added in order.
+/// Returns the sum of row(y) for y < height; rows are computed in parallel and added in order.
 template <typename Row>
 double sumRows(size_t height, const Row& row) {
     std::vector<double> sums(height);

@@ -1,4 +1,4 @@
-// For tests: a folder of one's own, removed with all that is in it.
+// For tests: a temporary folder that is removed with its content.
 #pragma once
 
 #include <sys/resource.h>
@@ -49,7 +49,8 @@ inline std::vector<std::byte> toByteVector(const std::string& text) {
     return {bytes.begin(), bytes.end()};
 }
 
-/// Lets this process write no file beyond `bytes`: the write fails, as on a full disk. For death tests only.
+/// Prevents this process from writing files beyond `bytes`: the write fails, as on a full disk. For death
+/// tests only.
 inline void limitFileSize(size_t bytes) {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{bytes, bytes};

@@ -1,4 +1,4 @@
-// TGA and BMP through stb_image. Private to src/image.
+// Reads TGA and BMP with stb_image. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,16 @@
 
 namespace limpid::image {
 
-/// By a TGA file's header, which has no magic number: one of its six kinds, with a pixel size that fits it.
+/// Recognises a TGA file by its header, since it has no magic number: one of the six types, with a matching
+/// pixel size.
 bool looksLikeTga(std::span<const std::byte> bytes);
 bool looksLikeBmp(std::span<const std::byte> bytes);
 
-/// Everything that can be known before a pixel is decoded: stb_image takes what a file lacks for zeros.
-/// Throws InputError if it is of a kind that is not read, too large, or cut off.
+/// Checks everything that can be known before decoding, since stb_image replaces missing data by zeros.
+/// Throws InputError if the file's type is not supported, or it is too large or truncated.
 PictureSize checkTgaOrBmp(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// RGBA. Only after checkTgaOrBmp(). Throws InputError.
+/// Returns RGBA. Call checkTgaOrBmp() first. Throws InputError.
 ByteImage decodeTgaOrBmp(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 }  // namespace limpid::image

@@ -1,6 +1,5 @@
-// What reading and writing EXR share with nobody else: the checks of a file's header that come before the
-// OpenEXR library may allocate anything from it, and the library's threads. Private to src/image: users
-// include image/exr.h.
+// Shared by EXR reading and writing: checks of a file's header that must precede any allocation by the
+// OpenEXR library, and the library's threads. Private to src/image: users include image/exr.h.
 #pragma once
 
 #include <ImathBox.h>
@@ -14,7 +13,7 @@
 
 namespace limpid::image {
 
-/// Bytes in memory as the stream that OpenEXR reads; reading beyond the end throws.
+/// A stream for OpenEXR over bytes in memory; reading beyond the end throws.
 class ExrMemoryStream : public Imf::IStream {
   public:
     ExrMemoryStream(std::span<const std::byte> bytes, const std::string& name)
@@ -28,7 +27,8 @@ class ExrMemoryStream : public Imf::IStream {
     uint64_t position_ = 0;
 };
 
-/// The first part's windows, in the file's coordinates (inclusive), and how many rows are decoded together.
+/// The windows of the first part, in the file's coordinates (inclusive), and how many rows are decoded
+/// together.
 struct ExrFrame {
     Imath::Box2i data;
     Imath::Box2i display;
@@ -39,13 +39,13 @@ struct ExrFrame {
     uint32_t height() const { return static_cast<uint32_t>(display.max.y - display.min.y) + 1; }
 };
 
-/// Checks every header's structure and the first part's claims: windows, channels, tiles, all against the
-/// file's size and image/limits.h. Throws InputError(name), or what OpenEXR throws on an attribute it
-/// refuses.
+/// Checks the structure of every header and the values of the first part (windows, channels, tiles) against
+/// the file's size and image/limits.h. Throws InputError(name), or what OpenEXR throws on an invalid
+/// attribute.
 ExrFrame checkExrHeaders(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// Lets OpenEXR compress and decompress on all cores, once per process, unless the program has chosen
-/// already.
+/// Lets OpenEXR compress and decompress on all cores, unless the program has set a thread count. Acts once
+/// per process.
 void useExrThreads();
 
 }  // namespace limpid::image

@@ -1,4 +1,4 @@
-// The colours of an EXR file, row by row. Private to src/image.
+// Reads the colours of an EXR file row by row. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace limpid::image {
 
-/// The layer of LayeredImage::colorLayer, or "Y" as grey, over the display window, from top to bottom; what
-/// the data window lacks is 0. No other channel is decoded. OpenEXR gets as many threads as keep its buffers
-/// within a quarter of `maxMemory`. Throws InputError.
+/// Decodes the layer of LayeredImage::colorLayer, or "Y" as grey, over the display window, from top to
+/// bottom; pixels that the data window lacks are 0. Decodes no other channel. OpenEXR gets as many threads as
+/// keep its buffers within a quarter of `maxMemory`. Throws InputError.
 void decodeExrRows(std::span<const std::byte> bytes, const std::filesystem::path& name, const RowSink& sink,
                    uint64_t maxMemory);
 

@@ -1,5 +1,5 @@
-// PNG and JPEG pictures: 8 bits per component out, 8 or 16 in. All values are as encoded in the file (sRGB
-// for colour); image/color.h has the transfer functions.
+// Reads and writes PNG and JPEG pictures: writes 8 bits per component, reads 8 or 16. All values are as
+// encoded in the file (sRGB for colour); image/color.h has the transfer functions.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace limpid::image {
 
-/// Interleaved 8-bit components, row 0 on top.
+/// Interleaved 8-bit components, row 0 at the top.
 struct ByteImage {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -20,26 +20,27 @@ struct ByteImage {
     std::vector<uint8_t> pixels;
 };
 
-/// Rounds encoded values to bytes: [0,1] to 0..255, clamped; NaN becomes 0. `encoded` has 3 or 4 components,
-/// or 1, which becomes grey. Throws Error otherwise.
+/// Converts encoded values to bytes: [0,1] to 0..255, rounded and clamped; NaN becomes 0. `encoded` has 3 or
+/// 4 components, or 1, which becomes grey. Throws Error otherwise.
 ByteImage toBytes(const Image& encoded);
 
-/// The bytes of an 8-bit RGB or RGBA PNG. `name` stands for the file in messages. Throws OutputError.
+/// Returns the bytes of an 8-bit RGB or RGBA PNG. `name` is used in messages. Throws OutputError.
 std::vector<char> encodePng(const ByteImage& image, const std::filesystem::path& name);
 
 /// Writes an 8-bit RGB or RGBA PNG, atomically. Throws OutputError.
 void writePng(const std::filesystem::path& path, const ByteImage& image);
 
-/// Decodes a PNG or JPEG to 8-bit RGBA (16-bit files lose their low byte; grey becomes RGB; missing alpha is
-/// 255). `name` stands for the file in messages. Throws InputError if the bytes are neither, are damaged or
-/// truncated (PNG checksums and JPEG markers are checked), or claim more pixels than they can hold or
+/// Decodes a PNG or JPEG to 8-bit RGBA (16-bit files lose their low byte; grey becomes RGB; missing alpha
+/// becomes 255). `name` is used in messages. Throws InputError if the bytes are neither, are damaged or
+/// truncated (checks PNG checksums and JPEG markers), or claim more pixels than they can hold or
 /// image/io/limits.h allows.
 ByteImage decodeImage(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// decodeImage for a file.
+/// Like decodeImage(), but reads a file.
 ByteImage readPngOrJpeg(const std::filesystem::path& path);
 
-/// The same as encoded floats in [0,1], 4 components, keeping all 16 bits of a 16-bit PNG.
+/// Like decodeImage(), but returns encoded floats in [0,1], 4 components, keeping all 16 bits of a 16-bit
+/// PNG.
 Image decodeImageFloat(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 }  // namespace limpid::image

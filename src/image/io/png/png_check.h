@@ -1,5 +1,5 @@
-// Whether the bytes are a whole, undamaged PNG or JPEG: the decoders show a JPEG that was cut
-// off as if it were complete. Private to src/image.
+// Checks that bytes are a complete, undamaged PNG or JPEG; the decoders show a truncated JPEG as if it were
+// complete. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@ namespace limpid::image {
 bool looksLikePng(std::span<const std::byte> bytes);
 bool looksLikeJpeg(std::span<const std::byte> bytes);
 
-/// Throws InputError unless all chunks up to IEND are there, their checksums are right, and the size that is
-/// stated is one that image/io/limits.h accepts.
+/// Throws InputError unless all chunks up to IEND exist with correct checksums, and image/io/limits.h accepts
+/// the size.
 void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-/// Throws InputError unless the markers lead from start to end of image. Returns whether the decoder holds
-/// all coefficients at once: the file is progressive, or has several scans.
+/// Throws InputError unless the markers lead from start to end of image. Returns true if the decoder must
+/// hold all coefficients at once: the file is progressive, or has several scans.
 bool checkJpeg(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 }  // namespace limpid::image

@@ -1,4 +1,4 @@
-// PNG through libpng, row by row. Private to src/image.
+// Reads PNG with libpng, row by row. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace limpid::image {
 /// All functions throw InputError(name) if the file is damaged.
 class PngReader {
   public:
-    /// Reads what comes before the pixels. Both arguments must outlive the reader.
+    /// Reads everything before the pixels. Both arguments must outlive the reader.
     PngReader(std::span<const std::byte> bytes, const std::filesystem::path& name);
     ~PngReader();
     PngReader(const PngReader&) = delete;
@@ -24,17 +24,17 @@ class PngReader {
     bool isInterlaced() const;
     bool has16Bits() const;
 
-    /// What decoding takes beside the pixels that it returns: libpng's rows, at most 8 bytes a pixel each.
+    /// Memory that decoding needs besides the returned pixels: libpng's rows, at most 8 bytes per pixel each.
     static uint64_t rowMemory(PictureSize size) { return uint64_t{size.width} * 32; }
 
-    /// To be called first, and once: pixels come as RGBA of 8 bits, or of 16 in this machine's byte order.
-    /// Grey becomes RGB, missing alpha is the largest value; 8 bits of 16 are the higher ones.
+    /// Call it first, and once. Pixels are returned as RGBA of 8 bits, or of 16 in native byte order. Grey
+    /// becomes RGB, missing alpha the largest value; 16 bits are reduced to the upper 8.
     void begin(bool as16Bits);
-    /// The next row of a file that is not interlaced.
+    /// Reads the next row of a file that is not interlaced.
     void readRow(uint8_t* row);
-    /// All rows, interlaced or not.
+    /// Reads all rows, interlaced or not.
     void readAll(uint8_t* pixels, size_t rowBytes);
-    /// Reads to the end, which a whole file has.
+    /// Reads to the end of the file. Throws if it is truncated.
     void finish();
 
   private:
