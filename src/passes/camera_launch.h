@@ -1,4 +1,4 @@
-// Shared by all passes that trace primary rays: the camera, the jitter, the random numbers.
+// Shared by all passes that trace primary rays: the camera, the jitter and the random numbers.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
@@ -6,10 +6,11 @@
 
 namespace limpid {
 
-/// Where in its pixel a primary ray goes. The first sample since the last reset goes through the centre.
+/// Where a primary ray goes through its pixel. The first sample since the last reset goes through the centre.
 enum class Jitter : uint32_t {
     Pixel = JITTER_PIXEL,  ///< a random point for each pixel
-    Frame = JITTER_FRAME,  ///< one point for all pixels, another for each sample: Halton in bases 2 and 3
+    Frame = JITTER_FRAME,  ///< the same point for all pixels, a new one for each sample: Halton sequence in
+                           ///< bases 2 and 3
     Off = JITTER_OFF,      ///< the centre
 };
 

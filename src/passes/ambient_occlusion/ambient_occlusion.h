@@ -31,8 +31,8 @@ struct AmbientOcclusionLaunch {
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
                                   const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer);
-/// The same into existing images, for frames of several launches. The last image has the result; the others
-/// hold the intermediate sums of earlier rays.
+/// Like above, but writes into existing images, for frames of several launches. The last image gets the
+/// result; the others hold the intermediate sums of earlier rays.
 gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                   const AmbientOcclusionSettings& settings,
                                   const AmbientOcclusionLaunch& launch, const GBufferImages& gbuffer,
@@ -41,11 +41,12 @@ std::vector<gpu::ImageHandle> makeAmbientOcclusionImages(gpu::FrameGraph& graph,
                                                          const AmbientOcclusionSettings& settings,
                                                          gpu::Extent extent);
 
-/// Ambient occlusion as light that denoisers can clean: rgba32f images that the caller makes.
+/// Ambient occlusion in the form of a light signal that denoisers can filter: rgba32f images that the caller
+/// creates.
 struct AmbientOcclusionSignal {
-    gpu::ImageHandle diffuse;   ///< the unoccluded share; 0 where nothing is seen
-    gpu::ImageHandle albedo;    ///< 1; 0 where nothing is seen
-    gpu::ImageHandle emission;  ///< 1 where nothing is seen, else 0
+    gpu::ImageHandle diffuse;   ///< the unoccluded share; 0 where the camera ray misses
+    gpu::ImageHandle albedo;    ///< 1; 0 where the camera ray misses
+    gpu::ImageHandle emission;  ///< 1 where the camera ray misses, else 0
     gpu::ImageHandle specular, albedoSpecular, reflectionMotion;  ///< 0
 };
 /// `openness`: result of ambientOcclusion(). `depth`: from its G-buffer.

@@ -1,4 +1,5 @@
-// Moves the scene to a point in time: uploads what moved, poses vertices on the device, refits their trees.
+// Moves the scene to a point in time: uploads what moved, poses vertices on the device, and refits their
+// trees.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"

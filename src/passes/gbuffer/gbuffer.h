@@ -1,5 +1,5 @@
-// The G-buffer pass: what the camera sees first, and the light that arrives there directly. One primary ray
-// per pixel and launch; no bounce.
+// The G-buffer pass: the first hit of each camera ray, and the direct light there. One primary ray per pixel
+// and launch; no bounce.
 #pragma once
 
 #include "base/layers/layer_set.h"
@@ -32,11 +32,11 @@ struct GBufferImages : LayerSet<gpu::ImageHandle> {
 
 GBufferImages gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
                       const CameraLaunch& launch);
-/// The same into existing images, for frames of several launches. `countersBefore`: counters of the previous
-/// launch.
+/// Like above, but writes into existing images, for frames of several launches. `countersBefore`: counters of
+/// the previous launch.
 void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferSettings& settings,
              const CameraLaunch& launch, gpu::ImageHandle countersBefore, const GBufferImages& into);
-/// Completes `given` with new images for all empty handles except the counters.
+/// Adds new images for all empty handles in `given` except the counters.
 GBufferImages makeGBufferImages(gpu::FrameGraph& graph, gpu::Extent extent, GBufferImages given = {});
 
 }  // namespace limpid

@@ -38,18 +38,18 @@ struct PathtraceBeauty {
     gpu::ImageHandle counters;
 };
 
-/// The beauty alone; the fast path.
+/// Renders only the beauty; the fast path.
 PathtraceBeauty pathtraceBeauty(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch);
-/// Every layer.
+/// Renders every layer.
 PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene,
                                 const PathtraceSettings& settings, const PathtraceLaunch& launch);
-/// The same into existing images, for frames of several launches. `countersBefore`: counters of the previous
-/// launch.
+/// Like above, but writes into existing images, for frames of several launches. `countersBefore`: counters of
+/// the previous launch.
 void pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
                      const PathtraceLaunch& launch, gpu::ImageHandle countersBefore,
                      const PathtraceLayers& into);
-/// All images except the counters; their names begin with `prefix`.
+/// Creates all images except the counters; their names begin with `prefix`.
 PathtraceLayers makePathtraceLayers(gpu::FrameGraph& graph, const std::string& prefix, gpu::Extent extent);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// The preview pass: shades the first hits of the G-buffer as a modelling program does, without the scene's
+// The preview pass: shades the first hits of the G-buffer like a modelling program, without the scene's
 // lights.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace limpid {
 
-/// rgba32f, from 0 to 1, in linear Rec. 709: the sum of the albedos under a light at the camera and a sky
-/// above; emitters in their colour; a plain backdrop where nothing was hit.
+/// Returns rgba32f, from 0 to 1, in linear Rec. 709: the sum of the albedos, lit by a light at the camera and
+/// a sky above; emitters in their own colour; a plain backdrop where the ray misses.
 gpu::ImageHandle preview(gpu::FrameGraph& graph, const GBufferImages& gbuffer, const CameraParams& camera);
 
 }  // namespace limpid
