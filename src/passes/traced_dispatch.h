@@ -1,4 +1,4 @@
-// Recording a pass that traces rays, with the scene's tracer.
+// Records passes that trace rays, using the scene's tracer.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-/// The shaders of one pass for both tracers.
+/// The shaders of one pass, one for each tracer.
 struct TracerShaders {
     const gpu::ShaderCode& compute;
     const gpu::ShaderCode& rayGeneration;

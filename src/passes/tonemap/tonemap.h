@@ -5,8 +5,8 @@
 
 namespace limpid {
 
-/// RGBA8, encoded sRGB, alpha 1: image::tonemap() of the radiance (rgba32f), or of the sum of the two, to
-/// within one step. `stops`: exposure. The pass is called "tonemap".
+/// Returns RGBA8, encoded sRGB, alpha 1: image::tonemap() of the radiance (rgba32f), or of the sum of both
+/// images if `added` is given, to within one step. `stops`: exposure. The pass is called "tonemap".
 gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
                          gpu::ImageHandle added = {});
 

@@ -27,9 +27,10 @@ struct FrameInput {
     gpu::Backing filters = gpu::Backing::Image;  ///< storage of images that filters read many times
 };
 
-/// The images that a frame leaves on the device; those that a pipeline does not compute are empty. `path` and
-/// `direct` without layers compute only `beauty` and `counters`; with layers, beauty is the sum of diffuse,
-/// specular and emission. Without a denoiser the images are running means; with one they are of this frame.
+/// The images that a frame leaves on the device; those that a pipeline does not compute are empty. Without
+/// layers, `path` and `direct` compute only `beauty` and `counters`; with layers, beauty is the sum of
+/// diffuse, specular and emission. Without a denoiser the images are running means; with one they show this
+/// frame only.
 struct FrameImages : PathtraceLayers {
     gpu::ImageHandle beauty;
 

@@ -9,13 +9,13 @@
 
 namespace limpid {
 
-/// What is computed, as --integrator names it.
+/// The integrators of --integrator.
 enum class Integrator {
     Path,              ///< all light, by path tracing
     Direct,            ///< the path tracer with paths of one bounce
-    AmbientOcclusion,  ///< the unoccluded share at each visible point
-    GBuffer,           ///< what the camera sees, lit by one light sample
-    Preview,           ///< what the camera sees, shaded without the scene's light
+    AmbientOcclusion,  ///< the unoccluded share at each first hit
+    GBuffer,           ///< the first hit, lit by one light sample
+    Preview,           ///< the first hit, shaded without the scene's lights
 };
 
 /// All integrators, in the order in which `limpid info` lists them.
@@ -27,11 +27,11 @@ bool canBeDenoised(Integrator integrator);
 /// Throws UsageError with the list of names if the name is unknown.
 Integrator parseIntegrator(std::string_view name);
 
-/// "none" for null.
+/// Returns "none" for null.
 std::string_view nameOf(const denoise::Denoiser* denoiser);
-/// "none" and the denoisers.
+/// Returns "none" and the denoisers' names.
 std::vector<std::string_view> denoiserNames();
-/// Null for "none". Throws UsageError with the list of names if the name is unknown.
+/// Returns null for "none". Throws UsageError with the list of names if the name is unknown.
 const denoise::Denoiser* parseDenoiser(std::string_view name);
 
 /// The path tracer alone by default.
@@ -39,9 +39,9 @@ struct Pipeline {
     Integrator integrator = Integrator::Path;
     const denoise::Denoiser* denoiser = nullptr;  ///< null: none
 
-    /// As on the command line: "--integrator ao --denoiser svgf".
+    /// Returns the command-line options: "--integrator ao --denoiser svgf".
     std::string options() const;
-    /// For titles: "ao", "ao, svgf".
+    /// Returns a short form for titles: "ao", "ao, svgf".
     std::string title() const;
     /// True if the picture is the mean of all samples since the last change. Otherwise each frame has its own
     /// samples, and the denoiser keeps histories.
@@ -62,7 +62,7 @@ struct Pipeline {
     bool operator==(const Pipeline&) const = default;
 };
 
-/// Every integrator alone and with each denoiser that can clean it.
+/// Every integrator alone, and combined with each denoiser that supports it.
 const std::vector<Pipeline>& pipelines();
 /// Throws UsageError if there is no such integrator or denoiser, or if this integrator cannot be denoised.
 Pipeline parsePipeline(std::string_view integrator, std::string_view denoiser = "none");

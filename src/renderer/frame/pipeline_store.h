@@ -1,4 +1,4 @@
-// What the driver has compiled, kept in the user's cache folder from one run of the program to the next.
+// Stores the driver's compiled pipelines in the user's cache folder between runs.
 #pragma once
 
 #include <filesystem>
@@ -7,18 +7,18 @@
 
 namespace limpid {
 
-/// $XDG_CACHE_HOME/limpid or ~/.cache/limpid, with a file for each device, driver and version of Limpid.
-/// Empty if the environment names neither folder.
+/// Returns a file in $XDG_CACHE_HOME/limpid or ~/.cache/limpid; there is one for each device, driver and
+/// version of Limpid. Empty if the environment names neither folder.
 std::filesystem::path pipelineFile(const gpu::Device& device);
 
-/// Before the device's first pipeline is made. A file that is not there, or damaged, is ignored.
+/// Call it before the device's first pipeline is created. Ignores a file that is missing or damaged.
 void loadPipelines(gpu::Device& device, const std::filesystem::path& file);
 
-/// Failures are ignored: the next run compiles again. Nothing is written where the driver keeps nothing
+/// Failures are ignored: the next run compiles again. Writes nothing if the driver has nothing to store
 /// (lavapipe).
 void storePipelines(const gpu::Device& device, const std::filesystem::path& file);
 
-/// Deletes a device after its pipelines are stored.
+/// A deleter that stores a device's pipelines before it deletes the device.
 struct KeepPipelines {
     void operator()(gpu::Device* device) const {
         storePipelines(*device, pipelineFile(*device));

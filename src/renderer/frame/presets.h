@@ -34,8 +34,8 @@ const Preset& findPreset(std::string_view name);
 /// changes nothing.
 void applyPreset(RenderSettings& settings, std::string_view name);
 
-/// ... after every parameter that some preset sets has its default again: a preset that was applied before
-/// leaves nothing.
+/// Like applyPreset(), but first resets every parameter that any preset sets to its default, so that an
+/// earlier preset leaves no trace.
 void applyOnlyPreset(RenderSettings& settings, std::string_view name);
 
 /// Values of --integrator and --denoiser; "" if not given.
@@ -43,7 +43,7 @@ struct PipelineChoice {
     std::string integrator, denoiser;
 };
 
-/// The pipeline of the user's choice. An integrator or denoiser that is not given is the preset's first.
+/// Returns the pipeline that the user chose. A missing integrator or denoiser is the preset's first one.
 /// Without a preset ("") it is that of `otherwise`, if the two can be combined. Throws UsageError like
 /// parsePipeline(), and if the preset does not support the result and would be ignored.
 Pipeline pipelineFor(std::string_view presetName, const PipelineChoice& asked, const Pipeline& otherwise);

@@ -9,11 +9,11 @@
 
 namespace limpid {
 
-/// The frame in the file, with its variance layers. `sequence`: a previous frame exists. Throws InputError if
-/// the camera is missing, or layers that denoising needs (base/layers/layer_table.h: Need), and lists them
-/// all. Missing layers that are advised for a sequence are added to `lacking`: without `id`, everything
-/// counts as one object; without `prevNormal`, nothing rotates. The number of samples is the attribute
-/// "limpid.samples", or 32 without it.
+/// Reads the frame in the file, including its variance layers. `sequence`: a previous frame exists. Throws
+/// InputError if the camera or layers that denoising needs (base/layers/layer_table.h: Need) are missing, and
+/// lists them all. Missing layers that are advised for a sequence are added to `lacking`: without `id`,
+/// everything counts as one object; without `prevNormal`, nothing rotates. The number of samples is the
+/// attribute "limpid.samples", or 32 without it.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<const LayerInfo*>& lacking);
 

@@ -1,4 +1,4 @@
-// For tests: a small render whose blocks are made of random numbers.
+// For tests: a small render whose blocks consist of random numbers.
 #pragma once
 
 #include <random>
@@ -20,7 +20,8 @@ inline AccumulationHeader smallHeader() {
     return header;
 }
 
-/// Random means of `layer` in a block, equal for equal arguments: from -2 to 2, the fourth not negative.
+/// Returns random means of `layer` in a block, from -2 to 2, the fourth not negative. Equal arguments give
+/// equal means.
 inline std::vector<float> randomMeans(const LayerInfo& layer, uint32_t block, uint64_t pixels) {
     std::seed_seq seed(layer.name.begin(), layer.name.end());
     std::mt19937 random(seed);

@@ -14,8 +14,8 @@
 
 namespace limpid {
 
-/// A part of a render: the frames of a sequence, or the blocks of a still, whose number modulo `count` is
-/// index - 1.
+/// A part of a render: those frames of a sequence, or blocks of a still, whose number modulo `count` is index
+/// - 1.
 struct Shard {
     uint32_t index = 1;  ///< 1 to count
     uint32_t count = 1;
