@@ -1,4 +1,4 @@
-// What the built-in scenes are put together from: plain materials and shapes, placement, movement, fixed
+// Building blocks of the built-in scenes: plain materials and shapes, placement, movement, and fixed random
 // numbers.
 #pragma once
 
@@ -14,28 +14,28 @@ namespace limpid::scene {
 Material lambertian(std::string name, const vec3& albedo);
 Material emitter(std::string name, const vec3& albedo, const vec3& radiance);
 Material glossy(std::string name, const vec3& color, float metallic, float roughness);
-/// The material with this texture as its base colour's factor.
+/// Returns the material with its base colour multiplied by this texture.
 Material textured(Material material, const TextureRef& baseColor);
 
-/// A block on the floor, turned about its centre (x, z).
+/// Adds a block on the floor, turned about its centre (x, z).
 void addBlock(MeshBuilder& builder, const vec2& center, const vec2& halfSize, float height, float angle,
               uint16_t slot);
-/// A rectangle that faces down.
+/// Adds a rectangle that faces down.
 void addLamp(MeshBuilder& builder, const vec3& center, float halfWidth, float halfDepth, uint16_t slot);
 
-/// Adds the texture; the reference shows it `repeats` times per unit of texture coordinates.
+/// Adds the texture; the returned reference repeats it `repeats` times per unit of texture coordinates.
 TextureRef addTexture(Scene& scene, Texture texture, float repeats = 1.0f);
-/// Adds a camera named as the scene.
+/// Adds a camera with the name of the scene.
 void addCamera(Scene& scene, const vec3& eye, const vec3& target, float verticalFov);
-/// Adds the mesh and an instance of it, and returns the instance's index. `material` is that of slot 0.
+/// Adds the mesh and an instance of it, and returns the instance's index. `material` is for slot 0.
 size_t addMesh(Scene& scene, Mesh mesh, int material);
 
-/// Gives the instance a node of its own and returns that, for channels to move.
+/// Gives the instance a node of its own, for channels to move, and returns it.
 int addNode(Scene& scene, size_t instance);
-/// Adds the clip and places all instances as it begins.
+/// Adds the clip and places all instances at its start.
 void addClip(Scene& scene, Clip clip);
 
-/// A small generator of fixed sequence, so that built-in scenes are the same everywhere.
+/// A small pseudo-random generator with a fixed sequence, so that built-in scenes are the same everywhere.
 class Sequence {
   public:
     explicit Sequence(uint32_t seed = 1) : state_(seed) {}

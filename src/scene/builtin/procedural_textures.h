@@ -1,6 +1,6 @@
-// Pictures by code for the built-in scenes: the same texels on every run. Colours are sRGB-encoded, 0 to 1.
-// All repeat without a seam except the wood, which is mirrored at its edges, and the test picture, which ends
-// there.
+// Generates textures for the built-in scenes: the same texels on every run. Colours are sRGB-encoded, 0 to 1.
+// All tile seamlessly except the wood, which is mirrored at its edges, and the test picture, which does not
+// tile.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,28 @@
 
 namespace limpid::scene {
 
-/// `squares` by `squares` squares; an even number.
+/// A board of `squares` by `squares` squares; must be even.
 Texture checkerTexture(uint32_t squares, const vec3& first, const vec3& second);
 
-/// Four bricks by eight courses, running bond.
+/// Four bricks by eight courses in running bond.
 Texture brickTexture();
-/// Normal map of the same bricks: mortar lies deeper.
+/// Normal map of the same bricks; mortar lies deeper.
 Texture brickNormalTexture();
 
-/// Noise of five octaves between two colours; the coarsest has `cells` by `cells`.
+/// Noise of five octaves between two colours; the coarsest octave has `cells` by `cells` cells.
 Texture noiseTexture(uint32_t cells, const vec3& dark, const vec3& bright);
 
-/// A board cut along the grain near the heart: elongated, wavy rings.
+/// A board cut along the grain near the centre of the trunk: elongated, wavy rings.
 Texture woodTexture();
 
-/// Normal map of round dents, as a hammer leaves them.
+/// Normal map of round dents, like hammered metal.
 Texture hammeredNormalTexture();
 
-/// Of a metal (blue) whose roughness (green) goes from `smooth` to `rough` in patches and along scratches.
+/// For a metal (blue) whose roughness (green) varies from `smooth` to `rough` in patches and along scratches.
 Texture wornRoughnessTexture(float smooth, float rough);
 
-/// 1,024 x 768: checkers coarse and fine, lines of signs like print, smooth colours, rings that get finer
-/// outwards. What denoisers blur shows in it.
+/// 1,024 x 768: coarse and fine checkers, lines of characters like print, smooth colours, and rings that get
+/// finer outwards. It makes the blur of denoisers visible.
 Texture testPictureTexture();
 
 }  // namespace limpid::scene

@@ -1,5 +1,5 @@
-// Rooms drawn from a number: as many different scenes as wanted, to train networks on (docs/kpcn.md) and to
-// try things.
+// Generates a room from a random seed: an unlimited number of different scenes, for training networks
+// (docs/kpcn.md) and for experiments.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,11 @@
 
 namespace limpid::scene {
 
-/// A room of 3 to 9 m with up to 30 things in it, lit by lamps, through a window, or without a ceiling from
-/// the sky; diffuse, glossy, metallic, mirroring and glass surfaces, some textured. Fronts of the walls look
-/// inside. The camera stands in the room and in nothing. The same scene for the same seed, everywhere. None
-/// of the textures of the laboratory's scenes is used with their colours, and their test picture not at all.
+/// Returns a room of 3 to 9 m with up to 30 objects, lit by lamps, through a window, or by the sky if it has
+/// no ceiling; with diffuse, glossy, metallic, mirror and glass surfaces, some textured. The fronts of the
+/// walls face inside. The camera stands in the room, outside of all objects. The same seed gives the same
+/// scene everywhere. Textures of the denoiser lab's scenes only appear in other colours, and the test picture
+/// never appears, so that these scenes can judge trained networks.
 Scene randomRoom(uint32_t seed);
 
 }  // namespace limpid::scene

@@ -1,4 +1,4 @@
-// What scenes drawn from a number have in common: random numbers, colours, textures, materials.
+// Shared by the scenes generated from a seed: random numbers, colours, textures, materials.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace limpid::scene {
 
-/// Random numbers are drawn one a statement or within braces: elsewhere compilers choose the order.
+/// Draw only one random number per statement, or several within braces: elsewhere the compiler chooses the
+/// order.
 class RandomScene {
   public:
     RandomScene(std::string_view kind, uint32_t seed);
@@ -16,21 +17,21 @@ class RandomScene {
   protected:
     bool chance(float share) { return random_.next(0.0f, 1.0f) < share; }
     int whole(int least, int most);
-    /// As many small ratios as large ones.
+    /// A log-uniform number: small and large ratios are equally likely.
     float logarithmic(float least, float most);
     vec3 color(float least, float most);
-    /// Daylight to candle light; now and then any colour.
+    /// A colour from daylight to candle light; occasionally any colour.
     vec3 lightColor();
-    /// Somewhere around the origin, at most `reach` from it in each direction.
+    /// A random offset from the origin, at most `reach` in each direction.
     vec3 offset(float reach);
 
     int addMaterial(Material material);
     /// Checkers, noise, bricks or wood.
     Texture pattern();
     Material roughened(Material material, float least);
-    /// Papered with a pattern, of `least` to `most` repeats a metre.
+    /// Textured with a pattern that repeats `least` to `most` times per metre.
     Material patterned(Material material, float least, float most);
-    /// Diffuse, glossy, metallic, mirroring, lacquered, or a closed body of glass.
+    /// Diffuse, glossy, metallic, mirror, lacquered, or a closed body of glass.
     Material anyMaterial(bool mayBeGlass);
 
     Scene scene_;

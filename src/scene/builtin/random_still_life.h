@@ -1,4 +1,4 @@
-// Still lifes drawn from a number: what rooms (scene/builtin/random_room.h) do not have.
+// Generates a still life from a random seed, with features that rooms (scene/builtin/random_room.h) lack.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace limpid::scene {
 
-/// Up to 14 things within a metre or so, in the open before a sky, a studio's lights or the night, on a
-/// ground, on a pedestal or on nothing; also signs that glow, shaded lamps with a point light close to the
-/// shade, boards with fine pictures, bumps and worn metal. The camera stands outside, near or far. The same
-/// scene for the same seed, everywhere. None of the textures of the laboratory's scenes is used with their
-/// colours, and their test picture not at all.
+/// Returns up to 14 objects within about a metre, outdoors under a sky, a studio's lights or the night, on a
+/// ground, on a pedestal or floating; also glowing signs, shaded lamps with a point light close to the shade,
+/// boards with detailed pictures, bumps and worn metal. The camera stands outside, near or far. The same seed
+/// gives the same scene everywhere. Textures of the denoiser lab's scenes only appear in other colours, and
+/// the test picture never appears.
 Scene randomStillLife(uint32_t seed);
 
 }  // namespace limpid::scene

@@ -35,7 +35,7 @@ struct Aabb {
     float halfArea() const;  ///< 0 if empty
 };
 
-/// A reference to a node or to a run of primitives, as the shader reads it
+/// A reference to a node or to a range of primitives, in the format that shaders read
 /// (shaders/trace/trace_compute.glsl).
 struct BvhRef {
     static constexpr uint32_t leafBit = 1u << 31;
@@ -52,8 +52,8 @@ struct BvhRef {
     static uint32_t count(uint32_t ref) { return (ref >> countShift & 7) + 1; }
 };
 
-/// Four children; their boxes are bytes on a grid that starts at `origin` with cells of 2^(exponent - 127).
-/// A child that does not exist has lower 255 and upper 0, which no ray meets.
+/// Four children. Their boxes are bytes on a grid that starts at `origin` with cells of 2^(exponent - 127). A
+/// missing child has lower 255 and upper 0, which no ray hits.
 struct BvhNode {
     vec3 origin{0.0f};
     std::array<uint8_t, 4> exponents{};                      ///< x, y, z, unused
@@ -68,25 +68,26 @@ static_assert(sizeof(BvhNode) == 64);
 
 struct Bvh {
     std::vector<BvhNode> nodes;   ///< the root is nodes[0]
-    std::vector<uint32_t> order;  ///< leaves index this; it holds the primitives' original indices
+    std::vector<uint32_t> order;  ///< leaves index into this; it holds the primitives' original indices
     Aabb bounds;
-    uint32_t stackSize = 0;  ///< entries that a depth-first traversal needs at most, in any order of children
+    uint32_t stackSize = 0;  ///< maximum number of stack entries of a depth-first traversal, in any order of
+                             ///< children
 };
 
-/// Below this depth splits halve the primitives, so that no input makes a tree deeper than 48 + log2(count).
+/// Below this depth splits halve the number of primitives, so that no tree is deeper than 48 + log2(count).
 inline constexpr uint32_t maxSahDepth = 48;
 
-/// Builds over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
-/// shallowest tree. Throws Error if there are more primitives than a BvhRef can name. No primitives: one node
-/// that no ray meets.
+/// Builds a BVH over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
+/// shallowest tree. Throws Error if there are more primitives than a BvhRef can address. Without primitives,
+/// returns one node that no ray hits.
 Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
 
-/// A child of a node to be.
+/// A child of a node being built.
 struct BvhChild {
     uint32_t ref = 0;
     Aabb bounds;
 };
-/// A node over one to four children.
+/// Returns a node over one to four children.
 BvhNode makeBvhNode(std::span<const BvhChild> children);
 
 }  // namespace limpid::scene

@@ -15,24 +15,24 @@ namespace limpid::scene {
 
 class GpuScene {
   public:
-    /// Uploads. Throws Error naming the limit if a buffer exceeds what the device allows, or if the device
-    /// lacks the tracer.
+    /// Uploads the scene. Throws Error naming the limit if a buffer exceeds the device's limits, or if the
+    /// device does not support the tracer.
     GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options = {});
 
     Tracer tracer() const { return structures_ ? Tracer::Hardware : Tracer::Compute; }
 
-    /// What every pass that includes scene_data.glsl binds.
+    /// Returns the bindings for every pass that includes scene_data.glsl.
     std::vector<gpu::Binding> bindings() const;
     std::vector<gpu::ConstantValue> constants() const;
     const layout::SceneParams& params() const { return params_; }
-    /// Of the frame from now on (scene/motion/scene_animator.h).
+    /// Sets the parameters from the current frame on (scene/motion/scene_animator.h).
     void setParams(const layout::SceneParams& params) { params_ = params; }
-    /// One of the buffers of scene_data.glsl, or of passes/deform. "quantisedNodes" are bvhNodes, or what
-    /// they are expanded from. Throws Error if there is none of that name.
+    /// Returns a buffer of scene_data.glsl or of passes/deform. "quantisedNodes" are bvhNodes, or the nodes
+    /// from which those are expanded. Throws Error if there is no buffer of that name.
     const gpu::Buffer& buffer(std::string_view name) const;
-    /// bvhNodes are expanded: what changes in "quantisedNodes" must follow there.
+    /// True if bvhNodes are expanded copies: changes of "quantisedNodes" must be repeated there.
     bool expandsNodes() const { return gpuTraversal_; }
-    /// Of the `hardware` tracer; null with the other.
+    /// For the `hardware` tracer; null with the other one.
     const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
     uint64_t byteCount() const;
 
@@ -45,7 +45,7 @@ class GpuScene {
     void addDeformBuffers(gpu::Device& device, const SceneData& data);
 
     std::vector<NamedBuffer> buffers_;
-    std::vector<NamedBuffer> deformBuffers_;  ///< of passes/deform alone
+    std::vector<NamedBuffer> deformBuffers_;  ///< used by passes/deform only
     std::optional<gpu::AccelerationStructures> structures_;
     SceneFeatures features_;
     layout::SceneParams params_;

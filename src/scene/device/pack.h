@@ -1,4 +1,4 @@
-// The steps of buildSceneData(), a file each.
+// The steps of buildSceneData(), each in a file of its own.
 #pragma once
 
 #include <bit>
@@ -9,32 +9,33 @@
 
 namespace limpid::scene {
 
-/// Trees, shading triangles, vertices and instances; needs features.vertexData.
+/// Packs trees, shading triangles, vertices and instances. Needs features.vertexData.
 void packGeometry(const Scene& scene, SceneData& data);
-/// What poses the vertices of a deforming instance: appends to the motion data's rest vertices and morph
-/// deltas.
+/// Packs the data that poses the vertices of a deforming instance: appends to the rest vertices and morph
+/// deltas of the motion data.
 DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_t firstVertex,
                                   MotionData& motion);
-/// In which order the nodes of the deforming trees are refitted.
+/// Determines the order in which the nodes of deforming trees are refitted.
 void findRefitLevels(SceneData& data);
-/// Materials, texture references and mip levels; sets the features that follow from materials.
+/// Packs materials, texture references and mip levels, and sets the features that depend on materials.
 void packMaterials(const Scene& scene, SceneData& data);
-/// Light list, its alias table, and the environment; needs the geometry's instances.
+/// Packs the light list, its alias table, and the environment. Needs the geometry's instances.
 void packLights(const Scene& scene, SceneData& data);
-/// The first two of these; needs the geometry's instances and sphere alone.
+/// Packs the light list and its alias table only. Needs only the geometry's instances and bounding sphere.
 void packLamps(const Scene& scene, SceneData& data);
-/// How shaders multiply and turn the environment, and how often they ask it; after packLamps().
+/// Sets the environment's factor, rotation and sampling probability for shaders. Call it after packLamps().
 void setEnvironmentParams(const Environment& env, layout::SceneParams& params);
-/// Directional albedo of GGX reflection, and how metals spread what several facets scatter.
+/// Fills the table with the directional albedo of GGX reflection, and how metals distribute multiple
+/// scattering.
 void fillGgxTable(std::vector<vec4>& table);
-/// What several facets of a rough dielectric boundary reflect and transmit.
+/// Fills the table with the multiple scattering of a rough dielectric boundary: reflection and transmission.
 void fillDielectricTable(std::vector<vec4>& table);
 
-/// Two snorm16 (Z. H. Cigolle et al., "A survey of efficient representations for independent unit vectors",
-/// JCGT 2014).
+/// Packs a unit vector as two snorm16 (Z. H. Cigolle et al., "A survey of efficient representations for
+/// independent unit vectors", JCGT 2014).
 uint32_t packDirection(const vec3& direction);
 
-/// Invisible if it cannot be inverted, as in our own trees.
+/// Returns a placement that is invisible if the matrix cannot be inverted, as in our own trees.
 gpu::TreePlacement placementOf(uint32_t tree, const mat4& toWorld);
 
 inline uint32_t bits(float value) {

@@ -1,4 +1,5 @@
-// A scene in the form that shaders read (shaders/common/scene_layout.h), still on the CPU and testable there.
+// A scene in the format that shaders read (shaders/common/scene_layout.h), on the CPU, where tests can check
+// it.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace limpid::scene {
 
-/// Which parts of the shaders a scene needs; each member is a specialisation constant in scene_data.glsl.
+/// The shader features that a scene needs; each member is a specialisation constant in scene_data.glsl.
 struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
@@ -21,7 +22,7 @@ struct SceneFeatures {
     bool operator==(const SceneFeatures&) const = default;
 };
 
-/// Walker's alias table: entry i is kept with `keep`, otherwise replaced by `other`.
+/// An entry of Walker's alias table: entry i is kept with probability `keep`, otherwise replaced by `other`.
 struct AliasEntry {
     float keep = 1.0f;
     uint32_t other = 0;
@@ -38,8 +39,8 @@ struct SceneData {
     layout::SceneParams params{};
     uint32_t stackSize = 0;
     MotionData motion;
-    /// For the `hardware` tracer: the trees as runs of bvhTriangles, and a placement for each record of
-    /// bvhInstances; in a scene of one tree, one placement.
+    /// For the `hardware` tracer: the trees as ranges of bvhTriangles, and a placement for each record of
+    /// bvhInstances. A scene of one tree has one placement.
     std::vector<gpu::TriangleTree> trees;
     std::vector<gpu::TreePlacement> placements;
 

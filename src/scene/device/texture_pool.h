@@ -1,4 +1,4 @@
-// Textures of a scene, without duplicates: one per image, encoding and sampler.
+// Collects the textures of a scene without duplicates: one per image, encoding and sampler.
 #pragma once
 
 #include <cstddef>
@@ -18,21 +18,21 @@ namespace limpid::scene {
 
 class TexturePool {
   public:
-    /// glTF allows PNG and JPEG alone.
+    /// glTF allows only PNG and JPEG.
     enum class Formats { PngAndJpeg, TgaAndBmpToo };
 
     struct Settings {
-        std::filesystem::path sceneFile;  ///< blamed when the textures together exceed `maxTexels`
+        std::filesystem::path sceneFile;  ///< named in the error if all textures together exceed `maxTexels`
         Formats formats = Formats::PngAndJpeg;
         uint64_t maxImageMemory = image::defaultImageMemory;
     };
 
-    /// Appends to scene.textures.
+    /// Appends textures to scene.textures.
     TexturePool(Scene& scene, Settings settings) : scene_(scene), settings_(std::move(settings)) {}
 
-    /// The texture made of the image that `key` identifies. `read` gives the image file's bytes; it is called
-    /// for the first texture of an image only. An image whose bytes cannot be had or decoded (InputError) is
-    /// a warning, once, and `none`. Throws InputError if there are too many texels.
+    /// Returns the index of the texture for the image identified by `key`. `read` returns the image file's
+    /// bytes; it is called only for the first texture of an image. If the image cannot be read or decoded
+    /// (InputError), warns once and returns `none`. Throws InputError if there are too many texels.
     int add(const std::string& key, bool srgb, const Sampler& sampler,
             const std::function<std::vector<std::byte>()>& read);
 
@@ -49,7 +49,7 @@ class TexturePool {
     Scene& scene_;
     Settings settings_;
     std::map<Use, int> uses_;
-    std::map<std::string, int> decoded_;  ///< image -> a texture that holds its texels
+    std::map<std::string, int> decoded_;  ///< maps an image to a texture that has its texels
     std::set<std::string> unreadable_;
     uint64_t texels_ = 0;
 };

@@ -1,5 +1,5 @@
-// The tree over trees: its leaves are placed meshes. What moves has a tree of its own beside what stays, so
-// that a frame rebuilds no more than what moved.
+// The top-level tree, whose leaves are placed meshes. Moving instances have a tree of their own, separate
+// from static ones, so that a frame only rebuilds what moved.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace limpid::scene {
 
-/// A record of bvhInstances and its box in the world; an empty box keeps it out of the tree.
+/// A record of bvhInstances and its box in world space; an empty box excludes it from the tree.
 struct TopLeaf {
     uint32_t record = 0;
     Aabb bounds;
@@ -22,16 +22,16 @@ struct TopTree {
     Aabb bounds;
 };
 
-/// Its nodes will lie at `firstNode` and after. If traversal would need more than `maxStack` entries, a
-/// shallower tree of lower quality is made; topStackLimit() is always enough.
+/// The nodes will be stored from index `firstNode` on. If traversal would need more than `maxStack` entries,
+/// builds a shallower tree of lower quality; topStackLimit() is always enough.
 TopTree buildTopTree(std::span<const TopLeaf> leaves, uint32_t firstNode, uint32_t maxStack = UINT32_MAX);
 uint32_t topStackLimit(size_t leaves);
 
-/// The box of a transformed box, widened by what rounding in the instance's own space may add.
+/// Returns the box of a transformed box, widened by the possible rounding error in the instance's space.
 Aabb transformed(const Aabb& box, const mat4& m);
-/// An instance squeezed to a plane or a line shows nothing that a ray could meet robustly.
+/// False for an instance flattened to a plane or a line, which rays cannot hit robustly.
 bool isInvertible(const mat4& m);
-/// Three rows of an affine matrix.
+/// Packs three rows of an affine matrix.
 void packRows(uvec4* rows, const mat4& m);
 
 }  // namespace limpid::scene

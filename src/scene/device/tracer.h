@@ -1,4 +1,4 @@
-// How rays are traced: the implementations of shaders/trace.glsl.
+// Selects how rays are traced: the implementations of shaders/trace.glsl.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 namespace limpid::scene {
 
 enum class Tracer {
-    Compute,   ///< our own tree, walked in a compute shader; on every device
+    Compute,   ///< our own tree, traversed in a compute shader; on every device
     Hardware,  ///< VK_KHR_ray_tracing_pipeline
 };
 
 struct TraceOptions {
     Tracer tracer = Tracer::Compute;
-    /// How the `compute` tracer walks its trees: in the way of GPUs, or of CPUs. Unset: as suits the device.
-    /// Pictures do not depend on it, so that tests can try either anywhere.
+    /// Whether the `compute` tracer uses the traversal for GPUs or the one for CPUs. Empty: the one that
+    /// suits the device. Both give the same pictures, so tests can run either on any device.
     std::optional<bool> gpuTraversal;
 };
 
 std::string_view toString(Tracer tracer);
 
-/// `hardware` where there is hardware for it. Drivers that offer the extension without are slower at it than
-/// our own tree (docs/benchmarks.md).
+/// Returns `hardware` if the device has ray-tracing hardware. Drivers that emulate the extension are slower
+/// than our own tree (docs/benchmarks.md).
 Tracer automaticTracer(const gpu::DeviceInfo& device);
 
 }  // namespace limpid::scene

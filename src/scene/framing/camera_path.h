@@ -1,5 +1,5 @@
-// A camera that moves over time: keyed in a JSON file, or one of the built-in paths. docs/animation.md has
-// the format.
+// A camera that moves over time: keys from a JSON file, or one of the built-in paths. docs/animation.md
+// describes the format.
 #pragma once
 
 #include <filesystem>
@@ -11,24 +11,24 @@
 
 namespace limpid::scene {
 
-/// Where the camera is at a time, and what it looks at.
+/// The camera's position and target at a time.
 struct CameraKey {
     double time = 0.0;  ///< seconds
     vec3 eye{0.0f}, target{0.0f, 0.0f, -1.0f}, up{0.0f, 1.0f, 0.0f};
     float verticalFov = 0.8f;  ///< radians
-    bool cut = false;  ///< a new shot begins here: nothing is interpolated across, and motion is invalid
+    bool cut = false;          ///< a new shot begins here: no interpolation across it, and motion is invalid
 };
 
 class CameraPath {
   public:
-    /// Through `keys`: at least one, times strictly increasing.
+    /// Creates a path through `keys`: at least one, with strictly increasing times.
     CameraPath(std::string name, std::vector<CameraKey> keys);
 
-    /// The camera at a time; before the first key and after the last it stands still. Between keys of one
-    /// shot all values follow cubic Hermite curves through them with tangents by finite differences, which
-    /// are smooth and exact for motion at constant speed.
+    /// Returns the camera at a time; it stands still before the first key and after the last. Between keys of
+    /// one shot, all values follow cubic Hermite curves with finite-difference tangents, which are smooth,
+    /// and exact for motion at constant speed.
     Camera at(double time) const;
-    /// Whether a new shot began after `before`, up to and including `now`.
+    /// True if a new shot began after `before`, up to and including `now`.
     bool cutBetween(double before, double now) const;
     double duration() const { return keys_.back().time; }  ///< seconds
 
@@ -37,13 +37,13 @@ class CameraPath {
     std::vector<CameraKey> keys_;
 };
 
-/// Reads a path. Throws InputError: not JSON, an unknown name, a key without time, eye or target, times that
-/// do not increase, an eye on its target, an up vector along the view, a field of view not between 0 and 180
-/// degrees.
+/// Reads a path. Throws InputError if it is not JSON, has an unknown name, a key without time, eye or target,
+/// times that do not increase, an eye equal to its target, an up vector parallel to the view, or a field of
+/// view not between 0 and 180 degrees.
 CameraPath loadCameraPath(const std::filesystem::path& file);
 
-/// "orbit": once around what the camera looks at in 10 s; "dolly": towards it and back in 4 s; "shake": a
-/// hand-held camera. They start from `camera` and are sized by the scene, and last `seconds`.
+/// "orbit": once around the camera's target in 10 s; "dolly": towards it and back in 4 s; "shake": a
+/// hand-held camera. The paths start from `camera`, are scaled to the scene, and last `seconds`.
 CameraPath builtinCameraPath(std::string_view name, const Scene& scene, const Camera& camera, double seconds);
 bool isBuiltinCameraPath(std::string_view name);
 

@@ -1,4 +1,4 @@
-// Rays on the host, for the few thousand that questions about a scene need before it is on a device.
+// Traces rays on the CPU, for the few thousand that analysing a scene needs before it is on a device.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace limpid::scene {
 
-/// Where a ray met a triangle.
+/// A ray's hit on a triangle.
 struct HostHit {
     float t = 0.0f;
     float u = 0.0f, v = 0.0f;  ///< barycentrics of vertices 1 and 2
@@ -26,18 +26,17 @@ struct HostTriangle {
 
 class HostTracer {
   public:
-    /// Keeps a reference to the scene.
+    /// Keeps a reference to the scene, which must outlive it.
     explicit HostTracer(const Scene& scene);
 
-    /// The nearest hit between `nearest` and `farthest` along the direction, which need not be of unit
-    /// length. Where a material is masked or blended, `random` (0 to 1) decides for the ray whether it
-    /// passes.
+    /// Returns the nearest hit between `nearest` and `farthest` along the direction, which need not be a unit
+    /// vector. At masked or blended materials, `random` (0 to 1) decides whether the ray passes through.
     std::optional<HostHit> closest(const vec3& origin, const vec3& direction, float nearest, float farthest,
                                    float random) const;
 
     const std::vector<HostTriangle>& triangles() const { return triangles_; }
     const Material& materialOf(const HostTriangle& triangle) const;
-    /// Linear; white where there is no texture.
+    /// Returns the linear texel; white if there is no texture.
     vec4 textureAt(const TextureRef& ref, const HostTriangle& triangle, float u, float v) const;
 
   private:

@@ -1,5 +1,5 @@
-// Roughly where in a box there is something: a grid of cells. For questions that a few hundred rays answer
-// well enough.
+// A grid of cells that records roughly which parts of a box are occupied, for questions that a few hundred
+// rays answer well enough.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@ namespace limpid::scene {
 
 class Occupancy {
   public:
-    /// Of a box that is not empty; `cells` along its longest side, at least 1.
+    /// Covers a box that is not empty, with `cells` cells along its longest side, at least 1.
     Occupancy(const vec3& lower, const vec3& upper, int cells);
 
-    /// What the triangle, which lies in the box, touches.
+    /// Marks the cells that the triangle touches. It must lie in the box.
     void add(const vec3& a, const vec3& b, const vec3& c);
 
-    /// Along the unit vector `direction` until something is there; 0 if the box ends first: there is nothing
-    /// to see.
+    /// Returns the distance along the unit vector `direction` to the first occupied cell; 0 if the ray leaves
+    /// the box first.
     float distanceToSomething(const vec3& eye, const vec3& direction) const;
 
-    /// Whether all cells that are at most `cells` away along each axis are empty and in the box.
+    /// True if all cells within `cells` cells along each axis are empty and in the box.
     bool isFree(const vec3& point, int cells) const;
 
   private:

@@ -1,4 +1,5 @@
-// How near an eye can be to see all points, and how large they are then.
+// Finds the nearest eye position from which all points are visible, and the size of the points in the
+// picture.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +10,12 @@
 
 namespace limpid::scene {
 
-/// The nearest place from which a square picture shows all points that are added: each of its four edges is a
-/// plane through the eye, and a point gives it a least distance.
+/// Computes the nearest position from which a square picture shows all added points. Each of the picture's
+/// four edges is a plane through the eye, and each point gives the plane a minimum distance.
 class TightView {
   public:
-    /// `view`: the axes of the camera. Distances are measured from `center`; `part` of the picture's width
-    /// and height is used.
+    /// `view`: the camera's axes. Distances are measured from `center`; the points fill the fraction `part`
+    /// of the picture's width and height.
     TightView(const mat4& view, const vec3& center, float fov, float part)
         : axes_(view), center_(center), slope_(double{part} * std::tan(0.5 * double{fov})) {}
 
@@ -24,7 +25,7 @@ class TightView {
         nearest_ = std::max(nearest_, p.z);
     }
 
-    /// At least `room` before the nearest point.
+    /// Stays at least `room` in front of the nearest point.
     vec3 eye(float room) const {
         const double distance = std::max({(edges_[0] + edges_[1]) / (2.0 * slope_),
                                           (edges_[2] + edges_[3]) / (2.0 * slope_), nearest_ + double{room}});
@@ -40,7 +41,7 @@ class TightView {
     double nearest_ = std::numeric_limits<double>::lowest();
 };
 
-/// The larger of width and height of what is added, in a square picture of side 1.
+/// Measures the larger of width and height of the added points, in a square picture of side 1.
 class PictureSize {
   public:
     PictureSize(const mat4& view, float fov) : toView_(glm::inverse(view)), slope_(std::tan(0.5f * fov)) {}

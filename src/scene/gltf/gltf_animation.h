@@ -1,4 +1,4 @@
-// glTF animations to clips.
+// Converts glTF animations to clips.
 //
 // Specification: glTF 2.0, section 3.11 (animations),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#animations
@@ -10,9 +10,9 @@
 
 namespace limpid::scene::gltf {
 
-/// All animations of the document. `nodes` are its nodes, by index. Throws InputError if times are not
-/// finite, negative or not strictly increasing, if there is another number of values than the times need, or
-/// an index is out of range. Channels of extensions, without a target, or of nodes placed by a matrix are
+/// Reads all animations of the document. `nodes` are its nodes, by index. Throws InputError if times are not
+/// finite, negative or not strictly increasing, if the number of values does not match the times, or if an
+/// index is out of range. Channels of extensions, without a target, or of nodes placed by a matrix are
 /// ignored with a warning.
 std::vector<Clip> readAnimations(Document& document, const std::vector<Node>& nodes);
 

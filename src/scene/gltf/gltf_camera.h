@@ -1,4 +1,4 @@
-// Cameras and punctual lights of glTF nodes.
+// Reads cameras and punctual lights of glTF nodes.
 //
 // Specification: glTF 2.0, section 3.10 (cameras),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#cameras; KHR_lights_punctual,
@@ -11,11 +11,12 @@
 
 namespace limpid::scene::gltf {
 
-/// A camera where `toWorld` puts it; the transform's scale and shear do not matter. Throws InputError if the
-/// camera has no type that glTF knows, or a field of view or magnification that is not positive.
+/// Returns a camera placed by `toWorld`; scale and shear of the transform are ignored. Throws InputError if
+/// the camera's type is unknown, or its field of view or magnification is not positive.
 Camera readCamera(const Object& source, const mat4& toWorld, const std::string& nodeName);
 
-/// A light where `toWorld` puts it. Units stay glTF's: candela, lux. Throws InputError on an unknown type.
+/// Returns a light placed by `toWorld`, in glTF's units: candela, lux. Throws InputError if its type is
+/// unknown.
 PunctualLight readLight(Document& document, const Object& source, const mat4& toWorld,
                         const std::string& nodeName);
 

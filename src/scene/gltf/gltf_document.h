@@ -1,6 +1,6 @@
-// A glTF document in memory: its JSON, its binary chunk and its buffers, with every byte range checked before
-// use. Compressed buffer views (gltf_meshopt.h) and primitives (gltf_draco.h) are decoded on loading: who
-// reads accessors sees plain ones.
+// A glTF document in memory: its JSON, its binary chunk and its buffers. Checks every byte range before use.
+// Compressed buffer views (gltf_meshopt.h) and primitives (gltf_draco.h) are decoded when the document is
+// loaded, so code that reads accessors sees plain data.
 //
 // Specification: glTF 2.0, sections 3.6 (binary data) and 4 (GLB),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
@@ -21,9 +21,9 @@
 
 namespace limpid::scene::gltf {
 
-/// Reads the file and all its buffers. Every fault throws InputError: not JSON, a GLB whose header lies, a
-/// version other than 2, a required extension that is not supported, a buffer that is missing or short,
-/// compressed data that is damaged.
+/// Reads the file and all its buffers. Throws InputError on every fault: not JSON, a GLB with an incorrect
+/// header, a version other than 2, a required extension that is not supported, a buffer that is missing or
+/// short, damaged compressed data.
 class Document {
   public:
     explicit Document(const std::filesystem::path& file, const std::filesystem::path& assetRoot = {});
@@ -35,7 +35,7 @@ class Document {
     const Object& root() const { return lists_->root; }
     SceneFiles& files() { return files_; }
 
-    /// The document's lists of objects, by index; empty where the document has none.
+    /// The document's lists of objects, by index; empty if absent.
     struct Lists {
         explicit Lists(const Object& root);
         Object root;
@@ -44,25 +44,24 @@ class Document {
     };
     const Lists& lists() const { return *lists_; }
 
-    /// The bytes of the file and of all buffers: what the document cost whoever made it.
+    /// Number of bytes of the file and all buffers, as stored.
     uint64_t byteCount() const { return byteCount_; }
 
-    /// The bytes of a buffer view (index in range), decoded if it is compressed. Throws InputError if they
-    /// are not inside its buffer.
+    /// Returns the bytes of a buffer view (valid index), decoded if it is compressed. Throws InputError if
+    /// they are not inside its buffer.
     std::span<const std::byte> bytes(int bufferView) const;
 
-    /// What compressed data may decode to, all together: `decodedFloor` and so many times the buffers' bytes,
-    /// but not more than `maxDecodedBytes`. A file that says everything twice is no reason to fill the
-    /// memory.
+    /// The limit on the total size of decoded data: `decodedFloor` plus a multiple of the buffers' bytes, but
+    /// at most `maxDecodedBytes`. So a file that repeats its data cannot fill the memory.
     static constexpr uint64_t decodedFloor = uint64_t{64} << 20;
     static constexpr uint64_t decodedPerByte = 64;
     static constexpr uint64_t maxDecodedBytes = uint64_t{4} << 30;
 
-    /// Bytes of a "data:...;base64,..." URI. `owner` is blamed for a bad one.
+    /// Decodes a "data:...;base64,..." URI. The error for an invalid one names `owner`.
     static std::vector<std::byte> decodeDataUri(std::string_view uri, const Object& owner);
     static bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
 
-    /// Logs a warning with the file's name; the same one only once, and not more than a handful in all.
+    /// Logs a warning with the file's name; each text only once, and only a handful in total.
     void warn(const std::string& message);
 
   private:
@@ -80,7 +79,7 @@ class Document {
     std::unique_ptr<const Lists> lists_;
     std::vector<std::byte> binaryChunk_;
     std::vector<std::vector<std::byte>> buffers_;
-    std::map<int, std::vector<std::byte>> decodedViews_;  ///< those that are compressed
+    std::map<int, std::vector<std::byte>> decodedViews_;  ///< the compressed ones
     uint64_t decodedBytesLeft_ = 0;
     uint64_t byteCount_ = 0;
     std::set<std::string> warnings_;

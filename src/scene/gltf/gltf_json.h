@@ -1,4 +1,4 @@
-// Typed, checked reading of a glTF document's JSON: nothing below this file assumes that a value has the
+// Typed, checked access to a glTF document's JSON: code built on this never assumes that a value has the
 // right type.
 //
 // Specification: glTF 2.0, https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
@@ -21,36 +21,36 @@ namespace limpid::scene::gltf {
 
 using Json = nlohmann::json;
 
-/// The document's JSON. Throws InputError if it is no JSON object ("is not a glTF document"), or nests deeper
-/// than any glTF does.
+/// Parses the document's JSON. Throws InputError if it is not a JSON object ("is not a glTF document"), or
+/// nests deeper than any glTF does.
 Json parseJson(const std::filesystem::path& file, std::span<const std::byte> text,
                std::string_view kind = "a glTF document");
 
-/// An object of the document. A read takes a key and what an absent one means; a value of the wrong type or
-/// range throws InputError with the file and the value's place ("nodes[3].scale"). The JSON must outlive the
-/// Object.
+/// An object of the document. Each read function takes a key, and the value to return if the key is absent. A
+/// value of the wrong type or range throws InputError with the file and the value's path ("nodes[3].scale").
+/// The JSON must outlive the Object.
 class Object {
   public:
-    /// Throws InputError if `value` is no object.
+    /// Throws InputError if `value` is not an object.
     Object(const std::filesystem::path& file, const Json& value, std::string place);
 
     const std::string& place() const { return place_; }
     bool has(const char* key) const { return find(key) != nullptr; }
 
-    float number(const char* key, float absent) const;    ///< finite
-    double number(const char* key, double absent) const;  ///< finite
+    float number(const char* key, float absent) const;    ///< must be finite
+    double number(const char* key, double absent) const;  ///< must be finite
     bool boolean(const char* key, bool absent) const;
     std::string text(const char* key, const std::string& absent = {}) const;
-    /// A whole number of 0 to 2^53. The second form requires the key.
+    /// Reads an integer from 0 to 2^53. The second form requires the key.
     uint64_t whole(const char* key, uint64_t absent) const;
     uint64_t whole(const char* key) const;
-    /// A number below `size`, the length of the list that it indexes; `none` if absent.
+    /// Reads an index below `size`, the length of the list it refers to; `none` if absent.
     int index(const char* key, size_t size) const;
 
     vec2 vector(const char* key, const vec2& absent) const;
     vec3 vector(const char* key, const vec3& absent) const;
     vec4 vector(const char* key, const vec4& absent) const;
-    mat4 matrix(const char* key) const;                 ///< 16 numbers, column after column
+    mat4 matrix(const char* key) const;                 ///< 16 numbers, in column-major order
     std::vector<float> numbers(const char* key) const;  ///< empty if absent
     std::vector<std::string> texts(const char* key) const;
     std::vector<int> indices(const char* key, size_t size) const;
@@ -62,13 +62,14 @@ class Object {
 
     /// Throws InputError: "file: place: fault".
     [[noreturn]] void fail(const std::string& fault) const;
-    /// The same about one of its values: "file: place.key: fault".
+    /// Like above, but about one of the object's values: "file: place.key: fault".
     [[noreturn]] void fail(const char* key, const std::string& fault) const;
 
   private:
     const Json* find(const char* key) const;
     const Json* findArray(const char* key) const;
-    void readNumbers(const char* key, std::span<float> values) const;  ///< exactly values.size() numbers
+    void readNumbers(const char* key, std::span<float> values) const;  ///< requires exactly values.size()
+                                                                       ///< numbers
 
     const std::filesystem::path* file_;
     const Json* value_;

@@ -1,4 +1,4 @@
-// glTF materials to scene::Material.
+// Converts glTF materials to scene::Material.
 //
 // Specification: glTF 2.0, section 3.9 (materials),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#materials; KHR_materials_clearcoat,
@@ -11,8 +11,8 @@
 
 namespace limpid::scene::gltf {
 
-/// Throws InputError if a value has the wrong type or an index is out of range. Factors outside their range
-/// are clamped, with a warning; an emissive factor above 1 is kept.
+/// Throws InputError if a value has the wrong type or an index is out of range. Clamps factors outside their
+/// range, with a warning; an emissive factor above 1 is kept.
 Material readMaterial(Document& document, const Object& source, TextureLibrary& textures);
 
 }  // namespace limpid::scene::gltf

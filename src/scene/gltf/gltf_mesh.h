@@ -1,4 +1,4 @@
-// glTF primitives to meshes. Primitives that share their accessors become one scene::Mesh.
+// Converts glTF primitives to meshes. Primitives that share their accessors become one scene::Mesh.
 //
 // Specification: glTF 2.0, section 3.7.2 (meshes),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#meshes
@@ -14,18 +14,19 @@
 
 namespace limpid::scene::gltf {
 
-/// Builds each distinct primitive once, into Scene::meshes. Throws InputError on what no renderer could draw
-/// (an index or accessor out of range, arrays of different lengths, a position that is not finite) and when a
-/// document expands to more than `maxVertices` or `maxTriangles`.
+/// Builds each distinct primitive once, in Scene::meshes. Throws InputError for invalid data (an index or
+/// accessor out of range, arrays of different lengths, a position that is not finite) and if a document
+/// expands to more than `maxVertices` or `maxTriangles`.
 class MeshLibrary {
   public:
     MeshLibrary(Document& document, Scene& scene) : document_(document), scene_(scene) {}
 
-    /// The mesh's index in Scene::meshes; `none` if the primitive has no triangles (points, lines, nothing).
+    /// Returns the mesh's index in Scene::meshes; `none` if the primitive has no triangles (points, lines,
+    /// nothing).
     int add(const Object& primitive, const std::string& name, const Pose& pose);
 
-    /// A copy of a mesh with its vertices moved by `transform`, without normals: for transforms that have no
-    /// inverse, which tracing needs. `node` is blamed if the scene grows too large by it.
+    /// Adds a copy of a mesh with its vertices transformed by `transform`, without normals: for transforms
+    /// that have no inverse, which tracing needs. If the scene becomes too large, the error names `node`.
     int flatten(const Object& node, int mesh, const mat4& transform);
 
     static constexpr uint64_t maxVertices = uint64_t{1} << 27;
@@ -42,7 +43,7 @@ class MeshLibrary {
 
     Document& document_;
     Scene& scene_;
-    std::map<std::vector<int64_t>, int> known_;  ///< accessors, mode and pose -> mesh
+    std::map<std::vector<int64_t>, int> known_;  ///< maps accessors, mode and pose to a mesh
     uint64_t vertices_ = 0;
     uint64_t triangles_ = 0;
 };

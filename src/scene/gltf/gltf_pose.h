@@ -1,4 +1,4 @@
-// How glTF primitives deform: their morph targets and skins, with every length and index checked.
+// Reads how glTF primitives deform: their morph targets and skins. Checks every length and index.
 //
 // Specification: glTF 2.0, sections 3.7.2.2 (morph targets) and 3.7.3 (skins),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#skins
@@ -14,15 +14,15 @@ namespace limpid::scene::gltf {
 struct Pose {
     std::vector<float> weights;                 ///< of the morph targets; missing ones are 0
     int skin = none;                            ///< index of the skin
-    const std::vector<mat4>* joints = nullptr;  ///< of that skin: rest position -> world
+    const std::vector<mat4>* joints = nullptr;  ///< matrices of that skin, from rest position to world
 };
 
-/// Matrices and joints have the same number. Throws InputError if the file has fewer matrices, or no joints.
+/// Returns equally many matrices and joints. Throws InputError if the file has fewer matrices, or no joints.
 Skin readSkin(const Document& document, const Object& source);
 
-/// The morph targets of `primitive`, and its joints and weights if `pose` has a skin. `mesh` has its
-/// attributes as the file has them. Throws InputError if a target or an attribute has another length than the
-/// mesh, a skinned primitive lacks JOINTS_0 or WEIGHTS_0, a joint is out of range, or a value is not finite.
+/// Reads the morph targets of `primitive`, and its joints and weights if `pose` has a skin. `mesh` has the
+/// attributes of the file. Throws InputError if a target or an attribute has another length than the mesh, a
+/// skinned primitive lacks JOINTS_0 or WEIGHTS_0, a joint is out of range, or a value is not finite.
 Deformation readDeformation(Document& document, const Object& primitive, const Pose& pose, const Mesh& mesh);
 
 }  // namespace limpid::scene::gltf

@@ -1,4 +1,4 @@
-// glTF textures: images and samplers to scene::Texture.
+// Converts glTF images and samplers to scene::Texture.
 //
 // Specification: glTF 2.0, section 3.8 (texture data),
 // https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#texture-data; KHR_texture_transform,
@@ -14,9 +14,9 @@
 
 namespace limpid::scene::gltf {
 
-/// Turns the textureInfo objects of materials into TextureRefs. Only what is referred to is read and decoded.
-/// An image that is missing, refused or cannot be decoded is a warning, and its textures are none.
-/// Throws InputError where the document itself is wrong.
+/// Converts the textureInfo objects of materials to TextureRefs. Reads and decodes only the images that are
+/// used. If an image is missing, rejected or cannot be decoded, warns, and its textures become none. Throws
+/// InputError if the document itself is invalid.
 class TextureLibrary {
   public:
     TextureLibrary(Document& document, Scene& scene, uint64_t maxImageMemory)
@@ -24,7 +24,8 @@ class TextureLibrary {
           pool_(scene, {document.file(), TexturePool::Formats::PngAndJpeg, maxImageMemory}),
           maxImageMemory_(maxImageMemory) {}
 
-    /// `owner.key` as a reference, none if absent or unreadable. `srgb`: the RGB texels are sRGB-encoded.
+    /// Returns `owner.key` as a reference; none if absent or unreadable. `srgb`: the RGB texels are
+    /// sRGB-encoded.
     TextureRef add(const Object& owner, const char* key, bool srgb);
 
     /// Warns about textures that have no image and that nothing uses.

@@ -1,4 +1,4 @@
-// From a scene's camera to what shaders read.
+// Converts a scene's camera to the parameters that shaders read.
 #pragma once
 
 #include "scene/model/scene.h"
@@ -6,13 +6,13 @@
 
 namespace limpid::scene {
 
-/// For an image of width x height pixels. Perspective: verticalFov holds at any aspect ratio.
+/// For an image of width x height pixels. Perspective cameras keep their verticalFov at any aspect ratio.
 CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height);
 
-/// A camera at `eye` looking at `target`; `up` need not be perpendicular.
+/// Returns a camera at `eye` looking at `target`; `up` need not be perpendicular to the view.
 Camera lookAt(const vec3& eye, const vec3& target, const vec3& up, float verticalFov);
 
-/// The same place and view, with axes of unit length at right angles.
+/// Returns the same position and orientation, with orthonormal axes.
 mat4 withoutScale(const mat4& toWorld);
 
 }  // namespace limpid::scene

@@ -1,4 +1,4 @@
-// Tree nodes in the format that GPUs walk faster (shaders/common/scene_layout.h).
+// Converts tree nodes to the format that GPUs traverse faster (shaders/common/scene_layout.h).
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace limpid::scene {
 
-/// `quantised`: BvhNodes, layout::BVH_NODE_TEXELS each.
+/// `quantised` contains BvhNodes, layout::BVH_NODE_TEXELS each.
 std::vector<uvec4> expandNodes(std::span<const uvec4> quantised);
 
 }  // namespace limpid::scene

@@ -1,4 +1,5 @@
-// Changes to a scene's lights in a file, for --lights: what the window writes and `limpid render` reads.
+// Reads and writes files with edits to a scene's lights, for --lights: the window writes them, `limpid
+// render` reads them.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +10,11 @@
 
 namespace limpid::scene {
 
-/// JSON (docs/viewer.md): the lights of `controls` that are not as `before`.
+/// Returns JSON (docs/viewer.md) with the lights of `controls` that differ from `before`.
 std::string lightFileText(std::span<const LightControl> controls, std::span<const LightControl> before);
 
-/// `before` with what the file changes. Throws InputError: not such a file, a light that the scene has not,
-/// or values that no light can have.
+/// Returns `before` with the file's edits. Throws InputError if it is not such a file, names a light that the
+/// scene does not have, or has invalid values.
 std::vector<LightControl> readLightFile(const std::filesystem::path& file, std::vector<LightControl> before);
 
 }  // namespace limpid::scene

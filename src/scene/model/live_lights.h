@@ -1,4 +1,4 @@
-// Lights of a scene that is on the device already, changed there without building the scene again.
+// Updates the lights of a scene on the device without building the scene again.
 #pragma once
 
 #include <string_view>
@@ -10,23 +10,24 @@ namespace limpid::scene {
 
 class LiveLights {
   public:
-    /// `data` is what `scene` was built into.
+    /// `data` must have been built from `scene`.
     LiveLights(const Scene& scene, const SceneData& data);
 
-    /// After applyLightControls(): packs the lights again and draws up their probabilities anew.
+    /// Packs the lights and recomputes their probabilities. Call it after applyLightControls().
     void update(const Scene& scene);
-    /// Adds all that update() changed to a frame. `frame` may hold what an animator writes for its moment,
-    /// which goes over it.
+    /// Adds all changes of update() to a frame. If `frame` has an animator's values for its time, these take
+    /// precedence.
     void addTo(SceneFrame& frame) const;
-    /// For every frame: the environment's factor and turn, and how often each kind of light is sampled.
+    /// Sets the environment's factor and rotation, and the sampling probability of each kind of light. Call
+    /// it for every frame.
     void setParams(layout::SceneParams& params) const;
-    /// The lights as packed: for SceneAnimator::setLights().
+    /// The packed lights, for SceneAnimator::setLights().
     const SceneData& packed() const { return packed_; }
 
   private:
-    SceneData packed_;             ///< instances, lights and their tables alone
-    std::vector<int> emitters_;    ///< materials
-    std::vector<vec3> emissions_;  ///< theirs
+    SceneData packed_;             ///< only instances, lights and their tables
+    std::vector<int> emitters_;    ///< indices of materials
+    std::vector<vec3> emissions_;  ///< of these materials
 };
 
 }  // namespace limpid::scene

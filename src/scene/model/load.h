@@ -1,4 +1,4 @@
-// Scene files of any format to a Scene.
+// Loads scene files of any supported format.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace limpid::scene {
 
-/// Loads .gltf, .glb or .obj, by the name's extension (upper or lower case). The result keeps all invariants
-/// of scene.h (validate.h checks them) but may lack a camera and light: see prepare.h. Throws InputError with
-/// the file's name and the fault; what is merely odd is a warning in the log, as is a texture that cannot be
-/// had: the material then has a plain colour there.
+/// Loads .gltf, .glb or .obj, chosen by the name's extension (upper or lower case). The result satisfies all
+/// invariants of scene.h (checked by validate.h) but may lack a camera and light: see prepare.h. Throws
+/// InputError with the file's name and the fault. Lesser faults are logged as warnings. So are textures that
+/// cannot be read; the material then has a plain colour.
 Scene loadScene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace limpid::scene

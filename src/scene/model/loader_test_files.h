@@ -1,4 +1,4 @@
-// For the loaders' tests: scene files made on the spot, in a temporary folder.
+// For the loaders' tests: creates scene files in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ inline std::string get(const fs::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// A fixture with an empty folder, removed afterwards.
+/// A fixture with an empty folder, which is removed afterwards.
 class FolderTest : public testing::Test {
   protected:
     FolderTest() {
@@ -44,7 +44,7 @@ class FolderTest : public testing::Test {
     fs::path folder;
 };
 
-/// The folder with the shared scenes; nothing (and a message) where a checkout has none.
+/// Returns the folder with the shared scenes; none (and a message) if the checkout has none.
 inline std::optional<fs::path> sharedScenes() {
     const fs::path scenes = fs::path(LIMPID_SOURCE_DIR) / ".." / "shared" / "scenes";
     if (fs::is_directory(scenes)) return scenes;
@@ -52,7 +52,7 @@ inline std::optional<fs::path> sharedScenes() {
     return std::nullopt;
 }
 
-/// A glTF document in the making: JSON, and one binary buffer.
+/// A glTF document under construction: JSON, and one binary buffer.
 struct GltfFile {
     json document = json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
                                     "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {}}]}],
@@ -92,7 +92,7 @@ struct GltfFile {
         document["buffers"] = json::array({buffer});
     }
 
-    /// name.gltf with name.bin beside it.
+    /// Writes name.gltf with name.bin beside it.
     fs::path save(const fs::path& folder, const std::string& name = "scene") {
         finishBuffer((name + ".bin").c_str());
         put(folder / (name + ".bin"), bytes);
@@ -120,7 +120,7 @@ template <typename T>
 inline constexpr int componentType = sizeof(T) == 1 ? (std::is_signed_v<T> ? 5120 : 5121)
                                                     : (std::is_signed_v<T> ? 5122 : 5123);
 
-/// An accessor of `values`, each element padded to a multiple of four bytes by other values than zero.
+/// Adds an accessor of `values`. Each element is padded to a multiple of four bytes with non-zero bytes.
 template <typename T>
 int addPadded(GltfFile& file, const std::vector<T>& values, const char* type, size_t components,
               bool normalized) {
@@ -137,7 +137,7 @@ int addPadded(GltfFile& file, const std::vector<T>& values, const char* type, si
                                   {"normalized", normalized}});
 }
 
-/// One triangle, counter-clockwise in the XY plane, not indexed.
+/// One triangle, counter-clockwise in the XY plane, without indices.
 inline GltfFile triangle() {
     GltfFile file;
     file.primitive()["attributes"]["POSITION"] = file.addFloats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 3);
@@ -155,7 +155,7 @@ inline GltfFile square() {
     return file;
 }
 
-/// A TGA of 24 bits, rows from bottom to top, as `pixels` are: blue, green, red.
+/// Returns a TGA of 24 bits, rows from bottom to top. `pixels` are blue, green, red.
 inline std::string tgaOf(uint8_t width, uint8_t height, const std::vector<uint8_t>& pixels) {
     std::string text(18, '\0');
     text[2] = 2;
@@ -165,7 +165,7 @@ inline std::string tgaOf(uint8_t width, uint8_t height, const std::vector<uint8_
     return text + std::string(pixels.begin(), pixels.end());
 }
 
-/// Loads a scene of which something is odd, and expects a warning that says `fault`.
+/// Loads a scene with a minor fault, and expects a warning that contains `fault`.
 inline Scene loadWarned(const fs::path& path, const std::string& fault, const LoadOptions& options = {}) {
     log::setLevel(log::Level::Info);
     testing::internal::CaptureStderr();
@@ -180,7 +180,7 @@ inline Scene loadWarned(const fs::path& path, const std::string& fault, const Lo
     return scene;
 }
 
-/// Loading fails as bad input does: exit code 3, and a message with the file's name and `fault`.
+/// Expects that loading fails as for bad input: exit code 3, and a message with the file's name and `fault`.
 inline void expectRefused(const fs::path& path, const std::string& fault) {
     try {
         loadScene(path);

@@ -1,4 +1,4 @@
-// Faults that many files have and every viewer accepts, put right so that scene.h's invariants hold.
+// Repairs common faults that every viewer accepts, so that scene.h's invariants hold.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +20,20 @@ struct Repairs {
 };
 
 /// Makes normals and tangents unit, tangents perpendicular with w = +-1, other attributes finite and colours
-/// not negative. Positions and indices must be valid already (finite, in range).
+/// not negative. Positions and indices must already be valid (finite, in range).
 Repairs repairAttributes(Mesh& mesh);
 
-/// The unnormalised sum, for each vertex, of the normals of its triangles weighted by area.
+/// Returns the sum of the normals of each vertex's triangles, weighted by area, not normalised.
 std::vector<vec3> sumFaceNormals(const Mesh& mesh);
 
-/// A unit vector perpendicular to the unit vector `n`.
+/// Returns a unit vector perpendicular to the unit vector `n`.
 vec3 anyPerpendicular(const vec3& n);
 
 bool isFinite(const vec2& v);
 bool isFinite(const vec3& v);
 bool isFinite(const vec4& v);
 
-/// v / |v| without overflow; zero if v is zero or not finite.
+/// Returns v / |v| without overflow; zero if v is zero or not finite.
 vec3 safeNormalize(const vec3& v);
 
 }  // namespace limpid::scene

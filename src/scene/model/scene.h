@@ -1,5 +1,5 @@
-// A scene on the CPU, as loaders and built-ins make it: meshes, instances, materials, textures, lights,
-// cameras. World: right-handed, +Y up, metres; cameras look along -Z (glTF). Colours: linear, Rec. 709.
+// A scene on the CPU, made by loaders or built in: meshes, instances, materials, textures, lights, cameras.
+// World: right-handed, +Y up, metres; cameras look along -Z (glTF). Colours: linear, Rec. 709.
 #pragma once
 
 #include <cstdint>
@@ -56,7 +56,8 @@ struct Texture {
     Sampler sampler;
 };
 
-/// A use of a texture: which, by which coordinates, and KHR_texture_transform as a 2x3 matrix on (u, v, 1).
+/// A reference to a texture: its index, the coordinate set, and KHR_texture_transform as a 2x3 matrix on (u,
+/// v, 1).
 struct TextureRef {
     int texture = none;
     int uvSet = 0;  ///< 0 or 1
@@ -78,19 +79,20 @@ struct Material {
     float ior = 1.5f;
     float transmission = 0.0f;
     bool thin = true;  ///< transmission without refraction (no volume); false: a closed body that refracts
-    vec3 absorption{0.0f};   ///< of a closed body's inside, per metre of the world (Beer's law)
-    float clearcoat = 0.0f;  ///< weight of a dielectric of index 1.5 over everything else, emission too
+    vec3 absorption{0.0f};   ///< inside a closed body, per metre in world space (Beer's law)
+    float clearcoat = 0.0f;  ///< weight of a dielectric layer of index 1.5 over everything else, including
+                             ///< emission
     float clearcoatRoughness = 0.0f;  ///< perceptual
     float clearcoatNormalScale = 1.0f;
-    vec3 emission{0.0f};        ///< radiance, strength included
-    bool staysEmitter = false;  ///< its triangles are among the lights even while it emits nothing
+    vec3 emission{0.0f};        ///< radiance, including its strength
+    bool staysEmitter = false;  ///< its triangles remain lights even while it emits nothing
     float normalScale = 1.0f;
     float occlusionStrength =
         1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
-    bool unlit = false;  ///< baseColor is emitted as it is, nothing is reflected
+    bool unlit = false;  ///< baseColor is emitted unchanged, nothing is reflected
     TextureRef baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture, emissionTexture,
         transmissionTexture;
     TextureRef specularTexture;       ///< alpha: factor of `specular`
@@ -98,21 +100,21 @@ struct Material {
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 
-/// Its triangles are lights.
+/// True if the material's triangles are lights.
 inline bool isEmitter(const Material& material) {
     return material.staysEmitter || material.emission != vec3(0.0f);
 }
 
-/// How an instance may differ from frame to frame. Follows from the chosen clip (scene/motion/movement.h).
+/// How an instance may change from frame to frame. Follows from the chosen clip (scene/motion/movement.h).
 enum class Movement : uint8_t { Still, Rigid, Deforming };
 
 /// A mesh placed in the world. Meshes that share geometry are one Mesh with several instances.
 struct Instance {
     int mesh = 0;
-    int material = 0;      ///< of slot 0
-    mat4 transform{1.0f};  ///< at rest; of a skinned mesh, whose vertices are in world space, the identity
+    int material = 0;      ///< for slot 0
+    mat4 transform{1.0f};  ///< at rest; the identity for a skinned mesh, whose vertices are in world space
     std::string name;
-    int node = none;  ///< of the rig: what moves it, and where its morph weights are
+    int node = none;  ///< of the rig: moves the instance and holds its morph weights
     int skin = none;  ///< of the rig
     Movement movement = Movement::Still;
 };
@@ -121,7 +123,7 @@ struct Instance {
 struct PunctualLight {
     enum class Kind { Point, Spot, Directional } kind = Kind::Point;
     vec3 position{0.0f};
-    vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit; the way the light travels
+    vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit; the direction in which the light travels
     vec3 intensity{1.0f};               ///< colour times intensity
     float range = 0.0f;                 ///< metres; 0: unlimited
     float innerCone = 0.0f;             ///< radians, half angles
@@ -130,14 +132,14 @@ struct PunctualLight {
     int node = none;  ///< of the rig
 };
 
-/// A lat-long picture around the scene: row 0 is +Y, the centre column looks along -Z... (see
+/// A latitude-longitude picture around the scene: row 0 is +Y, the centre column looks along -Z (see
 /// scene/model/environment.h).
 struct Environment {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<vec3> radiance;
     vec3 scale{1.0f};   ///< multiplies the radiance
-    float turn = 0.0f;  ///< about +Y, of a full circle: what stood in the direction u stands in u + turn
+    float turn = 0.0f;  ///< rotation about +Y as a fraction of a full circle: what was at u is at u + turn
     bool empty() const { return radiance.empty(); }
 };
 
@@ -147,7 +149,7 @@ struct Camera {
     bool orthographic = false;
     float verticalFov = 0.8f;  ///< radians, perspective
     float halfHeight = 1.0f;   ///< world units, orthographic
-    float aspect = 0.0f;       ///< width / height the author meant; 0: the image's
+    float aspect = 0.0f;       ///< the author's width / height; 0: that of the picture
     int node = none;           ///< of the rig
 };
 
@@ -158,12 +160,12 @@ struct Scene {
     std::vector<Material> materials;  ///< never empty
     std::vector<Texture> textures;
     std::vector<PunctualLight> lights;
-    std::vector<Camera> cameras;  ///< never empty once prepared (see scene/model/prepare.h)
+    std::vector<Camera> cameras;  ///< not empty after prepare() (scene/model/prepare.h)
     Environment environment;
     Rig rig;
-    int clip = none;  ///< of rig.clips: the one that plays
+    int clip = none;  ///< index into rig.clips of the clip that plays
 
-    size_t triangleCount() const;  ///< with every instance counted
+    size_t triangleCount() const;  ///< counts every instance
 };
 
 }  // namespace limpid::scene

@@ -1,4 +1,4 @@
-// The invariants of scene.h, checked.
+// Checks the invariants of scene.h.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace limpid::scene {
 
-/// The first invariant that the scene breaks, as a sentence; nothing if it keeps them all. Checked: indices
-/// and material slots in range, attribute lengths, finite positions and transforms (in object and in world
-/// space), unit normals and tangents, texture sizes, finite and not negative radiometric values. A scene
-/// without triangles, or without cameras, is accepted here.
+/// Returns the first violated invariant as a sentence; none if the scene is valid. Checks that indices and
+/// material slots are in range, attribute lengths, finite positions and transforms (in object and world
+/// space), unit normals and tangents, texture sizes, and finite radiometric values that are not negative.
+/// Accepts a scene without triangles or cameras.
 std::optional<std::string> findFault(const Scene& scene);
 
 }  // namespace limpid::scene

@@ -1,4 +1,5 @@
-// What a frame needs to know of the parts that move; made with the rest of SceneData, used by SceneAnimator.
+// Data about the moving parts of a scene, built with the rest of SceneData and used by SceneAnimator for
+// every frame.
 #pragma once
 
 #include <cstdint>
@@ -9,54 +10,54 @@
 
 namespace limpid::scene {
 
-/// A moving instance as a leaf of the tree over moving things.
+/// A moving instance, as a leaf of the tree of moving instances.
 struct MovingLeaf {
     uint32_t instance = 0;
-    uint32_t record = 0;  ///< in bvhInstances
-    uint32_t root = 0;    ///< of its tree
-    uint32_t tree = 0;    ///< in SceneData::trees
-    Aabb bounds;          ///< of that tree, in the instance's space; of deforming ones at rest
+    uint32_t record = 0;  ///< index into bvhInstances
+    uint32_t root = 0;    ///< root node of its tree
+    uint32_t tree = 0;    ///< index into SceneData::trees
+    Aabb bounds;          ///< of that tree, in the instance's space; for deforming instances at rest
 };
 
-/// An instance whose vertices move. They are the scene's first, so that a vertex' number is its place in the
-/// buffers of posed vertices.
+/// An instance whose vertices are deformed. Their vertices come first in the scene, so that a vertex's index
+/// is also its index in the buffers of posed vertices.
 struct DeformingInstance {
     uint32_t instance = 0;
-    uint32_t leaf = 0;  ///< in MotionData::leaves
+    uint32_t leaf = 0;  ///< index into MotionData::leaves
     uint32_t firstVertex = 0, vertexCount = 0;
     uint32_t morphFirstTexel = 0, targetCount = 0;
     uint32_t jointCount = 0;  ///< 0: no skin
     std::vector<std::pair<uint32_t, Aabb>>
-        jointBounds;                 ///< rest positions of the vertices that a joint moves
-    std::vector<Aabb> targetBounds;  ///< of the position deltas of each morph target
+        jointBounds;                 ///< bounds of the rest positions of the vertices that each joint moves
+    std::vector<Aabb> targetBounds;  ///< bounds of the position offsets of each morph target
 };
 
-/// Emissive triangles of a moving instance: consecutive in `lights`.
+/// The emissive triangles of a moving instance: consecutive in `lights`.
 struct MovingLights {
     uint32_t instance = 0;
     uint32_t firstLight = 0;
-    uint32_t firstDensity = 0;         ///< its table in lightDensity
-    std::vector<uint32_t> triangles;   ///< of the mesh, in the order of the lights
-    std::vector<float> probabilities;  ///< of choosing each, whatever its size now
+    uint32_t firstDensity = 0;         ///< index of its table in lightDensity
+    std::vector<uint32_t> triangles;   ///< indices in the mesh, in the order of the lights
+    std::vector<float> probabilities;  ///< of choosing each, whatever its current size
 };
 
-/// Nodes that can be refitted at once: their children are in earlier levels.
+/// Nodes that can be refitted in parallel: their children are in earlier levels.
 struct RefitLevel {
-    uint32_t first = 0, count = 0;  ///< in MotionData::refitNodes
+    uint32_t first = 0, count = 0;  ///< range in MotionData::refitNodes
 };
 
 struct NodeRange {
-    uint32_t first = 0, count = 0;  ///< in bvhNodes
+    uint32_t first = 0, count = 0;  ///< range in bvhNodes
 };
 
 struct MotionData {
     bool moving = false;
     std::vector<MovingLeaf> leaves;
-    uint32_t firstTopNode =
-        0;                  ///< a node that joins still and moving things, then the tree of the moving ones
-    uint32_t topStack = 0;  ///< entries that the moving tree may need
+    uint32_t firstTopNode = 0;  ///< a node that joins static and moving instances, followed by the tree of
+                                ///< moving ones
+    uint32_t topStack = 0;      ///< maximum number of stack entries of the moving tree
     uint32_t stillRoot = 0;
-    Aabb stillBounds;  ///< empty: nothing stays still
+    Aabb stillBounds;  ///< empty: nothing is static
 
     std::vector<DeformingInstance> deforming;
     std::vector<uvec4> restVertices;  ///< layout::REST_VERTEX_TEXELS each

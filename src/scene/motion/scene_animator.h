@@ -1,4 +1,4 @@
-// From a clip and two moments to what the device needs for a frame.
+// Computes the device data of a frame from a clip and two times.
 #pragma once
 
 #include <cstddef>
@@ -11,33 +11,34 @@
 
 namespace limpid::scene {
 
-/// One frame of a moving scene: what changes in the buffers of GpuScene. Needs nothing of the frames before
-/// it: the previous frame is in it.
+/// One frame of a moving scene: the changes to the buffers of GpuScene. Does not depend on earlier frames,
+/// since it includes the state of the previous frame.
 struct SceneFrame {
     struct Upload {
-        std::string_view buffer;  ///< as in scene_data.glsl
+        std::string_view buffer;  ///< name in scene_data.glsl
         uint64_t offset = 0;      ///< bytes
         std::vector<std::byte> bytes;
     };
     std::vector<Upload> uploads;
-    std::vector<std::pair<uint32_t, gpu::TreePlacement>> placements;  ///< of SceneData, by their numbers
+    std::vector<std::pair<uint32_t, gpu::TreePlacement>> placements;  ///< indices into SceneData's placements
     std::vector<layout::PoseParams> poses;                            ///< one per deforming instance
     std::span<const RefitLevel> refitLevels;                          ///< of the animator
     uint32_t firstRefitNode = 0;
-    std::vector<NodeRange> changedNodes;  ///< by uploads and by refitting
+    std::vector<NodeRange> changedNodes;  ///< by uploads and refitting
     layout::SceneParams params{};
 };
 
 class SceneAnimator {
   public:
-    /// `scene` has a clip chosen (scene/motion/movement.h), is what `data` was built from, and outlives this.
+    /// `scene` must have a clip chosen (scene/motion/movement.h), `data` must be built from it, and it must
+    /// outlive this object.
     SceneAnimator(const Scene& scene, const SceneData& data);
 
-    /// The scene at `time`, seconds; motion is told from `previousTime`. Costs what moves, not what the scene
-    /// has. Throws Error if a vertex would leave the range of numbers.
+    /// Returns the scene at `time`, in seconds, with motion relative to `previousTime`. The cost depends on
+    /// the moving parts, not on the size of the scene. Throws Error if a vertex position would overflow.
     SceneFrame frame(double time, double previousTime) const;
 
-    /// The lights were packed again (scene/model/live_lights.h), as many and in the same order.
+    /// Call it when the lights were packed again (scene/model/live_lights.h), with the same number and order.
     void setLights(const SceneData& data);
 
   private:
@@ -59,10 +60,10 @@ class SceneAnimator {
         records_;  ///< the last texel of every moving instance's record in `instances`, by leaf
     std::vector<uint32_t> firstTriangles_;  ///< of the trees
     std::vector<uvec4> punctual_;           ///< the scene's punctual lights as packed
-    uint64_t firstPunctual_ = 0;            ///< their first texel in `lights`
+    uint64_t firstPunctual_ = 0;            ///< first texel of these in `lights`
 };
 
-/// The camera where its node stands at `time`.
+/// Returns the camera at the position of its node at `time`.
 Camera cameraAt(const Scene& scene, const Camera& camera, double time);
 
 }  // namespace limpid::scene

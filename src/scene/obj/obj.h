@@ -1,4 +1,4 @@
-// Wavefront OBJ and MTL files to a Scene.
+// Loads Wavefront OBJ and MTL files.
 //
 // Format: B1. Object Files, and MTL material format, Alias|Wavefront Advanced Visualizer manual, appendix B.
 #pragma once
@@ -11,13 +11,13 @@
 namespace limpid::scene {
 
 /// Each group or object ("g", "o") becomes one Mesh with one Instance; its triangles may use several
-/// materials (Mesh::materialSlots). Polygons are triangulated, texture coordinates turned to v = 0 at the
-/// top. Normals are used where given; smoothing groups are not computed. Six numbers after "v" are a position
-/// and a linear colour. Lines, points, curves and surfaces are skipped. Materials: see obj_material.h.
+/// materials (Mesh::materialSlots). Triangulates polygons, and flips texture coordinates so that v = 0 is at
+/// the top. Uses normals if present; does not compute smoothing groups. Six numbers after "v" are a position
+/// and a linear colour. Skips lines, points, curves and surfaces. Materials: see obj_material.h.
 ///
-/// Throws InputError naming file, line and fault: a number that is none or not finite, an index out of range,
-/// no triangles. A warning, and a plain colour: a material file or name that is missing or refused, a texture
-/// that cannot be had.
+/// Throws InputError naming file, line and fault: an invalid or infinite number, an index out of range, no
+/// triangles. Warns, and uses a plain colour, if a material file, material name or texture is missing or
+/// rejected.
 Scene loadObj(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace limpid::scene

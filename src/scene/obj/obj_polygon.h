@@ -1,4 +1,4 @@
-// Polygons to triangles.
+// Triangulates polygons.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace limpid::scene {
 
-/// corners.size() - 2 triangles (indices into `corners`, same orientation), by cutting off ears; a convex
-/// polygon becomes a fan, and so does one that is self-intersecting or has more than 256 corners. At least 3
-/// corners.
+/// Returns corners.size() - 2 triangles (indices into `corners`, same orientation), by ear clipping. Convex
+/// polygons become fans, and so do those that intersect themselves or have more than 256 corners. Needs at
+/// least 3 corners.
 std::vector<std::array<uint32_t, 3>> triangulate(std::span<const vec3> corners);
 
 }  // namespace limpid::scene

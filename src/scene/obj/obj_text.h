@@ -1,4 +1,4 @@
-// Lines and words of OBJ and MTL files.
+// Splits OBJ and MTL files into lines and words.
 #pragma once
 
 #include <cstddef>
@@ -10,34 +10,33 @@
 
 namespace limpid::scene {
 
-/// Takes words off the front of one line.
+/// Takes words from the front of a line.
 class Words {
   public:
     explicit Words(std::string_view line) : rest_(line) {}
 
     std::string_view next();        ///< empty at the end of the line
     std::string_view peek() const;  ///< what next() would return
-    std::string_view rest() const;  ///< all that is left, without blanks around it
+    std::string_view rest() const;  ///< the remainder, trimmed
 
   private:
     std::string_view rest_;
 };
 
-/// Goes through a text line by line: comments are cut off, a backslash at a line's end continues it.
+/// Reads a text line by line: removes comments, and joins lines that end in a backslash with the next.
 class Lines {
   public:
-    /// Throws InputError if the text is UTF-16 or holds a NUL character. A byte order mark of UTF-8 is
-    /// skipped.
+    /// Throws InputError if the text is UTF-16 or contains a NUL character. Skips a UTF-8 byte order mark.
     Lines(std::filesystem::path file, std::span<const std::byte> text);
 
-    /// The next line that is not blank; nothing at the end. Valid until the next call.
+    /// Returns the next line that is not blank; none at the end. Valid until the next call.
     std::optional<std::string_view> next();
 
     /// Throws InputError: "file: line 12: fault".
     [[noreturn]] void fail(const std::string& fault) const;
-    /// A word as a finite number. Throws InputError if it is none.
+    /// Parses a finite number. Throws InputError if the word is not one.
     float number(std::string_view word) const;
-    /// The number, or nothing if the word is none. Throws InputError if it is not finite.
+    /// Parses a number; returns nothing if the word is not one. Throws InputError if it is not finite.
     std::optional<float> tryNumber(std::string_view word) const;
 
     const std::filesystem::path& file() const { return file_; }
@@ -48,7 +47,7 @@ class Lines {
 
     std::filesystem::path file_;
     std::string_view rest_;
-    std::string joined_;  ///< a line made of continued ones
+    std::string joined_;  ///< the result of joining continued lines
     size_t line_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Walker's alias method: one table look-up draws from any discrete distribution.
+// Walker's alias method: samples any discrete distribution with one table look-up.
 // M. D. Vose, "A linear algorithm for generating random numbers with a given distribution", 1991.
 #pragma once
 
@@ -10,10 +10,10 @@ namespace limpid::scene {
 
 struct AliasTable {
     std::vector<AliasEntry> entries;
-    std::vector<float> probabilities;  ///< normalised; what the table draws
+    std::vector<float> probabilities;  ///< normalised probabilities of the entries
 };
 
-/// Weights are finite and not negative. All zero (or none): a uniform table.
+/// Weights must be finite and not negative. If all are zero, or there are none, the table is uniform.
 AliasTable buildAliasTable(std::vector<double> weights);
 
 }  // namespace limpid::scene

@@ -1,5 +1,5 @@
-// Rough boundaries between dielectrics: what one facet reflects and transmits, and which share of the rest,
-// which meets several facets, is reflected in the end. The share comes from random walks
+// Rough boundaries between dielectrics: the reflection and transmission of a single facet, and the reflected
+// share of the light that is scattered by several facets. That share comes from random walks
 // (dielectric_share.inc).
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace limpid::scene {
 
-/// Of light from one direction: what the first facet sends to the right side, and what of that escapes
-/// unhindered, as shaders/material/bsdf.glsl masks it.
+/// Light from one direction after the first facet: the part sent to the correct side, and the part of that
+/// which escapes unshadowed, with the masking of shaders/material/bsdf.glsl.
 struct FirstFacet {
     float reflected = 0.0f, transmitted = 0.0f;
     float reflectedOnce = 0.0f, transmittedOnce = 0.0f;
@@ -20,14 +20,15 @@ struct FirstFacet {
     float missing() const { return 1.0f - reflectedOnce - transmittedOnce; }
 };
 
-/// The points of the disk with which firstFacet() integrates. Half of it is enough: the other side of the
-/// plane of incidence is its mirror image.
+/// Returns the points of the unit disk that firstFacet() integrates over. Half the disk is enough, since it
+/// is symmetric about the plane of incidence.
 std::vector<vec2> halfDisk(uint32_t count);
 
-/// eta: index behind the surface over the one before it.
+/// `eta`: refractive index behind the surface divided by the index in front of it.
 FirstFacet firstFacet(float cosine, float alpha, float eta, std::span<const vec2> disk);
 
-/// The nodes of the table of shares: [eta][roughness][cosine], in 255ths. The first half is for eta below 1.
+/// The nodes of the table of shares: [eta][roughness][cosine], in units of 1/255. The first half is for eta
+/// below 1.
 namespace share {
 constexpr uint32_t cosines = 18, roughnesses = 8, etas = 20;
 constexpr uint32_t count = 2 * etas * roughnesses * cosines;
@@ -37,7 +38,7 @@ float roughness(uint32_t node);
 float eta(uint32_t node);
 }  // namespace share
 
-/// The share that is reflected, interpolated.
+/// Returns the reflected share, interpolated.
 float reflectedShare(float cosine, float roughness, float eta);
 
 }  // namespace limpid::scene

@@ -1,5 +1,5 @@
-// What the tables of microfacet albedos integrate with: quasi-random visible normals (E. Heitz, "Sampling the
-// GGX distribution of visible normals", JCGT 2018). The formulas are those of shaders/microfacet.glsl.
+// Quadrature for the tables of microfacet albedos: quasi-random visible normals (E. Heitz, "Sampling the GGX
+// distribution of visible normals", JCGT 2018). The formulas are those of shaders/microfacet.glsl.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace limpid::scene {
 
-/// Point i of the Hammersley set.
+/// Returns point i of the Hammersley set.
 inline vec2 hammersley(uint32_t i, uint32_t count) {
     uint32_t reversed = 0;
     for (uint32_t bit = 0; bit < 32; ++bit) reversed |= (i >> bit & 1u) << (31 - bit);
@@ -22,8 +22,8 @@ inline vec3 directionAt(float cosine) {
     return {std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
 }
 
-/// `count` points of the unit disk, evenly spread over the angles from `firstTurn` to `lastTurn` (1: a whole
-/// turn).
+/// Returns `count` points of the unit disk, evenly distributed over the angles from `firstTurn` to `lastTurn`
+/// (1: a full turn).
 inline std::vector<vec2> diskPoints(uint32_t count, float firstTurn = 0.0f, float lastTurn = 1.0f) {
     std::vector<vec2> points(count);
     for (uint32_t i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ inline std::vector<vec2> diskPoints(uint32_t count, float firstTurn = 0.0f, floa
     return points;
 }
 
-/// The facets that are seen from wo: evenly spread points of the disk become their normals.
+/// The normals of the facets visible from wo, mapped from evenly distributed points of the disk.
 class VisibleNormals {
   public:
     VisibleNormals(const vec3& wo, float alpha)
@@ -67,18 +67,17 @@ inline float stirling(float x) {
     return (x - 0.5f) * std::log(x) + (1.0f / 12.0f - 1.0f / (360.0f * x * x)) / x;
 }
 
-/// How much of what facets transmit from a direction that is seen escapes on the other side: G2 / G1 with G2
-/// the Beta function of 1 + Lambda at both (Heitz et al. 2016, "Multiple-scattering microfacet BSDFs with the
-/// Smith model").
+/// The fraction of light transmitted by visible facets that escapes on the other side: G2 / G1, where G2 is
+/// the Beta function of 1 + Lambda at both directions (Heitz et al. 2016, "Multiple-scattering microfacet
+/// BSDFs with the Smith model").
 inline float transmittedMasking(float lambdaOut, float lambdaIn) {
     return std::exp(stirling(2.0f + lambdaOut) + stirling(2.0f + lambdaIn) -
                     stirling(2.0f + lambdaOut + lambdaIn) - 1.0810615f) /
            (1.0f + lambdaIn);
 }
 
-/// Which share of what several facets scatter follows the lobe of one facet, rather than spreads like diffuse
-/// light: nearly all on smooth surfaces, nearly none at roughness 1. Fitted to random walks
-/// (tests/reference/microfacet_walk.h).
+/// The share of multiple scattering that follows the single-facet lobe; the rest is diffuse. Nearly all on
+/// smooth surfaces, nearly none at roughness 1. Fitted to random walks (tests/reference/microfacet_walk.h).
 inline float followingShare(float roughness) {
     return 1.0f / (1.0f + std::pow(2.0f * roughness, 5.0f));
 }

@@ -17,31 +17,32 @@ namespace limpid::scene::gltf {
 
 inline constexpr const char* dracoExtension = "KHR_draco_mesh_compression";
 
-/// Whether this build has Draco. Without it the extension is as unknown as any other.
+/// True if this build includes Draco. Without it the extension is treated as unknown.
 bool canDecodeDraco();
 
-/// One attribute of the stream: all points' values one after the other.
+/// One attribute of the stream: the values of all points in sequence.
 struct DracoAttribute {
-    uint64_t componentType = 0;  ///< glTF's number of the stream's own type
+    uint64_t componentType = 0;  ///< glTF's number for the type used in the stream
     size_t components = 0;
     std::vector<std::byte> values;
 };
 
 struct DracoMesh {
-    std::vector<uint32_t> indices;           ///< three a triangle, below the number of points
-    std::vector<DracoAttribute> attributes;  ///< in the order of the numbers asked for
+    std::vector<uint32_t> indices;           ///< three per triangle, below the number of points
+    std::vector<DracoAttribute> attributes;  ///< in the order of the requested numbers
 };
 
-/// What the document says of a stream. The decoder refuses more before it allocates anything for it.
+/// Limits from the document. The decoder rejects a stream that exceeds them before it allocates memory for
+/// it.
 struct DracoLimits {
     uint64_t points = 0;     ///< exactly
     uint64_t triangles = 0;  ///< at most
     uint64_t bytes = 0;      ///< of all attributes together, at most
 };
 
-/// Decodes `stream`; `wanted` are unique numbers of attributes in it. Throws InputError, blaming `extension`,
-/// if the stream is damaged, is not a mesh of bitstream 2.2, has other counts than `limits` allow, expands
-/// beyond what a stream of its length plausibly can (gltf_draco.cpp), or lacks a wanted attribute.
+/// Decodes `stream`; `wanted` are unique attribute numbers in it. Throws InputError, naming `extension`, if
+/// the stream is damaged, is not a mesh of bitstream 2.2, has counts that violate `limits`, expands more than
+/// is plausible for its length (gltf_draco.cpp), or lacks a wanted attribute.
 DracoMesh decodeDraco(const Object& extension, std::span<const std::byte> stream,
                       std::span<const uint64_t> wanted, const DracoLimits& limits);
 

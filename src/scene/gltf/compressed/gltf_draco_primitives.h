@@ -1,4 +1,4 @@
-// Draco primitives made ordinary: after this, nothing that reads accessors needs to know of Draco.
+// Converts Draco primitives to ordinary ones, so that code that reads accessors need not know about Draco.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@ namespace limpid::scene::gltf {
 
 class Document;
 
-/// Decodes what every primitive with KHR_draco_mesh_compression refers to, appends it to `buffers`, and
-/// changes `json` (the document's own) so that the primitive reads it from there, as a list of triangles: new
-/// buffer views, new accessors, no extension. Primitives that are the same share the new accessors. Returns
-/// whether anything changed, in which case Objects made of `json` before are stale. `bytesLeft` is reduced by
-/// what was appended. Throws InputError if a stream is bad (gltf_draco.h) or does not fit its accessors, or
-/// is beyond `bytesLeft`.
+/// Decodes the stream of every primitive with KHR_draco_mesh_compression and appends the result to `buffers`.
+/// Changes `json` (the document's own) so that the primitive reads it from there as a triangle list: new
+/// buffer views, new accessors, no extension. Equal primitives share the new accessors. Returns true if
+/// anything changed; Objects made of `json` before are then invalid. `bytesLeft` is reduced by the appended
+/// bytes. Throws InputError if a stream is invalid (gltf_draco.h), does not fit its accessors, or exceeds
+/// `bytesLeft`.
 bool expandDracoPrimitives(Document& document, Json& json, std::vector<std::vector<std::byte>>& buffers,
                            uint64_t& bytesLeft);
 

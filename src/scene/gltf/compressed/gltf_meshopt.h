@@ -1,4 +1,4 @@
-// Buffer views whose bytes are stored compressed.
+// Decodes compressed buffer views.
 //
 // Specification: EXT_meshopt_compression,
 // https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_meshopt_compression
@@ -14,12 +14,12 @@ namespace limpid::scene::gltf {
 
 inline constexpr const char* meshoptExtension = "EXT_meshopt_compression";
 
-/// Whether this build has meshoptimizer. Without it the extension is as unknown as any other: a file that
-/// requires it is refused, one that brings uncompressed data too is read from those.
+/// True if this build includes meshoptimizer. Without it the extension is treated as unknown: a file that
+/// requires it is rejected; if a file includes uncompressed data too, that is read instead.
 bool canDecodeMeshopt();
 
-/// The bytes of `view`, whose extension object is `extension` and refers to `encoded`. Throws InputError if
-/// the two objects break a rule of the extension or the stream is damaged. Memory is bounded by 64 times the
+/// Returns the bytes of `view`, whose extension object `extension` refers to `encoded`. Throws InputError if
+/// the two objects break a rule of the extension or the stream is damaged. Memory is limited to 64 times the
 /// stream's length: no valid stream expands more.
 std::vector<std::byte> decodeMeshopt(const Object& view, const Object& extension,
                                      std::span<const std::byte> encoded);
