@@ -1,4 +1,4 @@
-// The camera as shaders see it. Included by C++ and GLSL.
+// The camera in the form that shaders read. Included by C++ and GLSL.
 #ifndef LIMPID_SHADERS_CAMERA_H
 #define LIMPID_SHADERS_CAMERA_H
 
@@ -10,26 +10,26 @@ namespace limpid {
 #define LIMPID_CONST const
 #endif
 
-/// A pixel at (x, y) in [-1, 1]^2 (y up) sees along forward + x right + y up (perspective; right and up are
-/// scaled by the tangents of the half angles), or along forward from origin + x right + y up (orthographic;
-/// half extents).
+/// For a pixel at (x, y) in [-1, 1]^2 (y up), the view direction of a perspective camera is forward + x right
+/// + y up (right and up are scaled by the tangents of the half angles). An orthographic camera looks along
+/// forward from origin + x right + y up (half extents).
 struct CameraParams {
     vec3 origin;
     uint orthographic;
     vec3 forward;  // unit
-    float spread;  // growth of a pixel's width with distance; of an orthographic camera: the width itself
+    float spread;  // growth of a pixel's width with distance; for an orthographic camera: the width itself
     vec3 right;
     vec3 up;
 };
 
-// Where in its pixel a primary ray goes. The first sample since the last reset always goes through the
+// Where a primary ray goes through its pixel. The first sample since the last reset always goes through the
 // centre.
-LIMPID_CONST uint JITTER_PIXEL = 0u;  // anywhere, each pixel by its own random numbers
+LIMPID_CONST uint JITTER_PIXEL = 0u;  // a random point for each pixel
 LIMPID_CONST uint JITTER_FRAME =
-    1u;  // one point for all pixels, another one for each sample: Halton, bases 2 and 3
+    1u;  // the same point for all pixels, a new one for each sample: Halton, bases 2 and 3
 LIMPID_CONST uint JITTER_OFF = 2u;  // the centre
 
-/// A launch of primary rays: from where, through which points of the pixels, by which random numbers.
+/// A launch of primary rays: the camera, the jitter and the random numbers.
 struct ViewParams {
     CameraParams camera;
     CameraParams previousCamera;

@@ -1,5 +1,5 @@
-// How the scene lies in storage texel buffers: included by C++ (scene/scene_data.*) and by GLSL
-// (scene_data.glsl). A texel is 16 bytes unless said otherwise; floats are stored by their bits.
+// The layout of the scene in storage texel buffers. Included by C++ (scene/scene_data.*) and GLSL
+// (scene_data.glsl). A texel is 16 bytes unless stated otherwise; floats are stored as their bits.
 #ifndef LIMPID_SHADERS_SCENE_LAYOUT_H
 #define LIMPID_SHADERS_SCENE_LAYOUT_H
 
@@ -16,7 +16,7 @@ LIMPID_CONST uint NONE = 0xFFFFFFFFu;
 // bvhNodes, quantised (on CPUs): scene/device/bvh.h's BvhNode.
 LIMPID_CONST uint BVH_NODE_TEXELS = 4u;
 // bvhNodes, expanded (on GPUs): x, y, z of the lower corners of the four children, then of the upper;
-// children. A child that does not exist has its lower corner above its upper.
+// children. A missing child has its lower corner above its upper.
 LIMPID_CONST uint EXPANDED_NODE_TEXELS = 7u;
 
 // bvhTriangles, in leaf order: v0 | primitive; v1 | instance or NONE (then the one being traversed); v2 |
@@ -24,8 +24,8 @@ LIMPID_CONST uint EXPANDED_NODE_TEXELS = 7u;
 LIMPID_CONST uint BVH_TRIANGLE_TEXELS = 3u;
 LIMPID_CONST uint BVH_TRIANGLE_ALPHA = 0x80000000u;  // in the first texel's w: candidates need the alpha test
 
-// bvhInstances, leaves of the top tree: three rows of world-to-object; root node | instance | the tree's
-// first triangle in bvhTriangles | 0.
+// bvhInstances, leaves of the top-level tree: three rows of world-to-object; root node | instance | the
+// tree's first triangle in bvhTriangles | 0.
 LIMPID_CONST uint BVH_INSTANCE_TEXELS = 4u;
 
 // triangles (shading): vertex 0, 1, 2 | material slot and flags.
@@ -37,13 +37,13 @@ LIMPID_CONST uint TRIANGLE_SMOOTH = 0x80000000u;  // has vertex normals
 LIMPID_CONST uint VERTEX_TEXELS = 2u;
 
 // instances: three rows of object-to-world; material | first entry in lightDensity or NONE | first shading
-// triangle | flags. lightDensity: one float for each primitive of an emissive instance, the probability that
-// next-event estimation chooses it over its area.
+// triangle | flags. lightDensity: one float for each primitive of an emissive instance: the probability that
+// next-event estimation chooses it, divided by its area.
 LIMPID_CONST uint INSTANCE_TEXELS = 4u;
-LIMPID_CONST uint INSTANCE_MIRRORED = 1u;   // negative determinant: front faces turn clockwise
-LIMPID_CONST uint INSTANCE_DEFORMING = 2u;  // its vertices have previous positions of their own
+LIMPID_CONST uint INSTANCE_MIRRORED = 1u;   // negative determinant: front faces are clockwise
+LIMPID_CONST uint INSTANCE_DEFORMING = 2u;  // its vertices have their own previous positions
 
-// previousGeometry, of scenes that move: for each instance three rows of object-to-world in the previous
+// previousGeometry, only in moving scenes: for each instance three rows of object-to-world in the previous
 // frame; then for each vertex of deforming instances its position in that instance's space | normal
 // (octahedral).
 LIMPID_CONST uint PREVIOUS_INSTANCE_TEXELS = 3u;
@@ -94,7 +94,7 @@ LIMPID_CONST uint LIGHT_SPOT = 3u;
 LIMPID_CONST uint LIGHT_DIRECTIONAL = 4u;
 LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
-    8u;  // v1 and v2 are swapped against the mesh, so that the front is the front
+    8u;  // v1 and v2 are swapped relative to the mesh, so that the front face stays the front
 
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
@@ -102,56 +102,57 @@ LIMPID_CONST uint LIGHT_MIRRORED =
 
 // ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + F90
 // B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted
-// averages of A and B, the share of multiple scattering that is spread like diffuse light.
+// averages of A and B, and the share of multiple scattering with a diffuse distribution.
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
 // dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels
 // each: gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and
 // transmission | these two albedos again, their cosine-weighted averages over the row. The first
-// DIELECTRIC_ETA_NODES are for eta (index behind over index before) below 1, the others for above: total
-// reflection makes two functions of it. Node i has log(1 + (|log eta| - e) / ETA_SCALE) in proportion to i, e
-// = log(1 + SMOOTH_IOR_DIFFERENCE): dense near 1; the column of a cosine c is c (1 + k) / (c + k) (SIZE - 1),
-// k the cosine at which total reflection sets in on the denser side.
+// DIELECTRIC_ETA_NODES are for eta (index behind over index in front) below 1, the others for above, since
+// total reflection makes these two different functions. Node i has log(1 + (|log eta| - e) / ETA_SCALE)
+// proportional to i, with e = log(1 + SMOOTH_IOR_DIFFERENCE): dense near 1. The column of a cosine c is c (1
+// + k) / (c + k) (SIZE - 1), where k is the cosine at which total reflection begins on the denser side.
 LIMPID_CONST uint DIELECTRIC_TABLE_SIZE = 20u;
 LIMPID_CONST uint DIELECTRIC_ETA_NODES = 32u;
 LIMPID_CONST float DIELECTRIC_ETA_MAX = 3.0;
 LIMPID_CONST float DIELECTRIC_ETA_SCALE = 0.005;
 
-// Roughness below this is a perfect mirror: its lobe is narrower than float32 can sample and weigh.
+// Roughness below this is a perfect mirror: its lobe is too narrow for float32 to sample and weigh.
 LIMPID_CONST float SMOOTH_ROUGHNESS = 0.03;
-// An index of refraction closer to 1 than this lets light straight through, however rough the surface is.
+// A refractive index closer to 1 than this lets light pass straight through, however rough the surface is.
 LIMPID_CONST float SMOOTH_IOR_DIFFERENCE = 1e-3;
 // Reflectance of a clear coat at normal incidence: index 1.5 (KHR_materials_clearcoat).
 LIMPID_CONST float CLEARCOAT_F0 = 0.04;
 
-/// What shaders must know of the scene besides its buffers.
+/// Scene parameters for shaders, besides the buffers.
 struct SceneParams {
     vec3 sceneCenter;
     float sceneRadius;
-    uint triangleLightCount;  // of `lights` and `lightAlias`; punctual lights follow
+    uint triangleLightCount;  // number in `lights` and `lightAlias`; punctual lights follow
     uint punctualCount;
     float environmentProbability;    // of choosing the environment in next-event estimation
-    float triangleLightProbability;  // of triangles rather than punctual lights, where one of those reaches
+    float triangleLightProbability;  // of triangles rather than punctual lights, at points that a punctual
+                                     // light reaches
     uint environmentWidth;
     uint environmentHeight;
     vec3 environmentScale;    // multiplies its radiance
-    float environmentTurn;    // about +Y, of a full circle: added to the direction's u
-    uint rootNode;            // of the tree that rays enter
+    float environmentTurn;    // rotation about +Y as a fraction of a full circle: added to the direction's u
+    uint rootNode;            // of the tree in which rays start
     uint previousVertexBase;  // texel of previousGeometry where vertices begin
 };
 
-/// How the pose pass moves the vertices of one deforming instance. Texels count from the start of their
-/// buffer; NONE: no skin, or no weights.
+/// How the pose pass deforms the vertices of one instance. Texel indices count from the start of the buffer;
+/// NONE: no skin, or no weights.
 struct PoseParams {
     uint firstVertex;
     uint vertexCount;
-    uint morphFirst;  // of morphDeltas
+    uint morphFirst;  // texel in morphDeltas
     uint targetCount;
-    uint matricesNow;  // of poseMatrices
+    uint matricesNow;  // texel in poseMatrices
     uint matricesBefore;
     uint weightsNow;
     uint weightsBefore;
-    uint previousBase;   // of previousGeometry: where vertices begin
-    uint hasVertexData;  // whether there are normals and tangents to write
+    uint previousBase;   // texel in previousGeometry where vertices begin
+    uint hasVertexData;  // 1 if there are normals and tangents to write
 };
 
 #undef LIMPID_CONST

@@ -1,4 +1,4 @@
-// What rays of the `hardware` tracer run, whichever pass starts them.
+// The shaders that rays of the `hardware` tracer run, shared by all passes.
 #pragma once
 
 #include "gpu/graph/frame_graph.h"
