@@ -1,4 +1,4 @@
-// For tests of the command line: runs the program in a folder of its own.
+// For tests of the command line: runs the program in a temporary folder of its own.
 #pragma once
 
 #include <gtest/gtest.h>

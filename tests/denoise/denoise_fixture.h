@@ -1,4 +1,4 @@
-// Running denoisers on frames from host memory.
+// Runs denoisers on frames from host memory.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ inline std::vector<dvec4> asDouble(const std::vector<float>& texels) {
 
 class DenoiseTest : public GpuTest {
   protected:
-    /// The images that a pass of the last frame wrote, by the end of their names.
+    /// Returns the image that a pass of the last frame wrote, found by the end of its name.
     gpu::ImageHandle written(const std::string& pass, const std::string& nameEnd) const {
         for (const gpu::ImageHandle image : graph_.imagesWrittenBy(pass)) {
             if (graph_.name(image).ends_with(nameEnd)) return image;
@@ -38,7 +38,8 @@ class DenoiseTest : public GpuTest {
         return download(written(pass, nameEnd));
     }
 
-    /// One frame of a method; the next call is the next frame. Returns the beauty, four floats a pixel.
+    /// Runs one frame of a method; the next call is the next frame. Returns the beauty, four floats per
+    /// pixel.
     std::vector<float> denoise(const denoise::Denoiser& method, const HostFrame& frame,
                                const DenoiserSettings& settings = {}) {
         graph_.beginFrame();

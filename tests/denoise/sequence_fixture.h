@@ -1,4 +1,4 @@
-// Moving built-in scenes on the device, frame by frame, and converged pictures of them.
+// Renders moving built-in scenes on the device frame by frame, and converged references of them.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace limpid::test {
 
 class SequenceTest : public RenderTest {
   protected:
-    /// Prepares the scene, with its first clip if it has one; `path` is a built-in camera path of
-    /// `pathSeconds`, or empty.
+    /// Prepares the scene and chooses its first clip, if it has one. `path` is a built-in camera path that
+    /// lasts `pathSeconds`, or empty.
     void load(scene::Scene scene, const SequenceTiming& timing = {}, const std::string& path = {},
               double pathSeconds = 2.0) {
         scene_ = std::move(scene);
@@ -29,7 +29,7 @@ class SequenceTest : public RenderTest {
         sequence_.emplace(scene_, data_, camera, cameraPath, timing);
     }
 
-    /// Of the frame, by the path tracer alone, with noise of its own.
+    /// Renders a reference of the frame with the path tracer alone, with independent noise.
     image::Image reference(uint64_t frame, RenderSettings settings, uint64_t samples) {
         settings.pipeline = {};
         settings.seed = 1000;

@@ -1,12 +1,12 @@
-// The two ways that a picture with radiance takes into the program.
+// The two ways in which the program reads a picture with radiance.
 #pragma once
 
 #include <filesystem>
 
 namespace limpid::fuzz {
 
-/// Reads it as an environment map, packs that for the device, and reads it as a picture to compare. False if
-/// either way refuses it.
+/// Reads the picture as an environment map and packs that for the device; then reads it as a picture to
+/// compare. Returns false if either is refused.
 bool readsAsRadiance(const std::filesystem::path& path);
 
 }  // namespace limpid::fuzz

@@ -1,4 +1,4 @@
-// What the targets share: a folder in memory for the files that readers want, and the way of a scene to the
+// Shared by the fuzz targets: a folder in memory for input files, and the steps that bring a scene to the
 // device.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace limpid::fuzz {
 
-/// A folder of this process, in memory where the system has such a place; removed when the process ends.
+/// A folder of this process, in memory if the system supports it; removed when the process ends.
 class Scratch {
   public:
     Scratch();
@@ -20,7 +20,7 @@ class Scratch {
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;
 
-    /// Writes a file of the folder and returns its path. Throws Error, not InputError, if it cannot.
+    /// Writes a file into the folder and returns its path. Throws Error, not InputError, if it cannot.
     std::filesystem::path write(std::string_view name, Bytes content) const;
     void remove(std::string_view name) const;
 
@@ -28,17 +28,17 @@ class Scratch {
     std::filesystem::path folder_;
 };
 
-/// The process's one folder; it has the picture "a.png" of 2x2 pixels.
+/// Returns the process's only folder; it contains the picture "a.png" of 2x2 pixels.
 const Scratch& scratch();
 
-/// Loads a scene file, prepares it and packs it for the device as `limpid render` does, and plays its clips.
-/// False if it was refused.
+/// Loads a scene file, prepares and packs it for the device like `limpid render`, and plays its clips.
+/// Returns false if it was refused.
 bool reachesDevice(const std::filesystem::path& sceneFile);
 
 /// The steps of buildSceneData() that depend on the scene.
 scene::SceneData pack(const scene::Scene& scene);
 
-/// Reads what `read` reads; false if it threw InputError.
+/// Calls `read`; returns false if it threw InputError.
 template <typename Read>
 bool accepts(const Read& read) {
     try {
@@ -51,7 +51,7 @@ bool accepts(const Read& read) {
 
 struct Parts {
     Bytes first, second;
-    bool split = false;  ///< there is a zero byte, which belongs to neither
+    bool split = false;  ///< there is a zero byte, which belongs to neither part
 };
 Parts splitAtZero(Bytes input);
 

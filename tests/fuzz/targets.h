@@ -1,5 +1,6 @@
-// What is fuzzed: a reader per function, through the entry that the program uses, and the work that follows
-// the reader up to the device. Called by libFuzzer (fuzz_main.cpp) and, with the corpus, by corpus_test.cpp.
+// The fuzz targets: one function per reader. Each calls the reader through the program's own entry point, and
+// continues with the steps up to the device. Called by libFuzzer (fuzz_main.cpp) and, with the corpus, by
+// corpus_test.cpp.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +10,14 @@ namespace limpid::fuzz {
 
 using Bytes = std::span<const std::byte>;
 
-/// Each returns whether the input was read (true) or refused with InputError (false). Whatever else happens
-/// is a finding: another exception, a sanitizer's report, too much memory or time.
+/// Each returns true if the input was read and false if it was refused with InputError. Anything else is a
+/// finding: another exception, a sanitizer's report, too much memory or time.
 ///
-/// A GLB as it is; else the JSON text, and after the first zero byte, if there is one, what becomes both the
-/// GLB's binary chunk and the file "scene.bin" beside it. "a.png" is there for images.
+/// The input is a GLB, or JSON text. What follows the first zero byte of a text, if any, becomes both the
+/// GLB's binary chunk and the file "scene.bin". "a.png" exists for images.
 bool gltf(Bytes input);
-/// The OBJ text, and after the first zero byte, if there is one, the text of "scene.mtl". "a.png" is there
-/// for maps.
+/// The input is OBJ text. What follows the first zero byte, if any, becomes "scene.mtl". "a.png" exists for
+/// maps.
 bool obj(Bytes input);
 /// Environment maps and pictures.
 bool hdr(Bytes input);

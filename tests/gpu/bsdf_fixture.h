@@ -1,4 +1,4 @@
-// The scattering function on the device, with materials by parameters.
+// Evaluates the BSDF on the device, with materials given by parameters.
 #pragma once
 
 #include "bsdf_evaluate.comp.h"
@@ -44,7 +44,7 @@ struct EvaluatedDirection {
     float pdf;
 };
 
-/// In the xz plane turned by some azimuth, so that no symmetry hides a wrong sign.
+/// Returns a direction in the xz plane, rotated by some azimuth so that no symmetry hides a wrong sign.
 inline vec3 viewerAt(float cosine) {
     const float sine = std::sqrt(1.0f - cosine * cosine);
     return {sine * std::cos(0.7f), sine * std::sin(0.7f), cosine};
@@ -68,7 +68,7 @@ class BsdfTest : public GpuTest {
         scene.materials.emplace_back();
         scene.materials[0].metallic = 0.0f;
         scene.materials[0].transmission = 0.5f;
-        scene.materials[0].thin = false;  // so that tests may ask for panes and for rough bodies
+        scene.materials[0].thin = false;  // so that tests can use both panes and rough bodies
         scene.meshes.push_back(
             scene::MeshBuilder("triangle").triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).take());
         scene.instances.emplace_back();
@@ -98,7 +98,7 @@ class BsdfTest : public GpuTest {
         return run<EvaluatedDirection>(job, directions.size());
     }
 
-    /// f: the first channel of f cos.
+    /// f is the first channel of f cos.
     SphereQuadrature integrate(const BsdfParams& params) {
         return SphereQuadrature([&](const std::vector<vec3>& directions) {
             std::vector<SphereValue> values;
@@ -112,7 +112,7 @@ class BsdfTest : public GpuTest {
     const scene::SceneData& data() const { return data_; }
 
   private:
-    /// Without a coat as scenes without any run it: the shader is another one.
+    /// Without a coat, uses a scene without coats: that runs a different shader variant.
     const scene::GpuScene* sceneFor(const BsdfParams& params) const {
         return params.clearcoat > 0.0f ? coated_.get() : plain_.get();
     }

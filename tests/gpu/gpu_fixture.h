@@ -1,5 +1,5 @@
-// What tests that run shaders share: a device with validation, and running one compute shader over buffers.
-// LIMPID_TEST_DEVICE selects the device as --device does; default: cpu (lavapipe).
+// Shared by tests that run shaders: a device with validation, and a function that runs one compute shader
+// over buffers. LIMPID_TEST_DEVICE selects the device like --device; default: cpu (lavapipe).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,12 +21,12 @@ namespace limpid::test {
 /// A compute job: `count` threads along x.
 struct Job {
     const gpu::ShaderCode& shader;
-    const scene::GpuScene* scene = nullptr;  ///< binds its buffers and constants
+    const scene::GpuScene* scene = nullptr;  ///< its buffers and constants are bound
     std::vector<gpu::Binding> buffers;       ///< besides the scene's and the results
     std::vector<gpu::ConstantValue> constants;
     std::span<const std::byte> params;
     uint32_t count = 0;
-    const gpu::RayShaders* rays = nullptr;  ///< `shader` generates rays
+    const gpu::RayShaders* rays = nullptr;  ///< set if `shader` is a ray-generation shader
 };
 
 inline std::string wantedDevice() {
@@ -34,9 +34,9 @@ inline std::string wantedDevice() {
     return variable ? variable : "cpu";
 }
 
-/// The device of all tests of a program, with validation where its layer is installed. Tests share it so that
-/// each shader is compiled once, and because NVIDIA's driver can be unloaded and loaded again only so often.
-/// Null if this machine has no Vulkan device.
+/// The device of all tests of a program, with validation if its layer is installed. Tests share it so that
+/// each shader is compiled once, and because NVIDIA's driver can only be unloaded and reloaded a limited
+/// number of times. Null if this machine has no Vulkan device.
 class TestDevice : public testing::Environment {
   public:
     static gpu::Device* get() {
@@ -85,7 +85,7 @@ class GpuTest : public testing::Test {
         return device().createStorageBuffer(name, gpu::bytesOf(values));
     }
 
-    /// Runs the job and returns what it wrote to its buffer `results`, `resultCount` of them.
+    /// Runs the job and returns the content of its buffer `results`, which has `resultCount` elements.
     template <typename Result>
     std::vector<Result> run(const Job& job, size_t resultCount) {
         const gpu::Buffer results = device().createStorageBuffer("results", resultCount * sizeof(Result));

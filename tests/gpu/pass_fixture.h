@@ -1,4 +1,4 @@
-// Passes on their own: a scene, a graph, images as pixels.
+// For tests of single passes: a scene, a graph, and images as pixels.
 #pragma once
 
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace limpid::test {
 
-/// A scene on the device, and the graph of its frames.
+/// A scene on the device, and the graph for its frames.
 struct Stage {
     scene::SceneData data;
     scene::GpuScene scene;
@@ -20,7 +20,7 @@ struct Stage {
         : data(scene::buildSceneData(source)), scene(device, data, options) {}
 };
 
-/// Through the pixels' centres.
+/// Rays go through the pixels' centres.
 inline CameraLaunch centredLaunch(const scene::Scene& scene, gpu::Extent extent) {
     CameraLaunch launch;
     launch.extent = extent;
@@ -34,7 +34,7 @@ inline PathtraceLaunch pathLaunch(const CameraLaunch& launch) {
     return {launch, 1};
 }
 
-/// Every test is run with both tracers, and both ways of the `compute` tracer.
+/// Every test runs with both tracers, and with both traversals of the `compute` tracer.
 class PassTest : public TraceTest {
   protected:
     std::vector<vec4> pixels(Stage& stage, gpu::ImageHandle image) {
@@ -44,7 +44,7 @@ class PassTest : public TraceTest {
         return result;
     }
 
-    /// A frame of the G-buffer alone.
+    /// Renders a frame of the G-buffer alone.
     GBufferImages look(Stage& stage, const CameraLaunch& launch, const GBufferSettings& settings = {}) {
         stage.graph.beginFrame();
         const GBufferImages images = gbuffer(stage.graph, stage.scene, settings, launch);

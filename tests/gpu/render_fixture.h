@@ -1,4 +1,4 @@
-// Rendering small pictures through ProgressiveStill, and scenes whose brightness is known.
+// Renders small pictures with ProgressiveStill, and provides scenes of known brightness.
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ inline void addMesh(scene::Scene& scene, scene::Mesh mesh, const scene::Material
     scene.instances.push_back(std::move(instance));
 }
 
-/// A square in the plane y = 0 of side 20, front upwards.
+/// A square of side 20 in the plane y = 0, front upwards.
 inline scene::Scene floorScene(const vec3& albedo) {
     scene::Scene scene;
     scene::MeshBuilder builder("floor");
@@ -48,14 +48,14 @@ inline scene::Scene floorScene(const vec3& albedo) {
     return scene;
 }
 
-/// Where the ray through a pixel's centre meets the plane y = 0.
+/// Returns where the ray through a pixel's centre hits the plane y = 0.
 inline dvec3 floorPoint(const CameraParams& camera, gpu::Extent extent, uint32_t x, uint32_t y) {
     const double px = 2.0 * (x + 0.5) / extent.width - 1.0, py = 1.0 - 2.0 * (y + 0.5) / extent.height;
     const dvec3 direction = dvec3(camera.forward) + px * dvec3(camera.right) + py * dvec3(camera.up);
     return dvec3(camera.origin) - direction * (double{camera.origin.y} / direction.y);
 }
 
-/// Renders one scene any number of times: the pipelines are compiled once.
+/// Renders one scene repeatedly: the pipelines are compiled once.
 class Renderer {
   public:
     Renderer(gpu::Device& device, const scene::Scene& scene, scene::Tracer tracer = scene::Tracer::Compute)
@@ -92,7 +92,7 @@ class RenderTest : public GpuTest {
         return scene::cameraParams(scene.cameras.at(0), settings.extent.width, settings.extent.height);
     }
 
-    /// Rays through the pixels' centres: every pixel has one point.
+    /// Settings with rays through the pixels' centres: every sample of a pixel sees the same point.
     static RenderSettings centred(uint32_t width, uint32_t height, int maxDepth) {
         RenderSettings settings;
         settings.extent = {width, height};

@@ -1,4 +1,4 @@
-// Tracing rays on the device, and scenes for it.
+// Traces rays on the device, and provides scenes for that.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace limpid::test {
 
 struct TestHit {
-    float t;  ///< negative: nothing
+    float t;  ///< negative: no hit
     vec2 barycentrics;
     uint32_t instance, primitive, any;
 };
@@ -30,7 +30,7 @@ inline vec3 randomPoint(std::mt19937& random, const vec3& lower, const vec3& upp
     return lower + u * (upper - lower);
 }
 
-/// A scene of one opaque material.
+/// A scene with one opaque material.
 inline scene::Scene plainScene() {
     scene::Scene scene;
     scene.materials.emplace_back();
@@ -47,7 +47,7 @@ inline void addInstance(scene::Scene& scene, int mesh, const mat4& transform = m
     scene.instances.push_back(std::move(instance));
 }
 
-/// Triangles of mixed sizes, slivers among them, in a cube of the given half size.
+/// Triangles of mixed sizes, including slivers, in a cube of the given half size.
 inline scene::Mesh triangleSoup(uint32_t count, float size, uint32_t seed) {
     scene::Mesh mesh;
     std::mt19937 random(seed);
@@ -65,7 +65,7 @@ inline scene::Mesh triangleSoup(uint32_t count, float size, uint32_t seed) {
     return mesh;
 }
 
-/// Every test of traversal is run with both tracers, and both ways of the `compute` tracer.
+/// Every traversal test runs with both tracers, and with both traversals of the `compute` tracer.
 class TraceTest : public GpuTest, public testing::WithParamInterface<scene::TraceOptions> {
   protected:
     void SetUp() override {
@@ -83,7 +83,7 @@ class TraceTest : public GpuTest, public testing::WithParamInterface<scene::Trac
         return traceThrough(gpuScene, rays, seed);
     }
 
-    /// As the scene stands on the device.
+    /// Uses the current state of the scene on the device.
     std::vector<TestHit> traceThrough(const scene::GpuScene& scene, const std::vector<TestRay>& rays,
                                       uint32_t seed = 1) {
         const auto count = static_cast<uint32_t>(rays.size());

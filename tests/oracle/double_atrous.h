@@ -1,6 +1,6 @@
-// The edge-avoiding a-trous filter in double precision, written from the formulas of docs/denoising.md and
-// from nothing else: the oracle of the denoiser `atrous`. Each step takes its input as an argument, so that
-// it can be given what a device stored (halves, packed normals) and be compared alone.
+// The edge-avoiding a-trous filter in double precision, written only from the formulas of docs/denoising.md:
+// the oracle of the denoiser `atrous`. Each step takes its input as an argument, so that it can be given
+// values that a device stored (halves, packed normals) and be compared on its own.
 #pragma once
 
 #include <vector>
@@ -16,43 +16,44 @@ struct DoubleAtrousParams {
     double sampleTarget = 32.0;  ///< 0: no limit
     bool plane = true;
     bool demodulate = true;
-    double colorFactor = 0.0;  ///< 0: differences of light do not count
+    double colorFactor = 0.0;  ///< 0: differences of light are ignored
 };
 
 struct AtrousGeometry {
     std::vector<dvec3> normal;
-    /// d: along the camera's `forward`; with `plane` off the distance from the eye; 0 where nothing is seen.
+    /// d: along the camera's `forward`; with `plane` off the distance from the eye; 0 where the ray misses.
     std::vector<double> distance;
 };
 
 struct Demodulated {
-    std::vector<dvec4> light;  ///< L, and N, the count of the mean
+    std::vector<dvec4> light;  ///< L, and N, the sample count of the mean
     AtrousGeometry geometry;
 };
 
-/// C, and 1: what is filtered with `atrous.temporal=off`.
+/// Returns C, and 1: the filter's input with `atrous.temporal=off`.
 std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
 
-/// Nothing is rounded. `mean`: of the history, with its count, or scatteredLight().
+/// Rounds nothing. `mean`: the history's mean with its count, or scatteredLight().
 Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
                        const DoubleAtrousParams& params);
 
-/// Level `i` of the filter. Of the frame only the size and the camera are read.
+/// Computes level `i` of the filter. Uses only the size and the camera of the frame.
 std::vector<dvec4> level(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
                          const AtrousGeometry& geometry, uint32_t i, const DoubleAtrousParams& params);
 
-/// The result; alpha 1.
+/// Returns the result; alpha 1.
 std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
                             const DoubleAtrousParams& params);
 
-/// All of it.
+/// Runs all steps.
 std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
                                 const DoubleAtrousParams& params);
 
-/// A unit vector from two snorm16, x in the low half: decodeOctahedral() of src/shaders/common/sampling.glsl.
+/// Decodes a unit vector from two snorm16, x in the low half, like decodeOctahedral() of
+/// src/shaders/common/sampling.glsl.
 dvec3 decodeOctahedral(uint32_t packed);
 
-/// From two words a pixel: the normal, and the bits of d as a float.
+/// Decodes two words per pixel: the normal, and the bits of d as a float.
 AtrousGeometry decodeGeometry(const std::vector<uint32_t>& words);
 
 }  // namespace limpid::test

@@ -1,4 +1,4 @@
-// What the tests of the denoisers' oracles share.
+// Shared by the tests of the denoisers' oracles.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline bool isFloor(const denoise::HostFrame& frame, size_t p) {
     return frame.ids[2 * p] == SyntheticScene::Floor;
 }
 
-/// Whether all of the (2 r + 1)^2 pixels around p are in the picture and `accept` takes them.
+/// True if all of the (2 r + 1)^2 pixels around p are in the picture and `accept` returns true for them.
 template <typename Accept>
 bool allAround(size_t p, int r, const Accept& accept) {
     const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
@@ -32,7 +32,7 @@ bool allAround(size_t p, int r, const Accept& accept) {
     return true;
 }
 
-/// A plane that fills the picture and faces the viewer: distance 2 everywhere, grey, and nothing moves.
+/// A plane that fills the picture and faces the viewer: distance 2 everywhere, grey, without motion.
 inline denoise::HostFrame frontalPlane(uint32_t columns, uint32_t rows) {
     denoise::HostFrame frame;
     frame.width = columns;

@@ -1,4 +1,4 @@
-// What a frame gives, in double precision: the table at the head of docs/denoising.md and nothing else. The
+// A frame's inputs in double precision, as defined by the table at the start of docs/denoising.md. The
 // denoisers' oracles read frames through it.
 #pragma once
 
@@ -15,7 +15,7 @@ using glm::dvec4;
 
 class DoubleFrame {
   public:
-    /// The frame must outlive it.
+    /// The frame must outlive this object.
     explicit DoubleFrame(const denoise::HostFrame& frame) : frame_(frame) {}
     explicit DoubleFrame(denoise::HostFrame&&) = delete;
 
@@ -24,30 +24,30 @@ class DoubleFrame {
     dvec3 scattered(size_t p) const { return diffuse(p) + specular(p); }  ///< C
     dvec3 emission(size_t p) const;
     dvec3 albedo(size_t p) const;
-    dvec3 albedoSpecular(size_t p) const;  ///< 0 where the frame has none
+    dvec3 albedoSpecular(size_t p) const;  ///< 0 if the frame has none
     bool hit(size_t p) const { return frame_.depth[4 * p + 1] > 0.0f; }
-    double distance(size_t p) const;                        ///< z; 0 where nothing is seen
-    dvec3 normal(size_t p) const;                           ///< n; 0 where nothing is seen
+    double distance(size_t p) const;                        ///< z; 0 where the ray misses
+    dvec3 normal(size_t p) const;                           ///< n; 0 where the ray misses
     dvec3 previousNormal(size_t p) const;                   ///< n'
-    std::optional<dvec3> motion(size_t p) const;            ///< m; nothing where it is invalid
-    std::optional<dvec3> reflectionMotion(size_t p) const;  ///< r, likewise
-    double id(size_t p) const;                              ///< instance number + 1; 0 where nothing is seen
+    std::optional<dvec3> motion(size_t p) const;            ///< m; none if it is invalid
+    std::optional<dvec3> reflectionMotion(size_t p) const;  ///< r; none if it is invalid
+    double id(size_t p) const;                              ///< instance number + 1; 0 where the ray misses
 
-    /// (x, y) of the pixel's centre in [-1, 1]^2, y up.
+    /// Returns (x, y) of the pixel's centre in [-1, 1]^2, y up.
     dvec2 screen(size_t p) const;
-    /// v = F + x R + y U.
+    /// Returns v = F + x R + y U.
     dvec3 ray(size_t p) const;
 
   private:
     const denoise::HostFrame& frame_;
 };
 
-/// What light is divided by before it is resampled or filtered: max(a, 0.1).
+/// Returns the divisor of light before it is resampled or filtered: max(a, 0.1).
 inline dvec3 modulation(const dvec3& albedo) {
     return glm::max(albedo, dvec3(0.1));
 }
 
-/// As the shaders see it: a sum that overflows in float32 is infinite there.
+/// Checks with the range of the shaders: a sum that overflows in float32 is infinite there.
 bool isFiniteInFloat(const dvec3& c);
 
 }  // namespace limpid::test

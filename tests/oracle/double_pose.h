@@ -1,5 +1,5 @@
-// Poses in double precision, written from the formulas of glTF 2.0 (sections 3.7.2.2, 3.7.3, 3.11, appendix
-// C) and from nothing else: the oracle of motion tests.
+// Poses in double precision, written only from the formulas of glTF 2.0 (sections 3.7.2.2, 3.7.3, 3.11,
+// appendix C): the oracle of motion tests.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -19,10 +19,10 @@ class DoublePose {
   public:
     DoublePose(const scene::Scene& scene, double time);
 
-    /// A corner of a triangle, in the world.
+    /// Returns a corner of a triangle in world space.
     dvec3 corner(uint32_t instance, uint32_t primitive, int corner) const;
     dvec3 point(uint32_t instance, uint32_t primitive, const dvec2& barycentrics) const;
-    /// Interpolated vertex normals, or the triangle's where there are none; unit, in the world.
+    /// Returns the interpolated vertex normal, or the triangle's if there are none; unit, in world space.
     dvec3 normal(uint32_t instance, uint32_t primitive, const dvec2& barycentrics) const;
 
   private:

@@ -1,5 +1,5 @@
-// Where a pixel's surface was seen in the previous frame, in double precision: steps 1 to 4 of history
-// tracking in docs/denoising.md and nothing else. The oracles of the denoisers with a history share it.
+// Reprojection into the previous frame in double precision: steps 1 to 4 of history tracking in
+// docs/denoising.md. Shared by the oracles of the denoisers with a history.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace limpid::test {
 
-/// Compares, and remembers whether float32 may have decided otherwise.
+/// Compares values, and records whether float32 might have decided otherwise.
 class Decision {
   public:
     bool above(double value, double threshold, double margin) {
@@ -26,15 +26,15 @@ class Decision {
 struct ReprojectionParams {
     double normal, depth;
     bool relative, search;
-    bool identity = true;  ///< off: whatever object a tap saw
+    bool identity = true;  ///< off: taps on other objects count too
 };
 
-/// What a pixel of the previous frame saw.
+/// The surface seen by a pixel of the previous frame.
 struct PreviousSurface {
     dvec3 normal{0.0};
-    double distance = 0.0;  ///< 0: nothing
+    double distance = 0.0;  ///< 0: the ray misses
     double id = 0.0;
-    bool hasHistory = false;  ///< a sample is in its mean
+    bool hasHistory = false;  ///< its mean has at least one sample
 };
 
 struct Tap {
@@ -43,18 +43,18 @@ struct Tap {
 };
 
 struct Reprojection {
-    int failure = 0;        ///< 0: there are taps; else the failure case of the specification
+    int failure = 0;        ///< 0: there are taps; else the specification's failure case
     std::vector<Tap> taps;  ///< those that count
     bool searched = false;
 };
 
 class Reprojector {
   public:
-    /// `previous`: as many pixels as the frame has. All arguments must outlive it.
+    /// `previous` has as many pixels as the frame. All arguments must outlive this object.
     Reprojector(const denoise::HostFrame& frame, const std::vector<PreviousSurface>& previous,
                 const ReprojectionParams& params);
     Reprojection find(size_t p, Decision& decision) const { return find(p, frame_.motion(p), decision); }
-    /// With another motion than the frame's, or none.
+    /// Uses the given motion instead of the frame's, or none.
     Reprojection find(size_t p, const std::optional<dvec3>& motion, Decision& decision) const;
 
   private:
@@ -74,13 +74,13 @@ class Reprojector {
     const ReprojectionParams& params_;
 };
 
-/// A mean over taps. `slope` bounds its change per pixel in x and y: times float32's error of the position
-/// this is how far a right shader may be off between noisy taps.
+/// A mean over taps. `slope` bounds its change per pixel in x and y. Multiplied by float32's error of the
+/// position, it bounds the error of a correct shader between noisy taps.
 struct Resampled {
     dvec4 mean{0.0}, slope{0.0};
 };
 
-/// `valueAt` gives a tap's value by its pixel. No taps give zeros.
+/// `valueAt` returns a tap's value for its pixel. Without taps, returns zeros.
 template <typename ValueAt>
 Resampled resample(const Reprojection& found, const ValueAt& valueAt) {
     Resampled result;
@@ -91,8 +91,8 @@ Resampled resample(const Reprojection& found, const ValueAt& valueAt) {
     }
     if (found.taps.empty()) return result;
     result.mean /= weights;
-    if (found.searched) return result;  // equal weights, wherever in its pixel s is
-    // A bilinear weight changes by at most 2, and as it does, the mean changes by (value - mean) / weights.
+    if (found.searched) return result;  // equal weights, independent of the subpixel position of s
+    // A bilinear weight changes by at most 2 per pixel, which changes the mean by (value - mean) / weights.
     for (const Tap& tap : found.taps)
         result.slope += 2.0 * glm::abs(dvec4(valueAt(tap.pixel)) - result.mean) / weights;
     return result;

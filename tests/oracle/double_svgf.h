@@ -1,7 +1,7 @@
-// Spatiotemporal variance-guided filtering in double precision, written from the formulas of
-// docs/denoising.md and from nothing else: the oracle of the denoiser `svgf`. Each step takes its input as an
-// argument, so that it can be given what a device stored (halves, packed normals) and be compared alone.
-// Nothing is rounded, except that what is stored as a half is at most 65504 in magnitude.
+// Spatiotemporal variance-guided filtering in double precision, written only from the formulas of
+// docs/denoising.md: the oracle of the denoiser `svgf`. Each step takes its input as an argument, so that it
+// can be given values that a device stored (halves, packed normals) and be compared on its own. Nothing is
+// rounded, except that values stored as halves are limited to 65504 in magnitude.
 #pragma once
 
 #include <vector>
@@ -23,39 +23,39 @@ struct DoubleSvgfParams {
     bool boost = true, wide = true, position = false;
 };
 
-/// What is filtered apart: `Joint` is the sum of the other two.
+/// The signals that can be filtered separately: `Joint` is the sum of the other two.
 enum class SvgfSignal { Joint, Diffuse, Specular };
 
 /// Step 1.
 struct SvgfSurfaces {
     std::vector<dvec3> normal;
-    std::vector<double> distance;  ///< z; 0 where nothing is seen
-    std::vector<double> id;        ///< instance number + 1; 0 where nothing is seen
+    std::vector<double> distance;  ///< z; 0 where the ray misses
+    std::vector<double> id;        ///< instance number + 1; 0 where the ray misses
 };
 SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame);
-/// Of what a device stored: two words a pixel (normal, bits of z as a float) and one (id).
+/// Decodes what a device stored: two words per pixel (normal, bits of z as a float) and one (id).
 SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids);
 
-/// What lives from frame to frame, of one signal. Images of another size than the frame's (none at all before
-/// the first frame) mean that nothing was seen.
+/// The history of one signal. Images of another size than the frame's (empty before the first frame) count as
+/// no hit everywhere.
 struct SvgfHistory {
     uint32_t width = 0, height = 0;
     SvgfSurfaces surfaces;
-    std::vector<dvec4> color;    ///< c; the fourth is not read
+    std::vector<dvec4> color;    ///< c; the fourth component is ignored
     std::vector<dvec4> moments;  ///< m1, m2, f, N
     std::vector<dvec4>
-        stable;  ///< of step 7; the fourth is not read. None at all if nothing was stabilised so far
+        stable;  ///< from step 7; the fourth component is ignored. Empty if nothing has been stabilised yet
 };
 
 struct SvgfPixel {
     int failure = 0;         ///< 0: history was found; else the failure case of history tracking
-    bool reflected = false;  ///< the history is that of where the reflection was
+    bool reflected = false;  ///< the history was found by the reflection's motion
     bool rejected = false;   ///< the sample has a NaN or an infinity
-    /// A decision was so close that float32 may take the other one: compare nothing here.
+    /// A decision was so close that float32 may decide otherwise: skip the comparison here.
     bool doubtful = false;
-    /// By how much the results change at most if the back-projected position s is off by one pixel.
+    /// Bounds the change of the results if the reprojected position s is off by one pixel.
     dvec4 colorSlope{0.0}, momentsSlope{0.0}, stablePastSlope{0.0};
-    /// The magnitude of what was averaged: what rounding is relative to.
+    /// The magnitude of the averaged values, which rounding is relative to.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
@@ -65,7 +65,7 @@ struct SvgfAccumulated {
     std::vector<SvgfPixel> pixels;
 };
 
-/// C / M of one signal: what is filtered. `rejected` samples are 0.
+/// C / M of one signal: the input of the filter. `rejected` samples are 0.
 struct SvgfSample {
     dvec3 x{0.0};
     bool rejected = false;
@@ -76,37 +76,37 @@ inline double luminance(const dvec3& color) {
     return glm::dot(color, dvec3(0.2126, 0.7152, 0.0722));
 }
 
-/// sigma of one pixel's moments. `error` is added to m2 - m1^2 before anything else: the bounds of what
-/// float32 may make of the difference.
+/// Returns sigma for one pixel's moments. `error` is first added to m2 - m1^2; it bounds float32's error of
+/// that difference.
 double svgfDeviation(double m1, double m2, double error = 0.0);
-/// By which the deviation is multiplied.
+/// Returns the factor of the deviation.
 double svgfBoost(double frames, bool boost);
 
 /// Steps 2 and 3.
 SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,
                                const SvgfHistory& previous, const DoubleSvgfParams& params);
 
-/// Step 4's tiles. They are 8x8 pixels, row 0 first; `error` bounds what float32 does to each one's lag, and
-/// what comes of errors of the moments (one for each component, or none at all). It is infinite where one of
-/// them decides whether a pixel counts.
+/// The tiles of step 4, 8x8 pixels each, row 0 first. `error` bounds each tile's error of the lag from
+/// float32 and from errors of the moments (one for each component, or none). It is infinite where these
+/// decide whether a pixel counts.
 struct SvgfTiles {
     std::vector<double> tiles, error;
 };
 SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
                     const DoubleSvgfParams& params, const std::vector<dvec4>& errors = {});
 
-/// Step 4's anti-lag: shortens the histories of what step 3 made. The slopes hold for the result.
+/// Step 4's anti-lag: shortens the histories of step 3's result. The slopes are valid for the result.
 void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::vector<double>& tiles,
                  const DoubleSvgfParams& params, SvgfAccumulated& accumulated);
 
-/// k of step 4: the variance of f - m1 under steady light, as a share of E[m2 - m1^2].
+/// Returns k of step 4: the variance of f - m1 under steady light, as a fraction of E[m2 - m1^2].
 double svgfSteadyShare(const DoubleSvgfParams& params);
 
-/// zx and zy of step 6.
+/// Returns zx and zy of step 6.
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance);
 
-/// Step 5. `color`: of step 3. `error` bounds what float32 may make of each pixel's sigma^2; it is infinite
-/// where all weights are so small that float32 may not hold them.
+/// Step 5. `color`: from step 3. `error` bounds float32's error of each pixel's sigma^2; it is infinite where
+/// all weights are so small that float32 may underflow.
 struct SvgfVariance {
     std::vector<dvec4> color;
     std::vector<double> error;
@@ -115,14 +115,14 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
                                const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
                                const DoubleSvgfParams& params);
 
-/// Level `i` of step 6. Of the frame only the size and the camera are read.
+/// Computes level `i` of step 6. Uses only the size and the camera of the frame.
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
-/// Step 7 for one pixel that sees something. `color`: c with sigma; `past`: h with b.
+/// Step 7 for one pixel that sees a surface. `color`: c with sigma; `past`: h with b.
 dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);
 
-/// Step 8, of what step 7 made; alpha 1.
+/// Step 8, applied to the result of step 7; alpha 1.
 struct SvgfFiltered {
     SvgfSignal signal;
     std::vector<dvec4> color;

@@ -1,5 +1,5 @@
-// Temporal accumulation in double precision, written from the formulas of docs/denoising.md and from nothing
-// else: the oracle of the denoiser `temporal`.
+// Temporal accumulation in double precision, written only from the formulas of docs/denoising.md: the oracle
+// of the denoiser `temporal`.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 namespace limpid::test {
 
 struct DoubleTemporalParams {
-    double normal = 0.95;     ///< least cosine between normals
-    double depth = 0.02;      ///< of the distance; with `relative` off in world units
-    bool relative = true;     ///< off: plain differences of distances
-    bool search = true;       ///< among the nine pixels around where no bilinear tap counts
-    bool demodulate = true;   ///< light is resampled, textures are not
+    double normal = 0.95;     ///< minimum cosine between normals
+    double depth = 0.02;      ///< relative to the distance; with `relative` off in world units
+    bool relative = true;     ///< off: absolute differences of distances
+    bool search = true;       ///< search the nine surrounding pixels if no bilinear tap counts
+    bool demodulate = true;   ///< resample light without albedo, so that textures stay sharp
     uint32_t maxHistory = 0;  ///< 0: no limit
     bool greyRestart = false;
     double grey = 0.5;
@@ -21,8 +21,8 @@ struct DoubleTemporalParams {
     bool identity = true;
 };
 
-/// What lives from frame to frame. Images of another size than the frame's (none at all before the first
-/// frame) mean the same as zeros: nothing was seen.
+/// The history. Images of another size than the frame's (empty before the first frame) count as zeros: no hit
+/// anywhere.
 struct TemporalImages {
     uint32_t width = 0, height = 0;
     std::vector<dvec4> colour;       ///< mean, count
@@ -31,12 +31,12 @@ struct TemporalImages {
 };
 
 struct TemporalPixel {
-    int failure = 0;        ///< 0: history was found; else the failure case of the specification
+    int failure = 0;        ///< 0: history was found; else the specification's failure case
     bool rejected = false;  ///< the sample has a NaN or an infinity
-    /// A decision was so close that float32 may take the other one: compare nothing here.
+    /// A decision was so close that float32 may decide otherwise: skip the comparison here.
     bool doubtful = false;
-    /// By how much the new mean and count change at most if the back-projected position s is off by one
-    /// pixel: times float32's error of s, this is how far a right shader may be off between noisy taps.
+    /// Bounds the change of the new mean and count if the reprojected position s is off by one pixel.
+    /// Multiplied by float32's error of s, it bounds the error of a correct shader between noisy taps.
     dvec4 slope{0.0};
 };
 
@@ -45,8 +45,8 @@ struct TemporalResult {
     std::vector<TemporalPixel> pixels;
 };
 
-/// One frame. `previous` is what an earlier call returned, or what was downloaded from a device: then errors
-/// do not build up, and a doubtful pixel of one frame spoils nothing in the next.
+/// Computes one frame. `previous` is the result of an earlier call, or was downloaded from a device; then
+/// errors do not accumulate, and a doubtful pixel in one frame does not affect the next.
 TemporalResult accumulateTemporally(const denoise::HostFrame& frame, const TemporalImages& previous,
                                     const DoubleTemporalParams& params);
 

@@ -1,4 +1,5 @@
-// The shapes of synthetic_frames.h and how they are seen; double precision, in units of the scene's scale.
+// The shapes of synthetic_frames.h and the rays that see them; double precision, in units of the scene's
+// scale.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +14,7 @@ using glm::dmat3;
 using glm::dvec2;
 using glm::dvec3;
 
-/// Rigid: turned about the y axis, then moved.
+/// A rigid transform: rotation about the y axis, then translation.
 struct SyntheticPose {
     double angle = 0.0;
     dvec3 offset{0.0};
@@ -23,14 +24,14 @@ struct SyntheticPose {
     dvec3 toRest(const dvec3& point) const { return glm::transpose(rotation()) * (point - offset); }
 };
 
-/// Where every instance is in a frame.
+/// Returns the pose of an instance in a frame.
 SyntheticPose syntheticPose(uint32_t instance, int number, bool objectMoves);
 
-/// What a ray meets: an instance and a point of it at rest, so that the point can be found in any frame.
+/// A ray's hit: an instance and a point on it at rest, so that the point can be found in any frame.
 struct SyntheticHit {
     double distance = std::numeric_limits<double>::infinity();
     uint32_t instance = UINT32_MAX;
-    dvec3 point{0.0}, normal{0.0};  ///< at rest; the normal is outward, and no eye is ever within a body
+    dvec3 point{0.0}, normal{0.0};  ///< at rest; the normal is outward, and the eye is never inside a body
 
     bool any() const { return instance != UINT32_MAX; }
 };
@@ -41,25 +42,26 @@ struct SyntheticRay {
 
 SyntheticHit intersectSynthetic(const SyntheticRay& ray, int number, bool objectMoves);
 
-/// The camera of a frame as denoisers get it, lengths times `scale`.
+/// Returns the camera of a frame as denoisers get it, with lengths times `scale`.
 CameraParams syntheticCamera(int number, bool moves, bool orthographic, double scale, uint32_t width,
                              uint32_t height);
 
 class SyntheticView {
   public:
-    /// What sees a point: (x, y) in pixels and the distance from the eye.
+    /// A point's projection: (x, y) in pixels and the distance from the eye.
     struct Projection {
         dvec2 pixel;
         double distance;
     };
 
-    /// Of the camera's floats as they are: their rounding is no error of the frame.
+    /// Uses the camera's float values exactly: their rounding is not an error of the frame.
     SyntheticView(const CameraParams& camera, double scale, uint32_t width, uint32_t height);
 
     SyntheticRay centreRay(uint32_t x, uint32_t y) const;
-    /// Nothing where the point lies behind the eye.
+    /// Returns nothing if the point is behind the eye.
     std::optional<Projection> project(const dvec3& point) const;
-    /// Of the infinitely distant point in a direction, which an orthographic camera sees nowhere; distance 0.
+    /// Projects the infinitely distant point in a direction, with distance 0. An orthographic camera never
+    /// sees it.
     std::optional<Projection> projectDirection(const dvec3& direction) const;
 
   private:

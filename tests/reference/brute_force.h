@@ -1,4 +1,4 @@
-// A ray tracer without any tree, in double precision: what the shaders' traversal is compared with.
+// A ray tracer without a tree, in double precision: the reference for the shaders' traversal.
 #pragma once
 
 #include <vector>
@@ -14,9 +14,10 @@ struct TestRay {
 };
 
 struct BruteHit {
-    double t = -1.0;  ///< negative: nothing
+    double t = -1.0;  ///< negative: no hit
     uint32_t instance = UINT32_MAX, primitive = UINT32_MAX;
-    /// Float32 may see it otherwise: another triangle at nearly the same distance, or an edge nearly touched.
+    /// Float32 may give another result: another triangle at nearly the same distance, or a ray close to an
+    /// edge.
     bool doubtful = false;
 };
 

@@ -1,5 +1,5 @@
-// The formulas that shaders are compared with, in double precision: B. Walter et al., "Microfacet models for
-// refraction through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function in
+// Reference formulas for shaders, in double precision: B. Walter et al., "Microfacet models for refraction
+// through rough surfaces", EGSR 2007; E. Heitz, "Understanding the masking-shadowing function in
 // microfacet-based BRDFs", JCGT 2014.
 #pragma once
 
@@ -40,7 +40,7 @@ inline double reflected(const dvec3& wo, const dvec3& wi, double alpha, double f
     return schlick(f0, f90, glm::dot(wo, m)) * distribution(m, alpha) * g2 / (4.0 * wo.z);
 }
 
-/// Bilinear look-up in the table of albedos, as the layout header describes it.
+/// Looks up the table of albedos bilinearly, as the layout header describes.
 inline glm::dvec4 ggxTable(const std::vector<vec4>& table, double cosine, double roughness) {
     const int size = static_cast<int>(layout::GGX_TABLE_SIZE);
     const double x = cosine * (size - 1), y = roughness * (size - 1);
@@ -50,7 +50,7 @@ inline glm::dvec4 ggxTable(const std::vector<vec4>& table, double cosine, double
                     y - j);
 }
 
-/// The texels of that table that belong to whole rows.
+/// Returns the row averages of that table.
 inline glm::dvec4 ggxAverages(const std::vector<vec4>& table, double roughness) {
     const int size = static_cast<int>(layout::GGX_TABLE_SIZE);
     const double y = roughness * (size - 1);

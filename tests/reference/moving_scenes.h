@@ -1,4 +1,4 @@
-// Scenes made for tests of what moves.
+// Moving scenes for tests.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace limpid::test {
 
-/// A tube of two bones with a bulge as morph target, under a turning node: skin and morph at once.
+/// A tube of two bones with a bulge as morph target, under a rotating node: skin and morph target together.
 inline scene::Scene tubeScene() {
     scene::Scene scene = plainScene();
     scene.name = "tube";

@@ -1,4 +1,4 @@
-// The shaders' random numbers (src/shaders/common/rng.glsl) in C++.
+// A C++ copy of the shaders' random numbers (src/shaders/common/rng.glsl).
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ inline float lcg(uint32_t& state) {
     return static_cast<float>(state & 0xffffffu) / 16777216.0f;
 }
 
-/// PCG-RXS-M-XS-32, high 24 bits. The output is of the state before the step.
+/// PCG-RXS-M-XS-32, high 24 bits. The output belongs to the state before the step.
 inline float pcg(uint32_t& state) {
     const uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
     state = state * 747796405u + 2891336453u;

@@ -1,5 +1,5 @@
-// Integrates functions over the sphere of directions by adaptive subdivision, and counts directions in the
-// cells that the subdivision leaves: bins for a chi-square test which are fine where the density is high.
+// Integrates functions over the sphere of directions by adaptive subdivision. The resulting cells also serve
+// as bins for a chi-square test that are fine where the density is high.
 #pragma once
 
 #include <array>
@@ -10,29 +10,29 @@
 
 namespace limpid::test {
 
-/// Density per solid angle, and whatever else is to be integrated with it.
+/// Density per solid angle, and another function to integrate with it.
 struct SphereValue {
     double pdf = 0.0, f = 0.0;
 };
 
 class SphereQuadrature {
   public:
-    /// Values of the function in many directions at once: for a GPU.
+    /// Evaluates the function in many directions at once, for a GPU.
     using Evaluate = std::function<std::vector<SphereValue>(const std::vector<vec3>&)>;
 
-    /// Cells are split until their integrals hold to about `tolerance` and no cell has more than 1/256 of the
-    /// density.
+    /// Splits cells until their integrals are accurate to about `tolerance` and no cell has more than 1/256
+    /// of the density.
     explicit SphereQuadrature(const Evaluate& evaluate, double tolerance = 2e-7);
 
     const SphereValue& integral() const { return integral_; }
     size_t binCount() const { return bins_.size(); }
-    /// Integral of the density over each bin.
+    /// Returns the integral of the density over each bin.
     std::vector<double> binMasses() const;
     size_t binOf(const vec3& direction) const;
     size_t evaluations() const { return evaluations_; }
 
   private:
-    /// theta and phi from `lower` over `size`. Without children it is bin `bin`.
+    /// theta and phi from `lower` to `lower` + `size`. Without children it is bin `bin`.
     struct Cell {
         double theta, phi, thetaSize, phiSize;
         SphereValue integral;

@@ -1,4 +1,4 @@
-// Statistical tests with their p-values.
+// Statistical tests with p-values.
 #pragma once
 
 #include <string>
@@ -16,13 +16,13 @@ struct ChiSquare {
     double statistic = 0.0;
     int degreesOfFreedom = 0;
     double p = 1.0;
-    /// Something was found where nothing is expected.
+    /// There are observations where none are expected.
     bool impossible = false;
-    std::string worst;  ///< the bin that contributes most, for the message of a failure
+    std::string worst;  ///< the bin that contributes most, for failure messages
 };
 
-/// Neighbouring bins are joined until `least` are expected. Expectations must add up to the number of
-/// observations (the caller includes a bin of what fell nowhere).
+/// Joins neighbouring bins until at least `least` observations are expected. Expectations must add up to the
+/// number of observations (the caller includes a bin for those that fell nowhere).
 ChiSquare chiSquare(const std::vector<double>& observed, const std::vector<double>& expected,
                     double least = 5.0);
 

@@ -1,5 +1,5 @@
-// `limpid view` on a display of its own, moved by a real mouse and keyboard (xdotool), read by what it
-// writes.
+// Runs `limpid view` on its own display, controls it with a real mouse and keyboard (xdotool), and reads its
+// output files.
 #pragma once
 
 #include <signal.h>
@@ -22,7 +22,7 @@ struct Control {
 
 class DrivenViewer {
   public:
-    /// What it needs, or why that is missing.
+    /// Returns which requirement is missing, or an empty text.
     static std::string missing() {
         for (const char* program : {"Xvfb", "xdotool"}) {
             if (::system((std::string("command -v ") + program + " > /dev/null").c_str()) != 0)
@@ -31,11 +31,11 @@ class DrivenViewer {
         return {};
     }
 
-    /// `folder` gets its files; a window of 460x1700 pixels, each 2^shrink of which, along each axis, are one
-    /// of the picture's.
+    /// Files go to `folder`. The window has 460x1700 pixels; one pixel of the picture covers 2^shrink of them
+    /// along each axis.
     DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3) : folder_(folder) {
         const std::string in = "cd '" + folder_.string() + "' && ";
-        // A display that ends with its last client: the viewer must stay one all the time.
+        // The display ends with its last client, so the viewer must stay connected all the time.
         shell(
             in +
             "rm -f display controls code log; Xvfb -terminate -displayfd 3 -screen 0 1000x1800x24 3>display "
@@ -67,7 +67,7 @@ class DrivenViewer {
     DrivenViewer(const DrivenViewer&) = delete;
     DrivenViewer& operator=(const DrivenViewer&) = delete;
 
-    /// Leaves it by the keyboard; its exit code.
+    /// Quits with the keyboard; returns the exit code.
     int leave() {
         xdotool("mousemove 450 1690 key Escape");
         waitFor("the end", [&] { return !get("code").empty(); });
@@ -110,14 +110,14 @@ class DrivenViewer {
     }
 
     void click(const std::string& name) const { press(name, 0.03); }
-    /// At a share of its width.
+    /// Clicks at a fraction of the control's width.
     void press(const std::string& name, double share) const {
         const Control c = at(name);
         xdotool("mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) +
                 " " + std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
                 " sleep 0.15 mousedown 1 sleep 0.15 mouseup 1 sleep 0.05");
     }
-    /// A number into a slider, or into what is dragged. At a share of its width.
+    /// Types a number into a slider or drag control, at a fraction of its width.
     void type(const std::string& name, const std::string& text, double share = 0.03) const {
         const Control c = at(name);
         xdotool(
@@ -138,11 +138,11 @@ class DrivenViewer {
     void xdotool(const std::string& arguments) const {
         shell("DISPLAY=" + display_ + " xdotool " + arguments);
     }
-    /// A program, on its display.
+    /// Runs a program on the viewer's display.
     void run(const std::string& command) const { shell("DISPLAY=" + display_ + " " + command); }
     const std::string& window() const { return window_; }
 
-    /// The bytes of limpid.png, once `samples` are in the picture and nothing is rendered any more.
+    /// Returns the bytes of limpid.png once the picture has `samples` and rendering has stopped.
     std::string settledPicture() const {
         std::string last;
         waitFor("the picture to settle", [&] {
@@ -158,7 +158,7 @@ class DrivenViewer {
         return get("limpid.png");
     }
 
-    /// Seconds of processor time so far; bytes of memory.
+    /// Processor time so far in seconds; memory in bytes.
     double processorSeconds() const {
         std::istringstream stat(slurp("/proc/" + pid() + "/stat"));
         std::string skipped;
@@ -199,7 +199,7 @@ class DrivenViewer {
         std::string text = get("output");
         return text.substr(0, text.find('\n'));
     }
-    /// Of the program, not of a shell around it.
+    /// The process id of the program, not of a shell around it.
     std::string pid() const { return get("view.pid").substr(0, get("view.pid").find('\n')); }
     void kill(const char* file) const {
         const std::string text = get(file);

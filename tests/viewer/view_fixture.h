@@ -1,4 +1,4 @@
-// What tests of the driven window have in common.
+// Shared by the tests that control the window.
 #pragma once
 
 #include "tests/viewer/driven_viewer.h"
@@ -22,7 +22,7 @@ class ViewTest : public CliTest {
         viewer.click(group);
         viewer.waitFor(group + " to close", [&] { return viewer.value(group) == "closed"; });
     }
-    /// Of what it shows as its value, any other one.
+    /// Changes a drop-down control to any value other than its current one.
     static void change(const DrivenViewer& viewer, const std::string& name) {
         const std::string before = viewer.value(name);
         for (const double share : {0.1, 0.35, 0.5}) {
