@@ -1,4 +1,4 @@
-// limpid denoise: EXR frames of any renderer to clean ones.
+// `limpid denoise`: denoises EXR frames from any renderer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ struct DenoiseOptions {
     bool json = false;
 };
 
-/// That of --denoiser, else of --preset.
+/// Returns the denoiser of --denoiser, else of --preset.
 const denoise::Denoiser& chosenDenoiser(const DenoiseOptions& o) {
     const Pipeline pipeline = pipelineFor(o.preset, {.integrator = {}, .denoiser = o.denoiser}, {});
     if (pipeline.denoiser) return *pipeline.denoiser;
@@ -52,14 +52,14 @@ denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
     return settings.denoisers;
 }
 
-/// All frames of the sequence, or -1 for one file.
+/// Returns all frames of the sequence, or -1 for a single file.
 std::vector<int> framesOf(const FramePattern& input, const FramePattern& output) {
     if (input.numbered() != output.numbered())
         throw UsageError("'" + output.text() + "': the output's name holds a number if the input's does");
     return input.numbered() ? input.wholeSequence() : std::vector<int>{-1};
 }
 
-/// The file with its beauty replaced: every other layer stays, so that metrics and further filters have them.
+/// Replaces the file's beauty. All other layers stay, for metrics and further filters.
 LayeredImage withBeauty(LayeredImage file, const std::vector<float>& beauty, std::string_view method) {
     const image::Channel* before = file.find("R");
     const image::Storage storage = before ? before->storage : image::Storage::Half;
@@ -73,7 +73,7 @@ LayeredImage withBeauty(LayeredImage file, const std::vector<float>& beauty, std
     return file;
 }
 
-/// 1 where a surface is seen, 0 where none is.
+/// Returns 1 for pixels that see a surface, else 0.
 std::vector<float> surfaces(const LayeredImage& file) {
     const image::Channel* depth = file.find("depth.Z");
     if (!depth) return {};

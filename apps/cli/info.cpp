@@ -1,5 +1,5 @@
-// limpid info: devices with features and limits, integrators, denoisers, built-in scenes, every parameter; or
-// what a scene holds.
+// `limpid info`: lists devices with features and limits, integrators, denoisers, built-in scenes and every
+// parameter; or the content of a scene.
 #include <fmt/format.h>
 
 #include <memory>

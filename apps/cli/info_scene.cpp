@@ -37,7 +37,7 @@ size_t emissiveMaterials(const scene::Scene& scene) {
         scene.materials, [](const scene::Material& m) { return m.emission != vec3(0.0f); }));
 }
 
-/// In the order of their numbers, which --camera takes as well as their names.
+/// Lists the cameras by number; --camera takes a number or a name.
 json camerasJson(const scene::Scene& scene) {
     json list = json::array();
     for (const scene::Camera& camera : scene.cameras) {
@@ -115,7 +115,7 @@ void printText(const scene::Scene& scene) {
 void printSceneInfo(const std::string& name, bool asJson) {
     SceneChoice choice;
     choice.scene = name;
-    // As every other command loads it: with the camera that a scene without one gets.
+    // Loaded like in every other command, so a scene without a camera gets one.
     const scene::Scene scene = loadChosenScene(choice);
     if (!asJson) return printText(scene);
     json object{{"scene", name},

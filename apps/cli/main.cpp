@@ -1,5 +1,5 @@
-// limpid: the command line. Exit codes: 0 done, 1 failed while running, 2 wrong usage, 3 an input could not
-// be read.
+// limpid: the command line. Exit codes: 0 success, 1 failed while running, 2 wrong usage, 3 an input could
+// not be read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ int fail(ExitCode code, const char* message) {
     return static_cast<int>(code);
 }
 
-/// What CLI11 has to say: help on stdout, faults (with what was typed) on stderr.
+/// Prints CLI11's message: help on stdout, errors (with the command that was typed) on stderr.
 int answer(const CLI::App& app, const CLI::ParseError& error) {
     std::ostringstream out, faults;
     const int code = app.exit(error, out, faults);
@@ -36,7 +36,7 @@ std::string nonFinite(const std::string& text) {
     return end == text.c_str() || std::isfinite(value) ? "" : "'" + text + "' is not a finite number";
 }
 
-/// CLI11 reads "nan" and "inf" as numbers, and its ranges let NaN pass.
+/// CLI11 accepts "nan" and "inf" as numbers, and its range checks let NaN pass.
 void refuseNonFinite(CLI::App& app) {
     for (CLI::Option* option : app.get_options()) {
         if (option->get_type_name().starts_with("FLOAT")) option->check(CLI::Validator(nonFinite, ""));

@@ -1,5 +1,4 @@
-// The man page and the completion for shells: from the tables of options that --help shows, so that they
-// cannot differ.
+// Generates the man page and the shell completions from the same option tables that --help shows.
 #include <fmt/format.h>
 
 #include <functional>
@@ -11,21 +10,21 @@
 namespace limpid::cli {
 namespace {
 
-/// One option or positional as shells and pages need it.
+/// One option or positional argument, for man page and completion.
 struct Entry {
     std::vector<std::string> names;   ///< "-o", "--output"; empty: a positional
-    std::string placeholder;          ///< what it takes: "FILE"; empty: a flag
+    std::string placeholder;          ///< its argument, such as "FILE"; empty: a flag
     std::string help;                 ///< the first line of its description
-    std::vector<std::string> values;  ///< all that it accepts, if they are few enough to be listed
+    std::vector<std::string> values;  ///< all accepted values, if there are few enough to list
 };
 
-/// A command with its place: "limpid bench quality".
+/// A command and its full name, such as "limpid bench quality".
 struct Command {
     std::string path;
     const CLI::App* app;
 };
 
-/// The words of the first "{a,b,c}" in a type's text; of "a->1" what stands before the arrow.
+/// Returns the words of the first "{a,b,c}" in a type's text; for "a->1" the part before the arrow.
 std::vector<std::string> listedValues(const std::string& type) {
     const size_t open = type.find('{'), close = type.find('}', open);
     if (open == std::string::npos || close == std::string::npos) return {};
@@ -59,7 +58,7 @@ std::vector<const CLI::App*> shownCommands(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-/// The program and all that are below it.
+/// Returns the program and all of its subcommands.
 std::vector<Command> allCommands(const CLI::App& program) {
     std::vector<Command> all;
     const std::function<void(const std::string&, const CLI::App&)> visit = [&](const std::string& path,
@@ -73,7 +72,7 @@ std::vector<Command> allCommands(const CLI::App& program) {
 
 // ---------------------------------------------------------------- man page
 
-/// Plain text for roff: no escapes, no requests.
+/// Escapes plain text for roff.
 std::string roff(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -127,7 +126,7 @@ std::string singleQuoted(const std::string& text) {
     return result + "'";
 }
 
-/// Lines of a `case` of bash and zsh that follows the words to the command that is typed.
+/// Returns the lines of a `case` in bash and zsh that finds the typed command.
 std::string pathCases(const CLI::App& program, const std::string& indent) {
     std::string cases;
     for (const auto& [path, app] : allCommands(program))
@@ -135,7 +134,8 @@ std::string pathCases(const CLI::App& program, const std::string& indent) {
     return cases;
 }
 
-/// Lines of a `case` that list what an option accepts, by the command and the option before the cursor.
+/// Returns the lines of a `case` that list an option's values, given the command and the option before the
+/// cursor.
 std::string valueCases(const CLI::App& program, const std::string& indent) {
     std::string cases;
     for (const auto& [path, app] : allCommands(program))

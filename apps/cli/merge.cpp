@@ -1,4 +1,4 @@
-// limpid merge: the shards of a render to what one run gives.
+// `limpid merge`: merges the shards of a render into the result of a single run.
 #include "renderer/long/merge.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// limpid view: the window.
+// `limpid view`: opens the window.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -43,7 +43,7 @@ std::string eyeOptions(const SceneChoice& choice) {
            (choice.up.empty() ? std::string() : fmt::format(" --up {}", fmt::join(choice.up, ",")));
 }
 
-/// What was kept, and over it what this command line says.
+/// Returns the saved settings, overridden by the command line.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
     viewer::ViewSettings settings{.source = {o.scene.scene, o.scene.environment, o.scene.lights,
                                              o.scene.background, o.scene.lightFile, o.scene.assetRoot},
@@ -84,7 +84,7 @@ void run([[maybe_unused]] const ViewOptions& o) {
         choice.scene = source.scene;
         choice.environment = source.environment;
         choice.lights = source.lights;
-        choice.lightFile.clear();  // the window keeps these changes apart
+        choice.lightFile.clear();  // the window applies these edits itself
         choice.background = source.background;
         choice.assetRoot = source.assetRoot;
         return loadChosenScene(choice);

@@ -24,19 +24,19 @@
 namespace limpid::cli {
 namespace {
 
-/// As on the command line; empty where not given.
+/// The arguments as given on the command line; empty if not given.
 struct Arguments {
     std::string test, reference, errorMap, hdrErrorMap, exposure;
     bool json = false;
 };
 
-/// The stops that --exposure names; none for "auto".
+/// Returns the stops given by --exposure; none for "auto".
 std::optional<float> parseExposure(const std::string& text) {
     if (text == "auto") return std::nullopt;
     const std::string_view number = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
     float stops = 0.0f;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), stops);
-    // 2^stops, and radiance times it, must stay within a float.
+    // 2^stops, and radiance multiplied by it, must stay within the range of a float.
     if (error != std::errc{} || end != number.data() + number.size() || !(std::abs(stops) <= 60.0f)) {
         throw UsageError(
             fmt::format("--exposure: '{}' is neither 'auto' nor a number of stops from -60 to 60", text));
@@ -44,7 +44,7 @@ std::optional<float> parseExposure(const std::string& text) {
     return stops;
 }
 
-/// Where a map goes. What is wrong with that shows here, before any work.
+/// Parses the output name of a map. Reports faults before any work is done.
 std::optional<FramePattern> parseMap(const char* option, const std::string& text, bool sequence) {
     if (text.empty()) return std::nullopt;
     FramePattern pattern(text);
@@ -81,7 +81,7 @@ float chooseStops(const CompareOptions& options, const image::Picture& reference
     return options.autoExposure || reference.sceneReferred ? image::autoExposure(reference.linear) : 0.0f;
 }
 
-/// Shown on a terminal: large pictures take seconds.
+/// Shows progress on a terminal, since large pictures take seconds.
 image::HdrFlip hdrFlipWithProgress(const image::Image& test, const image::Image& reference) {
     std::optional<Progress> progress;
     return image::hdrFlip(test, reference, image::flipPixelsPerDegree, [&](int done, int count) {

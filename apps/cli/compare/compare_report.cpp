@@ -34,8 +34,7 @@ const char* nameOf(image::MotionSource source) {
     return "none";
 }
 
-/// The motion of all frames after the first: one name, or "mixed". Empty if there is no frame after the
-/// first.
+/// Returns the motion of all frames after the first: one name, or "mixed". Empty if there is only one frame.
 std::string motionOf(std::span<const FrameScores> frames) {
     std::string all;
     for (const FrameScores& frame : frames) {
@@ -69,7 +68,7 @@ size_t widthOf(const Metric& metric) {
     return std::max<size_t>(11, metric.name.size() + 2);
 }
 
-/// A cell of the table: as wide as its column, "-" where there is no value.
+/// Formats a cell of the table: as wide as its column, "-" if there is no value.
 std::string cell(const Metric& metric, std::optional<double> value) {
     const size_t width = widthOf(metric);
     if (!value) return fmt::format("{:>{}}", "-", width);

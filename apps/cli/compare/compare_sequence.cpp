@@ -1,4 +1,5 @@
-// `limpid compare` of numbered pictures: every frame's scores, one exposure, and flicker from frame to frame.
+// `limpid compare` for numbered pictures: every frame's scores, with one exposure, and flicker between
+// frames.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -25,7 +26,8 @@ using image::FrameScores;
 using image::MotionSource;
 using image::SequencePicture;
 
-/// The frames to compare. Throws InputError unless test and reference (where it is a sequence) have the same.
+/// Returns the frames to compare. Throws InputError unless test and reference (if it is a sequence) have the
+/// same frames.
 std::vector<int> matchingFrames(const CompareOptions& options) {
     const std::vector<int> frames = options.test.wholeSequence();
     if (!options.reference.numbered()) return frames;
@@ -36,12 +38,12 @@ std::vector<int> matchingFrames(const CompareOptions& options) {
                                  options.reference.text(), describeFrames(reference)));
 }
 
-/// The reference of each frame: read when asked for, or one picture for all.
+/// The reference of each frame: read on demand, or one picture for all frames.
 class References {
   public:
     explicit References(const FramePattern& pattern) : pattern_(pattern) {}
 
-    /// Valid until the next call.
+    /// The result is valid until the next call.
     const SequencePicture& at(int frame) {
         if (!current_ || pattern_.numbered()) {
             current_ = image::readSequencePicture(pattern_.format(frame));
@@ -56,7 +58,7 @@ class References {
     std::optional<SequencePicture> current_;
 };
 
-/// One exposure for all frames. Reads every reference if it must measure.
+/// Chooses one exposure for all frames. Reads every reference if it must measure.
 float chooseStops(const CompareOptions& options, References& references, const std::vector<int>& frames) {
     if (options.stops) return *options.stops;
     if (!options.autoExposure && !references.at(frames.front()).picture.sceneReferred) return 0.0f;
@@ -68,7 +70,7 @@ float chooseStops(const CompareOptions& options, References& references, const s
     return image::sequenceExposure(measured);
 }
 
-/// What flicker needs of the frame before.
+/// The data of the previous frame that the flicker metric needs.
 struct PreviousFrame {
     image::Image shownTest, shownReference;
     image::Geometry test, reference;
@@ -133,7 +135,7 @@ class SequenceComparison {
         if (options_.hdrErrorMap) image::writeErrorMap(options_.hdrErrorMap->format(scores.frame), hdr.map);
     }
 
-    /// A single reference picture stands for a scene in which nothing moves.
+    /// A single reference picture means that nothing moves in the scene.
     MotionSource motionOf(const SequencePicture& test, const SequencePicture& reference) const {
         if (!options_.reference.numbered()) return MotionSource::None;
         if (reference.geometry.motion) return MotionSource::Reference;

@@ -9,7 +9,7 @@
 namespace limpid::cli {
 namespace {
 
-/// Of the values of --pipeline and --method; empty for one that there never was.
+/// Returns the options that replace a value of --pipeline or --method; empty for a value that never existed.
 std::string optionNow(const std::string& value) {
     if (value == "history") return "--denoiser temporal";
     for (const Integrator integrator : integrators()) {
@@ -18,7 +18,7 @@ std::string optionNow(const std::string& value) {
     return denoise::findDenoiser(value) ? "--denoiser " + value : std::string();
 }
 
-/// It is in no help text.
+/// Refuses the option without listing it in the help text.
 void refuse(CLI::App& command, const std::string& option, const std::string& optionsNow) {
     const auto fail = [option, optionsNow](const std::vector<std::string>& values) {
         const std::string value = values.empty() ? std::string() : values.front();

@@ -11,7 +11,7 @@
 namespace limpid::cli {
 namespace {
 
-/// 0 if it is none.
+/// Returns 0 if the text is not a positive number.
 uint32_t positiveNumber(std::string_view text) {
     uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -45,7 +45,7 @@ void checkOutput(const RenderOptions& o) {
     checkPictureOutput(path, !o.layers.empty());
 }
 
-/// The frames of the output that may be the file of this name.
+/// Returns the frames of the output whose file may have this name.
 std::vector<int> framesThatMayBe(const FramePattern& output, const fs::path& file) {
     if (!output.numbered()) return {0};
     std::vector<int> frames = output.existingFrames();  // one may be a symbolic link
@@ -56,7 +56,7 @@ std::vector<int> framesThatMayBe(const FramePattern& output, const fs::path& fil
     return frames;
 }
 
-/// Otherwise each would be written over the other.
+/// Otherwise the checkpoint and the output would overwrite each other.
 void checkCheckpointIsNoOutput(const RenderOptions& o) {
     if (o.longRender.checkpoint.empty()) return;
     const FramePattern output(o.output);

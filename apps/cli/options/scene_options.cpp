@@ -15,7 +15,7 @@ namespace limpid::cli {
 
 namespace {
 
-/// Squares of coordinates must stay within a float.
+/// Squares of coordinates must stay within the range of a float.
 constexpr double farthest = 1e18;
 
 const scene::Camera& namedCamera(const scene::Scene& scene, const std::string& choice) {
@@ -97,7 +97,7 @@ scene::Scene loadChosenScene(const SceneChoice& choice) {
         if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);
     }
     scene::addOwnLight(scene, own);
-    // Built-in scenes are as dark as they are meant to be.
+    // Built-in scenes may be dark on purpose.
     scene::prepare(scene, !choice.background.empty() ? scene::SkyRule::Never
                           : builtin                  ? scene::SkyRule::WithoutLights
                                                      : scene::SkyRule::InTheDark);

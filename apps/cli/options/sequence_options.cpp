@@ -14,16 +14,16 @@ namespace limpid::cli {
 namespace {
 
 constexpr double builtinPathSeconds = 10.0;
-/// A built-in path has 60 keys a second.
+/// Built-in paths have 60 keys per second.
 constexpr double longestBuiltinPath = 1e5;
 constexpr int maxFrames = 1000000;
 
-/// Whether the output has room for several frames: a name with a number, or a clip.
+/// True if the output can hold several frames: its name has a frame number, or it is a clip.
 bool holdsFrames(const FramePattern& output) {
     return output.numbered() || isClip(output.format(0));
 }
 
-/// All frames that there are from the first one's time to `seconds`.
+/// Returns the number of frames from the first one's time to `seconds`.
 int framesUntil(double seconds, const SequenceTiming& timing) {
     const double frames =
         std::floor(std::max(seconds - timing.start, 0.0) * timing.framesPerSecond + 1e-6) + 1.0;

@@ -32,13 +32,13 @@ namespace {
 
 struct Kind {
     const char* extension;
-    const char* container;             ///< ffmpeg's name of it
-    bool evenSize;                     ///< chroma is stored for 2x2 pixels
+    const char* container;             ///< its name in ffmpeg
+    bool evenSize;                     ///< chroma is stored per 2x2 pixels
     std::vector<std::string> options;  ///< codec and filters
 };
 
 const std::vector<Kind>& kinds() {
-    // The matrix and the tags of sRGB's primaries; without them players disagree about colours.
+    // The matrix and the tags of sRGB's primaries; without them players show different colours.
     static const std::vector<std::string> colors{"-vf",
                                                  "scale=out_color_matrix=bt709:out_range=tv",
                                                  "-pix_fmt",
@@ -61,7 +61,7 @@ const std::vector<Kind>& kinds() {
          withColors(
              {"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-deadline", "good", "-cpu-used", "4"})},
         {".webp", "webp", false, {"-c:v", "libwebp_anim", "-lossless", "0", "-quality", "85", "-loop", "0"}},
-        // A palette for each frame, so that no frame has to be kept until the last has come.
+        // Uses a palette per frame, so that frames need not be kept until the last one.
         {".gif",
          "gif",
          false,
@@ -101,12 +101,13 @@ std::vector<std::string> argumentsFor(const Kind& kind, const fs::path& file, ui
     add({"-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", width, height)});
     add({"-framerate", fmt::format("{}", framesPerSecond), "-i", "pipe:0"});
     add(kind.options);
-    // The prefix: a name is neither an option nor a protocol's.
+    // With the prefix "file:", a name cannot be taken for an option or a protocol.
     add({"-f", kind.container, "file:" + file.string()});
     return arguments;
 }
 
-// What an interrupted render leaves behind: nothing. Signal handlers see only variables like these.
+// State for the signal handlers, which delete an interrupted render's file. They can only use variables like
+// these.
 std::array<char, 4096> interruptedFile{};
 volatile pid_t interruptedProcess = -1;
 constexpr std::array<int, 3> interrupts{SIGINT, SIGTERM, SIGHUP};
@@ -126,7 +127,7 @@ void removeOnInterrupt(const fs::path& file, pid_t process) {
     std::strncpy(interruptedFile.data(), name.c_str(), interruptedFile.size() - 1);
     for (size_t i = 0; i < interrupts.size(); ++i) {
         handlersBefore[i] = ::signal(interrupts[i], removeAndDie);
-        // What is ignored (as by nohup) stays so.
+        // Signals that are ignored (as by nohup) stay ignored.
         if (handlersBefore[i] == SIG_IGN) ::signal(interrupts[i], SIG_IGN);
     }
 }
@@ -143,7 +144,7 @@ void closeFile(int& file) {
     file = -1;
 }
 
-/// The last column and the last row once more where their number is odd.
+/// Repeats the last column or row if their number is odd.
 image::ByteImage madeEven(const image::ByteImage& frame) {
     image::ByteImage even{frame.width + frame.width % 2, frame.height + frame.height % 2, 3, {}};
     even.pixels.reserve(size_t{even.width} * even.height * 3);
@@ -182,7 +183,7 @@ void ClipWriter::start(const fs::path& file) {
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
 
-    // A socket, because writing to one whose reader is gone can be told to raise no signal.
+    // A socket, because writing to a closed one can be done without raising a signal.
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
         throw Error(std::string("ffmpeg cannot be started: ") + std::strerror(errno));
@@ -195,7 +196,7 @@ void ClipWriter::start(const fs::path& file) {
     ::posix_spawn_file_actions_adddup2(&actions, faults_, STDERR_FILENO);
     posix_spawnattr_t attributes;
     ::posix_spawnattr_init(&attributes);
-    // A group of its own: Ctrl+C in the terminal is for Limpid, which then stops ffmpeg.
+    // A process group of its own: Ctrl+C in the terminal goes to Limpid, which then stops ffmpeg.
     ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     const int fault = ::posix_spawnp(&process_, "ffmpeg", &actions, &attributes, pointers.data(), environ);
     ::posix_spawnattr_destroy(&attributes);
@@ -233,7 +234,7 @@ std::string ClipWriter::lastWords() const {
     std::string text(static_cast<size_t>(std::min(size, maxBytes)), '\0');
     const ssize_t got = ::pread(faults_, text.data(), text.size(), size - static_cast<off_t>(text.size()));
     text.resize(static_cast<size_t>(std::max<ssize_t>(got, 0)));
-    // Whole lines only, and no empty one at the end.
+    // Keep whole lines only, without an empty one at the end.
     if (size > maxBytes) text.erase(0, text.find('\n') + 1);
     text.erase(text.find_last_not_of(" \r\n") + 1);
     return text;
@@ -262,7 +263,7 @@ void ClipWriter::send(const image::ByteImage& frame) {
 }
 
 void ClipWriter::add(const image::Image& beauty, std::span<const float> subject) {
-    // One exposure for all: measured anew in each frame, a clip would flicker.
+    // One exposure for all frames: a clip would flicker if each frame were measured.
     if (!format_.stops) format_.stops = image::autoExposure(beauty, subject);
     const image::Image encoded =
         format_.shownAsIs ? image::displayEncode(beauty, 0.0f) : image::tonemap(beauty, *format_.stops);

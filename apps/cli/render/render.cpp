@@ -1,4 +1,4 @@
-// limpid render: a scene to image files or a clip.
+// `limpid render`: renders a scene to image files or a clip.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ void renderFrames(const RenderJob& job, RenderSummary& summary) {
 void renderClip(RenderJob job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const fs::path file = FramePattern(o.output).format(0);
-    // What a process left that was killed in the act.
+    // Left behind by a process that was killed while writing.
     removeStaleTemporaries(file);
     writeAtomically(file, [&](const fs::path& temporary) {
         ClipWriter clip(temporary, {.width = job.settings.extent.width,
@@ -98,7 +98,7 @@ void render(const RenderOptions& o) {
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing);
     const uint64_t content = sceneHash(scene, data);
-    data = {};  // it is on the device now, and so are the textures
+    data = {};  // now on the device, like the textures
     scene.textures.clear();
     summary.timings.uploadSeconds = since(uploadStart);
 

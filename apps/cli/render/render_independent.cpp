@@ -1,4 +1,4 @@
-// limpid render by the path tracer without a denoiser: stills and sequences whose frames stand alone.
+// `limpid render` with the path tracer and no denoiser: stills, and sequences whose frames are independent.
 #include "base/files/file.h"
 #include "base/log.h"
 #include "cli/progress.h"
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What files of sums and pictures say about this render.
+/// Returns the header that describes this render in files of sums and pictures.
 AccumulationHeader headerOf(const RenderJob& job) {
     const RenderOptions& o = job.options;
     const RenderSettings& settings = job.settings;

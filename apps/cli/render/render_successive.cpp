@@ -1,4 +1,4 @@
-// limpid render where frames build on each other: denoisers, and means that are kept on the device.
+// `limpid render` when frames build on each other: denoisers, and means kept on the device.
 #include "base/log.h"
 #include "cli/progress.h"
 #include "cli/render/picture_output.h"
