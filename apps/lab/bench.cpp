@@ -1,4 +1,4 @@
-// limpid bench: how fast rays are traced, and how fast the picture converges.
+// `limpid bench`: measures ray-tracing speed and convergence.
 #include "lab/bench.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ RenderSettings settingsOf(const BenchOptions& o) {
     return settings;
 }
 
-/// One sample per launch; device time of the path-tracing pass alone.
+/// Measures one sample per launch: the device time of the path-tracing pass alone.
 json traceBench(gpu::Device& device, const BenchOptions& o, const std::string& name) {
     const LoadedScene loaded = load(device, o.device, name);
     ProgressiveStill still(device, *loaded.gpu, uint64_t{o.frames} + o.warmup);
@@ -165,13 +165,13 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     RenderSettings settings = settingsOf(o);
     settings.pathtrace.maxDepth = 8;
     {
-        // Drivers compile at the first dispatch; that is not the time of a sample.
+        // Compile the pipelines first, so that this does not count as rendering time.
         ProgressiveStill warmup(device, *loaded.gpu, 1);
         warmup.update(camera, settings);
         warmup.launch();
     }
     ProgressiveStill reference(device, *loaded.gpu, o.referenceSamples);
-    settings.seed = 1;  // its noise must not be the noise of what it judges
+    settings.seed = 1;  // a noise seed different from the reference's
     const Picture converged = renderPicture(reference, camera, settings, o.referenceSamples);
     const image::Image truth = beautyOf(converged.layers);
     const float stops = image::autoExposure(truth);
@@ -185,7 +185,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
                         {"psnr", psnr}});
     };
     settings.seed = 0;
-    // Beyond a quarter of the reference's samples its own noise would be what is measured.
+    // With more than a quarter of the reference's samples, the reference's own noise would dominate.
     const uint64_t maxSamples = std::max<uint64_t>(o.referenceSamples / 4, 1);
     for (uint64_t samples = 1; samples <= maxSamples; samples *= 4) {
         ProgressiveStill still(device, *loaded.gpu, samples);
@@ -197,7 +197,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     return rows;
 }
 
-/// PSNR against samples, a line for each scene.
+/// Plots PSNR over samples, one line per scene.
 void plotConvergence(const BenchOptions& o, const json& rows) {
     std::vector<PlotLine> lines;
     for (const json& row : rows) {

@@ -1,5 +1,5 @@
 #version 460
-// A copy: what the device's memory can do at best.
+// Copies an image, to measure the device's maximum memory bandwidth.
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(set = 0, binding = 0, rgba32f) uniform readonly image2D source;
 layout(set = 0, binding = 1, rgba32f) uniform writeonly image2D result;

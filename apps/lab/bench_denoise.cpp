@@ -1,5 +1,5 @@
-// limpid bench denoise: milliseconds of every pass of an integrator and a denoiser, and how near its memory
-// traffic comes to what the device can do.
+// `limpid bench denoise`: milliseconds of every pass of an integrator and a denoiser, and how close its
+// memory traffic comes to the device's bandwidth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Pipeline pipelineOf(const DenoiseBench& o) {
     return pipelineFor(o.preset, o.pipeline, parsePipeline("path", "atrous"));
 }
 
-/// Bytes per second of a copy between images larger than any cache.
+/// Returns the bytes per second of a copy between images larger than any cache.
 double copyRate(gpu::Device& device) {
     const gpu::Extent extent = device.isCpu() ? gpu::Extent{2048, 1024} : gpu::Extent{8192, 4096};
     const std::vector<float> pixels(size_t{4} * extent.width * extent.height);

@@ -1,6 +1,6 @@
-// limpid bench first-frame: what the first frame of an embedded denoiser costs beside later ones, after its
-// pipelines were prepared, and how long preparing them takes with and without what an earlier run has
-// compiled.
+// `limpid bench first-frame`: the time of an embedded denoiser's first frame compared with later ones, after
+// its pipelines were prepared, and how long preparing them takes with and without an earlier run's pipeline
+// cache.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct FirstFrameBench {
     uint32_t width = 1280, height = 720, frames = 20;
 };
 
-/// A frame of noise before a wall: what is in it does not matter.
+/// A frame of noise in front of a wall; its content does not matter.
 denoise::HostFrame noisyWall(uint32_t width, uint32_t height) {
     denoise::HostFrame frame;
     frame.width = width;

@@ -1,5 +1,5 @@
-// limpid bench kpcn: milliseconds of the network's layers, and their operations a second beside those of a
-// plain product of matrices.
+// `limpid bench kpcn`: milliseconds of the network's layers, and their operations per second compared with a
+// plain matrix product.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,10 +32,11 @@ struct KpcnBench {
     bool json = false;
 };
 
-/// Operations a second of a product of square matrices on cooperative matrices; none on devices without them.
+/// Returns the operations per second of a product of square matrices on cooperative matrices; none if the
+/// device has none.
 std::optional<double> productRate(gpu::Device& device, uint32_t size) {
     if (!device.info().cooperativeMatrices) return std::nullopt;
-    // Halves of 1 and of -0.5, as words of two.
+    // Halves of 1 and of -0.5, two per word.
     const std::vector<uint32_t> ones(size_t{size} * size / 2, 0x3C00B800u);
     const gpu::Buffer left = device.createStorageBuffer("left", gpu::bytesOf(ones));
     const gpu::Buffer right = device.createStorageBuffer("right", gpu::bytesOf(ones));
@@ -56,8 +57,8 @@ std::optional<double> productRate(gpu::Device& device, uint32_t size) {
     return 2.0 * std::pow(size, 3) / (median(times) * 1e-3);
 }
 
-/// Operations a second of nothing but a convolution of oneDNN's, as the hidden layers have it; none without
-/// it, and beside GPUs.
+/// Returns the operations per second of a oneDNN convolution of the size of the hidden layers; none without
+/// oneDNN, and on GPUs.
 std::optional<double> convolutionRate([[maybe_unused]] const gpu::Device& device,
                                       [[maybe_unused]] const KpcnBench& o) {
 #ifdef LIMPID_HAVE_ONEDNN
@@ -81,7 +82,7 @@ std::optional<double> convolutionRate([[maybe_unused]] const gpu::Device& device
 #endif
 }
 
-/// Of each pass of the convolutions, for one pixel: multiplications and additions of channels that there are.
+/// Returns the multiplications and additions of each convolution pass per pixel, counting real channels only.
 std::map<std::string, double> operationsByPass(const denoise::KpcnWeights& weights) {
     std::map<std::string, double> result;
     const char* names[] = {"diffuse", "specular"};
@@ -92,20 +93,20 @@ std::map<std::string, double> operationsByPass(const denoise::KpcnWeights& weigh
             const double count =
                 2.0 * denoise::KPCN_TAPS * denoise::KPCN_TAPS * layers[i].inputs * layers[i].outputs;
             result[fmt::format("kpcn/{} {}", names[side], step)] = count;
-            result[fmt::format("kpcn/{} layers", names[side])] += count;  // all of them in one pass, on CPUs
+            result[fmt::format("kpcn/{} layers", names[side])] += count;  // on CPUs one pass runs all layers
         }
     }
     return result;
 }
 
-/// Operations a second of what the network is held against.
+/// Operations per second to compare the network with.
 struct Yardsticks {
     std::optional<double> product, convolution;
 };
 
 struct Row {
     std::string pass;
-    double milliseconds = 0.0, operations = 0.0;  ///< operations of a frame
+    double milliseconds = 0.0, operations = 0.0;  ///< operations per frame
 };
 
 RenderSettings settingsOf(const KpcnBench& o) {

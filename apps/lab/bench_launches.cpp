@@ -1,5 +1,5 @@
-// limpid bench launches: the same number of samples per pixel in many launches of few or in few launches of
-// many, and how good each picture is.
+// `limpid bench launches`: the same samples per pixel in many launches of few samples or few launches of
+// many, and the quality of each picture.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct LaunchesBench {
 
 struct Row {
     uint32_t perLaunch = 1, launches = 1;
-    double milliseconds = 0.0;  ///< for all samples; wall time, the median of the repeats
+    double milliseconds = 0.0;  ///< wall time for all samples; the median of the repeats
     double psnr = 0.0;          ///< against the reference
 };
 
@@ -44,7 +44,8 @@ class Still {
                                                  scene::TraceOptions{chosenTracer(o.device, device), {}});
     }
 
-    /// Renders `samples`, and says how long that took. The first launch, at which drivers compile, is apart.
+    /// Renders `samples` and returns the picture and the time. Excludes the first launch, in which drivers
+    /// compile.
     std::pair<image::Image, double> render(uint32_t perLaunch, uint32_t samples, uint32_t seed) {
         RenderSettings settings;
         settings.extent = {o_.width, o_.height};

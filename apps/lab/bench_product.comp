@@ -5,8 +5,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_NV_cooperative_matrix : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
-// A product of square matrices of halves on cooperative matrices, sums in single precision: what `limpid bench kpcn` measures the
-// network against. 128x128 sums in a workgroup, 64x32 in a subgroup.
+// A product of square matrices of halves on cooperative matrices, with sums in single precision: `limpid
+// bench kpcn` compares the network with it. A workgroup computes 128x128 sums, a subgroup 64x32.
 layout(local_size_x = 16, local_size_y = 16) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {

@@ -1,4 +1,4 @@
-// limpid bench svgf: what SVGF's stages cost, and how that depends on the scene's triangles and on the
+// `limpid bench svgf`: the cost of SVGF's stages, and how it depends on the scene's triangles and the
 // filter's levels.
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ struct SvgfBench {
     bool json = false;
 };
 
-/// Milliseconds by stage, in the order of the frame.
+/// Milliseconds by stage, in the frame's order.
 struct Stages {
     std::vector<Bar> bars;
 
@@ -45,7 +45,7 @@ struct Stages {
     }
 };
 
-/// A pass belongs to the stage that its name begins with. Without a pass ("tiles" on GPUs) a stage takes no
+/// A pass belongs to the stage whose name it begins with. A stage without a pass ("tiles" on GPUs) takes no
 /// time.
 constexpr std::array<std::pair<const char*, const char*>, 8> stageNames{{{"path tracing", "pathtrace"},
                                                                          {"surfaces", "svgf/surfaces"},
@@ -83,7 +83,7 @@ struct OfScene {
     Stages stages;
 };
 
-/// The built-in scenes, by triangles.
+/// Measures the built-in scenes, sorted by triangles.
 std::vector<OfScene> measureScenes(gpu::Device& device, const SvgfBench& o) {
     std::vector<OfScene> result;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) {
@@ -96,7 +96,7 @@ std::vector<OfScene> measureScenes(gpu::Device& device, const SvgfBench& o) {
     return result;
 }
 
-/// With 1 to 8 levels.
+/// Measures 1 to 8 levels.
 std::vector<Stages> measureLevels(BenchScene& scene, const SvgfBench& o) {
     std::vector<Stages> result;
     RenderSettings settings = settingsOf(o);

@@ -1,4 +1,4 @@
-// limpid dataset: pictures of many scenes with few and with many samples, to train networks on.
+// `limpid dataset`: renders many scenes with few and with many samples, for training networks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,8 +40,9 @@ struct DatasetOptions {
 uint32_t numberFrom(uint32_t seed, std::string_view purpose, uint64_t index) {
     Hash64 hash;
     hash.add(fmt::format("{} {} {}", purpose, seed, index));
-    // The hash alone keeps the order of texts that differ in their last letter: the finalizer of splitmix64
-    // (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014) does not.
+    // The hash alone keeps the order of texts that differ only in their last letter. The finalizer of
+    // splitmix64 (G. Steele, D. Lea, C. Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014)
+    // removes that order.
     uint64_t x = hash.value();
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
     x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
@@ -58,7 +59,7 @@ class Dataset {
         return fs::path(o_.folder) / fmt::format("examples.{:05}.safetensors", number);
     }
 
-    /// Rooms first, then still lifes, then the scenes that are named.
+    /// Rooms first, then still lifes, then the named scenes.
     std::string sceneOf(uint64_t example) const {
         if (example < o_.rooms)
             return fmt::format("builtin:room-{}", numberFrom(o_.example.seed, "room", example));
@@ -68,7 +69,7 @@ class Dataset {
         return o_.scenes[example - o_.stillLifes];
     }
 
-    /// What decides its content: the same in every file of one dataset.
+    /// Returns the parameters that determine the content: the same in every file of a dataset.
     json parameters() const {
         return {{"version", 2},
                 {"seed", o_.example.seed},
@@ -82,8 +83,8 @@ class Dataset {
                 {"reference_samples", o_.example.referenceSamples}};
     }
 
-    /// The metadata of a file that is whole; none if it is missing or damaged. Throws UsageError if it is of
-    /// another dataset.
+    /// Returns the metadata of a complete file; none if it is missing or damaged. Throws UsageError if it
+    /// belongs to another dataset.
     std::optional<std::map<std::string, std::string>> finished(uint64_t number) const {
         if (!fs::exists(file(number))) return std::nullopt;
         try {
@@ -109,7 +110,7 @@ class Dataset {
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             ExampleSettings settings = o_.example;
             settings.seed = numberFrom(o_.example.seed, "samples", example);
-            // Networks meet both: stills, and sequences whose rays go through the pixels' centres.
+            // Networks see both: stills, and sequences with rays through the pixels' centres.
             settings.jitter = example % 2 == 0 ? Jitter::Pixel : Jitter::Off;
             addExample(device, gpuScene, scene.cameras.front(), settings, name, result);
             list.push_back({{"name", name},
@@ -120,7 +121,7 @@ class Dataset {
         neural::writeTensorFile(file(number), result);
     }
 
-    /// Of all files, if all are there: whichever process finishes last writes it.
+    /// Writes the manifest of all files if all exist: the process that finishes last does this.
     bool writeManifest() const {
         for (uint64_t number = 0; number < files(); ++number) {
             if (!fs::exists(file(number))) return false;

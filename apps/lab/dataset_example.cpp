@@ -16,7 +16,7 @@ using image::LayeredImage;
 constexpr float largestHalf = 65504.0f;
 constexpr uint32_t referenceSeed = 0x9E3779B9u;
 
-/// From pixels with their components together to channels one after the other.
+/// Converts interleaved components to planar channels.
 neural::Tensor tensorOf(const Image& picture) {
     const size_t pixels = size_t{picture.width} * picture.height;
     std::vector<float> values(pixels * picture.components);
@@ -31,7 +31,7 @@ neural::Tensor tensorOf(const Image& picture) {
                               {picture.components, picture.height, picture.width}, values);
 }
 
-/// Files say 1e10 where nothing is seen.
+/// In files, depth is 1e10 where the ray misses; here it becomes 0.
 Image distances(const LayeredImage& layers) {
     Image depth = layers.get("depth", "Z");
     for (float& z : depth.pixels) z = z < 1e9f ? z : 0.0f;

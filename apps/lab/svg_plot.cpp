@@ -39,7 +39,7 @@ std::string text(double x, double y, const char* anchor, const std::string& what
                        escaped(what));
 }
 
-/// 1, 2 or 5 times a power of ten: some five of them reach `largest`.
+/// Returns 1, 2 or 5 times a power of ten such that about five steps reach `largest`.
 double niceStep(double largest) {
     const double rough = std::max(largest, 1e-12) / 5.0,
                  power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -49,7 +49,7 @@ double niceStep(double largest) {
     return 10.0 * power;
 }
 
-/// From values to places in the picture.
+/// Maps values to positions in the picture.
 class Frame {
   public:
     Frame(const PlotAxes& axes, const std::vector<PlotLine>& lines) : axes_(axes) {
@@ -87,7 +87,7 @@ class Frame {
     }
 
   private:
-    /// The points' x, or on a logarithmic axis powers of ten.
+    /// Returns the points' x, or powers of ten on a logarithmic axis.
     std::vector<double> marks(const std::vector<PlotPoint>& points) const {
         std::vector<double> result;
         if (axes_.logarithmicX) {

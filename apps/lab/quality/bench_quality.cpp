@@ -16,7 +16,7 @@ namespace {
 
 using image::Image;
 
-/// The halves differ by twice the error of their mean (RMS), as far as a screen shows it.
+/// The halves differ by twice the RMS error of their mean. Values are compared as displayed.
 double ownPsnr(const std::vector<Reference>& references, float stops) {
     double sum = 0.0;
     for (const Reference& reference : references) {
@@ -31,9 +31,9 @@ double ownPsnr(const std::vector<Reference>& references, float stops) {
     return sum / static_cast<double>(references.size());
 }
 
-/// As shown, with as much noise as the reference has: its noise changes from frame to frame, and without it a
-/// perfect test would seem to change less. Half the difference of the reference's halves is as strong as the
-/// error of their mean, and independent of it.
+/// Adds as much noise as the reference has, then encodes for display. The reference's noise changes from
+/// frame to frame; without it, a perfect test would seem to change less. Half the difference of the
+/// reference's halves is as strong as the error of their mean, and independent of it.
 Image shownWithNoiseOf(const Reference& reference, const Image& picture, const Image& shown, float stops) {
     Image noisy = picture;
     for (size_t i = 0; i < noisy.pixels.size(); ++i) noisy.pixels[i] += 0.5f * reference.difference.pixels[i];
@@ -44,7 +44,7 @@ Image shownWithNoiseOf(const Reference& reference, const Image& picture, const I
     return result;
 }
 
-/// Scores frame after frame; flicker needs the frame before.
+/// Scores one frame after the other; flicker needs the previous frame.
 class Judge {
   public:
     Judge(const std::vector<Reference>& references, uint64_t first, float stops)
@@ -84,7 +84,7 @@ class Judge {
             image::flicker(now.noisyTest, before.noisyTest, now.reference, before.reference, reprojection);
         scores.temporalError =
             image::temporalError(now.test, before.test, now.reference, before.reference, reprojection);
-        // What a perfect test would have.
+        // Subtract the error that a perfect test would have.
         const auto ofNoise = image::temporalError(now.noisyReference, before.noisyReference, now.reference,
                                                   before.reference, reprojection);
         if (scores.temporalError && ofNoise) *scores.temporalError -= *ofNoise;
@@ -101,13 +101,13 @@ Image noisyOf(RenderedLayers layers) {
     return beautyOf(layers);
 }
 
-/// What a run of frames is held against.
+/// The references that frames are compared with.
 struct Truth {
     const std::vector<Reference>& references;
-    float exposure;  ///< Stops.
+    float exposure;  ///< stops
 };
 
-/// Runs a denoiser; with `noisy`, its input is scored too, into there.
+/// Runs a denoiser. If `noisy` is set, scores its input too and stores the result there.
 MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Extent extent,
                       const QualityFrames& frames, const Truth& truth, MethodQuality* noisy) {
     Judge judge(truth.references, frames.first, truth.exposure);
@@ -148,7 +148,7 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
     for (const QualityMethod& chosen : methods) {
         const bool first = quality.methods.size() == 1;
         RenderSettings settings = chosen.settings;
-        settings.layers = first;  // the noisy picture is made of them
+        settings.layers = first;  // the noisy picture is computed from them
         FrameRenderer renderer(device, scene, settings, samples);
         MethodQuality method =
             measure(renderer, sequence, settings.extent, frames, {references, quality.exposure},

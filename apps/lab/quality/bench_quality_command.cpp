@@ -1,4 +1,4 @@
-// limpid bench quality: how near denoised sequences come to converged ones, in numbers and pictures.
+// `limpid bench quality`: compares denoised sequences with converged ones, in numbers and pictures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct QualityOptions {
     std::string integrator, environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder,
                                          referenceFolder, weights;
     uint32_t width = 640, height = 360, samples = 1;
-    std::optional<uint64_t> referenceSamples;  ///< of every sequence, in place of its own
+    std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
     std::optional<uint64_t> first, frames;     ///< likewise
     bool lab = false, quick = false, json = false, smoothEdges = false;
 };
@@ -48,17 +48,17 @@ struct QualityOptions {
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
     common.extent = {o.width, o.height};
-    common.layers = true;  // the noisy frames are judged too
+    common.layers = true;  // the noisy frames are scored too
     for (const std::string& denoiser : o.methods.denoisers)
         common.pipeline.integrator =
             pipelineFor(o.preset, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
     applyPreset(common, o.preset);
-    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // as the references
+    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // like the references
     for (const std::string& text : o.assignments) assign(common, text);
     return methodsOf(o.methods, common);
 }
 
-/// Those of --scene and --scenes-folder, then the laboratory's.
+/// Returns the sequences of --scene and --scenes-folder, then those of the lab.
 std::vector<QualitySequence> chosenSequences(const QualityOptions& o) {
     const QualitySequence common{.cameraPath = o.cameraPath, .environment = o.environment};
     std::vector<QualitySequence> sequences;
@@ -78,7 +78,7 @@ std::vector<QualitySequence> chosenSequences(const QualityOptions& o) {
 
 std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
     std::vector<QualitySequence> sequences = chosenSequences(o);
-    std::set<std::string> taken;  // pictures and references are named after sequences
+    std::set<std::string> taken;  // file names of pictures and references derive from these
     for (QualitySequence& sequence : sequences) {
         const std::string name = sequence.name;
         for (int number = 2; !taken.insert(sequence.name).second; ++number)
@@ -96,7 +96,7 @@ std::vector<QualitySequence> sequencesOf(const QualityOptions& o) {
     return sequences;
 }
 
-/// What several sequences share, or what cannot be skipped, should not fail after the first of them.
+/// Checks inputs that several sequences share, or that cannot be skipped, before the first sequence runs.
 void checkInputs(const QualityOptions& o) {
     const auto mustExist = [](const std::string& file) {
         if (!std::filesystem::exists(file)) throw InputError(file, "does not exist");
@@ -111,7 +111,7 @@ void checkInputs(const QualityOptions& o) {
         scene::loadCameraPath(o.cameraPath);
 }
 
-/// A sequence on the device.
+/// A sequence loaded onto the device.
 struct LoadedSequence {
     scene::Scene scene;
     scene::SceneData data;
@@ -122,7 +122,7 @@ struct LoadedSequence {
     Sequence frames() const { return {scene, data, scene.cameras.front(), path, timing}; }
 };
 
-/// What --quick leaves out.
+/// Thrown for sequences that --quick skips.
 struct TooLarge : Error {
     using Error::Error;
 };
@@ -149,7 +149,7 @@ LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualityS
     return loaded;
 }
 
-/// With their networks on the device.
+/// Returns the methods with their networks loaded.
 std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions& o) {
     std::vector<QualityMethod> methods = methodsOf(o);
     for (QualityMethod& method : methods) {
@@ -173,7 +173,7 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
             measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
 }
 
-/// Noisy, every method, reference, side by side.
+/// Writes the noisy frame, every method and the reference side by side.
 void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& quality) {
     std::vector<const image::Image*> pictures;
     for (const MethodQuality& method : quality.methods) pictures.push_back(&method.last);
@@ -194,7 +194,7 @@ void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
     run.skipped.push_back({sequence.name, why.what()});
 }
 
-/// What has been measured goes into the page after each sequence: a run that ends early leaves the rest.
+/// Updates the page after each sequence, so that an interrupted run leaves its results.
 void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector<QualityMethod>& methods,
                  const QualitySequence& sequence, QualityRun& run) {
     std::optional<LoadedSequence> loaded;
@@ -217,7 +217,7 @@ void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector
 }
 
 void run(const QualityOptions& o, const std::string& command) {
-    methodsOf(o);  // what is wrong with them shows before the device is opened
+    methodsOf(o);  // reports faults before the device is opened
     const std::vector<QualitySequence> sequences = sequencesOf(o);
     checkInputs(o);
     if (!o.report.empty()) checkWritable(o.report);
@@ -236,12 +236,12 @@ void run(const QualityOptions& o, const std::string& command) {
     if (!o.json) printHead(all);
     for (const QualitySequence& sequence : sequences) addSequence(*device, o, methods, sequence, all);
     if (all.sequences.empty()) throw Error("no sequence could be measured");
-    if (!o.report.empty()) writeQualityPage(o.report, all);  // with what was skipped last
+    if (!o.report.empty()) writeQualityPage(o.report, all);  // once more, including skipped sequences
     if (!o.json && all.sequences.size() > 1) printRanking(all);
     if (o.json) fmt::print("{}\n", jsonText(qualityJson(all)));
 }
 
-/// What the user left open.
+/// Fills in defaults for options that were not given.
 void complete(QualityOptions& o, const CLI::App& command) {
     const auto given = [&](const char* option) { return command.count(option) > 0; };
     if (o.quick) {

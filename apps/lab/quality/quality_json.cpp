@@ -13,7 +13,7 @@ Json number(std::optional<double> value) {
     return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-/// HDR-FLIP is too slow to be measured here.
+/// HDR-FLIP is too slow to measure here.
 bool measured(const image::Metric& metric) {
     return metric.name != "hdr_flip";
 }

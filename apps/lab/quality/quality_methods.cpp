@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view presetWord = "preset=";
 
-/// SVGF as others have it, without each thing that Limpid adds to the paper, and with former defaults.
+/// Standard SVGF, our SVGF without each of its extensions to the paper, and with former defaults.
 constexpr std::array svgfSteps{"preset=svgf-paper",
                                "preset=svgf-cis565",
                                "svgf.antilag=0",
@@ -42,7 +42,7 @@ std::vector<std::string> wordsOf(const std::string& variant) {
     return words;
 }
 
-/// Whether a word of a variant is about this denoiser: a parameter of its group, or a preset for it.
+/// True if a word of a variant refers to this denoiser: a parameter of its group, or one of its presets.
 bool isAbout(const std::string& word, const std::string& group) {
     if (!word.starts_with(presetWord)) return word.starts_with(group + ".");
     const std::string_view preset = std::string_view(word).substr(presetWord.size());
@@ -65,7 +65,7 @@ RenderSettings withDenoiser(RenderSettings settings, const std::string& name) {
     return settings;
 }
 
-/// Jitter stays as the references have it.
+/// Keeps the jitter of the references.
 void applyPresetTo(RenderSettings& settings, const std::string& preset) {
     pipelineFor(
         preset,

@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Encoded values in [0,1] as a data URI.
+/// Returns encoded values in [0,1] as a data URI.
 std::string pngUri(const image::Image& encoded) {
     return "data:image/png;base64," +
            base64(image::encodePng(image::toBytes(encoded), "a picture of the report"));
 }
 
-/// The colours of error maps, from 0 to 1.
+/// Returns the colours of error maps, from 0 to 1.
 Json colorScale() {
     Json colors = Json::array();
     for (int i = 0; i <= 16; ++i) {
@@ -35,7 +35,7 @@ Json colorScale() {
     return colors;
 }
 
-/// Pictures are as the metrics see them: exposed, clamped, sRGB.
+/// Adds pictures as the metrics see them: exposed, clamped, sRGB.
 void addPictures(Json& object, const SequenceQuality& quality) {
     object["reference_picture"] = pngUri(image::displayEncode(quality.reference, quality.exposure));
     for (size_t i = 0; i < quality.methods.size(); ++i) {
@@ -65,7 +65,7 @@ std::string jsonForScript(const Json& json) {
     const std::string plain = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     std::string text;
     text.reserve(plain.size());
-    // In JSON these stand in strings alone, where they may be escaped.
+    // In JSON these characters only occur in strings, where they may be escaped.
     for (const char c : plain) {
         if (c == '<' || c == '>' || c == '&') {
             text += fmt::format("\\u{:04x}", static_cast<unsigned>(c));

@@ -8,7 +8,7 @@
 namespace limpid::cli {
 namespace {
 
-/// The mean of those that are there and finite.
+/// The mean of the finite values.
 class Mean {
   public:
     void add(std::optional<double> value) {
@@ -29,7 +29,7 @@ double flipOf(const MethodQuality& method) {
     return meanOf(method, "flip").value_or(1.0);
 }
 
-/// The mean of the places that methods of this error share.
+/// Returns the mean of the positions that methods with this error share.
 double placeOf(const MethodQuality& method, const std::vector<MethodQuality>& all) {
     const double flip = flipOf(method);
     const auto better = std::ranges::count_if(all, [&](const MethodQuality& m) { return flipOf(m) < flip; });

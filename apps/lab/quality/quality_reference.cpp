@@ -27,7 +27,8 @@ RenderedLayers rendered(ProgressiveStill& still, Moment moment, const RenderSett
     return still.download();
 }
 
-/// In the form of a file, so that a reference is the same whether it was rendered or read.
+/// Returns references as they are stored in a file, so that they do not depend on whether they were rendered
+/// or read.
 class ReferenceRenderer {
   public:
     ReferenceRenderer(gpu::Device& device, scene::GpuScene& scene, RenderSettings settings, uint64_t samples)
@@ -41,7 +42,7 @@ class ReferenceRenderer {
     }
 
     LayeredImage render(const Sequence& sequence, uint64_t frame) {
-        settings_.seed = 1;  // its noise must not be the noise of what it judges
+        settings_.seed = 1;  // a noise seed different from that of the tested frames
         const RenderedLayers first = rendered(first_, sequence.moment(frame, settings_.extent), settings_);
         settings_.seed = 2;
         Image difference = beautyOf(rendered(second_, sequence.moment(frame, settings_.extent), settings_));
@@ -67,7 +68,7 @@ Reference referenceOf(const LayeredImage& layers) {
     return {layers.get("", "RGB"), image::geometryOf(layers), layers.get("difference", "RGB")};
 }
 
-/// Of what decides the frame's pixels, but for its size and the noise.
+/// Hashes everything that determines the frame's pixels, except its size and the noise.
 uint64_t identityOf(const ReferenceFiles& files, const Sequence& sequence, const RenderSettings& settings,
                     uint64_t frame) {
     const Moment moment = sequence.moment(frame, settings.extent);
@@ -98,7 +99,7 @@ std::string fileName(std::string sequence, gpu::Extent extent, uint64_t samples,
                        identity, frame);
 }
 
-/// Throws InputError unless the file is the reference of this name.
+/// Throws InputError unless the file is the reference that its name says.
 void checkFile(const fs::path& file, const LayeredImage& layers, gpu::Extent extent,
                const std::map<std::string, std::string>& metadata) {
     if (layers.width != extent.width || layers.height != extent.height) {

@@ -13,12 +13,12 @@
 namespace limpid::cli {
 namespace {
 
-/// The numbers of one line: they may be absent, or infinite.
+/// Formats a number of a line; it may be absent or infinite.
 std::string cell(std::optional<double> value, int width, int digits) {
     return value ? fmt::format("{:>{}.{}f}", *value, width, digits) : fmt::format("{:>{}}", "-", width);
 }
 
-/// Equal pictures have an infinite PSNR, and of two there is no gain.
+/// Equal pictures have an infinite PSNR; the gain between two of them is undefined.
 std::string gainText(double gain) {
     return std::isnan(gain) ? "-" : fmt::format("{:+.2f}", gain);
 }
