@@ -24,7 +24,7 @@ std::string sourceOptions(const SceneSource& source) {
     return text;
 }
 
-/// Its frames' times, or why they cannot be had again.
+/// Returns the options for the frames' times, or sets the reason why they cannot be reproduced.
 std::string timesOf(const ShownFrame& frame, const Playback& playback, uint64_t frames, CommandLine& result) {
     const bool moves = !frame.clip.empty() || frame.camera.find("--camera-path") != std::string::npos;
     if (frames > 1 && moves && !playback.playedThroughout())

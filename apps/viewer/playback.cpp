@@ -31,7 +31,7 @@ void Playback::seek(double time) {
 
 std::optional<Playback::Change> Playback::change() const {
     if (!shown_) return Change{time_, time_};
-    // What moved into the last frame must be told to stand still.
+    // What moved in the last frame needs one more update that sets its motion to zero.
     if (*shown_ == time_ && shownBefore_ && *shownBefore_ == *shown_) return std::nullopt;
     return Change{*shown_, time_};
 }
@@ -51,13 +51,13 @@ void Playback::advance(const CameraParams& params, const scene::CameraKey& camer
         cameras_.clear();
     }
     previous_ = params;
-    // The first of two frames at one time has nothing before it that it could differ from.
+    // The first of two frames at one time has no earlier time to differ from.
     shownBefore_ = shown_ ? shown_ : time_;
     shown_ = time_;
     ++frames_;
     wentOn_ = playing;
     if (!playing) return;
-    // As SequenceTiming::timeOf(), to the last bit, as long as it can be.
+    // Same as SequenceTiming::timeOf(), bit for bit, if possible.
     time_ =
         playedAll_ ? start_ + static_cast<double>(frames_) / framesPerSecond : time_ + 1.0 / framesPerSecond;
 }

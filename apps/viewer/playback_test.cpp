@@ -39,7 +39,7 @@ TEST(Playback, WhatStandsIsToldOnce) {
     playback.reset(0.0);
     playback.advance({}, keyAt(0));
     playback.playing = false;
-    playback.advance({}, keyAt(0));  // moved into this one
+    playback.advance({}, keyAt(0));  // moved since the frame before
     const auto stop = playback.change();
     ASSERT_TRUE(stop);
     EXPECT_EQ(stop->from, stop->to);

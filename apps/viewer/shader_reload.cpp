@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the command prints; whether it succeeded.
+/// Returns the command's output, and whether it succeeded.
 std::pair<std::string, bool> runCommand(const std::string& command) {
     std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
     if (!pipe) throw Error("no program can be started");
@@ -81,7 +81,7 @@ std::optional<ShaderReload::Time> ShaderReload::savedAt(const std::string& name)
     return latest;
 }
 
-/// As CMake has it compiled (cmake/LimpidTargets.cmake), and neither optimised nor stripped after.
+/// Compiles with the same options as CMake (cmake/LimpidTargets.cmake), but does not optimise or strip.
 std::vector<uint32_t> ShaderReload::compile(const std::string& name) const {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> binary(std::tmpfile(), std::fclose);
     if (!binary) throw Error("no temporary file can be made");
@@ -116,7 +116,7 @@ std::optional<ShaderReload::Result> ShaderReload::poll(const std::vector<gpu::Sh
     for (const gpu::ShaderCode& code : used) {
         if (pending_.contains(std::string(code.name))) wanted.insert(std::string(code.name));
     }
-    // What had a fault is not tried again before something is saved, or others are used.
+    // Shaders with errors are not compiled again until a file is saved or other shaders are used.
     if (wanted.empty() || (!saved && wanted == tried_)) return std::nullopt;
     tried_ = wanted;
     gpu::ShaderReplacements made;
@@ -134,7 +134,7 @@ std::optional<ShaderReload::Result> ShaderReload::poll(const std::vector<gpu::Sh
     }
     for (const std::string& name : wanted) pending_.erase(name);
     const int compiled = static_cast<int>(made.size());
-    made.merge(replacements_);  // the new ones stay
+    made.merge(replacements_);  // keeps the new ones
     replacements_ = std::move(made);
     return Result{compiled, {}};
 }

@@ -32,7 +32,7 @@ TEST(ShaderReload, WithoutAFolderNothingIsWatched) {
     EXPECT_THROW(ShaderReload("/no/such/folder"), InputError);
 }
 
-/// A copy of one shader's sources to be written in.
+/// A copy of one shader's sources that tests can modify.
 class ShaderReloadInAFolder : public testing::Test {
   protected:
     void SetUp() override {
@@ -44,7 +44,8 @@ class ShaderReloadInAFolder : public testing::Test {
     }
     void TearDown() override { fs::remove_all(folder); }
 
-    /// Saves the shader with `from` replaced, as if `hours` from now, so that it is newer than the last time.
+    /// Saves the shader with `from` replaced. Its time is set `hours` into the future, so that it is newer
+    /// than the last one.
     void save(const std::string& from, const std::string& to, int hours) const {
         const fs::path file = folder / "passes/accumulate/accumulate.comp";
         std::ifstream in(file);

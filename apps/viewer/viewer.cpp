@@ -41,14 +41,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double idleSeconds = 1.0;      ///< between looks at the window while nothing is computed
-constexpr double scoringSeconds = 0.05;  ///< the same while scores are computed
-constexpr double longestStep = 0.1;      ///< seconds that a key moves the camera in one picture
-constexpr int restlessPictures = 4;      ///< drawn after the last event: until the panel has settled
-constexpr double betweenTimes = 0.25;    ///< seconds; reading the passes' times waits for the device
-constexpr double betweenSources = 0.5;   ///< seconds between looks at the shaders' files
+constexpr double idleSeconds = 1.0;      ///< between polls of the window while nothing is computed
+constexpr double scoringSeconds = 0.05;  ///< same, while scores are computed
+constexpr double longestStep = 0.1;      ///< maximum seconds that a held key moves the camera per picture
+constexpr int restlessPictures = 4;      ///< drawn after the last event, until the panel has settled
+constexpr double betweenTimes = 0.25;    ///< seconds between reads of the passes' times, which wait for the
+                                         ///< device
+constexpr double betweenSources = 0.5;   ///< seconds between checks of the shaders' files
 constexpr double messageSeconds = 20.0;
-constexpr uint64_t minFramesOfADevice = 30;  ///< lost sooner, it would be lost again
+constexpr uint64_t minFramesOfADevice = 30;  ///< a device lost sooner would be lost again
 constexpr const char* pathFile = "flown.json";
 constexpr const char* lightFile = "lights.json";
 
@@ -57,7 +58,7 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     return options;
 }
 
-/// What keeps a window answering.
+/// Returns the shrink at which a CPU renders fast enough for the window to respond.
 int shrinkFor(const gpu::Device& device, gpu::Extent window) {
     constexpr uint64_t maxPixels = 300'000;
     int shrink = 0;
@@ -74,12 +75,12 @@ class Viewer {
     void storePipelines() const { limpid::storePipelines(device_, pipelineFile(device_)); }
     uint64_t rendered() const { return main_.frames(); }
     ViewSettings settingsNow() const;
-    /// What another viewer of the same scene needs to go on as this one.
+    /// The state that another viewer needs to continue with the same scene.
     struct Standing {
         PanelState panel;
         scene::Camera home;
         FlyCamera hand;
-        std::string clip;  ///< as chooseClip() takes it; empty: none plays
+        std::string clip;  ///< argument for chooseClip(); empty: none plays
         double time;
     };
     Standing standing() const;
@@ -117,7 +118,8 @@ class Viewer {
     void saveLights();
     void writeControls();
     void noteRendering(bool now);
-    /// Runs what may fail for reasons of the user's; says so in the window. Whether it did not.
+    /// Runs a function that may fail because of the user's input. Shows the error in the window and returns
+    /// false if it does.
     template <typename Function>
     bool attempt(const Function& function);
 
@@ -139,13 +141,13 @@ class Viewer {
     Networks networks_;
     LiveComparison comparison_;
     Picker picker_;
-    int scenesShown_ = 0;     ///< that were loaded
+    int scenesShown_ = 0;     ///< number of scenes loaded so far
     float fovOfLast_ = 0.0f;  ///< degrees
     float speed_ = 1.0f;      ///< world units a second
-    int ownShrink_ = 0;       ///< where none is chosen
+    int ownShrink_ = 0;       ///< shrink if none is chosen
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
-    bool rendering_ = false;  ///< this picture, or the last one
+    bool rendering_ = false;  ///< true if this picture or the last one rendered
     Clock::time_point messageSince_{};
 };
 
@@ -178,8 +180,8 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
     goTo(home);
 }
 
-/// Leaves everything as it was if the scene cannot be had. What the command line says of camera and clip is
-/// of its own scene.
+/// Loads a scene; leaves everything unchanged if that fails. The command line's camera and clip apply to its
+/// own scene only.
 void Viewer::load(const SceneSource& source) {
     scene::Scene scene = load_(source);
     if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
@@ -208,7 +210,7 @@ void Viewer::show(scene::Scene scene) {
     playback_.reset(0.0);
 }
 
-/// Of a scene that was not there before.
+/// Resets camera, speed and time for a scene that was just opened.
 void Viewer::goTo(const scene::Camera& home) {
     rig_.show(*stage_, home);
     speed_ = 0.25f * stage_->sphere().radius;
@@ -217,7 +219,7 @@ void Viewer::goTo(const scene::Camera& home) {
     panel_.asked.measureExposure = panel_.asked.resetCamera = true;
 }
 
-/// An environment is put around the scene that there is; anything else is a scene.
+/// Opens an environment map around the current scene, or a scene.
 void Viewer::open(const std::string& file, Arrival arrival) {
     const std::string extension = fs::path(file).extension().string();
     SceneSource source = settings_.source;
@@ -226,14 +228,14 @@ void Viewer::open(const std::string& file, Arrival arrival) {
         source.background.clear();
     } else {
         source.scene = file;
-        // Dropping a file says nothing about the folders around it.
+        // A dropped file does not imply permission to read the folders around its own.
         source.assetRoot = arrival == Arrival::Dropped ? fs::absolute(file).parent_path().string() : "";
     }
     load(source);
     say("opened " + file);
 }
 
-/// Lamps and backgrounds that come or go.
+/// Adds or removes lamps and the background.
 void Viewer::applyLightRequests() {
     PanelRequests& asked = panel_.asked;
     if (!asked.relight && !asked.addPoint && !asked.addSun && asked.removeLamp < 0) return;
@@ -247,14 +249,14 @@ void Viewer::applyLightRequests() {
     attempt([&] { relight(source); });
 }
 
-/// The scene again, with other lights; all else stays.
+/// Loads the scene again with other lights; everything else is kept.
 void Viewer::relight(const SceneSource& source) {
     scene::Scene scene = load_(source);
     const double time = playback_.time();
     if (stage_->moves()) scene::chooseClip(scene, scene::clipChoice(stage_->scene()));
     show(std::move(scene));
     playback_.reset(time);
-    // Its file may have changed in the meantime.
+    // The scene's file may have changed since.
     rig_.keep(*stage_);
     panel_.camera = rig_.chosen();
     facts_.cameras = rig_.names();
@@ -265,7 +267,7 @@ void Viewer::relight(const SceneSource& source) {
     panel_.lights.carry(before, source.background == backgroundBefore);
 }
 
-/// The next frame is the first one.
+/// Makes the next frame the first one.
 void Viewer::startAnew() {
     playback_.reset(playback_.time());
     main_.drop();
@@ -314,7 +316,7 @@ void Viewer::fly(float seconds) {
     steering.apply(rig_.hand(), seconds, speed_);
 }
 
-/// Turns to what is under the mouse.
+/// Turns the camera towards the point under the mouse.
 void Viewer::focus() {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return;
@@ -323,9 +325,9 @@ void Viewer::focus() {
         rig_.hand().focus(*point);
 }
 
-/// In the panel, as it is now.
+/// Updates the pose in the panel.
 void Viewer::showPose() {
-    // The camera makes a unit vector of `up`: shown at once, that would be taken for the next input.
+    // The camera normalises `up`. Showing that at once would disturb the user's typing.
     if (panel_.holdsPose) return;
     if (rig_.isFree()) {
         panel_.pose = {rig_.hand().eye(), rig_.hand().target(), rig_.hand().up()};
@@ -336,7 +338,7 @@ void Viewer::showPose() {
     panel_.pose = {eye, eye - rig_.hand().distance() * vec3(camera.toWorld[2]), vec3(camera.toWorld[1])};
 }
 
-/// Where the panel's numbers say. What is no camera changes nothing.
+/// Places the camera at the panel's pose. An invalid pose changes nothing.
 void Viewer::placeCamera() {
     const bool wasFree = rig_.isFree();
     rig_.place(*stage_, playback_.time(), panel_.pose.eye, panel_.pose.target, panel_.pose.up);
@@ -346,7 +348,7 @@ void Viewer::placeCamera() {
     startAnew();
 }
 
-/// What the panel asked for.
+/// Carries out the panel's requests.
 void Viewer::applyRequests() {
     PanelRequests& asked = panel_.asked;
     if (std::exchange(asked.open, false)) attempt([&] { open(panel_.file, Arrival::Named); });
@@ -381,7 +383,7 @@ void Viewer::applyRequests() {
     if (std::exchange(asked.exr, false) && main_) attempt([&] { save(unusedFile("limpid", ".exr")); });
 }
 
-/// Settings that follow from others. Those of what cannot be done go back to what was.
+/// Derives settings from others, and restores the previous value of impossible ones.
 void Viewer::applySettings() {
     const gpu::Extent window = window_.pixels();
     RenderSettings& render = panel_.render;
@@ -403,7 +405,7 @@ void Viewer::applySettings() {
     if (!panel_.comparison.isOn()) comparison_.drop();
 }
 
-/// Where there is none, what would need it is not chosen.
+/// Loads the networks that the pipelines need. If that fails, goes back to a pipeline without one.
 void Viewer::loadNetworks() {
     RenderSettings& render = panel_.render;
     const auto have = [&](const Pipeline& pipeline) {
@@ -416,7 +418,7 @@ void Viewer::loadNetworks() {
         panel_.comparison.with = 0;
 }
 
-/// Whether there were any.
+/// Recompiles changed shaders. Returns true if there were any.
 bool Viewer::reloadShaders() {
     if (!reload_.watches() || !main_ || !due(lastSources_, betweenSources)) return false;
     std::vector<gpu::ShaderCode> used = main_.renderer().graph().usedShaders();
@@ -440,14 +442,14 @@ void Viewer::say(const std::string& message) {
     messageSince_ = Clock::now();
 }
 
-/// Whether it has just become too old to be shown.
+/// Returns true if the message has just expired.
 bool Viewer::messageAges() {
     if (facts_.messageIsOld || facts_.message.empty() || secondsSince(messageSince_) < messageSeconds)
         return false;
     return facts_.messageIsOld = true;
 }
 
-/// Whether the next picture would be another one, and is wanted.
+/// Returns true if the next picture would differ from the last one and should be rendered.
 bool Viewer::mustRender(const CameraParams& camera) {
     const gpu::Extent extent = panel_.render.extent;
     if (extent.width == 0 || extent.height == 0) return false;
@@ -499,7 +501,7 @@ void Viewer::noteTimes(bool rendered) {
     facts_.sceneBytes = stage_->onDevice().byteCount();
 }
 
-/// Once there is a picture that has an exposure.
+/// Measures the exposure once there is a picture that uses one.
 void Viewer::measureExposure() {
     if (!panel_.asked.measureExposure || !main_ || !main_.settings().pipeline.needsExposure()) return;
     panel_.asked.measureExposure = false;
@@ -507,7 +509,7 @@ void Viewer::measureExposure() {
     panel_.exposure = image::autoExposure(beautyOf(layers), surfaceShare(layers));
 }
 
-/// What the exposure comes to with this pipeline.
+/// Returns the exposure for this pipeline; 0 if its picture is not radiance.
 float Viewer::stopsOf(const Pipeline& pipeline) const {
     return pipeline.needsExposure() ? panel_.exposure : 0.0f;
 }
@@ -564,7 +566,7 @@ ViewSettings Viewer::settingsNow() const {
         settings.render.extent = size;
     settings.samples = panel_.samples;
     settings.maxSamples = static_cast<uint64_t>(panel_.maxSamples);
-    // What nobody has chosen is chosen by the next device.
+    // If the user has not chosen a shrink, the next device chooses its own.
     settings.shrink = settings_.shrink < 0 && panel_.shrink == ownShrink_ ? -1 : panel_.shrink;
     return settings;
 }
@@ -572,7 +574,7 @@ ViewSettings Viewer::settingsNow() const {
 Viewer::Standing Viewer::standing() const {
     Standing now{panel_, rig_.home(), rig_.hand(), scene::clipChoice(stage_->scene()), playback_.time()};
     now.panel.asked = {};
-    now.panel.render.networks = {};  // they lie on the device
+    now.panel.render.networks = {};  // the networks are on the device
     return now;
 }
 
@@ -584,7 +586,7 @@ void Viewer::takeOver(const Standing& standing) {
     facts_.fault = "the device was lost; everything was set up anew";
 }
 
-/// Whenever something is elsewhere.
+/// Writes the controls' positions to the file for tests, if any has changed.
 void Viewer::writeControls() {
     if (settings_.controls.empty()) return;
     std::string values = facts_.allValues;
@@ -601,7 +603,7 @@ void Viewer::writeControls() {
     writeTextAtomically(settings_.controls, text);
 }
 
-/// Told before a frame begins: while it is computed, nothing else is written.
+/// Written before a frame begins, since nothing else is written while it is computed.
 void Viewer::noteRendering(bool now) {
     if (std::exchange(rendering_, now) != now && now) writeControls();
 }
@@ -651,7 +653,7 @@ void Viewer::run() {
         throw Error(fmt::format("the validation layer reported {} messages", device_.validationMessages()));
 }
 
-/// The same again on another device, or on the same one if it has come back.
+/// Opens the viewer again in the same state, on another device or on the same one if it is available again.
 std::unique_ptr<Viewer> afterLoss(const gpu::DeviceOptions& device, const TracerChoice& tracer,
                                   const SceneLoader& load, std::unique_ptr<Viewer> lost) {
     ViewSettings now = lost->settingsNow();
@@ -670,7 +672,7 @@ std::unique_ptr<Viewer> afterLoss(const gpu::DeviceOptions& device, const Tracer
 
 void view(const gpu::DeviceOptions& device, const TracerChoice& tracer, const SceneLoader& load,
           const std::function<scene::Camera(const scene::Scene&)>& start, const ViewSettings& settings) {
-    // Before there is a window: what is wrong with these needs none.
+    // Before there is a window, since errors in these do not need one.
     scene::Scene first = load(settings.source);
     if (!first.rig.clips.empty()) scene::chooseClip(first, settings.animation);
     const scene::Camera home = start(first);

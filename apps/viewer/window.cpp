@@ -2,7 +2,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <vulkan/vulkan_core.h>
-// GLFW declares its Vulkan calls after Vulkan's header.
+// GLFW only declares its Vulkan functions after Vulkan's header is included.
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -40,10 +40,10 @@ Window::Window(const std::string& title, gpu::Extent size) {
     listen();
 }
 
-/// A wait for events does not tell whether there were any.
+/// Waiting for events does not tell whether there were any, so callbacks record them.
 void Window::listen() {
     using Kind = InputEvent::Kind;
-    constexpr float outside = -std::numeric_limits<float>::max();  // as ImGui has it
+    constexpr float outside = -std::numeric_limits<float>::max();  // same value as in ImGui
     glfwSetWindowUserPointer(window_, this);
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         Window& self = of(window);
@@ -79,7 +79,7 @@ void Window::listen() {
     glfwSetWindowCloseCallback(window_, [](GLFWwindow* window) { of(window); });
 }
 
-/// Events have no time but that of the poll which finds them: one of them may be a frame old.
+/// Events have no time of their own, only that of the poll, so they may be a frame old.
 bool Window::isSecondClick(int button) {
     constexpr double soon = 0.35, near = 6.0;  // seconds, pixels
     Click now{button, glfwGetTime()};
@@ -91,7 +91,7 @@ bool Window::isSecondClick(int button) {
     return second;
 }
 
-/// To which something has happened.
+/// Returns the window that received an event, and marks it as touched.
 Window& Window::of(GLFWwindow* window) {
     Window& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
     self.touched_ = true;

@@ -13,7 +13,7 @@ namespace {
 constexpr double pathSeconds = 10.0;  ///< of the built-in camera paths
 constexpr std::array<const char*, 3> pathNames{"orbit", "dolly", "shake"};
 
-/// Around the middle of the scene, as far as it lies ahead.
+/// Returns a free camera that orbits around the middle of the scene, if that lies ahead.
 FlyCamera handAt(const Stage& stage, const scene::Camera& start) {
     const scene::BoundingSphere& sphere = stage.sphere();
     const vec3 eye(start.toWorld[3]), ahead = -vec3(start.toWorld[2]);
@@ -89,7 +89,7 @@ scene::Camera CameraRig::at(const Stage& stage, double time) const {
 scene::CameraKey CameraRig::key() const {
     scene::CameraKey key;
     key.eye = fly_.eye();
-    key.target = fly_.eye() + fly_.forward();  // as FlyCamera::camera() has it
+    key.target = fly_.eye() + fly_.forward();  // same as in FlyCamera::camera()
     key.up = fly_.up();
     key.verticalFov = fly_.camera().verticalFov;
     return key;

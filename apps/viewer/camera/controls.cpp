@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_internal.h>  // whether a slider is being typed into
+#include <imgui_internal.h>  // tells whether a slider is being typed into
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr float maxOfAVector = 1e9f;
 
-/// ImGui's slider over positions from 0 to 1 that shows the value as its text: the scale is ours, and a
-/// number that is typed (Ctrl and a click) is the value itself, which may lie outside the slider's span.
+/// Draws ImGui's slider over positions from 0 to 1 with the value as its text: we define the scale. A typed
+/// number (Ctrl and a click) is the value itself and may lie outside the slider's span.
 std::optional<double> slide(const char* name, const std::string& shown, const SliderSpan& span,
                             double value) {
     constexpr double first = 0.0, last = 1.0;
@@ -126,12 +126,12 @@ bool Controls::choice(const char* name, const std::vector<std::string>& choices,
         ImGui::BeginCombo(name, choices[static_cast<size_t>(chosen)].c_str(), ImGuiComboFlags_HeightLarge);
     note(name, choices[static_cast<size_t>(chosen)]);
     if (!open) return false;
-    // Its place is found out in the first frame, in which it is not shown.
+    // ImGui finds its position in the first frame, in which it is not drawn.
     const bool appears = ImGui::IsWindowAppearing();
     bool changed = false;
     for (size_t i = 0; i < choices.size(); ++i) {
         const auto number = static_cast<int>(i);
-        ImGui::PushID(number);  // two may have the same name
+        ImGui::PushID(number);  // two choices may have the same name
         if (ImGui::Selectable(choices[i].c_str(), number == chosen)) {
             changed = number != chosen;
             chosen = number;

@@ -11,13 +11,13 @@ namespace {
 constexpr float steepest = 1.55f;  // radians: just short of the poles, where "up" has no direction
 constexpr vec3 worldUp(0.0f, 1.0f, 0.0f);
 
-/// A camera that is not rolled turns about the world's vertical; a rolled one about its own.
+/// A camera without roll turns about the world's vertical, a rolled one about its own.
 vec3 horizonOf(const scene::Camera& camera) {
     const vec3 right(camera.toWorld[0]), up(camera.toWorld[1]);
     return std::abs(right.y) < 1e-3f && up.y > -1e-3f ? worldUp : glm::normalize(up);
 }
 
-/// Columns: right, up and back of a camera that looks along the horizon.
+/// Returns columns: right, up and back of a camera that looks along the horizon.
 mat3 axesOver(const vec3& up) {
     if (up == worldUp) return mat3(1.0f);
     const vec3 other = std::abs(up.z) < 0.9f ? vec3(0.0f, 0.0f, 1.0f) : vec3(1.0f, 0.0f, 0.0f);
@@ -35,9 +35,9 @@ FlyCamera::FlyCamera(const scene::Camera& start, float distance)
     face(-vec3(start.toWorld[2]));
 }
 
-/// `ahead` is a unit vector.
+/// `direction` is a unit vector.
 void FlyCamera::face(const vec3& direction) {
-    const vec3 ahead = direction * axes_;  // in the axes
+    const vec3 ahead = direction * axes_;  // relative to the axes
     yaw_ = std::atan2(ahead.x, -ahead.z);
     pitch_ = std::clamp(std::asin(std::clamp(ahead.y, -1.0f, 1.0f)), -steepest, steepest);
 }
@@ -78,7 +78,7 @@ void FlyCamera::look(float rightward, float up) {
 
 void FlyCamera::orbit(float rightward, float up) {
     const vec3 middle = target();
-    look(rightward, up);  // the eye goes the other way: what is seen follows the hand
+    look(rightward, up);  // the eye moves the other way, so that the scene follows the mouse
     eye_ = middle - distance_ * forward();
 }
 

@@ -52,7 +52,7 @@ TEST(FlyCamera, IsPlacedByNumbers) {
 
 TEST(FlyCamera, OrbitsAroundItsTarget) {
     FlyCamera camera = facingMinusZ();
-    camera.orbit(1.57079633f, 0.0f);  // the hand pulls to the right: the eye goes to the left
+    camera.orbit(1.57079633f, 0.0f);  // dragging to the right moves the eye to the left
     expectNear(camera.target(), {1, 2, -7});
     expectNear(camera.eye(), {-9, 2, -7});
     camera.orbit(0.0f, -10.0f);  // stops short of the pole
@@ -73,7 +73,7 @@ TEST(FlyCamera, LooksAroundWhereItStands) {
 TEST(FlyCamera, PansByPicturesAndMovesByUnits) {
     FlyCamera camera = facingMinusZ();
     const float height = 20.0f * std::tan(0.4f);
-    camera.pan(0.5f, -1.0f);  // what is seen follows the hand
+    camera.pan(0.5f, -1.0f);  // the scene follows the mouse
     expectNear(camera.eye(), {1 - 0.5f * height, 2 + height, 3});
     camera.move({1, 2, 3});
     expectNear(camera.eye(), {2 - 0.5f * height, 4 + height, 0});
@@ -84,7 +84,7 @@ TEST(FlyCamera, ZoomsTowardsItsTarget) {
     camera.zoom(0.5f);
     expectNear(camera.target(), {1, 2, -7});
     expectNear(camera.eye(), {1, 2, -2});
-    camera.zoom(0.0f);  // never onto it
+    camera.zoom(0.0f);  // never reaches the target
     EXPECT_GT(camera.distance(), 0.0f);
 }
 

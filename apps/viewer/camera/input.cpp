@@ -14,27 +14,27 @@ bool isShift(const InputEvent& event) {
            (event.code == GLFW_KEY_LEFT_SHIFT || event.code == GLFW_KEY_RIGHT_SHIFT);
 }
 
-/// With these held, keys are commands.
+/// While one of these is held, keys are commands.
 bool isControl(const InputEvent& event) {
     return event.kind == Kind::Key && event.code >= GLFW_KEY_LEFT_SHIFT &&
            event.code <= GLFW_KEY_RIGHT_SUPER && !isShift(event);
 }
 
-/// A key whose character, if it makes one, comes as Text.
+/// A key that produces a character reports it separately as Text.
 bool isPrintable(const InputEvent& event) {
     return event.kind == Kind::Key && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
 }
 
-/// Whether `earlier`, of the same frame, would no longer be told from `later`. `typing`: keys that print
-/// matter by their characters alone.
+/// True if `earlier`, of the same frame, could no longer be distinguished from `later`. `typing`: printable
+/// keys only matter through their characters.
 bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
     const auto matters = [&](const InputEvent& e) { return !typing || (!isPrintable(e) && !isShift(e)); };
     switch (later.kind) {
         case Kind::Move:
             return earlier.kind == Kind::Button || earlier.kind == Kind::Wheel;
         case Kind::Button:
-            // The interface finds out what is under the mouse before a button counts; and what was moved
-            // before a release was moved with the button down.
+            // The interface needs to find the control under the mouse before a button counts; and movement
+            // before a release happened while the button was down.
             return (earlier.kind == Kind::Button && earlier.code == later.code) || earlier.kind == Kind::Move;
         case Kind::Wheel:
             return false;
@@ -44,7 +44,7 @@ bool hides(const InputEvent& later, const InputEvent& earlier, bool typing) {
                 return earlier.kind == Kind::Button || (earlier.kind == Kind::Key && matters(earlier));
             return earlier.kind == Kind::Key && earlier.code == later.code && matters(later);
         case Kind::Text:
-            // Fields take a frame's characters before its keys.
+            // Text fields handle a frame's characters before its keys.
             return earlier.kind == Kind::Button ||
                    (earlier.kind == Kind::Key && earlier.down && matters(earlier) && !isPrintable(earlier) &&
                     !isShift(earlier) && !isControl(earlier));

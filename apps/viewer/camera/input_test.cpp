@@ -27,7 +27,7 @@ InputEvent move(float x) {
     return {.kind = Kind::Move, .x = x};
 }
 
-/// Frames that it takes to see all of these, which came at once.
+/// Returns the frames into which simultaneous events are split.
 std::vector<std::vector<InputEvent>> frames(const std::vector<InputEvent>& events, bool typing = false) {
     InputQueue queue;
     for (const InputEvent& event : events) queue.add(event);

@@ -15,7 +15,7 @@ constexpr float zoomAStep = 0.85f;
 
 Steering Steering::now() {
     const ImGuiIO& io = ImGui::GetIO();
-    // The way to where it went down is no drag.
+    // Movement before the button went down is not a drag.
     const auto held = [&](int button) { return io.MouseDown[button] && io.MouseDownDuration[button] > 0.0f; };
     return {.left = held(ImGuiMouseButton_Left),
             .middle = held(ImGuiMouseButton_Middle),

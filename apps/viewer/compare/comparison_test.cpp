@@ -44,7 +44,7 @@ TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
 }
 
 TEST(LiveScores, AreThoseOfTheDisplayedPictures) {
-    // 0.25 and 0.36 of linear light at two stops less: sRGB code values 0.2771 and 0.3317.
+    // 0.25 and 0.36 of linear light, two stops darker: sRGB values 0.2771 and 0.3317.
     const image::Image test(16, 16, 3, 0.25f), reference(16, 16, 3, 0.36f);
     LiveScores scores;
     scores.compare(test, reference, -2.0f);

@@ -13,7 +13,7 @@ namespace limpid::viewer {
 namespace {
 
 constexpr float dividerReach = 6.0f;        ///< pixels of the window on either side
-constexpr uint32_t magnifiedPixels = 21;    ///< of the picture, along a side: odd, so that one is the middle
+constexpr uint32_t magnifiedPixels = 21;    ///< of the picture, per side: odd, so that one is in the middle
 constexpr float magnifierSide = 210.0f;     ///< pixels of the window
 constexpr float magnifierDistance = 24.0f;  ///< from the mouse
 constexpr ImU32 lineColor = IM_COL32(255, 255, 255, 200), shadowColor = IM_COL32(0, 0, 0, 160);
@@ -53,7 +53,7 @@ gpu::Pane magnified(const gpu::Pane& pane, gpu::Extent picture, gpu::Extent wind
         const float middle = std::floor(mouse[i] / size[i] * pixels[i]);
         from[i] = std::clamp(middle - std::floor(magnifiedPixels / 2.0f), 0.0f,
                              std::max(pixels[i] - magnifiedPixels, 0.0f));
-        // All squares on the same side of the mouse: where there is room.
+        // All squares go on the same side of the mouse, where there is room.
         const float whole = i == 0 ? 2.0f * magnifierSide : magnifierSide;
         const bool room = mouse[i] + magnifierDistance + whole <= size[i];
         to[i] = room ? mouse[i] + magnifierDistance : mouse[i] - magnifierDistance - whole;
@@ -129,14 +129,14 @@ std::string Display::probeAll(LiveRender& main) const {
     return text;
 }
 
-/// Whether an image of a pass is shown instead of the picture.
+/// Shows an image of a pass instead of the picture. Returns false if there is none to show.
 bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main) {
     if (panel.pass.empty() || !main) return false;
     const auto wanted = std::tuple(main.frames(), panel.pass, panel.image, panel.view);
     if (wanted != inspected_) {
         try {
             images_ = main.renderer().dump(panel.pass);
-        } catch (const UsageError&) {  // of another integrator or denoiser
+        } catch (const UsageError&) {  // the pass belongs to another integrator or denoiser
             panel.pass.clear();
             return false;
         }
@@ -165,7 +165,7 @@ void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) 
         const ImVec2 upper{glass.target.left * io.DisplaySize.x, glass.target.top * io.DisplaySize.y},
             lower{glass.target.right * io.DisplaySize.x, glass.target.bottom * io.DisplaySize.y};
         marks.AddRect(upper, lower, lineColor);
-        // The pixel under the mouse.
+        // Outline the pixel under the mouse.
         const auto [x, y] = pixelUnderMouse(picture);
         const auto place = [](float from, float to, float first, float last, uint32_t pixel, uint32_t all) {
             const float share = (static_cast<float>(pixel) / length(all) - first) / (last - first);

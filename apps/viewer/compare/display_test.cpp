@@ -15,7 +15,7 @@ TEST(SplitPanes, EachShowsItsOwnPart) {
     EXPECT_EQ(panes[1].source.right, 1.0f);
 }
 
-/// In pixels of the picture and of the window.
+/// Checks a square in pixels of the picture and of the window.
 void expectSquare(float x, float y) {
     const gpu::Extent picture{200, 100}, window{1000, 500};
     for (const int number : {0, 1}) {

@@ -19,7 +19,7 @@ uint32_t packed(const vec3& encoded) {
     return byte(encoded.r) | byte(encoded.g) << 8 | byte(encoded.b) << 16 | 0xFF000000u;
 }
 
-/// What is chosen of a pixel, as red, green and blue.
+/// Returns the chosen channels of a pixel as red, green and blue.
 vec3 chosen(const float* pixel, uint32_t components, int channels) {
     if (channels == InspectorView::Color)
         return components < 3 ? vec3(pixel[0]) : vec3(pixel[0], pixel[1], pixel[2]);

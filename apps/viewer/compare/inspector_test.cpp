@@ -22,7 +22,7 @@ TEST(Inspector, ColorsAreEncoded) {
     EXPECT_EQ(texel({0.0f, 1.0f, 0.0f}), 0xFF00FF00u);
     EXPECT_EQ(texel({0.0f, 0.0f, 7.0f}), 0xFFFF0000u);
     EXPECT_EQ(texel({-1.0f, -1.0f, -1.0f}), 0xFF000000u);
-    EXPECT_EQ(texel({0.5f}), 0xFFBCBCBCu);  // sRGB has 188 for a half
+    EXPECT_EQ(texel({0.5f}), 0xFFBCBCBCu);  // 0.5 is 188 in sRGB
     EXPECT_EQ(texel({0.25f}, {.stops = 1.0f}), 0xFFBCBCBCu);
 }
 

@@ -5,7 +5,7 @@
 namespace limpid::viewer {
 namespace {
 
-constexpr uint64_t numbersAlone = 1 << 24;  ///< far from those of any frames that the picture has
+constexpr uint64_t numbersAlone = 1 << 24;  ///< far from the numbers of any frames of the picture
 constexpr std::chrono::seconds betweenScores(1);
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace limpid::viewer {
 namespace {
 
-/// All has moved by so many pixels of a picture of 64x32.
+/// Every pixel of a 64x32 picture has moved by (x, y) pixels.
 image::Image motion(float x, float y, float valid = 1.0f) {
     image::Image image(64, 32, 4);
     for (size_t at = 0; at < image.pixels.size(); at += 4) {

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
-// Debian keeps the back ends in a folder of their own.
+// Debian keeps the back ends in a separate folder.
 #include <backends/imgui_impl_glfw.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace limpid::viewer {
 namespace {
 
-constexpr float letterPixels = 13.0f;  ///< the size that ImGui's own font is drawn for
+constexpr float letterPixels = 13.0f;  ///< nominal size of ImGui's own font
 
 static_assert(sizeof(ImDrawVert) == sizeof(gpu::OverlayVertex) && sizeof(ImDrawIdx) == sizeof(uint16_t));
 
@@ -30,7 +30,7 @@ Interface::Interface(Window& window, gpu::Presenter& presenter) : window_(window
     ImFontConfig font;
     font.SizePixels = std::round(letterPixels * scale);
     io.Fonts->AddFontDefault(&font);
-    ImGui_ImplGlfw_InitForVulkan(window.handle(), false);  // the queue has the events
+    ImGui_ImplGlfw_InitForVulkan(window.handle(), false);  // events come from the queue instead
     unsigned char* texels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&texels, &width, &height);
@@ -49,7 +49,7 @@ void Interface::begin() {
     ImGuiIO& io = ImGui::GetIO();
     clickedTwice_ = false;
     for (const InputEvent& event : window_.input().take(io.WantTextInput)) apply(event);
-    // What the back end has read of the window itself is ahead of the queue.
+    // The back end reads the window's current state, which is ahead of the queue.
     io.MousePos = {mouse_.x, mouse_.y};
     std::copy(buttons_.begin(), buttons_.end(), io.MouseDown);
     ImGui::NewFrame();
@@ -87,7 +87,7 @@ void Interface::apply(const InputEvent& event) {
 gpu::Overlay Interface::end() {
     ImGui::Render();
     const ImDrawData& data = *ImGui::GetDrawData();
-    const ImVec2 scale = data.FramebufferScale;  // pixels of the screen to those of the window
+    const ImVec2 scale = data.FramebufferScale;  // pixels of the screen per pixel of the window
     vertices_.clear();
     indices_.clear();
     draws_.clear();

@@ -61,7 +61,7 @@ void removeLamp(int index, SceneSource& source, LightDesk& desk) {
 }
 
 std::string newLamp(bool sun, const vec3& eye, const vec3& target, float stops) {
-    constexpr float wanted = 0.4f;  // of what a white diffuse surface sends back, once exposed
+    constexpr float wanted = 0.4f;  // radiance reflected by a white diffuse surface, after exposure
     const float irradiance = wanted * pi * std::exp2(-stops);
     if (sun) return fmt::format("sun,0.3,1,0.4,{:.3g}", irradiance);
     const float distance = glm::distance(eye, target);

@@ -41,7 +41,7 @@ TEST(LightDesk, KeepsChangesWhenAnotherLightComesOrGoes) {
                        .background = {},
                        .lightFile = {}};
     LightDesk desk;
-    desk.show(loaded(3), source);  // lamp 0 is the scene's
+    desk.show(loaded(3), source);  // lamp 0 belongs to the scene
     desk.lights[0].on = false;
     desk.lights[2].brightness = 0.5f;
     desk.lights[3].color = {1, 0, 0};
@@ -60,7 +60,7 @@ TEST(LightDesk, KeepsChangesWhenAnotherLightComesOrGoes) {
     fewer.carry(desk);
     EXPECT_FALSE(fewer.lights[0].on);
     EXPECT_EQ(fewer.lights[1].brightness, 0.5f);
-    removeLamp(0, source, desk);  // is the scene's
+    removeLamp(0, source, desk);  // belongs to the scene
     EXPECT_EQ(source.lights.size(), 1u);
 }
 

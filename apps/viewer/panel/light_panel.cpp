@@ -24,7 +24,7 @@ void drawPlace(LightControl& light, const PanelFacts& facts, Controls& controls)
         light.direction = glm::normalize(direction);
 }
 
-/// Whether the light is to be taken away.
+/// Returns true if the light is to be removed.
 bool drawLight(LightControl& light, bool added, const PanelFacts& facts, Controls& controls) {
     ImGui::PushID(light.index + 1'000'000 * static_cast<int>(light.kind));
     controls.setGroup("light." + light.name);

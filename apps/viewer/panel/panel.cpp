@@ -17,7 +17,7 @@ namespace {
 
 const Range stopsRange(-32.0, 32.0, {-16.0, 16.0});
 
-/// Whether the user changed it.
+/// Returns true if the user changed the value.
 bool editValue(Controls& controls, const ParamInfo& info, ParamValue& value) {
     const char* const name = info.name.c_str();
     if (bool* const on = std::get_if<bool>(&value)) return controls.checkbox(name, *on);
@@ -46,7 +46,7 @@ void drawGroup(RenderSettings& settings, const ParamGroup& group, Controls& cont
     controls.setGroup("");
 }
 
-/// One that takes no denoiser goes without.
+/// Choosing an integrator that supports no denoiser turns the denoiser off.
 void drawIntegrators(Pipeline& chosen, Controls& controls) {
     const std::vector<Integrator>& all = integrators();
     std::vector<std::string> names;
@@ -59,7 +59,7 @@ void drawIntegrators(Pipeline& chosen, Controls& controls) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(helpOf(chosen.integrator)).c_str());
 }
 
-/// Paths come with it where the integrator takes none.
+/// Choosing a denoiser that the integrator does not support selects the path tracer.
 void drawDenoisers(Pipeline& chosen, Controls& controls) {
     std::vector<std::string> names;
     int index = 0;
@@ -89,7 +89,7 @@ void drawPipelines(PanelState& state, Controls& controls) {
         ImGui::SetTooltip("first hits, shaded by a light at the camera: fast, for finding one's way (V)");
 }
 
-/// A press takes all that the preset says, its integrator and denoiser too.
+/// A click applies the whole preset, including its integrator and denoiser.
 void drawPresets(PanelState& state, Controls& controls) {
     if (!controls.header("presets")) return;
     for (const Preset& preset : presets()) {
@@ -109,7 +109,7 @@ void drawPresets(PanelState& state, Controls& controls) {
     }
 }
 
-/// Of the pass that is chosen in the list.
+/// Draws the controls for the pass that is selected in the list.
 void drawInspector(PanelState& state, const PanelFacts& facts, Controls& controls) {
     if (state.pass.empty() || facts.images.empty()) return;
     state.image = std::min(state.image, static_cast<int>(facts.images.size()) - 1);
@@ -126,7 +126,7 @@ void plot(const char* name, const Track& track, ImVec2 size, const char* text = 
                      1.1f * largest, size);
 }
 
-/// A click on one shows its images, another one the picture again.
+/// A click on a pass shows its images; another click shows the picture again.
 void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) {
     if (!controls.header("passes")) return;
     drawInspector(state, facts, controls);
@@ -219,7 +219,7 @@ void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) 
     PanelRequests& asked = state.asked;
     asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
     controls.slider("field of view", state.fovDegrees, {0.01, 179.0, {5.0, 150.0}}, "{:.1f}");
-    // From one side of the scene to the other in about a thousand pixels.
+    // Dragging about a thousand pixels crosses the scene.
     const float speed = 0.002f * facts.sceneRadius;
     asked.place |= controls.vector("eye", state.pose.eye, speed);
     asked.place |= controls.vector("target", state.pose.target, speed);
@@ -253,7 +253,7 @@ void drawFacts(const PanelState& state, const PanelFacts& facts) {
         ImGui::TextUnformatted("with histories of earlier frames");
 }
 
-/// In a corner of its own, so that nothing moves away under the mouse.
+/// Drawn in a separate corner, so that no control moves away under the mouse.
 void drawMessages(const PanelFacts& facts) {
     const std::string message = facts.messageIsOld ? std::string() : facts.message;
     if (message.empty() && facts.fault.empty() && facts.allValues.empty()) return;
@@ -289,7 +289,7 @@ void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
         {29.0f * ImGui::GetFontSize(), std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
         ImGuiCond_FirstUseEver);
     ImGui::Begin("Limpid");
-    ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // what is left of their names
+    ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // leaves room for the names
     drawFacts(state, facts);
     drawSampling(state, controls);
     drawDisplay(state, controls);

@@ -1,4 +1,4 @@
-// Of every parameter that the window has a slider for.
+// Tests the slider of every parameter that has one in the window.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,14 +29,15 @@ TEST(Sliders, RunInsideTheRangeAndHoldTheDefault) {
         EXPECT_LT(span.min, span.max);
         EXPECT_GE(span.min, info.minimum);
         EXPECT_LE(span.max, info.maximum);
-        // A float lies beside what it stands for.
+        // A float default is the rounding of a decimal number, so allow a small difference.
         const double initial = numberOf(info.defaultValue);
         EXPECT_GE(initial, span.min * (1.0 - 1e-6));
         EXPECT_LE(initial, span.max * (1.0 + 1e-6));
     });
 }
 
-/// A default that is not one end of the slider is nowhere near an end, so that there is a way to go from it.
+/// Unless the default is one end of the slider, it is far from both ends, so that the user can move it either
+/// way.
 TEST(Sliders, LeaveRoomOnBothSidesOfTheDefault) {
     forEachSlider([](const ParamInfo& info) {
         const double initial = numberOf(info.defaultValue), at = sliderPosition(info.slider, initial);
@@ -65,7 +66,7 @@ TEST(Sliders, OverManyDecadesAreLogarithmic) {
     });
 }
 
-/// Every tenth of the way is another value.
+/// Every tenth of the slider's length gives another value.
 TEST(Sliders, ChangeTheValueWhereverTheyAreMoved) {
     forEachSlider([](const ParamInfo& info) {
         double before = sliderValue(info.slider, 0.0);
