@@ -40,7 +40,7 @@ vec3 floatsOf(const uvec4& texel) {
     return {std::bit_cast<float>(texel.x), std::bit_cast<float>(texel.y), std::bit_cast<float>(texel.z)};
 }
 
-/// No length: the normal of a degenerate triangle is 0, and no ray meets it.
+/// Returns 0 for a degenerate triangle's normal; no ray hits it.
 vec3 unit(const vec3& v) {
     return v / std::max(glm::length(v), 1e-37f);
 }

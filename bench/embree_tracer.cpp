@@ -22,7 +22,7 @@ constexpr uint32_t tileSize = 16;
 constexpr uint32_t maxCulled = 64;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Denormals count as 0 while it lives, as Embree's manual recommends for threads that trace.
+/// Treats denormals as 0 while it exists, as Embree's manual recommends for tracing threads.
 class FlushDenormals {
   public:
 #ifdef __SSE__
@@ -75,7 +75,7 @@ struct Ray {
 };
 
 struct Surface {
-    vec3 position, normal;  ///< unit, on the viewer's side
+    vec3 position, normal;  ///< unit; on the viewer's side
     float magnitude;
     const MaterialRecord* material;
     float lightDensity;
@@ -101,19 +101,20 @@ struct HemisphereSample {
     float cosine;
 };
 
-/// Cosine-distributed about the unit vector n: the frame and the warp of shaders/sampling.glsl.
+/// Samples a cosine-weighted direction about the unit vector n, with the frame and warp of
+/// shaders/sampling.glsl.
 HemisphereSample sampleHemisphere(const vec3& n, const vec2& u) {
     const float s = n.z >= 0.0f ? 1.0f : -1.0f;
     const float a = -1.0f / (s + n.z);
     const float b = n.x * n.y * a;
     const vec3 tangent(1.0f + s * n.x * n.x * a, s * b, -s * n.x), bitangent(b, s + n.y * n.y * a, -n.y);
     const float r = std::sqrt(u.x), phi = 2.0f * pi * u.y;
-    // The compiler makes one sincosf() of the two.
+    // The compiler combines these into one sincosf().
     const float x = r * std::cos(phi), y = r * std::sin(phi), z = std::sqrt(std::max(0.0f, 1.0f - u.x));
     return {x * tangent + y * bitangent + z * n, z};
 }
 
-/// The paths of one tile.
+/// Traces the paths of one tile.
 class PathTracer {
   public:
     PathTracer(const EmbreeScene& scene, const EmbreeLaunch& launch) : scene_(scene), launch_(launch) {
@@ -212,7 +213,7 @@ class PathTracer {
             if (depth == launch_.maxDepth) break;
             throughput *= surface.material->albedo;
             radiance += throughput * directLight(surface, throughput, random);
-            // The density of the cosine cancels against the cosine: the throughput keeps the albedo alone.
+            // The cosine in the density cancels against the cosine factor: only the albedo remains.
             const HemisphereSample next = sampleHemisphere(surface.normal, random.next2());
             bsdfPdf = next.cosine / pi;
             if (depth >= launch_.rouletteDepth && !survives(throughput, random)) break;
@@ -222,7 +223,7 @@ class PathTracer {
         return radiance;
     }
 
-    /// Of multiple importance sampling, for light that the path found by itself.
+    /// The weight of multiple importance sampling for emission that the path hits.
     static float emissionWeight(const Surface& surface, const vec3& direction, float distance, uint32_t depth,
                                 float bsdfPdf) {
         if (depth == 0) return 1.0f;
@@ -231,7 +232,7 @@ class PathTracer {
         return powerHeuristic(bsdfPdf, density);
     }
 
-    /// Light from one point on one light, times the cosine over pi; the albedo is in the throughput.
+    /// Light from one point on one light, times cosine over pi. The albedo is already in the throughput.
     vec3 directLight(const Surface& surface, const vec3& throughput, Random& random) {
         const float choice = random.next(), decision = random.next();
         const vec2 u = random.next2();
@@ -264,7 +265,7 @@ class PathTracer {
         return light.emission * (powerHeuristic(pdf, bsdfPdf) * bsdfPdf / std::max(pdf, 1e-30f));
     }
 
-    /// Russian roulette; a survivor stands for those that do not.
+    /// Russian roulette; survivors are weighted by the inverse probability.
     static bool survives(vec3& throughput, Random& random) {
         const float survival = std::min(std::max({throughput.x, throughput.y, throughput.z}), 0.95f);
         if (random.next() >= survival) return false;

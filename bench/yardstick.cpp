@@ -1,5 +1,5 @@
-// limpid_yardstick: our path tracer against a native one on Embree, on the same paths, in one process. The
-// two take turns, so that a machine that is busy with something else is busy for both.
+// limpid_yardstick: compares our path tracer with a native one on Embree, on the same paths, in one process.
+// The two run alternately, so that other load on the machine affects both.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// The paths are the same up to rounding; a hit on an edge may fall to the other side.
+/// The paths are equal up to rounding; a hit on an edge may fall on either side.
 constexpr double maxRayDifference = 0.005;
 
 struct Options {
@@ -34,7 +34,7 @@ struct Options {
     bool json = false;
 };
 
-/// Milliseconds of each frame.
+/// The times of all frames in milliseconds.
 struct Times {
     std::vector<double> values;
 
@@ -62,7 +62,7 @@ class EmbreeSide {
         sum_.resize(size_t{o.width} * o.height);
     }
 
-    /// The time of the whole frame.
+    /// Returns the time of the whole frame.
     double frame() {
         const Clock::time_point start = Clock::now();
         rays_ += traceSample(scene_, launch_, sum_);
@@ -99,7 +99,7 @@ class OurSide {
         still_.update(scene::cameraParams(scene.cameras.front(), o.width, o.height), settings);
     }
 
-    /// The device time of the path-tracing pass, as `limpid bench trace` reports it.
+    /// Returns the device time of the path-tracing pass, as `limpid bench trace` reports it.
     double frame() {
         still_.launch();
         still_.finish();

@@ -1,5 +1,5 @@
-// The yardstick is right: it gives the furnace's exact brightness, and the pictures and ray counts of our
-// path tracer.
+// Checks the yardstick: it gives the furnace's exact brightness, and the pictures and ray counts of our path
+// tracer.
 #include <fmt/format.h>
 
 #include <array>
@@ -30,7 +30,7 @@ EmbreeLaunch launchOf(const scene::Scene& scene, const RenderSettings& settings)
             .rouletteDepth = static_cast<uint32_t>(settings.pathtrace.rouletteDepth)};
 }
 
-/// Luminances of a picture's 8x8 blocks, one sample per pixel.
+/// Statistics of the luminance of 8x8 pixel blocks, at one sample per pixel.
 class BlockMoments {
   public:
     explicit BlockMoments(gpu::Extent extent)
@@ -39,7 +39,7 @@ class BlockMoments {
           sum_(size_t{columns_} * ((extent.height + 7) / 8)),
           squares_(sum_.size()) {}
 
-    /// `radiance`: four floats a pixel.
+    /// `radiance`: four floats per pixel.
     void add(std::span<const float> radiance) {
         std::vector<double> blocks(sum_.size());
         for (size_t i = 0; i < radiance.size() / 4; ++i) {
@@ -56,7 +56,7 @@ class BlockMoments {
 
     size_t blocks() const { return sum_.size(); }
     double mean(size_t block) const { return sum_[block] / count_; }
-    /// Squared standard error of the mean.
+    /// Returns the squared standard error of the mean.
     double meanVariance(size_t block) const {
         const double mean = this->mean(block);
         return std::max(0.0, squares_[block] / count_ - mean * mean) / (count_ - 1);
@@ -105,7 +105,7 @@ class YardstickTest : public RenderTest {
         EXPECT_NEAR(rayRatio, 1.0, 5e-3);
     }
 
-    /// Different seeds: the pictures have nothing in common but their expectation.
+    /// Uses different seeds: the pictures only share their expectation.
     void compareMeans(const scene::Scene& scene) {
         const RenderSettings ourSettings = settings(320, 180, 0), theirSettings = settings(320, 180, 7);
         constexpr uint32_t samples = 64;
@@ -127,8 +127,8 @@ class YardstickTest : public RenderTest {
         compareBlocks(scene.name, ours, theirs);
     }
 
-    /// What was added to the running mean `before` of `count` samples to make it `after`, which `before` then
-    /// becomes.
+    /// Returns the sample that was added to the running mean `before` of `count` samples to make `after`, and
+    /// sets `before` to `after`.
     static std::vector<float> newestSample(std::vector<float> after, std::vector<float>& before,
                                            uint32_t count) {
         std::vector<float> newest(after.size());
@@ -155,7 +155,7 @@ class YardstickTest : public RenderTest {
         fmt::print("{}: {} of {} blocks beyond 3 sigma; sum of z {:+.2f} sigma\n", name, beyond, count,
                    sum / std::sqrt(static_cast<double>(count)));
         EXPECT_GT(count, a.blocks() / 2);
-        // Chance puts 0.27 % beyond, give or take the root of their number.
+        // By chance 0.27 % are outside, with a standard deviation of the square root of their number.
         const double expected = 0.0027 * static_cast<double>(count);
         EXPECT_LE(static_cast<double>(beyond), expected + 4.0 * std::sqrt(expected));
         EXPECT_LT(std::abs(sum) / std::sqrt(static_cast<double>(count)), 4.0);
@@ -170,7 +170,7 @@ TEST_F(YardstickTest, TheSameMeansAsOurs) {
     for (const char* name : {"cornell", "heavy"}) compareMeans(prepared(scene::builtinScene(name)));
 }
 
-/// No device of ours takes part in what follows.
+/// The following test uses no Vulkan device.
 TEST(EmbreeTracerTest, TheFurnaceHasItsExactBrightness) {
     constexpr double albedo = 0.5;
     const scene::Scene scene = prepared(scene::furnaceScene(static_cast<float>(albedo)));

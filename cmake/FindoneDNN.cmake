@@ -1,4 +1,5 @@
-# oneDNN as Debian packages it (libdnnl-dev): its own configuration asks for OpenCL, which Limpid does not need.
+# Finds oneDNN as Debian packages it (libdnnl-dev): its own configuration requires OpenCL, which Limpid does
+# not need.
 find_path(oneDNN_INCLUDE_DIR oneapi/dnnl/dnnl.hpp)
 find_library(oneDNN_LIBRARY dnnl)
 include(FindPackageHandleStandardArgs)

@@ -1,7 +1,7 @@
-# Run by CTest when it reads the tests: registers each suite of a GoogleTest program as one test, so that a suite's cases
-# share a process, its Vulkan device and its compiled shaders. Set before: PROGRAM, LABELS.
+# Run by CTest when it reads the tests: registers each suite of a GoogleTest program as one test, so that a
+# suite's cases share a process, its Vulkan device and its compiled shaders. Requires: PROGRAM, LABELS.
 #
-# The environment variable LIMPID_TEST_CASES, a filter as --gtest_filter takes it, leaves only those cases.
+# The environment variable LIMPID_TEST_CASES, a filter like that of --gtest_filter, selects cases.
 if(NOT EXISTS "${PROGRAM}")
   get_filename_component(NAME "${PROGRAM}" NAME)
   add_test(${NAME}_NOT_BUILT ${NAME}_NOT_BUILT)
@@ -32,7 +32,7 @@ function(limpid_add_suite SUITE)
     set(NAMES "${SUITE}*")
   endif()
   string(REGEX REPLACE "\\.$" "" TEST "${SUITE}")
-  # The slow ones first, or one of them would run alone at the end.
+  # Start the slow ones first, so that none of them runs alone at the end.
   set(COST 1)
   if(LABELS MATCHES "slow")
     set(COST 100)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders scenes with Blender's Cycles and with Limpid and prints how far they are apart (docs/cycles.md). Installs
-# Debian's Blender if it is missing. Options: scripts/cycles.sh --help.
+# Renders scenes with Blender's Cycles and with Limpid, and prints how much they differ (docs/cycles.md).
+# Installs Debian's Blender if it is missing. Options: scripts/cycles.sh --help.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh blender python3-numpy

@@ -25,6 +25,7 @@ if [ "$seconds" = merge ]; then
     mv "$found.merged" "$found"
     exit
 fi
-# The limit on time that counts is processor time (fuzz_main.cpp); the clock's is for waiting that never ends.
+# The relevant time limit is processor time (fuzz_main.cpp); the wall-clock limit only catches endless
+# waiting.
 exec nice -n 19 "build/fuzz/fuzz_$target" "-max_total_time=$seconds" -timeout=1200 "-dict=tests/fuzz/$target.dict" \
     -print_final_stats=1 "${options[@]}" "$@" "$found" "$seeds"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Limpid needs from Debian's packages; asks apt only for what is missing. As root or through sudo.
+# Installs the Debian packages that Limpid needs; asks apt only for missing ones. Runs as root or with sudo.
 set -euo pipefail
 
 packages=(

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Fetches Mesa's software Vulkan driver from Debian's backports (lavapipe 25, which has ray-tracing pipelines) and unpacks
-# it below build/, without touching the system. Prints the file to name in VK_ICD_FILENAMES. Fails with a reason where it
-# cannot be had (no network, another distribution).
+# Fetches Mesa's software Vulkan driver from Debian's backports (lavapipe 25, which has ray-tracing pipelines)
+# and unpacks it below build/, without touching the system. Prints the file to set in VK_ICD_FILENAMES. Fails
+# with a reason if that is not possible (no network, another distribution).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$PWD/build/lavapipe25
@@ -32,7 +32,7 @@ rm -rf "$folder/apt"
 
 library=$(find "$folder/root" -name 'libvulkan_lvp.so' -print -quit)
 [ -n "$library" ] || fail "the package has no libvulkan_lvp.so"
-# Debian 12's own driver has brought the libraries that this one needs.
+# Debian 12's own driver has installed the libraries that this one needs.
 missing=$(ldd "$library" | sed -nE 's/^\s*(\S+) => not found.*/\1/p' | tr '\n' ' ')
 [ -z "$missing" ] || fail "the driver lacks $missing"
 printf '{"file_format_version": "1.0.0", "ICD": {"library_path": "%s", "api_version": "1.4.305"}}\n' "$library" >"$icd"

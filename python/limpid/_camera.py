@@ -29,7 +29,7 @@ def perspective(fov, aspect, near=0.1, far=math.inf, clip_y="down"):
     if not (0.0 < fov < 180.0 and aspect > 0.0 and 0.0 < near < far):
         raise ValueError("perspective: needs 0 < fov < 180, aspect > 0 and 0 < near < far")
     scale = 1.0 / math.tan(math.radians(fov) / 2.0)
-    # far / (far - near), which is 1 where far is infinite.
+    # far / (far - near), which is 1 if far is infinite.
     share = 1.0 / (1.0 - near / far)
     return np.array([
         [scale / aspect, 0.0, 0.0, 0.0],

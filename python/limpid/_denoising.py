@@ -7,12 +7,12 @@ import numpy as np
 
 from limpid import _arrays, _camera, _denoise
 
-# Images that may have more components than are read: the components that are accepted.
+# The accepted component counts of images that may have more components than are read.
 _COMPONENTS = {
     "radiance": (3, 4), "specular": (3, 4), "emission": (3, 4), "albedo": (3, 4), "albedo_specular": (3, 4),
     "depth": (1,),
 }
-# The library's floats have 32 bits: 0.2 is not to read 0.20000000298.
+# The library's floats have 32 bits: print 0.2, not 0.20000000298.
 _TYPES = {"bool": bool, "int": int, "float": lambda value: float(str(np.float32(value)))}
 
 
@@ -86,7 +86,7 @@ class Device:
 
 
 _devices = {}
-# Drivers may be gone by the time that the interpreter's last objects are.
+# Drivers may be unloaded before the interpreter's last objects are destroyed.
 atexit.register(_devices.clear)
 
 

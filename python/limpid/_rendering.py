@@ -13,7 +13,7 @@ except ImportError as error:
     _renderer, _missing = None, error
 
 _devices = {}
-# Drivers may be gone by the time that the interpreter's last objects are.
+# Drivers may be unloaded before the interpreter's last objects are destroyed.
 atexit.register(_devices.clear)
 
 

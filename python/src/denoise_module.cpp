@@ -23,7 +23,7 @@ namespace {
 
 using namespace limpid::python;
 
-/// On the thread that made the call.
+/// Call it on the thread that made the call.
 void check(limpid_result result) {
     if (result != LIMPID_OK) throw Failure(limpid_last_error(), result);
 }
@@ -54,7 +54,7 @@ class Device {
     limpid_device* handle() const { return handle_.get(); }
     std::string name() const { return limpid_device_name(handle_.get()); }
 
-    /// Since the last call.
+    /// Returns the messages since the last call.
     std::vector<Message> messages() {
         const std::lock_guard lock(mutex_);
         return std::exchange(messages_, {});
@@ -73,7 +73,7 @@ class Device {
     }
 
   private:
-    /// Called from any thread, with or without the GIL: nothing of Python's is touched.
+    /// Called from any thread, with or without the GIL, so it must not use Python.
     void keep(const char* level, const char* text) {
         const std::lock_guard lock(mutex_);
         messages_.emplace_back(level, text);
@@ -84,7 +84,8 @@ class Device {
     };
     std::mutex mutex_;
     std::vector<Message> messages_;
-    std::unique_ptr<limpid_device, Destroy> handle_;  ///< goes first: its end may have messages
+    std::unique_ptr<limpid_device, Destroy> handle_;  ///< destroyed first, since that may still produce
+                                                      ///< messages
 };
 
 using Matrices = py::array_t<float, py::array::c_style | py::array::forcecast>;
@@ -93,7 +94,7 @@ void copyMatrix(const float* from, float (&to)[16]) {
     std::copy(from, from + 16, to);
 }
 
-/// view, projection, previous view, previous projection, each column after column.
+/// `matrices`: view, projection, previous view, previous projection, each in column-major order.
 limpid_camera cameraOf(const Matrices& matrices, std::pair<float, float> jitter) {
     if (matrices.size() != 64) throw std::invalid_argument("the camera has four matrices of 4 x 4");
     limpid_camera camera{};
@@ -116,8 +117,8 @@ class Denoiser {
         handle_.reset(denoiser);
     }
 
-    /// `inputs`: limpid_input and a float array of (height, width, components), whose components are
-    /// adjacent. One array of (height, width, 3) for each of `outputs` (limpid_output).
+    /// `inputs`: limpid_input and a float array of (height, width, components) with contiguous components.
+    /// Returns an array of (height, width, 3) for each of `outputs` (limpid_output).
     py::list denoise(const std::vector<std::pair<uint32_t, Array>>& inputs,
                      const std::vector<uint32_t>& outputs, const Matrices& camera,
                      std::pair<float, float> jitter, bool reset) {
@@ -184,8 +185,7 @@ class Denoiser {
     };
     std::shared_ptr<Device> device_;
     uint32_t width_, height_;
-    std::mutex mutex_;  ///< one thread at a time may use a denoiser; the GIL does not see to that while it is
-                        ///< released
+    std::mutex mutex_;  ///< one thread at a time may use a denoiser, and the GIL is released meanwhile
     std::unique_ptr<limpid_denoiser, Destroy> handle_;
 };
 
@@ -219,7 +219,7 @@ std::vector<Parameter> parameters(int method) {
 
 using Names = std::vector<std::pair<const char*, int>>;
 
-/// A dict from the names in Python to the numbers in C.
+/// Adds a dict from names in Python to numbers in C.
 void addNames(py::module_& module, const char* table, const Names& names) {
     py::dict dict;
     for (const auto& [name, value] : names) dict[name] = value;

@@ -24,7 +24,7 @@ namespace py = pybind11;
 namespace limpid::python {
 namespace {
 
-/// Of the exception that is being handled.
+/// Raises the exception that is being handled.
 void raiseAsPython(std::exception_ptr thrown) {
     try {
         if (thrown) std::rethrow_exception(thrown);
@@ -67,7 +67,7 @@ py::dict compare(const Array& test, const Array& reference, std::optional<float>
     return dict;
 }
 
-/// A layer of the EXR files, and its name here.
+/// A layer of the EXR files, and its name in Python.
 struct Layer {
     const char* name;
     const char* layer;
@@ -87,7 +87,7 @@ constexpr Layer colors[] = {{"color", "", "RGB"},
                             {"id", "id", "I"}};
 constexpr const char* varianceOf[] = {"diffuse", "specular", "albedo", "normal", "depth"};
 
-/// (height, width) of one component, (height, width, n) of several.
+/// Returns (height, width) for one component, (height, width, n) for several.
 py::array_t<float> arrayOf(const image::Image& picture) {
     std::vector<py::ssize_t> shape{py::ssize_t{picture.height}, py::ssize_t{picture.width}};
     if (picture.components > 1) shape.push_back(py::ssize_t{picture.components});
@@ -130,7 +130,7 @@ py::dict cameraDict(const CameraParams& camera) {
     return dict;
 }
 
-/// The layers of a frame by name, and its camera.
+/// Returns the layers of a frame by name, and its camera.
 py::tuple render(SceneRenderer& renderer, uint64_t frame) {
     const auto [layers, camera] = [&] {
         const py::gil_scoped_release release;

@@ -26,7 +26,7 @@ RenderSettings settingsOf(const RenderOptions& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
     settings.seed = o.seed;
-    settings.samplesPerLaunch = std::min(o.samples, 4u);  // what every device does
+    settings.samplesPerLaunch = std::min(o.samples, 4u);  // supported by every device
     settings.pipeline = parsePipeline("path", o.denoiser.empty() ? "none" : o.denoiser);
     settings.jitter = jitterOf(o.jitter, settings.pipeline);
     settings.layers = true;
@@ -106,7 +106,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderO
     gpuScene_.emplace(on, data, scene::TraceOptions{scene::automaticTracer(on.info()), {}});
     const scene::Camera camera = cameraOf(o, scene_);
     sequence_.emplace(scene_, data, camera, pathOf(o, scene_, camera), o.timing);
-    scene_.textures.clear();  // they are on the device
+    scene_.textures.clear();  // they are on the device now
     if (settings_.pipeline.accumulates()) {
         accumulated_.emplace(on, *gpuScene_, samples_);
     } else {

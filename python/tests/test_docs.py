@@ -18,7 +18,7 @@ class DocsTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)
             for block in blocks:
-                # Line numbers of errors are those of the page.
+                # Makes line numbers in errors match the page.
                 source = "\n" * text.count("\n", 0, block.start(1)) + block[1]
                 exec(compile(source, "docs/python.md", "exec"), names)
             os.chdir("/")

@@ -193,8 +193,8 @@ class ShapeTest(unittest.TestCase):
             self.denoiser.denoise(**still(), view=np.zeros((4, 4)))
         self.assertIn("singular", str(caught.exception))
         with self.assertRaises(limpid.Error):
-            self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF's alone
-        self.denoiser.denoise(**still())  # goes on
+            self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF only
+        self.denoiser.denoise(**still())  # continues the sequence
 
 
 class ParameterTest(unittest.TestCase):
@@ -252,7 +252,7 @@ class DenoiseTest(unittest.TestCase):
         self.assertGreater(mse(c, truth), mse(a, truth))
 
     def test_motion_does_as_well_as_the_camera(self):
-        # A camera that moves to the right by 0.03 sees a wall 3 away move to the left.
+        # When the camera moves right by 0.03, a wall at distance 3 appears to move left.
         pixels = 0.03 / 3 / np.tan(np.radians(FOV / 2)) * HEIGHT / 2
         motion = np.zeros((HEIGHT, WIDTH, 2))
         motion[..., 0] = pixels
@@ -335,7 +335,7 @@ class DenoiseTest(unittest.TestCase):
             np.testing.assert_array_equal(result, expected)
 
     def test_other_threads_run_meanwhile(self):
-        # Counts while the device works: with the GIL held it would hardly get on.
+        # Counts while the device works; if the GIL were held, it would barely advance.
         denoiser = limpid.Denoiser(512, 512, device=device())
         shape = (512, 512, 3)
         normal = np.broadcast_to(np.array((0, 0, 1), np.float32), shape).copy()
@@ -503,7 +503,7 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(mse(first["color"], other["color"]), 0)
 
     def test_matrices_are_the_cameras(self):
-        # What they project is where the pixels are: by depth, backwards.
+        # Reprojecting the pixels with depth must give their positions back.
         layers = self.render(spp=1)
         to_world = np.linalg.inv(layers["projection"] @ layers["view"])
         eye = np.linalg.inv(layers["view"])[:3, 3]

@@ -17,7 +17,7 @@ import scenes  # noqa: E402
 import sheet  # noqa: E402
 import stage  # noqa: E402
 
-SEEDS = (0x1F123BB5, 0x6C078965)  # of bits that differ much: Cycles mixes its seed weakly, 1 and 2 share their noise
+SEEDS = (0x1F123BB5, 0x6C078965)  # differ in many bits, since Cycles mixes its seed weakly: seeds 1 and 2 share their noise
 
 
 def arguments():
@@ -72,7 +72,7 @@ def render_cycles(path, settings, samples, seed):
     scene = bpy.context.scene
     cycles = scene.cycles
     cycles.samples, cycles.seed = samples, seed
-    # Cycles counts the bounces after the first surface.
+    # Cycles does not count the first surface as a bounce.
     for limit in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces"):
         setattr(cycles, limit, settings.bounces - 1)
     scene.render.filepath = path

@@ -9,7 +9,7 @@ import math
 
 import bpy
 
-GLTF = {}  # material's name -> fields of glTF
+GLTF = {}  # material name -> glTF fields
 _for_cycles = []  # (material, socket of its plain nodes)
 
 

@@ -21,11 +21,11 @@ class Settings:
     samples: int = 512  # per pixel and seed, times the script's --quality
     bounces: int = 8  # scattering events of a path
     background: tuple = (0, 0, 0)
-    environment: str = ""  # an EXR in place of the background
-    strips: tuple = ()  # names of upright strips of the picture that are measured one by one
+    environment: str = ""  # an EXR that replaces the background
+    strips: tuple = ()  # names of vertical strips of the picture that are measured separately
     height: int = HEIGHT
     for_cycles: object = None  # called after the export
-    exact: bool = True  # nothing known makes the two differ
+    exact: bool = True  # False if there is a known difference between the two
 
 
 SCENES = {}

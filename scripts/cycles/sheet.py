@@ -2,7 +2,7 @@
 
 import numpy
 
-# 3x5 pixels, an octal digit a row
+# 3x5 pixels, one octal digit per row
 DIGITS = {"0": 0o75557, "1": 0o26227, "2": 0o71747, "3": 0o71717, "4": 0o55711,
           "5": 0o74717, "6": 0o74757, "7": 0o71111, "8": 0o75757, "9": 0o75717}
 

@@ -45,7 +45,7 @@ def background(color, image=None):
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
     texture.image = image
     mapping = tree.nodes.new("ShaderNodeMapping")
-    mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)  # Blender's centre lies towards +X
+    mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)  # the centre of Blender's maps faces +X
     place = tree.nodes.new("ShaderNodeTexCoord")
     tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
     tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
