@@ -33,7 +33,8 @@ TEST(Hash64, CountsOnlyTheBytesNotHowTheyCome) {
 }
 
 TEST(Hash64, IsTheDocumentedFormula) {
-    // By hand: state, then (state ^ word) * prime, then state ^ (state >> 32), for "12345678", 0 and 8.
+    // Computed by hand: state, then (state ^ word) * prime, then state ^ (state >> 32), for "12345678", 0 and
+    // 8.
     const auto step = [](uint64_t state, uint64_t word) {
         state = (state ^ word) * 1099511628211u;
         return state ^ (state >> 32);
@@ -56,7 +57,7 @@ TEST(Hash64, EveryFlippedBitShows) {
 }
 
 TEST(Hash64, PairsOfFlippedBitsShow) {
-    // Plain FNV over words never moves a word's highest bit: two of them would cancel.
+    // Plain FNV over words never propagates a word's highest bit: two of them would cancel.
     std::vector<std::byte> bytes(64);
     std::set<uint64_t> seen;
     for (size_t a = 7; a < 64; a += 8) {

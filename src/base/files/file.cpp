@@ -25,14 +25,14 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// A name beside `path` that no other process uses; the file exists (empty) on return.
+/// Creates an empty file beside `path` with a name that no other process uses, and returns the name.
 fs::path createTemporary(const fs::path& path) {
     const fs::path suffix = path.extension();
     std::string pattern =
         (folderOf(path) / ("." + path.stem().string() + ".XXXXXX" + suffix.string())).string();
     const int file = ::mkstemps(pattern.data(), static_cast<int>(suffix.string().size()));
     if (file < 0) throw OutputError(path, "cannot create a file beside it: " + systemMessage(errno));
-    // mkstemps makes files private; an output gets what the user's umask grants any new file.
+    // mkstemps creates private files; give the output the permissions that the umask allows.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::fchmod(file, 0666 & ~mask);
@@ -40,7 +40,7 @@ fs::path createTemporary(const fs::path& path) {
     return pattern;
 }
 
-/// A full disk may show only when the data is flushed, after the writer closed the file.
+/// A full disk may only be detected when data is flushed, after the writer has closed the file.
 void flushToDisk(const fs::path& temporary, const fs::path& path) {
     const int file = ::open(temporary.c_str(), O_RDONLY);
     if (file < 0) throw OutputError(path, "cannot be written: " + systemMessage(errno));
@@ -79,7 +79,7 @@ std::vector<std::byte> readFile(const fs::path& path, uint64_t maxBytes) {
 }
 
 fs::path linkTarget(const fs::path& path) {
-    constexpr int maxLinks = 40;  // as the kernel's own limit
+    constexpr int maxLinks = 40;  // same as the kernel's limit
     fs::path target = path;
     std::error_code fault;
     for (int links = 0; fs::is_symlink(fs::symlink_status(target, fault)); ++links) {
@@ -95,7 +95,7 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
     std::error_code fault;
     const fs::path targetA = linkTarget(a), targetB = linkTarget(b);
     if (fs::equivalent(targetA, targetB, fault)) return true;
-    // Files that are not there yet are the same if their folders and their names are.
+    // Files that do not exist yet are the same if their folders and names are.
     return targetA.filename() == targetB.filename() &&
            fs::equivalent(folderOf(targetA), folderOf(targetB), fault);
 }

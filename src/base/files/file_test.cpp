@@ -68,7 +68,7 @@ TEST_F(FileTest, MakesAFolderAndThoseItIsIn) {
 
 TEST_F(FileTest, FullDiskIsAnErrorAndNotATruncatedFile) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
-    // /dev/full cannot be renamed onto, so test the writer's side: a stream that meets a full disk must
+    // /dev/full cannot be the target of a rename, so test the writer's side: a stream to a full disk must
     // throw.
     EXPECT_THROW(writeAtomically(folder / "a.txt",
                                  [](const fs::path&) {
@@ -151,7 +151,7 @@ TEST_F(FileTest, RemovesOnlyItsOwnStaleTemporaries) {
     removeStaleTemporaries(folder / "a.txt");
     EXPECT_FALSE(fs::exists(folder / ".a.Ab12xY.txt"));
     EXPECT_EQ(files(), 8u);
-    removeStaleTemporaries(folder / "no" / "such.txt");  // nothing happens
+    removeStaleTemporaries(folder / "no" / "such.txt");  // does nothing
     EXPECT_NO_THROW(writeAtomically(folder / "a.txt", [&](const fs::path& temporary) {
         EXPECT_TRUE(fs::exists(temporary));
         removeStaleTemporaries(folder / "a.txt");

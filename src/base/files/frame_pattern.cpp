@@ -41,7 +41,7 @@ void FramePattern::append(char c) {
     (numbered_ ? after_ : before_) += c;
 }
 
-/// `percent` is where a number should begin; returns where its 'd' is.
+/// `percent` is the position where a number should begin. Returns the position of its 'd'.
 size_t FramePattern::parseNumber(size_t percent) {
     const size_t end = text_.find_first_not_of("0123456789", percent + 1);
     const std::string digits = text_.substr(percent + 1, end - percent - 1);
@@ -71,7 +71,7 @@ std::optional<int> FramePattern::frameOf(std::string_view fileName) const {
     int frame = 0;
     if (std::from_chars(number.data(), number.data() + number.size(), frame).ec != std::errc{})
         return std::nullopt;
-    // One rule for both directions: a name is a frame's if that frame would be given this name.
+    // One rule for both directions: a name belongs to a frame if format() gives that name for it.
     if (format(frame).filename().string() != fileName) return std::nullopt;
     return frame;
 }

@@ -67,7 +67,7 @@ TEST(FramePattern, KnowsItsOwnNamesOnly) {
 TEST(FramePattern, ListsTheFramesThatExist) {
     const fs::path folder =
         fs::temp_directory_path() / ("limpid_frame_pattern_test." + std::to_string(::getpid()));
-    fs::create_directories(folder / "a.0003.exr");  // a folder is no frame
+    fs::create_directories(folder / "a.0003.exr");  // a folder is not a frame
     for (const char* name :
          {"a.0010.exr", "a.0002.exr", "a.0001.exr", "a.5.exr", "b.0004.exr", "a.10000.exr"}) {
         std::ofstream(folder / name) << "x";

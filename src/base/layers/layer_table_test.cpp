@@ -13,7 +13,7 @@
 namespace limpid {
 namespace {
 
-/// As docs/layers.md writes them: "depth.Z", "R G B A".
+/// Formats channels like docs/layers.md: "depth.Z", "R G B A".
 std::string channelsOf(const LayerInfo& layer) {
     if (layer.index == varianceLayer.index) return "X.variance";
     std::string text = layer.index == beautyLayer.index ? "" : std::string(layer.name) + ".";
@@ -30,7 +30,7 @@ std::string docsRowOf(const LayerInfo& layer) {
            stored[static_cast<size_t>(layer.stored)] + " |";
 }
 
-/// The rows of the first table of docs/layers.md.
+/// Returns the rows of the first table in docs/layers.md.
 std::vector<std::string> rowsInDocs() {
     std::ifstream file(LIMPID_SOURCE_DIR "/docs/layers.md");
     std::vector<std::string> rows;
@@ -61,7 +61,7 @@ TEST(LayerTable, RowsAreComplete) {
         EXPECT_FALSE(layer.member.empty() || layer.suffixes.empty()) << layer.name;
         EXPECT_EQ(layer.isMean(), layer.stored != Stored::Uint) << layer.name;
         EXPECT_LE(layer.meanComponents(), 4u) << layer.name;
-        // The fourth float holds the variance, or the share of samples, or nothing.
+        // The fourth float is the variance, the share of samples, or unused.
         if (layer.varianceOf != VarianceOf::Nothing) {
             EXPECT_LE(layer.meanComponents(), 3u) << layer.name;
         }
@@ -79,7 +79,7 @@ TEST(LayerTable, HelpNamesTheLayersWithVariance) {
     EXPECT_TRUE(varianceLayer.help.ends_with(names)) << names;
 }
 
-// Files of sums, and EXR files, stay readable only as long as these stay.
+// Names must not change, or files of sums and EXR files become unreadable.
 TEST(LayerTable, NamesInFilesStay) {
     std::vector<std::string_view> names;
     for (const LayerInfo& layer : layerTable) names.push_back(layer.name);
