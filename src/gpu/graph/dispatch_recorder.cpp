@@ -71,7 +71,7 @@ void DispatchRecorder::record() {
     graph_.frame.dispatches.push_back(std::move(result_));
 }
 
-/// What two variables read is one image's.
+/// Counts an image only once even if two variables read it.
 void DispatchRecorder::countImageBytes() {
     for (auto bound = bound_.begin(); bound != bound_.end(); ++bound) {
         if (bound->resource.buffer) continue;
@@ -142,7 +142,7 @@ void DispatchRecorder::bindImage(Bound& bound, ImageHandle handle) const {
     }
 }
 
-/// Whatever the format, texels are read as four floats or four unsigned integers.
+/// Texels of any format are read as four floats or four unsigned integers.
 void DispatchRecorder::bindSampled(const Bound& bound, RecordedImage& image) const {
     const ShaderBinding& variable = *bound.variable;
     if (image.key.backing == Backing::Buffer)
@@ -198,7 +198,7 @@ void DispatchRecorder::checkComplete() const {
     }
 }
 
-/// Within one dispatch no barrier helps: whoever reads while another thread writes gets either value.
+/// No barrier helps within one dispatch: a read while another thread writes may return either value.
 void DispatchRecorder::checkAliases() const {
     for (size_t i = 0; i < bound_.size(); ++i) {
         for (size_t j = 0; j < i; ++j) {

@@ -1,4 +1,4 @@
-// Sizes and names of formats.
+// The sizes and names of formats.
 #include "base/error.h"
 #include "gpu/graph/shader.h"
 

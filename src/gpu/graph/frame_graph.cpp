@@ -1,5 +1,5 @@
-// Recording: frames, images and histories. Dispatches are in dispatch_recorder.cpp, execution in
-// frame_executor.cpp.
+// Records frames, images and histories. dispatch_recorder.cpp records dispatches, frame_executor.cpp
+// executes.
 #include "gpu/graph/frame_graph.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace limpid::gpu {
 namespace {
 
-/// A handle's lower bits are the image's index, its upper bits the frame's number modulo `generations`. One
-/// less than the bits hold, so that no handle equals the empty one.
+/// A handle's lower bits are the image's index, its upper bits the frame's number modulo `generations`, which
+/// is one less than the bits allow, so that no handle equals the empty one.
 constexpr uint32_t indexBits = 20;
 constexpr uint32_t indexMask = (1u << indexBits) - 1;
 constexpr uint32_t generations = (1u << (32 - indexBits)) - 1;
@@ -36,7 +36,7 @@ bool sameCode(const Shader& shader, std::span<const CodePointer> codes) {
 constexpr std::array<ShaderStage, 4> rayStages{ShaderStage::RayGeneration, ShaderStage::Miss,
                                                ShaderStage::ClosestHit, ShaderStage::AnyHit};
 
-/// One code: a compute shader; four: those of a ray-tracing pipeline, in the order of `rayStages`.
+/// One code is a compute shader; four are a ray-tracing pipeline, in the order of `rayStages`.
 std::shared_ptr<const Shader> makeShader(std::span<const CodePointer> codes) {
     const auto shader = std::make_shared<Shader>();
     shader->name = codes[0]->name;
@@ -71,8 +71,7 @@ void FrameGraph::Impl::requireRecording() const {
     if (frame.executed) throw Error("the frame has been executed: call beginFrame() before recording more");
 }
 
-/// The frame that was executed decides what the next one inherits; one that was only recorded leaves no
-/// trace.
+/// Only an executed frame passes its histories on; one that was only recorded leaves no trace.
 void FrameGraph::Impl::commitHistories() {
     if (!frame.executed) return;
     for (auto& [name, state] : histories) {
@@ -255,7 +254,7 @@ void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
     }
     image.written = true;
     std::vector<std::byte>& all = impl_->frame.uploadData;
-    all.resize((all.size() + 15) / 16 * 16);  // copies to images start at whole texels
+    all.resize((all.size() + 15) / 16 * 16);  // copies to images start at multiples of a texel
     impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
     all.insert(all.end(), pixels.begin(), pixels.end());
 }
@@ -340,7 +339,7 @@ uint64_t FrameGraph::bytesOfImagesWrittenFrom(size_t first) const {
 
 namespace {
 
-/// Images of the frame that one of the passes of this name touches; `names` says how.
+/// Returns the frame's images in the list `names` of passes with this name.
 std::vector<ImageHandle> imagesTouched(const RecordedFrame& frame, std::string_view pass,
                                        std::vector<std::string> RecordedPass::*names) {
     std::vector<ImageHandle> images;

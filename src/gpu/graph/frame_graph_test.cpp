@@ -1,4 +1,4 @@
-// Recording: needs no device.
+// Tests recording; needs no device.
 #include "gpu/graph/frame_graph.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ std::string faultOf(const std::function<void()>& action) {
     return "no error";
 }
 
-/// A buffer that recording takes for real.
+/// A buffer without device memory, which is enough for recording.
 Buffer fakeBuffer(const std::string& name, std::optional<Format> format = {}) {
     auto resource = std::make_shared<BufferResource>();
     resource->name = name;
@@ -82,7 +82,7 @@ class FrameGraphTest : public testing::Test {
         fill("fill " + name, image);
         return image;
     }
-    /// The fault of a dispatch of test_scale.
+    /// Returns the error of a dispatch of test_scale.
     std::string scaleFault(std::vector<Binding> bindings, std::vector<ConstantValue> constants = {}) {
         return faultOf([&] {
             graph.dispatch({.pass = "demo/scale",
@@ -259,7 +259,7 @@ TEST_F(FrameGraphTest, AFrameThatIsNotExecutedLeavesHistoriesAlone) {
     writeCurrent(graph.history("h", rgba, small));
     finishFrame();
     EXPECT_TRUE(graph.history("h", rgba, small).valid);
-    graph.beginFrame();  // an error stopped the frame, say
+    graph.beginFrame();  // for example, because an error stopped the frame
     EXPECT_TRUE(graph.history("h", rgba, small).valid);
     graph.beginFrame();
     graph.beginFrame();
@@ -411,7 +411,7 @@ TEST(FrameGraph, NeedsABegunFrame) {
     EXPECT_THAT(faultOf([&] { graph.assumeExecuted(); }), HasSubstr("has been executed"));
 }
 
-/// A shader under another's name.
+/// Returns a shader with another's name.
 ShaderCode renamed(ShaderCode code) {
     code.name = "demo";
     return code;

@@ -1,11 +1,10 @@
-// Which passes wait for which.
+// Determines which passes must wait for which.
 #include "gpu/graph/frame_graph_impl.h"
 
 namespace limpid::gpu {
 namespace {
 
-/// A barrier stands before pass `lastBarrier` and orders all before it with all after: only what ran since
-/// counts.
+/// The barrier before pass `lastBarrier` orders all passes before it, so only accesses since then matter.
 void findHazards(const FrameGraph::Impl& graph, const Access& access, const ResourceUse& use,
                  std::vector<Hazard>& hazards) {
     const auto add = [&](Hazard::Kind kind, size_t earlier) {

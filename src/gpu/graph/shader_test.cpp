@@ -25,7 +25,7 @@ TEST(EmbeddedShader, HasItsTable) {
     EXPECT_NE(code.hash, shaders::test_group_size_comp.hash);
 }
 
-// Tables must be fit for constants.
+// Tables must be usable as constants.
 constexpr ShaderBinding image{"image", 0, BindingKind::StorageImage, Format::R32Float, true, false, 0};
 constexpr ShaderBinding block{"params", 2, BindingKind::UniformBuffer, Format::RGBA32Float, true, false, 16};
 constexpr ShaderConstant constant{"count", 3};

@@ -44,7 +44,7 @@ VkPipelineColorBlendAttachmentState blendOver() {
     return over;
 }
 
-/// Triangles in pixels of the window, blended over what is there.
+/// Draws triangles in pixels of the window, blended over the existing content.
 UniquePipeline makeOverlayPipeline(const Context& context, VkPipelineLayout layout, VkFormat target) {
     const UniqueShaderModule vertex = makeModule(context, shaders::overlay_vert),
                              fragment = makeModule(context, shaders::overlay_frag);

@@ -16,7 +16,7 @@
 namespace limpid::gpu {
 namespace {
 
-/// What one picture under way owns.
+/// The resources of one picture in flight.
 struct Slot {
     UniqueCommandPool pool;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -59,7 +59,7 @@ struct DevicePane {
     bool enlarge;
 };
 
-/// The corners of a share of an image, in its pixels: at least one.
+/// Returns the corners of a part of an image, in pixels; at least one pixel large.
 std::array<VkOffset3D, 2> corners(const Rectangle& share, Extent whole) {
     const auto pixel = [](float at, uint32_t pixels) {
         return static_cast<int32_t>(std::lround(std::clamp(at, 0.0f, 1.0f) * static_cast<float>(pixels)));
@@ -94,11 +94,11 @@ struct Presenter::Impl {
     std::optional<OverlayDrawer> overlays;
 
     UniqueSwapchain swapchain;
-    Extent extent;   ///< of the swapchain
-    Extent madeFor;  ///< the window's
+    Extent extent;   ///< swapchain's extent
+    Extent madeFor;  ///< the window's extent
     std::vector<VkImage> images;
     std::vector<UniqueImageView> views;
-    std::vector<UniqueSemaphore> rendered;  ///< by image
+    std::vector<UniqueSemaphore> rendered;  ///< one per image
     std::array<Slot, 2> slots;
     uint64_t presented = 0;
 };
@@ -131,7 +131,7 @@ Presenter::Impl::~Impl() {
         context->instanceVk().DestroySurfaceKHR(context->instance(), surface, nullptr);
 }
 
-/// Pictures are encoded already: no format that encodes once more.
+/// Pictures are already encoded, so choose a format that does not encode again.
 VkSurfaceFormatKHR Presenter::Impl::chooseFormat() const {
     uint32_t count = 0;
     LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface,
@@ -156,13 +156,13 @@ void Presenter::Impl::dropSwapchain() {
     swapchain = {};
 }
 
-/// False if the window has no pixels.
+/// Returns false if the window has no pixels.
 bool Presenter::Impl::makeSwapchain(Extent window) {
     context->waitIdle();
     VkSurfaceCapabilitiesKHR can{};
     LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceCapabilitiesKHR(context->physicalDevice(),
                                                                             surface, &can));
-    const bool free = can.currentExtent.width == UINT32_MAX;  // the swapchain decides
+    const bool free = can.currentExtent.width == UINT32_MAX;  // the swapchain decides its own size
     const Extent wanted = free ? window : Extent{can.currentExtent.width, can.currentExtent.height};
     extent = {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
               std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
@@ -222,7 +222,7 @@ void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const D
     const VkCommandBuffer commands = slot.commands;
     LIMPID_VK(context->vk().ResetCommandPool(context->device(), slot.pool.get(), 0));
     beginCommands(*context, commands);
-    // The frame that made the picture was submitted to the same queue.
+    // The frame that rendered the picture was submitted to the same queue.
     memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
     imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED,
@@ -230,7 +230,7 @@ void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const D
                  VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     for (const DevicePane& pane : panes) {
         blit(commands, index, pane);
-        // The next one may lie over it.
+        // The next pane may overlap it.
         memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     }
@@ -274,7 +274,7 @@ bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, 
     const VkResult acquired = context->vk().AcquireNextImageKHR(
         context->device(), swapchain.get(), UINT64_MAX, slot.acquired.get(), VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
-        madeFor = {};  // made anew next time
+        madeFor = {};  // recreated next time
         return false;
     }
     if (acquired != VK_SUBOPTIMAL_KHR) LIMPID_VK(acquired);

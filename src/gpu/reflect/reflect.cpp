@@ -14,7 +14,7 @@
 namespace limpid::gpu {
 namespace {
 
-/// Messages without fmt: the tool of the build links SPIRV-Cross and nothing else.
+/// Builds messages without fmt: the build tool links only SPIRV-Cross.
 template <typename... Parts>
 std::string joined(const Parts&... parts) {
     std::string text;
@@ -22,11 +22,11 @@ std::string joined(const Parts&... parts) {
     return text;
 }
 
-/// A shader with all that its `code` views.
+/// A shader and all the data that its `code` views.
 struct OwnedShader {
     std::string name;
     std::vector<uint32_t> words;
-    std::deque<std::string> names;  ///< of variables and constants; growing moves none of them
+    std::deque<std::string> names;  ///< of variables and constants; a deque does not move them when it grows
     std::vector<ShaderBinding> bindings;
     std::vector<ShaderConstant> constants;
     ShaderCode code;
@@ -59,10 +59,10 @@ std::optional<Format> toFormat(SpvImageFormat format) {
     }
 }
 
-/// One run of SPIRV-Cross over one shader.
+/// Runs SPIRV-Cross on one shader.
 class Reflector {
   public:
-    /// Reads the words of `shader`, and fills in the rest.
+    /// Reads the words of `shader` and fills in the rest.
     explicit Reflector(OwnedShader& shader);
     void run();
 
@@ -130,7 +130,7 @@ void Reflector::refuse(spvc_resource_type type, std::string_view what) const {
     if (!found.empty()) fail(joined("variable '", found[0].name, "': Limpid has no ", what));
 }
 
-/// What every kind of resource has: the number, the set, no array.
+/// Reads the properties common to all resources: the binding number and set; rejects arrays.
 ShaderBinding Reflector::common(const spvc_reflected_resource& resource, std::string name) const {
     if (name.empty()) fail("a variable has no name (was the SPIR-V stripped or optimised?)");
     ShaderBinding result;
@@ -177,8 +177,7 @@ ShaderBinding Reflector::image(const spvc_reflected_resource& resource) const {
     return result;
 }
 
-/// texture2D and utexture2D. What is read has no declared format, only floats or unsigned integers as
-/// components.
+/// texture2D and utexture2D. They have no declared format, only float or unsigned components.
 ShaderBinding Reflector::sampledImage(const spvc_reflected_resource& resource) const {
     ShaderBinding result = common(resource, spvc_compiler_get_name(compiler_, resource.id));
     const std::string name(result.name);
@@ -233,7 +232,7 @@ bool Reflector::everyMemberHas(const spvc_reflected_resource& resource, SpvDecor
     return members > 0;
 }
 
-/// A block's readonly and writeonly stand on its members, not on the variable.
+/// A block's readonly and writeonly are on its members, not on the variable.
 ShaderBinding Reflector::storageBuffer(const spvc_reflected_resource& resource) const {
     ShaderBinding result = common(resource, blockName(resource));
     result.kind = BindingKind::StorageBuffer;
@@ -281,7 +280,7 @@ void Reflector::readConstants() {
     check(spvc_compiler_get_specialization_constants(compiler_, &constants, &count));
     for (const spvc_specialization_constant& constant : std::span(constants, count)) {
         const std::string name = spvc_compiler_get_name(compiler_, constant.id);
-        if (name.empty()) continue;  // made by the compiler for layout(local_size_x_id = ...)
+        if (name.empty()) continue;  // created by the compiler for layout(local_size_x_id = ...)
         const spvc_constant handle = spvc_compiler_get_constant_handle(compiler_, constant.id);
         const spvc_type type = spvc_compiler_get_type_handle(compiler_, spvc_constant_get_type(handle));
         const bool isBool = spvc_type_get_basetype(type) == SPVC_BASETYPE_BOOLEAN;

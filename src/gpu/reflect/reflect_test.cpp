@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of src/gpu/tests/shaders, as glslc wrote it.
+/// Reflects a shader of src/gpu/tests/shaders as glslc wrote it.
 std::shared_ptr<const ShaderCode> reflected(const std::string& name) {
     return reflect(name, readSpirv(LIMPID_SPIRV "/" + name + ".spv"));
 }

@@ -1,10 +1,10 @@
-// limpid_reflect: makes a shader's SPIR-V a part of a C++ file (limpid_shaders(), cmake/LimpidTargets.cmake).
+// limpid_reflect: converts a shader's SPIR-V to C++ (limpid_shaders(), cmake/LimpidTargets.cmake).
 //
-//     limpid_reflect NAME NAMED.spv EMBEDDED.spv OUT.inc    NAMED: as glslc -g wrote it; it is reflected
-//     limpid_reflect --words EMBEDDED.spv OUT.inc           the words only
+// limpid_reflect NAME NAMED.spv EMBEDDED.spv OUT.inc    NAMED: output of glslc -g; it is reflected
+// limpid_reflect --words EMBEDDED.spv OUT.inc           the words only
 //
-// EMBEDDED is what becomes of NAMED: optimised and stripped. Exit code 1 and a message if a file cannot be
-// read or written, or the shader uses what Limpid does not.
+// EMBEDDED is NAMED after optimising and stripping. Fails with exit code 1 and a message if a file cannot be
+// read or written, or the shader uses features that Limpid does not support.
 #include <exception>
 #include <fstream>
 #include <iostream>

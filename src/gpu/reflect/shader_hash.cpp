@@ -8,7 +8,7 @@ namespace {
 class Fnv1a {
   public:
     void add(uint8_t byte) { state_ = (state_ ^ byte) * 0x100000001B3u; }
-    /// Little-endian, on every machine.
+    /// Little-endian on every machine.
     void add(uint32_t word) {
         for (int shift = 0; shift < 32; shift += 8) add(static_cast<uint8_t>(word >> shift));
     }

@@ -71,7 +71,7 @@ void write(std::ostream& out, const ShaderConstant& constant) {
     out << "    {\"" << constant.name << "\", " << constant.id << "},\n";
 }
 
-/// An array must not be empty, a span may.
+/// An array must not be empty, but a span may be.
 template <typename Row>
 void writeRows(std::ostream& out, const char* type, const char* name, std::span<const Row> rows) {
     if (rows.empty()) {

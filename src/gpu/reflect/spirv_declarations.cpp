@@ -6,7 +6,7 @@
 namespace limpid::gpu {
 namespace {
 
-// The SPIR-V specification, "Instructions".
+// From the SPIR-V specification, "Instructions".
 enum Op : uint32_t {
     OpEntryPoint = 15,
     OpTypeArray = 28,
@@ -31,7 +31,7 @@ constexpr size_t boundWord = 3;
 
 struct Instruction {
     uint32_t op = 0;
-    std::span<const uint32_t> words;  ///< with the first, which holds op and length
+    std::span<const uint32_t> words;  ///< including the first word, which has opcode and length
 };
 
 class Filter {
@@ -58,7 +58,7 @@ class Filter {
     }
 
   private:
-    /// A damaged length ends the module: whoever reads the result says so.
+    /// Treats a damaged length as the module's end; the reader of the result reports it.
     Instruction next(size_t& at) const {
         const size_t length = std::clamp<size_t>(words_[at] >> 16, 1, words_.size() - at);
         const Instruction instruction{words_[at] & 0xFFFFu, words_.subspan(at, length)};
@@ -75,7 +75,7 @@ class Filter {
 
     bool dropped(uint32_t id) const { return dropped_.contains(id); }
 
-    /// Whether a declaration is of a matrix or made of one; then it is noted as dropped.
+    /// Returns true if a declaration is a cooperative matrix or uses one, and records its id as dropped.
     bool drops(const Instruction& instruction) {
         const auto word = [&](size_t i) { return i < instruction.words.size() ? instruction.words[i] : 0; };
         const auto anyFrom = [&](size_t first) {
@@ -83,7 +83,7 @@ class Filter {
                    std::ranges::any_of(instruction.words.subspan(first),
                                        [&](uint32_t id) { return dropped(id); });
         };
-        size_t result = 1;  // the word that holds the result's id
+        size_t result = 1;  // the index of the result's id
         bool drop = false;
         switch (instruction.op) {
             case OpTypeCooperativeMatrixNV:

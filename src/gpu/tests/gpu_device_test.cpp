@@ -1,4 +1,4 @@
-// Buffers, limits and the life of a device.
+// Tests buffers, limits and the lifetime of a device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -115,7 +115,7 @@ TEST_F(GpuTest, EmptyDataGivesOneZeroTexel) {
 TEST_F(GpuTest, BuffersBeyondALimitAreRefusedByName) {
     const uint64_t elements = device().maxTexelBufferElements() + 1;
     const uint64_t bytes = elements * 4;
-    // Address space only: the refusal must come before the data is read.
+    // Reserves only address space: the size must be rejected before the data is read.
     void* space = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     ASSERT_NE(space, MAP_FAILED);
     const std::span<const std::byte> data(static_cast<const std::byte*>(space), bytes);
@@ -144,7 +144,7 @@ TEST_F(GpuTest, LargeUploadsGoThroughBoundedStaging) {
 }
 
 TEST_F(GpuTest, StagedCopiesWorkWhereMemoryCouldBeMapped) {
-    // On lavapipe every buffer is mapped; hide that, so that the path of discrete GPUs runs here too.
+    // On lavapipe every buffer is mapped. Hide that to test the path of discrete GPUs too.
     std::vector<uint32_t> data((uint64_t{65} << 20) / 4);
     std::iota(data.begin(), data.end(), 1u);
     auto storage =

@@ -1,4 +1,4 @@
-// Whole frames on a device.
+// Tests whole frames on a device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST_F(GpuTest, ChainsPassesWithParamsAndConstants) {
     const ImageHandle c = graph.transient("c", rgba, odd);
     FillParams params{.step = 0.5f, .tail = {10, 20, 30}};
     fill(graph, "fill", a, params);
-    params.step = 99;  // params are copied at once
+    params.step = 99;  // params were copied immediately
     scale(graph, "default", a, b);
     scale(graph, "constants", b, c,
           {{"bias", static_cast<uint32_t>(-4)}, {"negate", 1}, {"factor", std::bit_cast<uint32_t>(0.25f)}});
@@ -139,7 +139,7 @@ TEST_F(GpuTest, DownloadsEveryFormat) {
         const Format format = allFormats()[i];
         const uint32_t components = componentCount(format);
         const bool isUint = toString(format).find("Uint") != std::string_view::npos;
-        const size_t at = (size_t{3} * odd.width + 20) * components;  // pixel (20, 3)
+        const size_t at = (size_t{3} * odd.width + 20) * components;  // of pixel (20, 3)
         if (isUint) {
             const std::vector<uint32_t> values = graph.downloadUint(device(), images[i]);
             const uint32_t expected[] = {20, 3, 4000000000u, 7};
@@ -287,7 +287,7 @@ TEST_F(GpuTest, ValidationSeesAMissingBarrier) {
     if (!validated_)
         GTEST_SKIP() << "NOT TESTED: the validation layer is not installed (vulkan-validationlayers).";
     expectNoMessages_ = false;
-    // The same frame twice: as recorded, and with the hazards that make its barriers taken away.
+    // Runs the frame twice: as recorded, and without the hazards that cause its barriers.
     for (const bool barriers : {true, false}) {
         FrameGraph::Impl graph({});
         graph.frame.number = 1;

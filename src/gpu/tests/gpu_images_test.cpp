@@ -1,4 +1,4 @@
-// Images that the host fills, and images that lie in buffers.
+// Tests images that the CPU fills, and images stored in buffers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST_F(GpuTest, AHostPassStandsBetweenThoseOfTheDevice) {
         graph.upload(source, bytesOf(ramp));
         graph.dispatch(doubling(source, once, image, odd));
         graph.host({.pass = "shift", .reads = {once}, .writes = {shifted}, .run = [](auto pixels) {
-                        // By one texel.
+                        // Shift by one texel.
                         std::copy_n(pixels[0].begin() + 8, pixels[0].size() - 8, pixels[1].begin());
                         std::fill_n(pixels[1].end() - 8, 8, std::byte{0});
                     }});

@@ -7,7 +7,7 @@
 namespace limpid::gpu {
 namespace {
 
-/// "src/gpu/vulkan/device.cpp" of the absolute path that the compiler knows.
+/// Returns "src/gpu/vulkan/device.cpp" from the compiler's absolute path.
 std::string_view sourcePath(std::string_view file) {
     const size_t src = file.rfind("src/");
     return src == std::string_view::npos ? file : file.substr(src);

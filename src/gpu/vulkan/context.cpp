@@ -48,7 +48,7 @@ Context::Context(const AdoptedDevice& adopted)
     if (!physical_.info.usable)
         throw Unsupported(
             formatText("{} cannot run Limpid: it lacks {}", physical_.info.name, physical_.info.whyNot));
-    // What the caller has not switched on must not be used: only what every device must have is.
+    // The caller may not have enabled optional features, so use only the required ones.
     physical_.info.rayTracing = physical_.info.rayTracingCores = physical_.info.cooperativeMatrices = false;
     physical_.queueFamily = adopted.queueFamily;
     physical_.timestampValidBits = timestampBits(instanceVk_, adopted.physicalDevice, adopted.queueFamily);
@@ -121,7 +121,7 @@ void Context::waitIdleNoThrow() const noexcept {
     try {
         messages_(MessageLevel::Error, "vkDeviceWaitIdle returned " + resultName(result));
     } catch (...) {
-        // A destructor runs: there is nobody left to tell.
+        // Called by a destructor, which cannot report errors.
     }
 }
 
@@ -174,7 +174,7 @@ void passBarrier(const Context& context, VkCommandBuffer commands) {
         stages |= VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR |
                   VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
         writes |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
-        // Builds read vertices and instances as shaders read.
+        // Builds read vertices and instances with shader-read access.
         reads |= VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_SHADER_READ_BIT;
     }
     memoryBarrier(context, commands, stages, writes, stages, reads | writes);

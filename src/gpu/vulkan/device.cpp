@@ -28,7 +28,7 @@ Device::Device(const AdoptedDevice& adopted)
     : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted))) {}
 
 Device::~Device() {
-    // The caller of an adopted device sees to that himself.
+    // For an adopted device this is the caller's job.
     if (impl_->context->submits()) impl_->context->waitIdleNoThrow();
 }
 

@@ -1,4 +1,4 @@
-// Which device a user means.
+// Selects the device that a user asks for.
 #include <algorithm>
 #include <cctype>
 #include <optional>

@@ -1,4 +1,4 @@
-// Which device is chosen, and what is said if none or a call fails. Needs no device.
+// Tests the selection of a device, and the messages if there is none or a call fails. Needs no device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(DeviceChoice, FollowsTheRules) {
 }
 
 TEST(DeviceChoice, WithoutADriverThereAreNoDevicesAndTheErrorHelps) {
-    // The loader reads these at each instance; one test is one process, or the last one.
+    // The loader reads these for each instance. Each test runs in its own process, or this one runs last.
     ::setenv("VK_ICD_FILENAMES", "/nonexistent/icd.json", 1);
     ::setenv("VK_DRIVER_FILES", "/nonexistent/icd.json", 1);
     EXPECT_TRUE(enumerateDevices().empty());

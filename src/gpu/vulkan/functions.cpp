@@ -25,7 +25,7 @@ DeviceFunctions::DeviceFunctions(const InstanceFunctions& instance, VkDevice of)
 }
 
 PFN_vkGetInstanceProcAddr systemLoader() {
-    // Never closed: drivers keep threads and exit handlers in it.
+    // Never closed, since drivers keep threads and exit handlers in it.
     static void* const library = [] {
         void* found = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
         return found ? found : dlopen("libvulkan.so", RTLD_NOW | RTLD_LOCAL);

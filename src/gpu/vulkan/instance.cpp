@@ -33,8 +33,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
                                          VkDebugUtilsMessageTypeFlagsEXT type,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     auto& messages = *static_cast<Instance::Messages*>(user);
-    // Performance advice contradicts a decision of ours (images stay in GENERAL layout), and the loader
-    // reports through the same channel (a broken driver file, say): neither is a fault, so neither counts.
+    // Not counted as errors: performance advice, since it contradicts our decision to keep images in GENERAL
+    // layout, and messages of the loader (for example, about a broken driver file).
     if (!(type & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT)) {
         if (messages.callback)
             messages.callback(MessageLevel::Debug, std::string("Vulkan: ") + data->pMessage);
@@ -109,7 +109,8 @@ std::unique_ptr<Instance> Instance::create(bool validation, const std::vector<st
     info.enabledLayerCount = validation ? 1 : 0;
     info.ppEnabledLayerNames = &validationLayer;
     if (validation) {
-        features.pNext = &messenger;  // messages while the instance itself is created and destroyed count too
+        features.pNext = &messenger;  // also counts messages while the instance itself is created and
+                                      // destroyed
         info.pNext = &features;
     }
     VkInstance instance = VK_NULL_HANDLE;
@@ -135,7 +136,7 @@ Instance::~Instance() {
 std::vector<VkPhysicalDevice> Instance::physicalDevices() const {
     uint32_t count = 0;
     const VkResult result = vk_.EnumeratePhysicalDevices(instance_, &count, nullptr);
-    // What some loaders answer where every driver failed to load.
+    // Some loaders return this if every driver failed to load.
     if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
     LIMPID_VK(result);
     std::vector<VkPhysicalDevice> devices(count);

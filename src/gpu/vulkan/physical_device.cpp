@@ -11,7 +11,7 @@
 namespace limpid::gpu {
 namespace {
 
-enum class Need { Required, Enabled, Listed };  ///< Enabled: switched on if there; Listed: only told
+enum class Need { Required, Enabled, Listed };  ///< Enabled: enabled if available; Listed: only reported
 
 struct Feature {
     const char* name;
@@ -46,7 +46,7 @@ const Feature features[] = {
      [](FeatureChain& f) -> VkBool32& { return f.v12.shaderStorageTexelBufferArrayNonUniformIndexing; }},
 };
 
-/// Listed by name. VK_KHR_cooperative_matrix is younger than Debian's headers and shader compiler.
+/// Extensions reported by name. VK_KHR_cooperative_matrix is newer than Debian's headers and shader compiler.
 constexpr const char* listedExtensions[] = {
     VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
@@ -58,7 +58,7 @@ constexpr const char* listedExtensions[] = {
     VK_KHR_SWAPCHAIN_EXTENSION_NAME,
 };
 
-/// What the `hardware` tracer needs; the last is only there because the first demands it.
+/// Required by the `hardware` tracer; the last one only because the first requires it.
 constexpr const char* rayTracingExtensions[] = {
     VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
@@ -115,7 +115,8 @@ uint64_t deviceLocalBytes(const InstanceFunctions& vk, VkPhysicalDevice handle) 
     return largest;
 }
 
-/// The first family that computes and has timestamps; graphics is not needed (data-centre GPUs may lack it).
+/// Finds the first queue family with compute and timestamps. Graphics is not needed (data-centre GPUs may
+/// lack it).
 bool findQueueFamily(const InstanceFunctions& vk, PhysicalDevice& device) {
     uint32_t count = 0;
     vk.GetPhysicalDeviceQueueFamilyProperties(device.handle, &count, nullptr);
@@ -188,8 +189,8 @@ void inspectRayTracing(const InstanceFunctions& vk, PhysicalDevice& device,
     device.info.rayTracing = available.v12.bufferDeviceAddress &&
                              available.accelerationStructure.accelerationStructure &&
                              available.rayTracingPipeline.rayTracingPipeline;
-    // Drivers that emulate ray tracing on shader cores: NVIDIA's on data-centre GPUs offers no ray queries,
-    // and on GeForce 10 and 16 it does.
+    // Excludes drivers that emulate ray tracing on shader cores: NVIDIA's driver offers no ray queries on
+    // data-centre GPUs, but it does on GeForce 10 and 16.
     const std::string& name = device.info.name;
     device.info.rayTracingCores = device.info.rayTracing && device.info.type != DeviceType::Cpu &&
                                   extensions.contains(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
@@ -238,7 +239,7 @@ void inspectCooperativeMatrices(const InstanceFunctions& vk, PhysicalDevice& dev
         });
 }
 
-/// The properties that a driver of this version knows, linked for one query.
+/// Queries the properties that a driver of this version knows.
 void readProperties(const InstanceFunctions& vk, PhysicalDevice& device, uint32_t version) {
     Properties properties;
     properties.core.pNext = &properties.maintenance3;

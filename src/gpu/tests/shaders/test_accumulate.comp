@@ -1,4 +1,5 @@
-// Counts frames through a history. An invalid history must read as zero: anything else shows in the thousands.
+// Counts frames with a history. An invalid history must read as zero; any other value becomes visible as
+// thousands.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 layout(local_size_x = 8, local_size_y = 8) in;

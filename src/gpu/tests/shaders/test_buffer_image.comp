@@ -1,4 +1,4 @@
-// Doubles an image of half4 texels in a buffer: into another one, and into an image.
+// Doubles an image of half4 texels stored in a buffer; writes a buffer and an image.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,4 +1,5 @@
-// A workgroup size set by specialisation constants. The defaults stand twice: GLSL gives the size a constant of its own.
+// A workgroup size set by specialisation constants. The defaults appear twice, since GLSL gives the size its
+// own constant.
 #version 460
 layout(local_size_x = 8, local_size_y = 4, local_size_x_id = 0, local_size_y_id = 1) in;
 layout(constant_id = 0) const uint groupWidth = 8;

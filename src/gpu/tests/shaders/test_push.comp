@@ -1,4 +1,4 @@
-// Reflection refuses it: push constants.
+// Rejected by reflection: push constants.
 #version 460
 layout(local_size_x = 1) in;
 layout(push_constant) uniform Push {

@@ -1,4 +1,4 @@
-// Reflection refuses it: unlisted format.
+// Rejected by reflection: unlisted format.
 #version 460
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0, rgba16) uniform writeonly image2D result;

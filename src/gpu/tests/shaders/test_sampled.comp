@@ -1,4 +1,4 @@
-// Reflection refuses it: sampled image.
+// Rejected by reflection: sampled image.
 #version 460
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0) uniform sampler2D picture;

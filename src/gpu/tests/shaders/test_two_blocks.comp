@@ -1,4 +1,4 @@
-// Reflection refuses it: two uniform blocks.
+// Rejected by reflection: two uniform blocks.
 #version 460
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0, r32f) uniform writeonly image2D result;

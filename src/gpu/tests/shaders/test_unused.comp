@@ -1,4 +1,4 @@
-// Declares an image that it never touches.
+// Declares an image that it never uses.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D result;

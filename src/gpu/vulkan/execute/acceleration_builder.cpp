@@ -1,4 +1,4 @@
-// The first build: bottom levels at full size, their compact copies, the top level.
+// The first build: full-size bottom levels, their compacted copies, and the top level.
 #include <algorithm>
 #include <deque>
 
@@ -11,10 +11,10 @@
 namespace limpid::gpu {
 namespace {
 
-/// Vulkan's alignment of acceleration structures in their buffer.
+/// The alignment that Vulkan requires for acceleration structures in a buffer.
 constexpr uint64_t structureAlignment = 256;
 
-/// Places things in a buffer one behind the other.
+/// Assigns consecutive offsets in a buffer.
 class Layout {
   public:
     explicit Layout(uint64_t alignment) : alignment_(std::max<uint64_t>(alignment, 1)) {}
@@ -140,7 +140,7 @@ void Builder::buildFullTrees() {
         geometry->info.scratchData.deviceAddress = scratchAddress(*scratch);
         ++geometry;
     }
-    // One after the other: they share their scratch memory, and loading is no frame.
+    // Built one after the other: they share scratch memory, and loading is not time-critical.
     transfer_.run([&](VkCommandBuffer commands) {
         for (const TreeGeometry& g : geometries) {
             passBarrier(*result_->context, commands);
@@ -150,7 +150,7 @@ void Builder::buildFullTrees() {
     });
 }
 
-/// Of the trees that exist.
+/// Returns the sizes of the trees that are not empty.
 std::vector<VkDeviceSize> Builder::compactSizes() const {
     std::vector<VkAccelerationStructureKHR> handles;
     for (const FullTree& tree : full_) {

@@ -1,4 +1,4 @@
-// What acceleration structures are built from, and their rebuilding frame by frame.
+// The inputs of acceleration-structure builds, and the rebuild in each frame.
 #include "gpu/vulkan/execute/acceleration_storage.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::shared_ptr<const BufferStorage> makeScratch(const std::shared_ptr<const Con
 TreeGeometry::TreeGeometry(const BufferStorage& triangles, const TriangleTree& tree) {
     constexpr uint32_t cornerBytes = 16;
     geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
-    // An any-hit shader that runs twice for one triangle decides the same twice.
+    // The any-hit shader may run twice for a triangle, since its decision is deterministic.
     geometry.flags = tree.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : 0;
     VkAccelerationStructureGeometryTrianglesDataKHR& data = geometry.geometry.triangles;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
@@ -67,7 +67,7 @@ StructuresResource::InstanceRecord AccelerationStorage::instanceRecord(uint32_t 
     std::memcpy(record.transform.matrix, where.toWorld.data(), sizeof(where.toWorld));
     record.mask = 0xff;
     record.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
-    // Without a tree the instance is inactive.
+    // An instance without a tree is inactive.
     record.accelerationStructureReference = where.visible ? trees[where.tree].address : 0;
     static_assert(sizeof(record) == sizeof(InstanceRecord));
     return std::bit_cast<InstanceRecord>(record);

@@ -8,7 +8,7 @@
 namespace limpid::gpu {
 namespace {
 
-/// Tightly packed rows, from byte `offset` of `source` on.
+/// Copies tightly packed rows that start at byte `offset` of `source`.
 void copyToImage(const Context& context, VkCommandBuffer commands, VkBuffer source, uint64_t offset,
                  const Image& image) {
     VkBufferImageCopy region{};
@@ -67,7 +67,7 @@ void FrameExecutor::execute(const RecordedFrame& frame) {
     FrameSlot& slot = nextSlot();
     slot.begin(frame);
     recordFrame(frame, slot, anything);
-    // Downloads read by copies, or through mapped memory.
+    // Downloads are read by copies or through mapped memory.
     memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
@@ -114,7 +114,7 @@ void FrameExecutor::finish() {
         if (image.pooled) image.pooled->initialised = true;
 }
 
-/// One barrier orders this frame behind earlier work, and brings fresh images and written foreign ones into
+/// One barrier orders this frame after earlier work, and moves new images and written foreign images to
 /// GENERAL layout.
 void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope) {
     frameImages_.clear();
@@ -156,7 +156,7 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
     context_->vk().CmdPipelineBarrier2(commands, &dependency);
 }
 
-/// Hands written images of the caller's back to him.
+/// Returns written foreign images to the caller.
 void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const {
     std::vector<VkImageMemoryBarrier2> barriers;
     for (const RecordedImage& recorded : frame.images) {
@@ -176,8 +176,7 @@ void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer c
     context_->vk().CmdPipelineBarrier2(commands, &dependency);
 }
 
-/// Shaders may read an invalid history's previous image before they look at the flag: it is zero, never
-/// garbage.
+/// Shaders may read an invalid history's previous image before they check the flag, so clear it to zero.
 void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer commands) {
     bool any = false;
     const VkClearColorValue zero{};
@@ -266,7 +265,7 @@ void FrameExecutor::runOnHost(const RecordedFrame& frame, size_t index, FrameSlo
                   VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                   VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT);
     slot.flush();
-    frame.dispatches[index].host(pixels);  // what it writes is seen by all that is submitted after it
+    frame.dispatches[index].host(pixels);  // its writes are visible to everything submitted afterwards
 }
 
 void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot) {
@@ -299,7 +298,8 @@ VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size
     std::vector<VkDescriptorBufferInfo> buffers;
     std::vector<VkBufferView> views;
     std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structures;
-    const size_t count = dispatch.resources.size() + 1;  // the writes point into the four: they must not grow
+    const size_t count = dispatch.resources.size() + 1;  // the writes point into these four vectors, so they
+                                                         // must not reallocate
     images.reserve(count);
     buffers.reserve(count);
     views.reserve(count);

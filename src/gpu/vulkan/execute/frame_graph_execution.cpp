@@ -1,4 +1,4 @@
-// FrameGraph's calls that need a device.
+// The FrameGraph functions that need a device.
 #include <cstring>
 
 #include "base/error.h"

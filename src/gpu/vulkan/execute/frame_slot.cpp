@@ -66,7 +66,7 @@ void FrameSlot::endForeign(const RecordedFrame& frame) {
     keep(frame);
 }
 
-/// What the frame uses lives until the slot's next frame begins.
+/// Keeps the frame's resources alive until the slot's next frame begins.
 void FrameSlot::keep(const RecordedFrame& frame) {
     for (const RecordedDispatch& dispatch : frame.dispatches) {
         for (const BoundResource& resource : dispatch.resources) {
@@ -99,7 +99,7 @@ void FrameSlot::flush() {
     beginCommands(*context_, commands_);
 }
 
-/// Resets the pool, or replaces it by one that is twice as large as the frame needs.
+/// Resets the pool, or replaces it with one twice as large as the frame needs.
 void FrameSlot::reserveDescriptors(const RecordedFrame& frame) {
     std::array<uint32_t, bindingKindCount> needed{};
     const uint32_t sets = static_cast<uint32_t>(frame.dispatches.size());
@@ -158,7 +158,8 @@ VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) 
 VkBuffer FrameSlot::stage(std::span<const std::byte> data) {
     if (!staging_ || staging_->size < data.size()) {
         staging_.reset();
-        // Small uploads vary from frame to frame; pictures do not, and are too large to be generous.
+        // Small uploads vary from frame to frame, so leave room; pictures do not vary and are too large for
+        // that.
         const uint64_t bytes = data.size() < (1u << 20) ? 2 * data.size() : data.size();
         staging_ =
             makeBuffer(context_, name("uploads"), BufferUse::Staging, std::max<uint64_t>(64 << 10, bytes));
@@ -200,7 +201,7 @@ std::vector<PassTime> FrameSlot::passTimes() {
     wait();
     if (passNames_.empty() || !timed_) return {};
     std::vector<uint64_t> ticks(passNames_.size() + 1);
-    // A frame that the caller never submitted will never have times.
+    // Times of a frame that the caller never submitted will never be available.
     const VkQueryResultFlags waits = submitted_ ? VK_QUERY_RESULT_WAIT_BIT : 0;
     const VkResult result = context_->vk().GetQueryPoolResults(
         context_->device(), timestamps_.get(), 0, static_cast<uint32_t>(ticks.size()),
@@ -211,7 +212,7 @@ std::vector<PassTime> FrameSlot::passTimes() {
     const uint64_t mask = bits >= 64 ? UINT64_MAX : (uint64_t{1} << bits) - 1;
     std::vector<PassTime> times;
     for (size_t i = 0; i < passNames_.size(); ++i) {
-        // The difference modulo the counter's width survives one wrap-around.
+        // The difference modulo the counter's width is correct across one wrap-around.
         const uint64_t elapsed = (ticks[i + 1] - ticks[i]) & mask;
         times.push_back(
             {passNames_[i], static_cast<double>(elapsed) * context_->limits().timestampPeriod * 1e-6});

@@ -61,8 +61,8 @@ std::string pipelineName(const RecordedDispatch& dispatch) {
     return name;
 }
 
-/// Calls `work` with 0 to count - 1, on several threads. Throws what one of the calls threw, after all have
-/// ended.
+/// Calls `work` with 0 to count - 1 on several threads. After all calls have finished, rethrows an exception
+/// if one was thrown.
 void forEachOnThreads(size_t count, const std::function<void(size_t)>& work) {
     std::atomic<size_t> next = 0;
     std::mutex mutex;
@@ -86,7 +86,7 @@ void forEachOnThreads(size_t count, const std::function<void(size_t)>& work) {
     if (fault) std::rethrow_exception(fault);
 }
 
-/// Drivers check the header of their data only: what is behind it must be whole.
+/// Drivers only check the header of their cache data, so check the rest ourselves.
 uint64_t checksum(std::span<const std::byte> data) {
     uint64_t hash = 0xCBF29CE484222325u;  // FNV-1a
     for (const std::byte byte : data) hash = (hash ^ static_cast<uint64_t>(byte)) * 0x100000001B3u;

@@ -50,7 +50,7 @@ ShaderTable makeShaderTable(const std::shared_ptr<const Context>& context, VkPip
     std::vector<std::byte> handles(groupCount * handleSize);
     LIMPID_VK(context->vk().GetRayTracingShaderGroupHandlesKHR(context->device(), pipeline, 0, groupCount,
                                                                handles.size(), handles.data()));
-    // The buffer's own address may be aligned to less than a region needs.
+    // The buffer's own address may have a smaller alignment than a region requires.
     const auto buffer = makeBuffer(context, name + " shader table", BufferUse::ShaderTable,
                                    groupCount * regionBytes + limits.baseAlignment);
     const VkDeviceAddress address = deviceAddress(*buffer);

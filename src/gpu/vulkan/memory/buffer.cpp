@@ -17,7 +17,7 @@ VkBufferUsageFlags usageOf(const Context& context, BufferUse use) {
     constexpr VkBufferUsageFlags copies = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     switch (use) {
         case BufferUse::Texel:
-            // Triangles lie in one, for whoever builds over them.
+            // Triangles are stored in one, and acceleration structures are built from it.
             return VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | copies | (context.hasRayTracing() ? input : 0);
         case BufferUse::Storage:
             return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | copies;

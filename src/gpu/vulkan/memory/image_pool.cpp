@@ -3,8 +3,8 @@
 namespace limpid::gpu {
 namespace {
 
-/// Long enough for a pass that runs every few frames to keep its images, short enough that a resize soon
-/// frees them.
+/// Long enough to keep the images of a pass that runs every few frames, short enough to free old images soon
+/// after a resize.
 constexpr uint64_t framesToKeep = 8;
 
 std::string debugName(const ImageKey& key) {

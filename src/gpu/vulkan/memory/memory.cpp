@@ -18,14 +18,14 @@ constexpr VkMemoryPropertyFlags hostCoherent =
 std::optional<uint32_t> findType(const VkPhysicalDeviceMemoryProperties& memory, uint32_t allowed,
                                  VkMemoryPropertyFlags flags) {
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        // Device-coherent memory (AMD) needs a feature that Limpid does not switch on.
+        // Device-coherent memory (AMD) requires a feature that Limpid does not enable.
         if (memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD) continue;
         if ((allowed >> i & 1) && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
     }
     return std::nullopt;
 }
 
-/// The types are ordered by the driver: the first that has what is needed has the least besides.
+/// Drivers order the types so that the first suitable one has the fewest additional properties.
 uint32_t chooseType(const Context& context, uint32_t allowed, MemoryUse use) {
     const VkPhysicalDeviceMemoryProperties& memory = context.memoryProperties();
     std::optional<uint32_t> type;
@@ -42,7 +42,7 @@ uint32_t chooseType(const Context& context, uint32_t allowed, MemoryUse use) {
     return *type;
 }
 
-/// Counts the bytes, until it frees them by `release`.
+/// Counts the bytes as allocated until the owner is destroyed, which calls `release`.
 std::shared_ptr<const void> ownerOf(const Context& context, uint64_t bytes, std::function<void()> release) {
     const std::shared_ptr<std::atomic<uint64_t>> total = context.allocated();
     *total += bytes;

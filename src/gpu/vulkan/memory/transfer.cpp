@@ -9,17 +9,17 @@
 namespace limpid::gpu {
 namespace {
 
-/// Staging memory never grows beyond this: a scene of gigabytes must not need a second copy of itself.
+/// The maximum size of staging memory: a scene of gigabytes must not need a second copy of itself.
 constexpr uint64_t chunkBytes = uint64_t{64} << 20;
 
-/// What frames wrote before becomes visible to the copy.
+/// Makes writes of earlier frames visible to the copy.
 void beforeCopy(const Context& context, VkCommandBuffer commands) {
     memoryBarrier(context, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
 }
 
-/// What the copy wrote becomes visible to the host. Frames begin with a barrier of their own.
+/// Makes the copy visible to the host. Frames begin with a barrier of their own.
 void afterCopy(const Context& context, VkCommandBuffer commands) {
     memoryBarrier(context, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
