@@ -23,7 +23,8 @@ bool usable(float value) {
 }  // namespace
 
 double filmicCurveInverse(double display) {
-    // y = x (A x + B) / (x (C x + D) + E) is a x^2 + b x + c = 0; c <= 0 <= a, so one root is not negative.
+    // y = x (A x + B) / (x (C x + D) + E) is equivalent to a x^2 + b x + c = 0; c <= 0 <= a, so one root is
+    // not negative.
     const double a = double{filmicA} - display * double{filmicC};
     const double b = double{filmicB} - display * double{filmicD};
     const double c = -display * double{filmicE};

@@ -52,7 +52,7 @@ TEST(AutoExposure, BringsTheAverageToTheKey) {
 }
 
 TEST(AutoExposure, IsMeteredOnTheSubject) {
-    Image image(4, 1, 3, 100.0f);  // a bright sky, and one pixel of something
+    Image image(4, 1, 3, 100.0f);  // a bright sky, and one pixel of an object
     for (uint32_t c = 0; c < 3; ++c) image.at(2, 0, c) = 0.045f;
     const std::vector<float> subject{0.0f, 0.4f, 0.6f, 0.0f};
     EXPECT_NEAR(autoExposure(image, subject), 2.0f, 1e-5f);
@@ -94,7 +94,8 @@ TEST(Tonemap, FilmicCurveHasAnInverse) {
 
 TEST(Tonemap, ASequenceHasOneExposure) {
     EXPECT_EQ(measuredExposure(Image(2, 2, 3, 0.0f)), std::nullopt);
-    // Averages 0.18 * 2^-3 and 0.18 * 2^1: their geometric mean is one stop under 0.18. Black says nothing.
+    // Averages 0.18 * 2^-3 and 0.18 * 2^1: their geometric mean is one stop below 0.18. The black frame does
+    // not count.
     const std::vector<std::optional<float>> frames = {measuredExposure(Image(2, 2, 3, 0.0225f)),
                                                       measuredExposure(Image(2, 2, 3, 0.36f)),
                                                       measuredExposure(Image(2, 2, 3, 0.0f))};

@@ -1,5 +1,6 @@
-// Pictures in bounded memory: what is scaled down has the means of whole cells, the size follows from the
-// header, and a warning says so. What the whole program takes: tests/cli/cli_image_memory_test.cpp.
+// Tests decoding in bounded memory: a picture that is scaled down has the means of whole cells, its size
+// follows from the header, and there is a warning. tests/cli/cli_image_memory_test.cpp measures the whole
+// program.
 #include <gtest/gtest.h>
 #include <stb/stb_image_write.h>
 
@@ -28,7 +29,7 @@ ByteImage randomPicture(uint32_t width, uint32_t height, uint32_t components) {
     return image;
 }
 
-/// Of low frequencies: JPEG's cosine transform scales by other weights than a box.
+/// Low frequencies only: JPEG's cosine transform does not scale with box weights.
 ByteImage smoothPicture(uint32_t width, uint32_t height) {
     ByteImage image{width, height, 3, {}};
     for (uint32_t y = 0; y < height; ++y) {
@@ -47,7 +48,7 @@ std::vector<std::byte> pngOf(const ByteImage& image) {
     return test::toByteVector({bytes.begin(), bytes.end()});
 }
 
-/// The mean of every cell, in double, without any of the code that is tested.
+/// Computes the mean of every cell in double, independently of the tested code.
 ByteImage boxFiltered(const ByteImage& from, uint32_t n, bool srgb) {
     const uint32_t c = from.components;
     ByteImage to{std::max(1u, from.width / n), std::max(1u, from.height / n), c, {}};
@@ -120,7 +121,7 @@ TEST(SrgbBytes, EncodeAndDecodeAsTheFormulasDo) {
 }
 
 TEST(BoundedTexture, APngBecomesTheMeansOfItsCells) {
-    // 203x101: with cells left over at two edges.
+    // 203x101 leaves incomplete cells at two edges.
     for (const bool srgb : {true, false}) {
         const ByteImage picture = randomPicture(203, 101, 4);
         const std::vector<std::byte> bytes = pngOf(picture);
@@ -128,7 +129,7 @@ TEST(BoundedTexture, APngBecomesTheMeansOfItsCells) {
         const Warned same = decodeWarned(bytes, whole);
         EXPECT_EQ(same.image.pixels, picture.pixels);
         EXPECT_EQ(same.messages, "");
-        // Of 203x101 texels, and a third more with mip levels.
+        // For 203x101 texels, and a third more for mip levels.
         for (const auto& [texels, n] : {std::pair{7000u, 2u}, {1100u, 5u}}) {
             const Warned scaled = decodeWarned(bytes, {.srgb = srgb, .maxTexels = texels});
             expectNear(scaled.image, boxFiltered(picture, n, srgb), 1);
@@ -154,7 +155,7 @@ TEST(BoundedTexture, MemoryDecidesTheSize) {
             EXPECT_GT(uint64_t{512 / (n - 1)} * (512 / (n - 1)) * 16, memory) << "scaled too far";
         }
     }
-    // Not even the file and its rows fit.
+    // Not even the file and its rows fit into this memory.
     EXPECT_THROW(decodeTexture(bytes, "a.png", {.maxMemory = 1024}), InputError);
 }
 
@@ -188,7 +189,7 @@ TEST(BoundedTexture, WhatCannotBeScaledIsRefused) {
         EXPECT_THROW(decodeTexture(std::span(bytes).first(size), "a.tga", {.tgaAndBmp = true}), InputError);
 }
 
-/// Of flat pixels, which are random.
+/// Returns a file of uncompressed random pixels.
 std::string hdrOf(uint32_t width, uint32_t height, bool bottomUp) {
     std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + std::string(bottomUp ? "+Y " : "-Y ") +
                        std::to_string(height) + " +X " + std::to_string(width) + "\n";
@@ -219,7 +220,7 @@ void expectCells(const Image& scaled, const Image& whole, uint32_t n) {
     }
 }
 
-/// A bound with which 200x100 pixels must become cells of 3x3: 2,178 pixels.
+/// A bound that reduces 200x100 pixels to cells of 3x3: 2,178 pixels.
 constexpr uint64_t memoryForThirds = 3000 * environmentBytesPerPixel;
 
 TEST(BoundedEnvironment, AnHdrBecomesTheMeansOfItsCells) {

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Cleans the rows of one picture and keeps their means.
+/// Replaces invalid values in the rows of a picture and averages them into cells.
 class EnvironmentBuilder {
   public:
     EnvironmentBuilder(const fs::path& path, uint64_t fileBytes, uint64_t maxMemory)
@@ -41,7 +41,7 @@ class EnvironmentBuilder {
         const uint64_t beside =
             fileBytes_ + memory + uint64_t{size.width} * 3 * (sizeof(double) + sizeof(float));
         const auto fits = [&](PictureSize to) {
-            // While decoding, the picture is there twice: as it comes, and as the scene has it.
+            // While decoding, memory holds the picture twice: as decoded, and as the scene stores it.
             return to.pixels() <= maxMemory_ / environmentBytesPerPixel && beside <= maxMemory_ &&
                    to.pixels() <= (maxMemory_ - beside) / 24;
         };

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Rgbe = std::array<uint8_t, 4>;
 
-/// Takes the bytes from front to back; every read is checked.
+/// Reads bytes sequentially; every read is checked.
 class Reader {
   public:
     Reader(std::span<const std::byte> bytes, const fs::path& name) : bytes_(bytes), name_(name) {}
@@ -68,7 +68,7 @@ double parseExposure(const Reader& reader, std::string_view text) {
     return value;
 }
 
-/// "-Y 512 +X 1024".
+/// Parses a line such as "-Y 512 +X 1024".
 void parseResolution(const Reader& reader, std::string_view text, Header& header) {
     const auto number = [&](std::string_view label) {
         if (!text.starts_with(label)) reader.fail("has no resolution line of the form '-Y height +X width'");
@@ -101,7 +101,7 @@ Header readHeader(Reader& reader) {
     return header;
 }
 
-/// Per-component runs: a count above 128 repeats one byte, others are followed by as many bytes.
+/// Per-component runs: a count above 128 repeats one byte; otherwise that many bytes follow.
 void readNewRow(Reader& reader, std::span<Rgbe> row) {
     for (size_t c = 0; c < 4; ++c) {
         size_t x = 0;
@@ -119,7 +119,8 @@ void readNewRow(Reader& reader, std::span<Rgbe> row) {
     }
 }
 
-/// Flat pixels, where (1,1,1,n) repeats the pixel before n times; consecutive ones give higher bytes of n.
+/// Uncompressed pixels, where (1,1,1,n) repeats the previous pixel n times; consecutive ones give higher
+/// bytes of n.
 void readOldRow(Reader& reader, std::span<Rgbe> row, Rgbe first) {
     size_t x = 0;
     unsigned shift = 0;
@@ -167,7 +168,7 @@ void decodeHdrRows(std::span<const std::byte> bytes, const fs::path& name, const
         throw InputError(name, "is no Radiance picture: " + describeBeginning(bytes));
     Reader reader(bytes, name);
     const Header header = readHeader(reader);
-    // Old runs have no fixed limit; a row of one colour, which is their best, takes about 12 bytes.
+    // Old runs have no fixed limit; the best case, a row of one colour, takes about 12 bytes.
     checkDimensions(name, header.width, header.height, bytes.size(), 512, most);
     sink.begin({header.width, header.height}, uint64_t{header.width} * (sizeof(Rgbe) + 3 * sizeof(float)));
     std::vector<Rgbe> row(header.width);

@@ -23,7 +23,7 @@ struct Header {
         return {static_cast<uint32_t>(TJSCALED(width, factor)),
                 static_cast<uint32_t>(TJSCALED(height, factor))};
     }
-    /// Of all coefficients, two bytes each.
+    /// Returns the size of all coefficients, two bytes each.
     uint64_t coefficientBytes() const {
         if (colorSpace == TJCS_GRAY) return size().pixels() * 2;
         if (hasInks() || subsampling < 0 || subsampling >= TJ_NUMSAMP) return size().pixels() * 8;
@@ -32,7 +32,7 @@ struct Header {
     }
 };
 
-/// Files of four inks hold them inverted, as Adobe's programs write them.
+/// CMYK files store inverted values, as Adobe's programs write them.
 void inksToColours(std::vector<uint8_t>& pixels) {
     for (size_t i = 0; i + 3 < pixels.size(); i += 4) {
         const uint32_t key = pixels[i + 3];
@@ -55,7 +55,7 @@ class Decoder {
         return h;
     }
 
-    /// RGBA; `to` is one of the header's scaled sizes.
+    /// Decodes to RGBA; `to` is one of the header's scaled sizes.
     ByteImage decode(const Header& h, PictureSize to) {
         ByteImage image{to.width, to.height, 4, {}};
         image.pixels.resize(to.pixels() * 4);
@@ -70,7 +70,7 @@ class Decoder {
     const unsigned char* data() const { return reinterpret_cast<const unsigned char*>(bytes_.data()); }
     unsigned long size() const { return static_cast<unsigned long>(bytes_.size()); }
 
-    /// Warnings too: half a picture is no picture.
+    /// Treats warnings as errors: half a picture is not acceptable.
     void check(int result) {
         if (result == 0) return;
         throw InputError(name_, fmt::format("cannot be decoded: {}", tjGetErrorStr2(handle_.get())));
@@ -81,7 +81,7 @@ class Decoder {
     std::unique_ptr<void, int (*)(void*)> handle_;
 };
 
-/// At least a bit per block of 64 pixels, and that for a subsampled colour may stand for 4 blocks.
+/// Each block of 64 pixels takes at least one bit, and a block of a subsampled component may cover 4 blocks.
 constexpr uint64_t pixelsPerByte = 8 * 256;
 
 }  // namespace
@@ -98,7 +98,7 @@ ByteImage decodeJpeg(std::span<const std::byte> bytes, const fs::path& name, con
     const Header header = decoder.header();
     const PictureSize size = header.size();
     checkDimensions(name, size.width, size.height, bytes.size(), pixelsPerByte, maxStreamedPixels);
-    // Rows of blocks, upsampled and not, of all components.
+    // Memory for rows of blocks, upsampled and not, of all components.
     const uint64_t rows = uint64_t{size.width} * 256;
     const Fits fits = bound.fits(rows + (bound.isBuffered ? header.coefficientBytes() : 0));
     uint32_t divisor = 1;

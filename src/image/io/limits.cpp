@@ -10,7 +10,7 @@ void checkDimensions(const std::filesystem::path& file, uint64_t width, uint64_t
                      uint64_t pixelsPerByte, uint64_t most) {
     if (width == 0 || height == 0)
         throw InputError(file, fmt::format("has no pixels ({}x{})", width, height));
-    // Division, not multiplication: the product of two absurd numbers may wrap round to a small one.
+    // Divide instead of multiplying: the product of two huge numbers may overflow to a small one.
     if (width > most / height) {
         throw InputError(file,
                          fmt::format("is {}x{} pixels; at most {} pixels are accepted", width, height, most));

@@ -26,7 +26,7 @@ uint64_t texelsWithMipLevels(PictureSize size) {
     return sum;
 }
 
-/// `whileDecoding`: bytes beside the result.
+/// `whileDecoding`: bytes needed besides the result.
 Fits fitsWithin(const TextureDecoding& how, uint64_t whileDecoding) {
     return [&how, whileDecoding](PictureSize to) {
         return to.pixels() <= how.maxMemory / textureBytesPerTexel && whileDecoding <= how.maxMemory &&
@@ -34,7 +34,7 @@ Fits fitsWithin(const TextureDecoding& how, uint64_t whileDecoding) {
     };
 }
 
-/// Bytes to means of linear values and back.
+/// Converts bytes to linear values, averages them, and converts back.
 class TexelReducer {
   public:
     TexelReducer(PictureSize from, uint32_t reduction, bool srgb)
@@ -111,7 +111,7 @@ ByteImage decodeTexture(std::span<const std::byte> bytes, const fs::path& name, 
     if (!looksLikeTga(bytes) && !looksLikeBmp(bytes))
         throw InputError(name, "is none of PNG, JPEG, TGA and BMP");
     const PictureSize size = checkTgaOrBmp(bytes, name);
-    // stb_image holds the file's components and RGBA together for a moment, then we do.
+    // stb_image briefly holds the file's components and RGBA together, then we do.
     requireFits(name, size, limit(size.pixels() * 4), how.maxMemory,
                 "TGA and BMP files cannot be scaled down row by row, PNG files can");
     return decodeTgaOrBmp(bytes, name);

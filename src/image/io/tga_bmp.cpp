@@ -35,9 +35,9 @@ uint32_t littleEndian32(Bytes bytes, size_t i) {
 }
 
 struct TgaHeader {
-    uint32_t kind;  ///< 1 indexed, 2 colour, 3 grey; plus 8: packed in runs
+    uint32_t kind;  ///< 1 indexed, 2 colour, 3 grey; plus 8: run-length encoded
     uint32_t width, height, bits;
-    size_t pixels;  ///< where they begin
+    size_t pixels;  ///< offset of the pixel data
 
     bool hasRuns() const { return kind >= 8; }
 };
@@ -49,7 +49,7 @@ TgaHeader tgaHeader(Bytes bytes) {
             tgaHeaderBytes + byteAt(bytes, 0) + (hasPalette ? paletteBytes : 0)};
 }
 
-/// Walks the packets: each has a count, and one pixel to repeat or as many pixels.
+/// Walks the packets: each has a count, and either one pixel to repeat or that many pixels.
 void checkRuns(Bytes bytes, const TgaHeader& h, const fs::path& name) {
     const size_t pixelBytes = (h.bits + 7) / 8;
     uint64_t left = uint64_t{h.width} * h.height;
@@ -65,7 +65,7 @@ void checkRuns(Bytes bytes, const TgaHeader& h, const fs::path& name) {
 
 PictureSize checkTga(Bytes bytes, const fs::path& name) {
     const TgaHeader h = tgaHeader(bytes);
-    // The best run stands for 128 pixels by two bytes.
+    // The best run encodes 128 pixels in two bytes.
     checkDimensions(name, h.width, h.height, bytes.size(), 64);
     if (h.pixels > bytes.size()) failCutOff(name, "TGA");
     if (h.hasRuns()) {
@@ -82,7 +82,7 @@ PictureSize checkBmp(Bytes bytes, const fs::path& name) {
     const uint64_t offset = littleEndian32(bytes, 10);
     const uint64_t width = isOld ? littleEndian16(bytes, 18) : littleEndian32(bytes, 18);
     const uint32_t signedHeight = isOld ? littleEndian16(bytes, 20) : littleEndian32(bytes, 22);
-    // A negative height says that the first row is on top.
+    // A negative height means that the first row is at the top.
     const uint64_t height = signedHeight > 0x7fffffff ? uint64_t{~signedHeight} + 1 : signedHeight;
     const uint64_t bits = littleEndian16(bytes, isOld ? 24 : 28);
     if (!isOld && (littleEndian32(bytes, 30) == 1 || littleEndian32(bytes, 30) == 2))

@@ -23,24 +23,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A row of chunks is decoded into one buffer; this much at most.
+/// The maximum size of a decoding buffer, which holds a row of chunks.
 constexpr uint64_t maxChunkBytes = uint64_t{1} << 30;
-/// OpenEXR allocates several tiles at once, whole even where the picture ends. Beyond this size they may be
-/// at most as large as the picture, whose size the file's limits.
+/// OpenEXR allocates several whole tiles at once, even beyond the picture's edge. Above this size, they may
+/// be at most as large as the picture, which is limited by the file's size.
 constexpr uint64_t maxTileBytes = uint64_t{1} << 26;
 
-/// Walks the raw attribute lists: an attribute that claims more bytes than the file has would make the
-/// library allocate them before it notices.
+/// Walks the raw attribute lists. OpenEXR would allocate an attribute's claimed size before noticing that the
+/// file is shorter.
 class AttributeWalk {
   public:
     AttributeWalk(std::span<const std::byte> bytes, const fs::path& name, size_t position)
         : bytes_(bytes), name_(name), position_(position) {}
 
-    /// Steps over one header. Returns false if it was empty, which ends a multi-part file's list.
+    /// Skips one header. Returns false if it was empty, which ends a multi-part file's list.
     bool header() {
         bool any = false;
         while (!text().empty()) {
-            text();  // the attribute's type
+            text();  // skips the attribute's type
             const uint32_t size = number();
             if (size > bytes_.size() - position_) fail();
             position_ += size;
@@ -93,14 +93,15 @@ int rowsPerChunk(Imf::Compression compression) {
     }
 }
 
-/// Above the best that each method can do on a constant picture (DWA: 37,000 on rows of 131,072 pixels).
+/// Returns a bound above the best ratio that each method achieves on a constant picture (DWA: 37,000 on rows
+/// of 131,072 pixels).
 uint64_t largestRatio(Imf::Compression compression) {
     if (compression == Imf::NO_COMPRESSION) return 1;
     const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
     return dwa ? uint64_t{1} << 16 : 2048;
 }
 
-/// Width and height of a window whose coordinates are too small to overflow anything.
+/// Returns a window's width and height. Rejects coordinates so large that they could overflow.
 struct Size {
     uint64_t width, height;
 };
@@ -131,7 +132,8 @@ uint64_t checkChannels(const Imf::Header& header, const fs::path& name) {
     return bytesPerPixel;
 }
 
-/// Checks that the file is long enough for its chunks, and that no chunk is absurd. Returns rows per chunk.
+/// Checks that the file is long enough for its chunks, and that chunks have a plausible size. Returns rows
+/// per chunk.
 int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bool tiled, size_t fileBytes,
                 const fs::path& name) {
     uint64_t rows = static_cast<uint64_t>(rowsPerChunk(header.compression()));
@@ -149,7 +151,7 @@ int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bo
                                                rows, data.width, data.height));
         }
     }
-    // Rows of tiles are cached whole, so the widest extent counts.
+    // Rows of tiles are cached whole, so use the larger width.
     if (rows > maxChunkBytes / (std::max(columns, data.width) * bytesPerPixel)) {
         throw InputError(name, fmt::format("has blocks of {}x{} pixels, which is too much", columns, rows));
     }
@@ -181,7 +183,8 @@ ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes
     }
     frame.rowsPerChunk = checkChunks(header, data, bytesPerPixel, tiled, fileBytes, name);
 
-    // The frame may be far larger than a cropped render inside it, but not without limit: it is allocated.
+    // The display window may be far larger than a cropped render inside it, but must be limited, since it is
+    // allocated.
     checkDimensions(name, display.width, display.height, fileBytes, maxPixels);
     const uint64_t pixels = display.width * display.height;
     const bool large = pixels > (uint64_t{1} << 24) || pixels * (bytesPerPixel / 2) > (uint64_t{1} << 26);

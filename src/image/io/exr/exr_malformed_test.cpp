@@ -34,7 +34,7 @@ Bytes validFile(Compression compression, uint32_t width = 40, uint32_t height = 
     return test::toByteVector(test::get(folder / "a.exr"));
 }
 
-/// Memory of this process at its highest, in bytes.
+/// Returns the peak memory of this process in bytes.
 size_t peakMemory() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
@@ -70,7 +70,7 @@ TEST(ExrMalformed, FlippedBitsNeverCrash) {
         const Bytes whole = validFile(compression);
         for (int i = 0; i < 1500; ++i) {
             Bytes bytes = whole;
-            // The header decides what is allocated, so most flips go there.
+            // The header controls allocations, so most bit flips go there.
             const size_t range = i % 3 == 0 ? bytes.size() : std::min<size_t>(bytes.size(), 600);
             for (int flips = 0; flips <= i % 3; ++flips)
                 bytes[random() % range] ^= std::byte(1u << (random() % 8));

@@ -19,8 +19,8 @@
 namespace limpid::image {
 namespace {
 
-/// All channels, their values still to come: memory that a damaged file only claims is reserved, but never
-/// touched.
+/// Returns all channels without values. Memory is only reserved, so that a damaged file's claims do not use
+/// any.
 LayeredImage emptyImage(const ExrFrame& frame, const Imf::Header& header) {
     LayeredImage image;
     image.width = frame.width();
@@ -34,26 +34,25 @@ LayeredImage emptyImage(const ExrFrame& frame, const Imf::Header& header) {
     }
     for (auto it = header.begin(); it != header.end(); ++it) {
         const std::string_view name = it.name();
-        if (name == "name" || name == "type" || name == "view")
-            continue;  // about parts, not about the picture
+        if (name == "name" || name == "type" || name == "view") continue;  // describes parts, not the picture
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
         if (text) image.metadata[it.name()] = text->value();
     }
     return image;
 }
 
-/// Rows that exist already keep their values, new ones are 0.
+/// Existing rows keep their values; new ones are 0.
 void growTo(LayeredImage& image, int rows) {
     for (Channel& channel : image.channels)
         channel.values.resize(size_t{image.width} * static_cast<size_t>(rows));
 }
 
-/// Whole chunks of rows, decoded at the data window's full width: one plane of 32-bit words for each channel.
+/// Whole chunks of rows, decoded at the data window's full width, with one plane of 32-bit words per channel.
 class Band {
   public:
     Band(const Imath::Box2i& data, int rows, size_t channels)
         : data_(data), width_(static_cast<size_t>(data.max.x - data.min.x) + 1), planes_(channels) {
-        // Not initialised: decoding fills them, and where it fails the memory was never touched.
+        // Not initialised: decoding fills them, and if it fails the memory is never touched.
         for (auto& plane : planes_)
             plane = std::make_unique_for_overwrite<uint32_t[]>(width_ * static_cast<size_t>(rows));
     }
@@ -63,8 +62,8 @@ class Band {
         first_ = first;
         Imf::FrameBuffer frame;
         for (size_t c = 0; c < planes_.size(); ++c) {
-            // EXR addresses pixels by absolute coordinates, so its base pointer lies outside the plane: an
-            // integer, because C++ gives such a pointer no meaning.
+            // EXR addresses pixels by absolute coordinates, so its base pointer lies outside the plane. We
+            // compute it as an integer, because such a pointer is undefined in C++.
             const auto base = reinterpret_cast<intptr_t>(planes_[c].get());
             const auto width = static_cast<intptr_t>(width_);
             const intptr_t origin = base - 4 * (intptr_t{data_.min.x} + intptr_t{first} * width);
@@ -76,7 +75,7 @@ class Band {
         part.readPixels(first, last);
     }
 
-    /// Copies the pixels of row y that both windows share.
+    /// Copies the pixels of row y that are in both windows.
     void copyRow(LayeredImage& image, const Imath::Box2i& display, int y) const {
         const int left = std::max(data_.min.x, display.min.x);
         const int right = std::min(data_.max.x, display.max.x);
@@ -123,7 +122,7 @@ LayeredImage decode(std::span<const std::byte> bytes, const std::filesystem::pat
     const ExrFrame frame = checkExrHeaders(bytes, name);
     useExrThreads();
     ExrMemoryStream stream(bytes, name.string());
-    // No reconstruction of a damaged chunk table: an incomplete file is an error, not a picture with holes.
+    // Do not reconstruct a damaged chunk table: an incomplete file is an error, not a picture with holes.
     Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(), false);
     Imf::InputPart part(file, 0);
     LayeredImage image = emptyImage(frame, part.header());

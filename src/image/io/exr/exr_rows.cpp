@@ -35,7 +35,7 @@ Names colorChannels(const Imf::Header& header, const fs::path& name) {
     throw InputError(name, "has no layer with the channels R, G and B");
 }
 
-/// How the rows are decoded: how many together, on how many threads, with how many bytes of buffers.
+/// How rows are decoded: rows per band, number of threads, and bytes of buffers.
 struct Plan {
     int rows = 1, threads = 0;
     uint64_t memory = 0;
@@ -44,8 +44,8 @@ struct Plan {
 Plan planFor(const ExrFrame& frame, uint64_t maxMemory) {
     const auto width = static_cast<uint64_t>(frame.data.max.x - frame.data.min.x) + 1;
     const auto chunkRows = static_cast<uint64_t>(frame.rowsPerChunk);
-    // OpenEXR has two buffers a thread, each of a chunk, packed and unpacked; we have the rows as floats, and
-    // so has it for files of tiles.
+    // OpenEXR uses two buffers per thread, for a packed and an unpacked chunk. We store the rows as floats;
+    // for tiled files, OpenEXR does too.
     const uint64_t buffer = 2 * width * chunkRows * frame.bytesPerPixel;
     const uint64_t floats = 2 * width * 3 * sizeof(float);
     const auto wanted = static_cast<uint64_t>(std::max(Imf::globalThreadCount(), 0));
@@ -59,7 +59,7 @@ Plan planFor(const ExrFrame& frame, uint64_t maxMemory) {
         std::max<uint64_t>(2 * threads, 1) * buffer + floats * std::max(rows, std::min(chunkRows, height))};
 }
 
-/// A band of rows of the data window, three floats a pixel.
+/// A band of rows of the data window, three floats per pixel.
 class ColorBand {
   public:
     ColorBand(const Imath::Box2i& data, const Names& names, int rows)
@@ -86,7 +86,7 @@ class ColorBand {
         for (size_t i = 0; i < count; ++i) values_[3 * i + 1] = values_[3 * i + 2] = values_[3 * i];
     }
 
-    /// The part of row y that lies in the frame.
+    /// Copies the part of row y that is inside the frame.
     void copyRow(const Imath::Box2i& display, int y, std::span<float> row) const {
         const int left = std::max(data_.min.x, display.min.x), right = std::min(data_.max.x, display.max.x);
         if (left > right) return;
@@ -109,19 +109,19 @@ void decode(std::span<const std::byte> bytes, const fs::path& name, const RowSin
     useExrThreads();
     const Plan plan = planFor(frame, maxMemory);
     ExrMemoryStream stream(bytes, name.string());
-    // The library allocates its buffers when the file is opened.
+    // The library allocates its buffers when it opens the file.
     sink.begin({frame.width(), frame.height()}, plan.memory);
     Imf::MultiPartInputFile file(stream, plan.threads, false);
     Imf::InputPart part(file, 0);
     ColorBand band(frame.data, colorChannels(part.header(), name), plan.rows);
     std::vector<float> row(size_t{frame.width()} * 3);
-    int read = frame.data.min.y;  // the first row of the data window that has not been read
+    int read = frame.data.min.y;  // the first row of the data window that is not yet read
     for (int y = frame.display.min.y; y <= frame.display.max.y; ++y) {
         std::fill(row.begin(), row.end(), 0.0f);
         const bool isStored = y >= frame.data.min.y && y <= frame.data.max.y;
         while (isStored && read <= y) {
             const int last = std::min(read + plan.rows - 1, frame.data.max.y);
-            if (last >= y) band.read(part, read, last);  // others lie above the frame
+            if (last >= y) band.read(part, read, last);  // otherwise the band lies above the frame
             read = last + 1;
         }
         if (isStored) band.copyRow(frame.display, y, row);

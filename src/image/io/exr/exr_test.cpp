@@ -38,7 +38,7 @@ LayeredImage makeLayers(uint32_t width, uint32_t height) {
     return image;
 }
 
-/// Reference values 100 y + x at every pixel of the data window, written by the library itself.
+/// A file written by the library itself, with the value 100 y + x at every pixel of the data window.
 struct Foreign {
     Imath::Box2i display{{0, 0}, {9, 7}};
     Imath::Box2i data{{0, 0}, {9, 7}};

@@ -50,7 +50,7 @@ Imf::PixelType toImf(Storage storage) {
 
 half toHalf(float value) {
     constexpr float largest = 65504.0f;
-    // A bright but finite pixel must not come back as infinity.
+    // A bright but finite pixel must not become infinite.
     return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
 }
 
@@ -60,7 +60,7 @@ uint32_t toUint(float value) {
                                   : static_cast<uint32_t>(std::llround(static_cast<double>(value)));
 }
 
-/// One channel's values in the type in which the file keeps them.
+/// One channel's values in the file's type.
 struct StoredChannel {
     std::vector<half> halves;
     std::vector<uint32_t> uints;
@@ -108,7 +108,7 @@ Imf::Header makeHeader(const LayeredImage& image, Compression compression) {
     for (const Channel& channel : image.channels) {
         header.channels().insert(channel.name, Imf::Channel(toImf(channel.storage)));
     }
-    // These are strings too, but they mean something to readers.
+    // These are strings too, but have a meaning for readers.
     constexpr std::array<std::string_view, 3> reserved = {"name", "type", "view"};
     for (const auto& [key, value] : image.metadata) {
         const bool taken = std::find(reserved.begin(), reserved.end(), key) != reserved.end();
@@ -127,7 +127,7 @@ void writeTo(std::ofstream& file, const std::string& name, const Imf::Header& he
     Imf::FrameBuffer frame;
     for (const Channel& channel : image.channels) {
         const StoredChannel& s = stored.emplace_back(store(channel));
-        // The library reads through this pointer only; its type serves reading and writing.
+        // The library only reads through this pointer, but its type serves reading and writing.
         frame.insert(channel.name, Imf::Slice(toImf(channel.storage), const_cast<char*>(s.base),
                                               s.bytesPerValue, s.bytesPerValue * image.width));
     }
@@ -152,7 +152,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image, Comp
         } catch (const std::exception& error) {
             throw OutputError(path, fmt::format("cannot be written: {}", error.what()));
         }
-        // OutputFile's destructor writes the line table and swallows errors: ask the stream how it went.
+        // OutputFile's destructor writes the line table and swallows errors, so check the stream.
         file.close();
         if (!file) throw OutputError(path, "cannot be written: the disk may be full");
     });

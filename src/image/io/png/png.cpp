@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A PNG's pixels as RGBA, after everything that can be known before one is decoded.
+/// Decodes a PNG's pixels as RGBA, after all checks that are possible before decoding.
 class WholePng {
   public:
     WholePng(std::span<const std::byte> bytes, const fs::path& name) : reader_(checked(bytes, name), name) {
@@ -79,7 +79,7 @@ std::vector<char> encodePng(const ByteImage& image, const fs::path& name) {
     const bool right = (image.components == 3 || image.components == 4) && image.width > 0 &&
                        image.height > 0 && image.pixels.size() == rowBytes * image.height;
     if (!right) throw OutputError(name, "cannot be written: a PNG wants RGB or RGBA, and at least one pixel");
-    // stb_image_write counts in int.
+    // stb_image_write uses int for sizes.
     if ((rowBytes + 1) * image.height > static_cast<uint64_t>(std::numeric_limits<int>::max())) {
         throw OutputError(
             name, fmt::format("cannot be written: {}x{} is too large for PNG", image.width, image.height));

@@ -52,7 +52,7 @@ uint32_t crc(std::span<const std::byte> bytes) {
     return c ^ 0xFFFFFFFFu;
 }
 
-/// The position after the entropy-coded data that starts at `i`: that of the next real marker.
+/// Returns the position after the entropy-coded data that starts at `i`: that of the next real marker.
 size_t skipScan(std::span<const std::byte> bytes, size_t i) {
     while (i + 1 < bytes.size()) {
         const uint8_t next = byteAt(bytes, i + 1);
@@ -89,7 +89,7 @@ void checkPng(std::span<const std::byte> bytes, const std::filesystem::path& nam
         constexpr uint32_t ihdr = 0x49484452, iend = 0x49454E44;
         const uint32_t type = bigEndian32(bytes, i + 4);
         if (type == iend) return;
-        // Deflate packs at most 1032 bytes, of 8 one-bit pixels each, into one.
+        // Deflate compresses at most 1032 bytes, of 8 one-bit pixels each, into one.
         if (type == ihdr && length >= 8)
             checkDimensions(name, bigEndian32(bytes, i + 8), bigEndian32(bytes, i + 12), bytes.size(),
                             8 * 1032);

@@ -32,7 +32,7 @@ std::string jpegText() {
     return text;
 }
 
-/// A PNG chunk with its right checksum (bit by bit, unlike the code under test).
+/// Returns a PNG chunk with its correct checksum (computed bit by bit, unlike the tested code).
 std::string chunk(const std::string& type, const std::string& data) {
     const auto word = [](uint32_t v) {
         return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
@@ -56,7 +56,7 @@ std::string ihdr(uint32_t width, uint32_t height, char depth, char color) {
     return chunk("IHDR", data + depth + color + std::string(3, '\0'));
 }
 
-/// zlib with one stored block.
+/// Returns a zlib stream with one stored block.
 std::string stored(const std::string& data) {
     const auto size = static_cast<uint16_t>(data.size());
     uint32_t a = 1, b = 0;
