@@ -13,13 +13,13 @@ namespace {
 using dnnl::memory;
 
 constexpr uint32_t taps = 5, reach = taps / 2;
-constexpr uint32_t inputBlock = 16;  ///< channels that lie together in what begin() is given
+constexpr uint32_t inputBlock = 16;  ///< channels per block in the input of begin()
 
 uint32_t blocksOf(uint32_t channels, uint32_t block) {
     return (channels + block - 1) / block;
 }
 
-/// Channels that lie together where oneDNN has fast convolutions for this CPU.
+/// Returns the channels per block with which oneDNN has fast convolutions for this CPU.
 uint32_t blockOfCpu() {
     const auto isa = static_cast<unsigned>(dnnl::get_effective_cpu_isa());
     return isa >= static_cast<unsigned>(dnnl::cpu_isa::avx512_core) ? 16 : 8;
@@ -29,7 +29,7 @@ memory::desc picture(uint32_t channels, uint32_t rows, uint32_t columns, memory:
     return {{1, channels, rows, columns}, memory::data_type::f32, tag};
 }
 
-/// One layer for pictures of one size.
+/// One layer for pictures of a fixed size.
 struct Step {
     dnnl::convolution_forward primitive;
     memory weights, bias, scratch;
@@ -40,7 +40,7 @@ struct Step {
 
 struct ConvolutionChain::Impl {
     struct Kept {
-        uint32_t inputs, outputs;  ///< inputs in whole blocks for the first layer
+        uint32_t inputs, outputs;  ///< rounded up to whole blocks for the first layer
         bool relu;
         memory weights, bias;  ///< (outputs, inputs, 5, 5)
     };
@@ -52,13 +52,13 @@ struct ConvolutionChain::Impl {
     std::vector<Kept> layers;
     uint32_t columns = 0, height = 0;
     std::vector<Step> hidden;
-    std::vector<memory> channels;  ///< the hidden layers' results, in turn
-    memory last;                   ///< what the output layer reads
+    std::vector<memory> channels;  ///< results of the hidden layers, used alternately
+    memory last;                   ///< input of the output layer
 
-    uint32_t bandRows = 0;  ///< of the output layer's step
+    uint32_t bandRows = 0;  ///< rows per step of the output layer
     std::optional<Step> output;
     memory band, blocked,
-        planar;  ///< its input with the rows around it; its result in blocks, and channel by channel
+        planar;  ///< its input including the rows around it; its result in blocks, and as planar channels
 
     Kept keep(const ConvolutionLayer& layer, bool first) {
         Kept kept{layer.inputs, layer.outputs, layer.relu, {}, {}};
@@ -76,7 +76,7 @@ struct ConvolutionChain::Impl {
         return kept;
     }
 
-    /// `above`: rows of zeros above and below; the output layer's are in its input.
+    /// `above`: rows of zero padding above and below; the output layer's input already includes them.
     Step step(const Kept& layer, uint32_t rows, uint32_t above) {
         using Forward = dnnl::convolution_forward;
         const memory::desc source = picture(layer.inputs, rows, columns, tag);
@@ -137,7 +137,7 @@ struct ConvolutionChain::Impl {
         planar = memory(picture(layers.back().outputs, rows, columns, memory::format_tag::nchw), engine);
     }
 
-    /// Rows of `last` from `first` - reach on; zeros outside.
+    /// Copies rows of `last` from `first` - reach on; rows outside are zero.
     void fillBand(uint32_t first, uint32_t rows) {
         const size_t line = size_t{columns} * block;
         const auto* from = static_cast<const float*>(last.get_data_handle());

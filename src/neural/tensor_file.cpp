@@ -39,7 +39,7 @@ std::optional<ElementType> typeNamed(const std::string& name) {
     return std::nullopt;
 }
 
-/// None if it does not fit 64 bits.
+/// Returns nothing if the size does not fit in 64 bits.
 std::optional<uint64_t> sizeOf(ElementType type, std::span<const uint64_t> shape) {
     uint64_t bytes = bytesOf(type);
     for (const uint64_t extent : shape) {
@@ -59,12 +59,12 @@ std::string textOf(uint32_t checksum) {
     return text;
 }
 
-/// What a header says of one tensor.
+/// A tensor's description in the header.
 struct Entry {
     std::string name;
     ElementType type = ElementType::Float32;
     std::vector<uint64_t> shape;
-    uint64_t begin = 0, end = 0;  ///< bytes from the header's end
+    uint64_t begin = 0, end = 0;  ///< bytes from the end of the header
 };
 
 class Reader {
@@ -107,7 +107,7 @@ class Reader {
         const auto text = std::span(bytes_).subspan(lengthBytes, length);
         data_ = std::span(bytes_).subspan(lengthBytes + length);
         std::set<std::string> names;
-        // The parser keeps the last of two values with one name.
+        // The parser would silently keep the last of two values with one name.
         const auto checkName = [&](int depth, json::parse_event_t event, json& parsed) {
             if (depth == 1 && event == json::parse_event_t::key &&
                 !names.insert(parsed.get<std::string>()).second)
@@ -169,7 +169,7 @@ class Reader {
         return entry;
     }
 
-    /// One after the other, from the first byte to the last.
+    /// Checks that tensors lie one after the other, from the first byte to the last.
     void checkPlaces(std::vector<Entry>& entries) const {
         std::ranges::sort(entries, {}, [](const Entry& entry) { return std::pair(entry.begin, entry.end); });
         uint64_t place = 0;
@@ -205,7 +205,7 @@ std::string headerOf(const TensorFile& file) {
     metadata[checksumKey] = textOf(checksum);
     header[metadataKey] = metadata;
     std::string text = header.dump();
-    text.resize((text.size() + 7) / 8 * 8, ' ');  // elements begin aligned
+    text.resize((text.size() + 7) / 8 * 8, ' ');  // aligns the elements
     return text;
 }
 

@@ -18,7 +18,7 @@ using image::test::get;
 using image::test::put;
 using image::test::TempFolder;
 
-/// A file of the format, whose header is `header` and whose elements are the bytes of `data`.
+/// Returns a file with the given header and elements.
 std::string fileOf(const std::string& header, const std::string& data) {
     const uint64_t length = header.size();
     std::string text(8, '\0');

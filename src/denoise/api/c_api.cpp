@@ -78,7 +78,7 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
 
 limpid_denoiser::limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& wanted)
     : device(on.device), adopted(on.adopted), desc(wanted), graph(graphOptions(wanted)) {
-    desc.name = nullptr;  // the caller's string: the graph has its own
+    desc.name = nullptr;  // a string of the caller's; the graph has its own copy
     for (const bool orthographic : {false, true}) {
         gpu::FrameGraph dry;
         recordDryFrame(dry, desc, settings, gpu::filterBacking(*device), orthographic, true);

@@ -15,7 +15,7 @@ using namespace limpid::denoise;
 
 namespace {
 
-/// A flag that Limpid needs, in the structs of a chain that have it.
+/// A feature flag that Limpid needs, and its position in the structs of a chain.
 struct NeededFeature {
     const char* name;
     VkBool32* (*place)(VkBaseOutStructure* link);
@@ -75,7 +75,7 @@ VkImageAspectFlags aspectsOf(VkFormat format) {
         case VK_FORMAT_D16_UNORM_S8_UINT:
         case VK_FORMAT_D24_UNORM_S8_UINT:
         case VK_FORMAT_D32_SFLOAT_S8_UINT:
-            // A barrier must name both.
+            // A barrier must include both aspects.
             return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
         default:
             return VK_IMAGE_ASPECT_COLOR_BIT;
@@ -124,7 +124,7 @@ gpu::Format outputFormat(VkFormat format, const char* name) {
 
 constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
 
-/// What is wanted of a frame, and goes where.
+/// Copies the requested outputs to the caller's images.
 void recordOutputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const limpid_vulkan_frame& frame,
                    const InstanceOutputs& made, bool forReal) {
     const std::array<gpu::ImageHandle, 3> pictures{made.color, made.radiance, made.specular};

@@ -42,7 +42,7 @@ Matrix multiply(const Matrix& a, const Matrix& b) {
     return result;
 }
 
-/// By elimination with row pivots.
+/// Inverts by Gaussian elimination with row pivots.
 Matrix inverse(Matrix m) {
     Matrix result{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     for (size_t column = 0; column < 4; ++column) {
@@ -71,7 +71,7 @@ Matrix inverse(Matrix m) {
 }
 
 Vector unproject(const Matrix& fromClip, double x, double y) {
-    constexpr double z = 0.5;  // finite for infinite projections, too
+    constexpr double z = 0.5;  // finite for infinite projections too
     const auto row = [&](size_t r) {
         return fromClip[r] * x + fromClip[4 + r] * y + fromClip[8 + r] * z + fromClip[12 + r];
     };
@@ -79,8 +79,8 @@ Vector unproject(const Matrix& fromClip, double x, double y) {
     return {row(0) / w, row(1) / w, row(2) / w};
 }
 
-/// All points of one clip depth lie in a plane across the view axis, so that rays through it are linear in x
-/// and y.
+/// All points of one clip depth lie in a plane perpendicular to the view axis, so rays through it are linear
+/// in x and y.
 CameraParams paramsOf(const Matrix& view, const Matrix& fromClip, bool orthographic, double down,
                       double height) {
     const Matrix toWorld = inverse(view);
@@ -121,18 +121,18 @@ CameraMatrices cameraFromMatrices(const float (&view)[16], const float (&project
                                   uint32_t height) {
     const Matrix v = toDouble(view), p = toDouble(projection);
     const Matrix toClip = multiply(p, v), fromClip = inverse(toClip);
-    const double down = yUp ? -1.0 : 1.0;  // clip space's y of the lower edge
+    const double down = yUp ? -1.0 : 1.0;  // clip-space y of the lower edge
     const bool orthographic = p[11] == 0.0;
     CameraMatrices result;
     result.params = paramsOf(v, fromClip, orthographic, down, height);
     result.clip = {rowOf(toClip, 0), rowOf(toClip, 1, down), rowOf(toClip, 3)};
-    // Rows of a rotation are the axes of the space that it leads to.
+    // The rows of a rotation are the axes of its target space.
     for (size_t axis = 0; axis < 3; ++axis)
         result.axes[axis] = {static_cast<float>(v[axis]), static_cast<float>(v[4 + axis]),
                              static_cast<float>(v[8 + axis])};
     result.deviceDepth = {static_cast<float>(p[10]), static_cast<float>(p[14]), static_cast<float>(p[11]),
                           static_cast<float>(p[15])};
-    // Where the middle of the clip volume is, from the eye: which way view space looks.
+    // The sign of the view-space z of the middle of the clip volume: the view direction.
     const double into = (0.5 * p[15] - p[14]) / (p[10] - 0.5 * p[11]) < 0.0 ? -1.0 : 1.0;
     const auto depthAt = [&](double z) { return (p[10] * z + p[14]) / (p[11] * z + p[15]); };
     result.reversed = depthAt(2.0 * into) < depthAt(into);

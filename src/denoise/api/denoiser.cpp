@@ -8,7 +8,7 @@
 namespace limpid::denoise {
 namespace {
 
-/// A denoiser without a network.
+/// Records a denoiser that has no network.
 template <DenoiserOutput (*recipe)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&)>
 DenoiserOutput recordFilter(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const DenoiserSettings& settings, const DenoiserNetworks&) {

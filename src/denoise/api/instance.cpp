@@ -36,8 +36,7 @@ std::vector<InstanceParameter> listOf(limpid_method method) {
     return all;
 }
 
-/// A caller in C may have put any number where an enumerator belongs: it is looked at as the number that it
-/// is.
+/// A C caller may pass any number as an enumerator, so check it as an integer.
 template <typename Enum>
 void checkEnum(const char* what, const Enum& given, int last) {
     int value = 0;
