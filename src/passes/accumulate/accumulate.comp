@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Running means by count, in float32, with variances: T. F. Chan, G. H. Golub, R. J. LeVeque, "Updating formulae and a
-// pairwise algorithm for computing sample variances", 1979.
+// Running means by count in float32, with variances: T. F. Chan, G. H. Golub, R. J. LeVeque, "Updating
+// formulae and a pairwise algorithm for computing sample variances", 1979.
 #include "passes/accumulate/accumulate_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

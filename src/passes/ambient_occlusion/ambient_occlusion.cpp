@@ -12,12 +12,12 @@
 namespace limpid {
 namespace {
 
-/// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a ray may take two
-/// thousand. More rays would be lost without a word.
+/// lavapipe ends all loops of an invocation after 65,535 iterations in total; a ray may need two thousand.
+/// More rays would be silently lost.
 constexpr uint32_t maxRaysPerDispatch = 32;
-constexpr float unlimited = 1e30f;  ///< INFINITE_DISTANCE of shaders/trace/trace.glsl
+constexpr float unlimited = 1e30f;  ///< equals INFINITE_DISTANCE in shaders/trace/trace.glsl
 
-/// Of the dispatch that begins with this ray; the last one has the pass's own name.
+/// Returns the name of the dispatch that begins with this ray; the last one has the pass's own name.
 std::string passName(uint32_t firstRay, uint32_t rays) {
     const bool last = rays - firstRay <= maxRaysPerDispatch;
     return last ? "ambient_occlusion" : "ambient_occlusion/" + std::to_string(firstRay);
@@ -63,7 +63,7 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
     params.stream = launch.stream;
     params.seed = launch.seed;
     params.reach = settings.radius > 0.0f ? settings.radius * params.scene.sceneRadius : unlimited;
-    // The first dispatch does not read `before`, but something must be bound.
+    // The first dispatch does not read `before`, but an image must be bound.
     gpu::ImageHandle open = gbuffer.position;
     for (const gpu::ImageHandle after : into) {
         params.rays = std::min(rays - params.firstRay, maxRaysPerDispatch);

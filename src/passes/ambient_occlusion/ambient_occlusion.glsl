@@ -1,22 +1,25 @@
-// The share of cosine-weighted rays around the shading normal that meet nothing within their length: S. Zhukov, A. Iones,
-// G. Kronin, "An ambient light illumination model", 1998, with obstacles that count in full. Without a limit it is what a
-// white surface reflects of a white sky. The same for every tracer.
+// The share of cosine-weighted rays around the shading normal that hit nothing within their length: S.
+// Zhukov, A. Iones, G. Kronin, "An ambient light illumination model", 1998, but with every obstacle counting
+// fully. With unlimited length it equals a white surface's reflection of a white sky. Used by every tracer.
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
 #include "shaders/trace/trace.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     AmbientOcclusionParams params;
 };
-layout(set = 0, binding = 21, rgba32f) uniform readonly image2D position;  // a: magnitude, 0 of a miss
+layout(set = 0, binding = 21, rgba32f) uniform readonly image2D position;  // a: magnitude, 0 at a miss
 layout(set = 0, binding = 22, rgba32f) uniform readonly image2D geometricNormal;
 layout(set = 0, binding = 23, rgba32f) uniform readonly image2D normal;
-layout(set = 0, binding = 24, rgba32f) uniform readonly image2D before;  // of earlier dispatches, if there are any
+layout(set = 0, binding = 24, rgba32f) uniform readonly image2D before;  // result of earlier dispatches, if
+                                                                         // there are any
 layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D openness;
 
-/// Apart from the streams of passes that trace primary rays, which take startStream()'s own.
+/// Keeps the random numbers separate from those of passes that trace primary rays, which use startStream()
+/// directly.
 const uint OWN_STREAMS = 0x0cc1u;
 
-/// A direction of the shading normal's hemisphere that leads into the surface is not open: no light comes through there.
+/// A direction around the shading normal that points into the surface counts as occluded: no light arrives
+/// from there.
 bool isOpen(vec4 place, vec3 faceNormal, vec3 direction, uint rng) {
     bool open = dot(direction, faceNormal) > 0.0;
     if (open) {

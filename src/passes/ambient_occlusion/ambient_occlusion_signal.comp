@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Ambient occlusion as denoisers take light: the diffuse light of white surfaces. What lies behind them is open, and seen
-// directly.
+// Converts ambient occlusion to the light that denoisers expect: the diffuse light of white surfaces. Where
+// the ray misses, the sky is seen directly as emission.
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

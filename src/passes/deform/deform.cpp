@@ -34,7 +34,7 @@ void pose(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::Sce
     }
 }
 
-/// Moves the triangles, which both tracers read, and fits our own trees.
+/// Moves the triangles, which both tracers read, and refits our own trees.
 void refit(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::SceneFrame& frame) {
     for (const scene::RefitLevel& level : frame.refitLevels) {
         const RefitParams params{level.first, level.count, frame.firstRefitNode};

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Nodes from the quantised format to the expanded one, as scene/model/expanded_nodes.cpp does when a scene is loaded.
+// Converts nodes from the quantised format to the expanded one, like scene/model/expanded_nodes.cpp does when
+// a scene is loaded.
 #include "passes/deform/deform_params.h"
 #include "shaders/common/scene_layout.h"
 

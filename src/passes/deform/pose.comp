@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Morph targets, then the skin, of one deforming instance: where its vertices are now and were in the previous frame.
-// glTF 2.0, sections 3.7.2.2 and 3.7.3.
+// Applies morph targets, then the skin, to one deforming instance: computes the vertices of this frame and of
+// the previous one. glTF 2.0, sections 3.7.2.2 and 3.7.3.
 #include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_layout.h"
 
@@ -33,7 +33,7 @@ Vertex morph(Vertex v, uint vertex, uint weights) {
 }
 
 Vertex skin(Vertex v, uint matrices, uvec4 joints, vec4 weights) {
-    // A vertex that no joint moves stays where it is.
+    // A vertex that no joint moves keeps its position.
     const float rest = weights == vec4(0.0) ? 1.0 : 0.0;
     vec4 row0 = vec4(rest, 0.0, 0.0, 0.0), row1 = vec4(0.0, rest, 0.0, 0.0), row2 = vec4(0.0, 0.0, rest, 0.0);
     for (int i = 0; i < 4; ++i) {
@@ -45,7 +45,7 @@ Vertex skin(Vertex v, uint matrices, uvec4 joints, vec4 weights) {
     const vec4 p = vec4(v.position, 1.0);
     v.position = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
     const vec3 a = row0.xyz, b = row1.xyz, c = row2.xyz;
-    // Cofactors: the inverse transpose up to the determinant.
+    // Cofactors: the inverse transpose except for the determinant.
     v.normal = vec3(dot(cross(b, c), v.normal), dot(cross(c, a), v.normal), dot(cross(a, b), v.normal));
     v.tangent = vec3(dot(a, v.tangent), dot(b, v.tangent), dot(c, v.tangent));
     return v;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Fits the nodes of one level of the deforming trees to their moved triangles; the tree keeps its shape. Written as
-// makeBvhNode() in scene/bvh.cpp.
+// Refits the nodes of one level of the deforming trees to their moved triangles; the topology stays the same.
+// Must match makeBvhNode() in scene/bvh.cpp.
 #include "passes/deform/deform_params.h"
 #include "shaders/common/scene_layout.h"
 
@@ -28,7 +28,7 @@ void grow(inout Box box, vec3 p) {
     box.upper = max(box.upper, p);
 }
 
-/// Moves the leaf's triangles to where their vertices are.
+/// Moves the leaf's triangles to their current vertices.
 Box refitLeaf(uint ref) {
     Box box = Box(vec3(3e38), vec3(-3e38));
     const uint first = ref & 0x0fffffffu;
@@ -52,7 +52,7 @@ Box childBox(uint ref) {
     return Box(imageLoad(nodeBounds, at).xyz, imageLoad(nodeBounds, at + 1).xyz);
 }
 
-/// The smallest power of two (as a biased exponent) of which 255 cells from `low` reach `high`.
+/// Returns the smallest power of two (as a biased exponent) of which 255 cells reach from `low` to `high`.
 uint gridExponent(float low, float high) {
     uint exponent = clamp(floatBitsToUint(max(high - low, 0.0) / 255.0) >> 23, 1u, 254u);
     for (int i = 0; i < 3; ++i) {
@@ -79,7 +79,7 @@ void main() {
     const uint node = imageLoad(refitNodes, int(params.first + i)).x;
     const int at = int(node * BVH_NODE_TEXELS);
     const uvec4 children = imageLoad(quantisedNodes, at + 3);
-    // A child that does not exist repeats the first one's reference.
+    // A missing child repeats the first one's reference.
     Box boxes[4];
     Box all = Box(vec3(3e38), vec3(-3e38));
     for (int c = 0; c < 4; ++c) {
@@ -90,7 +90,7 @@ void main() {
     }
     const uvec3 exponents =
         uvec3(gridExponent(all.lower.x, all.upper.x), gridExponent(all.lower.y, all.upper.y), gridExponent(all.lower.z, all.upper.z));
-    uvec3 lower = uvec3(0u), upper = uvec3(0u);  // a byte per child
+    uvec3 lower = uvec3(0u), upper = uvec3(0u);  // one byte per child
     for (int c = 0; c < 4; ++c) {
         const bool absent = c > 0 && children[c] == children[0];
         for (int axis = 0; axis < 3; ++axis) {

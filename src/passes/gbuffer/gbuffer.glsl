@@ -1,6 +1,7 @@
-// One primary ray per pixel: what it meets, and the light that arrives there directly. The same for every tracer.
+// Traces one primary ray per pixel: the first hit, and the direct light there. Used by every tracer.
 //
-// Rays, random numbers and surfaces are those of the path tracer's first sample, so that its layers and these are equal.
+// Rays, random numbers and surfaces are the same as in the path tracer's first sample, so that the layers are
+// equal.
 #include "passes/gbuffer/gbuffer_params.h"
 #include "shaders/common/first_hit.glsl"
 #include "shaders/material/lights.glsl"
@@ -17,16 +18,17 @@ layout(set = 0, binding = 22, rgba32f) uniform writeonly image2D emission;
 layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D albedo;
 layout(set = 0, binding = 24, rgba32f) uniform writeonly image2D albedoSpecular;
 layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D normal;
-layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D depth;   // depth, 0 of a miss | hit
+layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D depth;   // depth, 0 at a miss | hit
 layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D motion;  // a: valid
 layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D previousNormal;
-layout(set = 0, binding = 29, rgba32f) uniform writeonly image2D position;         // a: magnitude, 0 of a miss
+layout(set = 0, binding = 29, rgba32f) uniform writeonly image2D position;         // a: magnitude, 0 at a
+                                                                                   // miss
 layout(set = 0, binding = 30, rgba32f) uniform writeonly image2D geometricNormal;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D ids;              // instance | material
 layout(set = 0, binding = 32, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 33, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
 
-/// What a primary ray found.
+/// The result of a primary ray.
 struct Seen {
     FirstHit first;
     vec3 light, emission;
@@ -35,8 +37,8 @@ struct Seen {
     uint rays;
 };
 
-/// One light. Nothing else finds the lights here, so that each counts in full; a perfectly smooth lobe
-/// shows none of them.
+/// Samples one light. There is no BSDF sampling here, so the light counts in full; perfectly smooth lobes
+/// show no light.
 vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
     LightShares shares;
     const LightSample drawn = sampleLight(receiverAt(surface), params.scene, rng, shares);

@@ -1,9 +1,9 @@
-// A unidirectional path tracer: at each vertex one light is sampled and one direction from the material, combined by
-// multiple importance sampling (E. Veach, 1997). Depth D counts scattering events: D = 0 shows emitters only.
-// Passages through glass have a limit of their own; beyond it they count as bounces.
+// A unidirectional path tracer: each vertex samples one light and one direction from the material, combined
+// by multiple importance sampling (E. Veach, 1997). Depth D counts scattering events: D = 0 shows emitters
+// only. Passages through glass have a separate limit; beyond it they count as bounces.
 //
-// The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts apart. If not, all is in `diffuse`,
-// and a dozen registers are free for traversal.
+// The including shader sets SPLIT_LOBES: whether PathRadiance keeps its three parts separate. If not,
+// everything is in `diffuse`, which saves a dozen registers for traversal.
 #include "passes/pathtrace/pathtrace_params.h"
 #include "shaders/material/lights.glsl"
 #include "shaders/material/medium.glsl"
@@ -15,7 +15,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 struct PathRadiance {
     vec3 emission;           // seen directly
-    vec3 diffuse, specular;  // by the first surface's lobes; their sum is all scattered light
+    vec3 diffuse, specular;  // by lobe of the first surface; their sum is all scattered light
 };
 
 vec3 clampFirefly(vec3 radiance, uint depth) {
@@ -24,26 +24,29 @@ vec3 clampFirefly(vec3 radiance, uint depth) {
                                                                                : radiance;
 }
 
-// Of the solid angle that a scattered ray stands for, its cone has this share in width, and this width at most. The
-// lobe blurs what it shows by itself: much less of it in the cone costs noise, more costs contrast where samples are few.
+// Width of a scattered ray's cone: this share of the solid angle that the ray represents, limited to a
+// maximum. The lobe itself blurs its content. A much narrower cone costs noise; a wider one costs contrast at
+// low sample counts.
 const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25, WITHOUT_JITTER = 4.0;
 
 struct Path {
     Ray ray;
     vec3 throughput;
-    vec3 diffuseShare;  // of what this path still finds, per channel
-    float bsdfPdf;      // of the direction being followed
-    LightShares shares;  // where it began: the light that it may find could have been sampled from there
-    bool delta;         // that direction can only be found by following it
+    vec3 diffuseShare;  // of the path's further light, per channel
+    float bsdfPdf;      // of the current direction
+    LightShares shares;  // at the vertex where it began: light that it hits could have been sampled from
+                         // there
+    bool delta;         // the direction can only be sampled by the BSDF
     float coneWidth;
-    vec3 medium;  // absorption of the body that the path is in, per unit of length
+    vec3 medium;  // absorption of the body around the path, per unit of length
     PathRadiance radiance;
     uint rays;
-    uint primary;  // the vertex that the layers are of: 0, or 1 behind a mirror
+    uint primary;  // index of the vertex that the layers describe: 0, or 1 behind a mirror
     uint passages;  // through glass so far, at most params.maxTransmissionDepth
 };
 
-/// Adds what a path finds at vertex `depth`. What is found at the primary vertex is the emission layer.
+/// Adds the radiance that a path hits at vertex `depth`. At the primary vertex it belongs to the emission
+/// layer.
 void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
     const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
     const vec3 found = clampFirefly(path.throughput * radiance * weight, max(depth, 1u) - 1u);
@@ -91,13 +94,14 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     }
 }
 
-/// Into a transmitting body, out of it, through a pane, or reflected on the inside: what only goes on within glass.
+/// True for a passage through glass: into a transmitting body, out of it, through a pane, or an internal
+/// reflection.
 bool isPassage(Surface surface, Bsdf bsdf, vec3 direction) {
     if (!HAS_TRANSMISSION || !isTransmitting(bsdf)) return false;
     return !surface.front || dot(direction, surface.geometricNormal) < 0.0;
 }
 
-/// Follows the material's sample. False ends the path.
+/// Samples the material and continues in that direction. Returns false if the path ends.
 bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const BsdfSample next = sampleBsdf(bsdf, rng);
     if (!next.valid) return false;
@@ -117,12 +121,13 @@ bool scatter(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint
     return path.throughput != vec3(0.0);
 }
 
-/// What the layers are told of: the camera ray's hit, or what a perfect mirror shows there, and how reflections move.
+/// The surface that the layers describe: the camera ray's hit, or what a perfect mirror shows there; and the
+/// motion of reflections.
 struct FirstSight {
     FirstHit hit;
     float traveled;
-    Mirror mirror;     // where the camera ray hit, once it has been scattered
-    float reflection;  // reflectionShare(), if the scattered ray tells of a reflection
+    Mirror mirror;     // the camera ray's hit, once it has been scattered
+    float reflection;  // reflectionShare() if the scattered ray follows a reflection
 };
 
 void missed(inout FirstSight sight, Path path, uint depth) {
@@ -150,7 +155,7 @@ void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf,
     }
 }
 
-/// Where the camera ray was scattered.
+/// Records the scattering of the camera ray.
 void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bsdf) {
     sight.mirror = Mirror(surface.position, surface.normal, sight.hit.previous);
     if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
@@ -160,9 +165,10 @@ void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bs
     }
 }
 
-/// What the cone of a scattered ray grows by with distance: as before, and by the ray's share of the lobe: of n rays
-/// with this density each stands for 1 / (n density) of solid angle. A sharp lobe is nearly a mirror. Wider where no jitter
-/// averages: what a denoiser sees of textures in reflections must not shimmer.
+/// Returns the spread of a scattered ray's cone: the previous spread plus the ray's share of the lobe. Each
+/// of n rays of this density represents 1 / (n density) of solid angle. A sharp lobe is nearly a mirror.
+/// Without jitter, which would average, the cone is wider, so that textures in reflections do not shimmer for
+/// a denoiser.
 float spreadAfter(Path path, float spread, float n) {
     if (path.delta) return spread;
     const float lobe = LOBE_SHARE * inversesqrt(max(path.bsdfPdf, 1e-20));
@@ -192,7 +198,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         const vec3 toViewer = -path.ray.direction;
         const RayCone rayCone = RayCone(path.coneWidth, !path.delta, throughCentres);
         const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
-        // Nothing is absorbed on the way to the sky: a body that is never left was none.
+        // Nothing is absorbed on the way to the sky, since a ray that never leaves a body was not in one.
         if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
         const Bsdf bsdf = makeBsdf(surface, toViewer);
         if (depth <= path.primary) sight.traveled += hit.t;

@@ -1,4 +1,5 @@
-// The path tracer with every layer of docs/layers.md, means and variances over this launch's samples. The same for every tracer.
+// The path tracer with every layer of docs/layers.md: means and variances over this launch's samples. Used by
+// every tracer.
 const bool SPLIT_LOBES = true;
 #include "passes/pathtrace/pathtrace.glsl"
 
@@ -9,8 +10,11 @@ layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D emission;
 layout(set = 0, binding = 24, rgba32f) uniform writeonly image2D albedo;
 layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D albedoSpecular;
 layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D normal;
-layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 of misses | hits | 0
-layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their number, by samples
+layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 for misses |
+                                                                          // hits | 0
+layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their
+                                                                          // number, both divided by the
+                                                                          // number of samples
 layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
 layout(set = 0, binding = 33, rgba32f) uniform writeonly image2D reflectionMotion;  // likewise
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
@@ -19,14 +23,15 @@ layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // r
 
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
-/// Running mean and sum of squared deviations of dot(value, weights): B. P. Welford, Technometrics 1962.
+/// Updates the mean and the sum of squared deviations of dot(value, weights): B. P. Welford, Technometrics
+/// 1962.
 void accumulate(inout vec4 moments, vec3 value, vec3 weights, float count) {
     const vec3 before = value - moments.rgb;
     moments.rgb += before / count;
     moments.a += dot(before, weights) * dot(value - moments.rgb, weights);
 }
 
-/// The same, averaged over the three components.
+/// Like accumulate(), but the deviation is averaged over the three components.
 void accumulateVector(inout vec4 moments, vec3 value, float count) {
     const vec3 before = value - moments.rgb;
     moments.rgb += before / count;

@@ -1,8 +1,9 @@
-// The beauty alone: the fast path of `--integrator path`. The same for every tracer.
+// Only the beauty: the fast path of `--integrator path`. Used by every tracer.
 const bool SPLIT_LOBES = false;
 #include "passes/pathtrace/pathtrace.glsl"
 
-layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D beauty;  // mean of this launch's samples; a: the share that met a surface
+layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D beauty;  // mean of this launch's samples; a:
+                                                                          // the share that hit a surface
 layout(set = 0, binding = 22, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 23, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
 

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// First hits shaded by a light at the camera and a sky above: shape and colour at a glance, whatever lights the scene.
+// Shades first hits with a light at the camera and a sky above, independent of the scene's lights, to show
+// shape and colour.
 #include "passes/preview/preview_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -15,10 +16,11 @@ layout(set = 0, binding = 4, rgba32f) uniform readonly image2D normal;
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D position;
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D shaded;
 
-const float AMBIENT = 0.15, SKY = 0.25, HEADLIGHT = 0.6;  // their sum is 1: white, facing camera and sky
+const float AMBIENT = 0.15, SKY = 0.25, HEADLIGHT = 0.6;  // they sum to 1: a white surface that faces camera
+                                                          // and sky
 const vec3 BACKDROP = vec3(0.16, 0.18, 0.21);
 
-/// Radiance has no upper end; a colour has.
+/// Scales radiance, which is unbounded, to a colour in [0,1].
 vec3 emittedColor(vec3 radiance) {
     return radiance / max(1.0, max(radiance.r, max(radiance.g, radiance.b)));
 }

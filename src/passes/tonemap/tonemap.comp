@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Linear radiance to what a screen shows, as image/tonemap.h does it for files.
+// Converts linear radiance to display values, like image/tonemap.h does for files.
 #include "image/tonemap_curve.h"
 #include "passes/tonemap/tonemap_params.h"
 
@@ -30,6 +30,6 @@ void main() {
     vec3 exposed = imageLoad(radiance, ivec2(pixel)).rgb;
     if (SUM_OF_TWO) exposed += imageLoad(added, ivec2(pixel)).rgb;
     exposed *= params.scale;
-    const vec3 usable = mix(vec3(0.0), exposed, greaterThan(exposed, vec3(0.0)));  // not NaN, not below 0
+    const vec3 usable = mix(vec3(0.0), exposed, greaterThan(exposed, vec3(0.0)));  // neither NaN nor below 0
     imageStore(display, ivec2(pixel), vec4(srgbEncode(filmicCurve(usable)), 1.0));
 }
