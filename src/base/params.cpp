@@ -44,7 +44,7 @@ std::string toString(const ParamValue& value) {
 }
 
 void checkRange(std::string_view group, const ParamInfo& info, const ParamValue& value) {
-    // A float next to the end of a range is that end: 1e-4 as a float is below 1e-4.
+    // Compare with the range's end rounded to float: 1e-4 as a float is below 1e-4.
     const bool isFloat = std::holds_alternative<float>(value);
     const auto end = [&](double bound) {
         return isFloat ? static_cast<double>(static_cast<float>(bound)) : bound;

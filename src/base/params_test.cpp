@@ -43,7 +43,7 @@ TEST(Params, RefusesBadTextAndValuesOutOfRange) {
 }
 
 TEST(Params, BothEndsOfARangeBelongToIt) {
-    // As floats some of these lie beside what they stand for.
+    // Some of these change when rounded to float.
     for (const double end : {1e-4, 1e-9, 0.01, 1e-6}) {
         ParamTable<Settings> t("demo");
         t.add("sigma", &Settings::sigma, end, 2.0 * end, "", "width");

@@ -6,8 +6,8 @@
 namespace limpid {
 namespace {
 
-constexpr double decades = 100.0;   ///< up and down from the default
-constexpr double zeroShare = 0.03;  ///< of a logarithmic slider's length: 0
+constexpr double decades = 100.0;   ///< factor up and down from the default
+constexpr double zeroShare = 0.03;  ///< fraction of a logarithmic slider's length that stands for 0
 constexpr double nearTheEnd = 0.02;
 
 double roundedToDigits(double value) {
@@ -16,7 +16,7 @@ double roundedToDigits(double value) {
     return std::round(value / unit) * unit;
 }
 
-/// Of the logarithmic part.
+/// Returns the start of the logarithmic part.
 double firstOf(const SliderSpan& span) {
     return span.min > 0.0 ? span.min : span.smallest;
 }

@@ -9,7 +9,7 @@ namespace {
 
 template <typename T>
 std::string shortest(T value) {
-    // Powers of ten are for numbers that would have many zeros.
+    // Use powers of ten only for numbers that would have many zeros.
     const T magnitude = std::abs(value);
     const bool plain =
         magnitude == 0 || (magnitude >= static_cast<T>(1e-4) && magnitude < static_cast<T>(1e16));

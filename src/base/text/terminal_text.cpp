@@ -10,7 +10,7 @@ uint8_t byteAt(std::string_view text, size_t i) {
     return static_cast<uint8_t>(text[i]);
 }
 
-/// The bytes of the UTF-8 character that `text` begins with; 0 if it begins with none (RFC 3629).
+/// Returns the length of the UTF-8 character at the start of `text`, or 0 if it is invalid (RFC 3629).
 size_t characterLength(std::string_view text) {
     const uint8_t first = byteAt(text, 0);
     if (first < 0x80) return 1;

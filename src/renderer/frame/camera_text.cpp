@@ -9,10 +9,10 @@ namespace limpid {
 namespace {
 
 std::string text(const vec3& v) {
-    return fmt::format("{} {} {}", v.x, v.y, v.z);  // the shortest digits that give the same float again
+    return fmt::format("{} {} {}", v.x, v.y, v.z);  // the shortest text that gives the same float
 }
 
-/// Takes the text apart word by word.
+/// Splits the text into words.
 class Words {
   public:
     explicit Words(std::string_view text) : rest_(text) {}

@@ -27,7 +27,7 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .samplerTea = settings.pathtrace.samplerTea};
 }
 
-/// Makes the layers that `out` has running means.
+/// Replaces the layers in `out` by running means.
 void accumulateLayers(FrameGraph& graph, const FrameInput& input, FrameImages& out) {
     for (const LayerInfo& layer : frameLayers) {
         ImageHandle& image = out[layer];
@@ -37,7 +37,7 @@ void accumulateLayers(FrameGraph& graph, const FrameInput& input, FrameImages& o
     }
 }
 
-/// The path tracer alone: running means over frames.
+/// Records the path tracer alone, with running means over frames.
 FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                        const FrameInput& input) {
     const PathtraceLaunch launch{cameraLaunch(settings, input), input.samples};
@@ -54,7 +54,7 @@ FrameImages recordPath(FrameGraph& graph, const scene::GpuScene& scene, const Re
     return out;
 }
 
-/// What the camera sees, lit directly if `light` is set. Layers, where they are asked for, are running means.
+/// Records first hits, with direct light if `light` is set. Layers, if requested, are running means.
 GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                             const FrameInput& input, bool light, FrameImages& out) {
     GBufferSettings used = settings.gbuffer;
@@ -72,7 +72,7 @@ GBufferImages recordGBuffer(FrameGraph& graph, const scene::GpuScene& scene, con
     return seen;
 }
 
-/// `diffuse` is all scattered light.
+/// Puts all scattered light in `diffuse`.
 FrameImages recordLit(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                       const FrameInput& input) {
     FrameImages out;
@@ -101,7 +101,7 @@ FrameImages recordPreview(FrameGraph& graph, const scene::GpuScene& scene, const
     return out;
 }
 
-/// Records one launch of what a denoiser cleans. `before` are the counters of the launch before.
+/// Records one launch of a denoiser's input. `before` are the counters of the previous launch.
 using Launch = std::function<void(const PathtraceLaunch&, ImageHandle before, const PathtraceLayers& into)>;
 
 GBufferImages withGuides(GBufferImages images, const PathtraceLayers& layers) {
@@ -114,8 +114,8 @@ GBufferImages withGuides(GBufferImages images, const PathtraceLayers& layers) {
     return images;
 }
 
-/// Of one sample each: ambient occlusion as the light of white surfaces, and the guides of the first hit.
-/// `layers`: those of one of the launches.
+/// Records launches of one sample each: ambient occlusion as the light of white surfaces, and the guides of
+/// the first hit. `layers`: those of one of the launches.
 Launch occlusionLaunch(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                        const PathtraceLayers& layers) {
     const auto openness = makeAmbientOcclusionImages(graph, settings.ambientOcclusion, settings.extent);
@@ -145,7 +145,7 @@ Launch pathLaunch(FrameGraph& graph, const scene::GpuScene& scene, const RenderS
     };
 }
 
-/// A frame's samples in as many launches as the device and the integrator need, averaged.
+/// Records a frame's samples in as many launches as the device and the integrator require, and averages them.
 PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                              const FrameInput& input) {
     const gpu::Extent extent = settings.extent;
@@ -167,7 +167,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
         layers->counters =
             graph.transient(graph.name(layers->ids) + " counters", gpu::Format::RG32Uint, extent);
     ImageHandle countersBefore = counters.previous;
-    const ImageHandle ids = means[0].ids;  // of the first launch
+    const ImageHandle ids = means[0].ids;  // from the first launch
     for (uint32_t done = 0, number = 0; done < input.samples; ++number) {
         launch.samples = std::min(input.launchSamples, input.samples - done);
         launch.stream = static_cast<uint32_t>(input.stream + number);
@@ -197,7 +197,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     return means[0];
 }
 
-/// Samples, and a denoiser that keeps its histories from frame to frame.
+/// Records samples and a denoiser, which keeps its histories from frame to frame.
 FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                            const FrameInput& input) {
     FrameImages out;

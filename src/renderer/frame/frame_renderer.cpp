@@ -5,8 +5,8 @@
 namespace limpid {
 namespace {
 
-/// Histories of samples that settled differently belong to another picture. What denoisers make of them does
-/// not matter, nor does the camera.
+/// True if histories can continue. Histories of samples with other settings belong to another picture, but
+/// the denoiser's own settings and the camera may change.
 bool sameSamples(const RenderSettings& a, const RenderSettings& b) {
     const bool occlusion = a.pipeline.integrator == Integrator::AmbientOcclusion;
     return a.extent == b.extent && a.jitter == b.jitter && a.pipeline == b.pipeline &&
@@ -28,7 +28,7 @@ bool FrameRenderer::setSettings(const RenderSettings& settings) {
     settings_ = settings;
     if (!anew) return false;
     graph_.resetHistories();
-    state_.reset();  // a mean of before is gone, even if the settings come back
+    state_.reset();  // the old mean is lost, even if the settings are restored later
     samplesInMean_ = 0;
     return true;
 }

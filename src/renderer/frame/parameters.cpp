@@ -5,7 +5,7 @@
 namespace limpid {
 namespace {
 
-/// `select` says where the technique's settings lie.
+/// `select` returns the technique's settings within RenderSettings.
 template <typename Settings, typename Select>
 ParamGroup groupOf(const ParamTable<Settings>& table, Select select) {
     return {

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t maxBytes = uint64_t{256} << 20;
-/// A checksum and a driver's header alone (VkPipelineCacheHeaderVersionOne).
+/// The size of a checksum and a driver's header (VkPipelineCacheHeaderVersionOne) without any pipelines.
 constexpr size_t emptyBytes = 40;
 
 fs::path cacheFolder() {

@@ -27,7 +27,7 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
         EXPECT_NO_THROW(applyPreset(settings, preset.name));
         EXPECT_EQ(settings.jitter, preset.jitter);
         EXPECT_NE(assignmentsOf(settings), std::vector<std::string>()) << preset.name;
-        // Histories follow what the first hit says.
+        // Histories follow the first hit.
         if (const denoise::Denoiser* denoiser = preset.pipeline().denoiser) {
             EXPECT_FALSE(settings.pathtrace.throughMirrors) << preset.name;
             EXPECT_EQ(settings.jitter, denoiser->network ? Jitter::Pixel : Jitter::Off);

@@ -12,8 +12,8 @@ bool isUint(gpu::Format format) {
            format == gpu::Format::RGBA32Uint;
 }
 
-/// lavapipe ends every loop of an invocation once it has gone round 65,535 times in all; a path in a scene of
-/// a million triangles needs some thousands. More samples would lose light without a word.
+/// lavapipe ends all loops of an invocation after 65,535 iterations in total; a path in a scene of a million
+/// triangles needs some thousands. More samples would silently lose light.
 constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 void download(gpu::FrameGraph& graph, gpu::Device& device, gpu::ImageHandle image,
@@ -124,7 +124,7 @@ bool ProgressiveStill::launch() {
     return true;
 }
 
-/// So that no two frames of a sequence draw the same numbers.
+/// Ensures that no two frames of a sequence use the same random numbers.
 uint64_t ProgressiveStill::launchesOfAFrame() const {
     return 1 + (maxSamples_ - 1) / samplesPerLaunch(device_, state_.settings);
 }

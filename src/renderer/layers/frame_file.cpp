@@ -17,7 +17,7 @@ namespace {
 using image::Image;
 using image::LayeredImage;
 
-/// Distances from here on mean that nothing was hit (files have 1e10).
+/// From this distance on, nothing was hit (files have 1e10).
 constexpr float farAway = 9e9f;
 
 bool has(const LayeredImage& file, const LayerInfo& layer) {
@@ -26,7 +26,8 @@ bool has(const LayeredImage& file, const LayerInfo& layer) {
     });
 }
 
-/// The layer's variance, also under the name with a one-letter ending, which Blender keeps; null without one.
+/// Returns the layer's variance channel, also found under a name with a one-letter ending, which Blender
+/// adds; null if there is none.
 const image::Channel* varianceOf(const LayeredImage& file, const LayerInfo& layer) {
     const std::string name = varianceChannel(layer);
     const image::Channel* const channel = file.find(name);
@@ -61,7 +62,7 @@ CameraParams cameraOf(const LayeredImage& file, const std::filesystem::path& nam
     return *camera;
 }
 
-/// As the file says; as many as networks learnt from if it does not.
+/// Returns the file's number of samples, or the number that networks were trained on if the file has none.
 uint32_t samplesOf(const LayeredImage& file) {
     constexpr uint32_t unknown = 32;
     const auto said = file.metadata.find("limpid.samples");
@@ -72,7 +73,7 @@ uint32_t samplesOf(const LayeredImage& file) {
     return samples > 0 ? samples : unknown;
 }
 
-/// As the fourth of four; stays 0 where the file has none.
+/// Writes the variance as the fourth of four components; it stays 0 if the file has none.
 void addVariance(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
     const image::Channel* const variance = varianceOf(file, layer);
     const auto ofDeviations = static_cast<float>(samplesOf(file) - 1);
@@ -80,13 +81,13 @@ void addVariance(const LayeredImage& file, const LayerInfo& layer, std::vector<f
         texels[4 * p + 3] = variance->values[p] * ofDeviations;
 }
 
-/// Whether the components of a layer with a share of samples are a value.
+/// True if a layer with a share of samples has a value here.
 bool isValue(const LayerInfo& layer, const float* components) {
     if (layer.mean == Mean::OfHits) return components[0] > 0.0f && components[0] < farAway;
     return image::validMotion(components[0], components[1]) && std::isfinite(components[2]);
 }
 
-/// A mean, four floats a pixel.
+/// Reads a mean, four floats per pixel.
 void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
     const Image picture = file.get(layer.name, layer.suffixes);
     const size_t count = layer.suffixes.size();
@@ -99,7 +100,7 @@ void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& 
     if (layer.varianceOf != VarianceOf::Nothing) addVariance(file, layer, texels);
 }
 
-/// Numbers of instances, two integers a pixel. In files 0 is nothing, and an instance has its number plus
+/// Reads instance numbers, two integers per pixel. In files 0 is a miss, and an instance is its number plus
 /// one.
 void read(const LayeredImage& file, const LayerInfo& layer, std::vector<uint32_t>& ids) {
     const Image numbers = file.get(layer.name, layer.suffixes);
@@ -141,8 +142,8 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
             lacking.push_back(&layer);
         }
     });
-    if (frame.previousNormal.empty()) frame.previousNormal = frame.normal;  // as if nothing turned
-    frame.forEach(makePixels);  // zeros where the file has nothing: no motion, one object
+    if (frame.previousNormal.empty()) frame.previousNormal = frame.normal;  // as if nothing rotated
+    frame.forEach(makePixels);  // zeros for missing layers: no motion, one object
     return frame;
 }
 
