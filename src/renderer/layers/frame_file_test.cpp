@@ -18,7 +18,7 @@ using image::LayeredImage;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two pixels: one with another value in every component, one that no sample gives a value.
+/// Two pixels: one with a different value in every component, one without a value from any sample.
 RenderedLayers twoPixels() {
     RenderedLayers layers;
     layers.extent = {2, 1};

@@ -11,7 +11,7 @@ namespace {
 using image::Image;
 using image::Storage;
 
-/// `count` components of four, starting with `first`.
+/// Returns `count` of the four components, from `first` on.
 Image components(const std::vector<float>& texels, gpu::Extent extent, uint32_t first, uint32_t count) {
     Image out(extent.width, extent.height, count);
     const size_t pixels = size_t{extent.width} * extent.height;
@@ -21,7 +21,7 @@ Image components(const std::vector<float>& texels, gpu::Extent extent, uint32_t 
     return out;
 }
 
-/// s^2 / N: the variance of the mean. One sample says nothing of it: 0.
+/// Returns s^2 / N, the variance of the mean; 0 for a single sample, which has no variance.
 Image varianceOfMean(const std::vector<float>& texels, gpu::Extent extent, uint64_t samples) {
     Image out = components(texels, extent, 3, 1);
     const float divisor = samples > 1 ? static_cast<float>(samples - 1) : 1.0f;
@@ -29,7 +29,7 @@ Image varianceOfMean(const std::vector<float>& texels, gpu::Extent extent, uint6
     return out;
 }
 
-/// The components of a mean, divided by the share of samples that have a value where there is one.
+/// Returns the components of a mean, divided by the share of samples that have a value, if there is one.
 Image imageOf(const LayerInfo& layer, const std::vector<float>& texels, gpu::Extent extent) {
     const auto count = static_cast<uint32_t>(layer.suffixes.size());
     Image out = components(texels, extent, 0, count);
@@ -44,7 +44,7 @@ Image imageOf(const LayerInfo& layer, const std::vector<float>& texels, gpu::Ext
     return out;
 }
 
-/// 0: nothing; otherwise the instance's number plus one.
+/// 0: a miss; otherwise the instance's number plus one.
 Image imageOf(const LayerInfo&, const std::vector<uint32_t>& ids, gpu::Extent extent) {
     Image out(extent.width, extent.height, 1);
     for (size_t p = 0; p < out.pixels.size(); ++p) out.pixels[p] = static_cast<float>(ids[2 * p] + 1u);

@@ -30,7 +30,7 @@ std::vector<LayerSums> layersFor(const std::vector<std::string>& names) {
     return layers;
 }
 
-/// The square of what the variance is of. The weights are the shader's, which are float32.
+/// Returns the square of the quantity whose variance is stored. Uses the shader's float32 weights.
 template <typename T>
 T squareOf(VarianceOf varianceOf, T x, T y, T z) {
     if (varianceOf == VarianceOf::FirstComponent) return x * x;
@@ -39,7 +39,7 @@ T squareOf(VarianceOf varianceOf, T x, T y, T z) {
     return luminance * luminance;
 }
 
-/// `value` within +-limit; NaN is 0. Counts what was changed.
+/// Clamps `value` to +-limit; NaN becomes 0. Counts changed values.
 double clamped(double value, double limit, uint64_t& count) {
     if (std::abs(value) <= limit) return value;
     ++count;
@@ -80,7 +80,7 @@ uint64_t addLayer(LayerSums& layer, const std::vector<float>& means, uint64_t pi
     return tbb::parallel_reduce(Range(0, pixels, 4096), uint64_t{0}, addRange, std::plus<>());
 }
 
-/// Four floats: the means, and in the fourth the mean squared deviation if squares were summed.
+/// Returns four floats: the means, and in the fourth the mean squared deviation if squares were summed.
 void meanOfPixel(const LayerSums& layer, const Int128* sums, long double samples, float* result) {
     std::array<long double, 4> mean{};
     for (size_t c = 0; c < layer.info->meanComponents(); ++c) {
@@ -171,7 +171,7 @@ RenderedLayers FrameSums::means() const {
         });
     }
     result.ids = ids;
-    // Block 0 has them, and may be missing.
+    // Only block 0 contains them, and it may be missing.
     if (wantsIds && ids.empty()) result.ids.assign(pixels() * 2, layout::NONE);
     return result;
 }

@@ -47,7 +47,7 @@ class Writer {
     Hash64 hash_;
 };
 
-/// Fills the bytes with what comes next; false if it cannot.
+/// Fills the bytes with the next data; returns false if there is not enough.
 using Source = std::function<bool(std::span<std::byte>)>;
 
 class Reader {
@@ -86,7 +86,7 @@ class Reader {
     Hash64 hash_;
 };
 
-/// What follows the blocks: sums, identities, checksum.
+/// The size of everything after the blocks: sums, ids, checksum.
 uint64_t bytesAfterBlocks(const FrameSums& sums, bool ids) {
     uint64_t bytes = sizeof(uint64_t);
     if (sums.blockCount() == 0) return bytes;
@@ -139,10 +139,10 @@ SampleCounts readCounts(Reader& reader) {
     return counts;
 }
 
-/// What follows the blocks, all but the checksum.
+/// Reads everything after the blocks except the checksum.
 void readSums(Reader& reader, FrameSums& sums) {
     const bool ids = sums.wantsIds && sums.blocks[0];
-    // Only now is memory asked for: as much as there are bytes to fill it.
+    // Memory is only allocated now, when the file's length matches it.
     if (reader.left() != bytesAfterBlocks(sums, ids)) reader.fail("has another length than its header says");
     if (sums.blockCount() == 0) return;
     for (LayerSums& layer : sums.layers) {

@@ -1,4 +1,4 @@
-// Files of sums: what is written comes back, and whatever else is in a file is refused.
+// Tests files of sums: what was written is read back, and any other content is rejected.
 #include "renderer/long/accumulation_file.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ class AccumulationFileTest : public testing::Test {
         writeAccumulation(folder_ / "a.sums", header, sums);
         return readFile(folder_ / "a.sums");
     }
-    /// A file with this header as it stands, no sums, and the right checksum.
+    /// Returns a file with this header, no sums, and the correct checksum.
     static Bytes withHeader(const std::string& json) {
         Bytes bytes;
         const auto append = [&](const void* data, size_t size) {

@@ -21,7 +21,7 @@ constexpr uint64_t maxFrames = uint64_t{1} << 32;
 
 using Json = nlohmann::ordered_json;
 
-/// Reads values and checks them; what is wrong becomes an InputError.
+/// Reads and checks values; throws InputError if one is invalid.
 class HeaderReader {
   public:
     HeaderReader(std::string_view text, const std::filesystem::path& file)
@@ -164,7 +164,7 @@ std::optional<std::string> firstDifference(const AccumulationHeader& theirs, con
     for (const auto& d : differences) {
         if (d) return d;
     }
-    // After the size and the number of frames, on which the camera's hash depends.
+    // Compared after the size and the number of frames, which the camera's hash depends on.
     for (const auto& [name, value] : ours.identity) {
         if (const auto d = difference(name, theirs.value(name), std::string_view(value))) return d;
     }

@@ -36,7 +36,8 @@ TEST(FixedPoint, AgreesWithLongDoubleOverItsRange) {
     for (int exponent = -70; exponent < 60; ++exponent) {
         for (int i = 0; i < 50; ++i) {
             const double value = std::ldexp(mantissa(random), exponent);
-            // 64 bits of long double hold a double times 2^62 rounded to whole numbers exactly.
+            // The 64-bit mantissa of long double represents a double times 2^62, rounded to an integer,
+            // exactly.
             const long double expected = std::round(std::ldexp(static_cast<long double>(value), 62));
             EXPECT_EQ(static_cast<long double>(toFixed(value, 62)), expected) << value;
             EXPECT_EQ(fromFixed(toFixed(value, 62), 62), std::ldexp(expected, -62)) << value;
@@ -112,7 +113,7 @@ TEST(FrameSums, WhatIsBeyondTheRangeIsClampedAndCounted) {
     means[0] = std::numeric_limits<float>::quiet_NaN();
     means[1] = std::numeric_limits<float>::infinity();
     means[2] = -1e30f;
-    means[4] = 0x1p40f;  // the largest
+    means[4] = 0x1p40f;  // the largest value
     for (uint32_t block = 0; block < 3; ++block) {
         sums.addBlock(block, [&](const LayerInfo&) { return means; });
     }

@@ -39,7 +39,7 @@ void BlockRenderer::launch(uint32_t samples) {
                      .previousCamera = moment_.previousCamera.value_or(moment_.camera)};
     input.hasPrevious = moment_.previousCamera.has_value();
     input.moved = moment_.scene ? &*moment_.scene : nullptr;
-    // Random numbers go on over the blocks; the means start anew in each.
+    // Random numbers continue across blocks; the means restart in each.
     const uint32_t launchOfFrame = plan_.firstLaunch(block_) + launchesDone_;
     input.firstSample = block_ * plan_.blockSamples + samplesDone_;  // at most maxSamplesPerPixel
     input.stream = moment_.number * plan_.launches() + launchOfFrame;
@@ -48,7 +48,7 @@ void BlockRenderer::launch(uint32_t samples) {
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
     graph_.execute(device_);
-    moment_.scene.reset();  // the device has it until the next frame
+    moment_.scene.reset();  // the device keeps this state until the next frame
     if (launchOfFrame == 0 && images_.ids) ids_ = graph_.downloadUint(device_, images_.ids);
     samplesDone_ += samples;
     ++launchesDone_;

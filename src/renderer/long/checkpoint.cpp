@@ -33,7 +33,7 @@ Accumulation Checkpoint::load(const AccumulationHeader& ours) const {
 
 void Checkpoint::save(const AccumulationHeader& header, const FrameSums& sums) {
     const Clock::time_point start = Clock::now();
-    // What a process left that was killed in the act would otherwise stay for ever.
+    // Left by a process that was killed while saving; nothing else would remove it.
     removeStaleTemporaries(path_);
     writeAccumulation(path_, header, sums);
     saved_ = Clock::now();

@@ -78,7 +78,7 @@ bool LongRender::run(const LongRenderEvents& events) {
     for (uint64_t k = 0; k < finished_.size(); ++k) {
         if (finished_[k] && !events.isThere(frameOf(k))) finished_[k] = false;
     }
-    // The frame that was begun comes first: its sums would be lost otherwise.
+    // Finish the frame that was begun first; otherwise its sums would be lost.
     for (uint64_t k = 0; k < finished_.size() && resumed_; ++k) {
         if (!finished_[k] && frameOf(k) == header_.frame && !renderFrame(k, events)) return false;
     }
@@ -105,7 +105,7 @@ bool LongRender::renderFrame(uint64_t k, const LongRenderEvents& events) {
     if (sums.samples() > 0 || isStillShard()) events.finish(header_.frame, sums);
     if (!whole) return false;
     finished_[k] = true;
-    // A still's checkpoint has all samples by now; a sequence's needs none of a finished frame.
+    // A still's checkpoint now has all samples; a sequence's needs no samples of a finished frame.
     if (!isStill()) saveState(newSums(), false);
     return true;
 }

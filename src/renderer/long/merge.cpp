@@ -29,7 +29,7 @@ void checkBelongs(const fs::path& file, const Accumulation& added, const fs::pat
     }
 }
 
-/// Names the blocks, and the shards if all files were split alike.
+/// Throws if blocks are missing, naming them, and their shards if all files were divided alike.
 void checkComplete(const fs::path& first, const FrameSums& sums, const std::set<uint32_t>& shardCounts) {
     std::vector<int> missing, shards;
     std::set<uint32_t> indices;

@@ -48,7 +48,7 @@ Origin originOf(const fs::path& file) {
     return origin;
 }
 
-/// The files by frame, checked one by one against the first.
+/// The files by frame, each checked against the first.
 class Collection {
   public:
     void add(const FramePattern& input) {

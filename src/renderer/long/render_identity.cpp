@@ -56,7 +56,8 @@ uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
     hash.addValue(data.features);
     hash.addValue(data.params);
     hash.addValue(data.stackSize);
-    hash.addValue(data.byteCount());  // a buffer that is missing above shows at least by its size
+    hash.addValue(data.byteCount());  // detects a change of buffers that are not hashed above, at least by
+                                      // size
     if (scene.clip != scene::none) {
         addRig(hash, scene.rig);
         addClip(hash, scene.rig.clips[static_cast<size_t>(scene.clip)]);
