@@ -17,7 +17,7 @@ namespace {
 
 enum CornellSlot : uint16_t { White, Red, Green, Light };
 
-/// From the data's millimetres (camera at negative z, x to the left) to our metres, x centred.
+/// Converts the data's millimetres (camera at negative z, x to the left) to our metres, x centred.
 vec3 fromData(float x, float y, float z) {
     return vec3(278.0f - x, y, 279.6f - z) * 1e-3f;
 }
@@ -29,7 +29,7 @@ void addCornellRoom(MeshBuilder& builder) {
     builder.quad(p(549.6f, 0, 559.2f), p(0, 0, 559.2f), p(0, 548.8f, 559.2f), p(556, 548.8f, 559.2f), White);
     builder.quad(p(0, 0, 559.2f), p(0, 0, 0), p(0, 548.8f, 0), p(0, 548.8f, 559.2f), Green);
     builder.quad(p(552.8f, 0, 0), p(549.6f, 0, 559.2f), p(556, 548.8f, 559.2f), p(556, 548.8f, 0), Red);
-    // The data has the light in a hole of the ceiling; half a millimetre below it needs no hole.
+    // In the data, the light fills a hole in the ceiling; half a millimetre below, it needs no hole.
     builder.quad(p(343, 548.3f, 227), p(343, 548.3f, 332), p(213, 548.3f, 332), p(213, 548.3f, 227), Light);
 }
 
@@ -39,7 +39,7 @@ Scene emptyCornell(std::string name) {
     scene.materials = {lambertian("white", vec3(0.73f)), lambertian("red", {0.65f, 0.05f, 0.05f}),
                        lambertian("green", {0.12f, 0.45f, 0.15f}),
                        emitter("light", vec3(0.78f), {18.4f, 15.6f, 8.0f})};
-    // Lens of 35 mm before a film of 25 mm, 800 mm in front of the box.
+    // A lens of 35 mm with a film of 25 mm, 800 mm in front of the box.
     scene.cameras = {lookAt(fromData(278, 273, -800), fromData(278, 273, 0), vec3(0, 1, 0),
                             2.0f * std::atan(12.5f / 35.0f))};
     scene.cameras[0].name = "cornell";
@@ -188,7 +188,7 @@ constexpr Entry entries[] = {
     {"lab-lights", "a hall with 220 small coloured lights and diffuse and glossy blocks", labLightsScene},
 };
 
-/// N of a name of `prefix` and N.
+/// Parses N from a name that consists of `prefix` and N.
 std::optional<uint32_t> seedAfter(std::string_view prefix, std::string_view name) {
     if (!name.starts_with(prefix)) return std::nullopt;
     name.remove_prefix(prefix.size());

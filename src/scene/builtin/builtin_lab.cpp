@@ -14,7 +14,7 @@ namespace {
 constexpr float studioHeight = 2.8f;
 enum StudioSlot : uint16_t { StudioWall, StudioLeft, StudioRight, StudioBlock, StudioLight };
 
-/// What the two scenes share: a room of 5 m with five blocks.
+/// The room shared by both scenes: 5 m with five blocks.
 Scene studio(std::string name) {
     Scene scene;
     scene.name = std::move(name);
@@ -33,7 +33,7 @@ Scene studio(std::string name) {
     return scene;
 }
 
-/// A light around its node's origin.
+/// Adds a light around its node's origin.
 int addMovingLamp(Scene& scene, const vec3& radiance) {
     scene.materials.push_back(emitter("key", vec3(0.5f), radiance));
     MeshBuilder lamp("key");
@@ -61,15 +61,15 @@ Mesh grille() {
 constexpr vec3 hallLower{-6.0f, 0.0f, -9.0f}, hallUpper{6.0f, 4.0f, 6.0f};
 constexpr uint16_t lightColors = 8;
 
-/// Full colours, equally far apart.
+/// Saturated colours with evenly spaced hues.
 vec3 lightColor(uint16_t index) {
     const float hue = 2.0f * pi * static_cast<float>(index) / float{lightColors};
     const auto part = [&](float phase) { return 0.5f + 0.48f * std::cos(hue - phase); };
     return {part(0.0f), part(2.0f * pi / 3.0f), part(4.0f * pi / 3.0f)};
 }
 
-/// 12 x 10 on the ceiling, 2 x 25 on each long wall: 220. Neighbours are of similar colours, or all would mix
-/// to white everywhere.
+/// 12 x 10 on the ceiling, 2 x 25 on each long wall: 220. Neighbours have similar colours; otherwise all
+/// would mix to white everywhere.
 Mesh hallLights() {
     MeshBuilder builder("lights");
     Sequence random;

@@ -1,4 +1,4 @@
-// The laboratory's scenes about surfaces: lab-mirror and lab-textures.
+// The lab's scenes about surfaces: lab-mirror and lab-textures.
 #include <cmath>
 
 #include "scene/builtin/builtin_lab.h"
@@ -10,8 +10,7 @@
 namespace limpid::scene {
 namespace {
 
-/// The desk's picture is 1.3 m x 1 m, its lower edge raised: so that it faces the mirror and the camera
-/// alike.
+/// The desk's picture is 1.3 m x 1 m and tilted so that it faces the mirror and the camera equally.
 MirrorLab makeMirrorLab() {
     constexpr float halfWidth = 0.65f, halfDepth = 0.5f, height = 0.6f;
     const float tilt = glm::radians(15.0f);
@@ -27,7 +26,7 @@ MirrorLab makeMirrorLab() {
     return lab;
 }
 
-/// The picture lies on a board on a foot.
+/// Adds the picture, on a board with a foot.
 void addDesk(Scene& scene, const MirrorLab& lab, int pictureMaterial, int woodMaterial) {
     const auto& [topLeft, topRight, bottomRight, bottomLeft] = lab.panelCorners;
     MeshBuilder picture("picture");
@@ -50,7 +49,7 @@ void addDesk(Scene& scene, const MirrorLab& lab, int pictureMaterial, int woodMa
     addMesh(scene, desk.take(), woodMaterial);
 }
 
-/// The mirror is one rectangle in front of a frame.
+/// Adds the mirror: one rectangle in front of a frame.
 void addStandingMirror(Scene& scene, const MirrorLab& lab, int mirrorMaterial, int frameMaterial) {
     const vec3 &low = lab.mirrorLower, &high = lab.mirrorUpper;
     MeshBuilder mirror("mirror");
@@ -62,7 +61,7 @@ void addStandingMirror(Scene& scene, const MirrorLab& lab, int mirrorMaterial, i
     addMesh(scene, frame.take(), frameMaterial);
 }
 
-/// Texture coordinates of MeshBuilder::sphere's vertices: `repeats` times around and down.
+/// Adds texture coordinates for MeshBuilder::sphere's vertices: `repeats` times around and down.
 void addSphereCoordinates(Mesh& mesh, uint32_t segments, uint32_t rings, const vec2& repeats) {
     for (uint32_t ring = 0; ring <= rings; ++ring) {
         for (uint32_t segment = 0; segment <= segments; ++segment) {
@@ -128,11 +127,11 @@ Scene labMirrorScene() {
                        textured(lambertian("picture", vec3(1.0f)), addTexture(scene, testPictureTexture())),
                        lambertian("wood", {0.32f, 0.2f, 0.12f}),
                        glossy("mirror", vec3(0.95f), 1.0f, 0.0f)};
-    // Wide enough for a camera that goes around the desk from -66 to 78 degrees, and placed so that the
-    // middle of it, which camera paths go around, is over the desk as the camera sees it.
+    // Wide enough for a camera that orbits the desk from -66 to 78 degrees, and placed so that its centre,
+    // which camera paths orbit around, is above the desk in the camera's view.
     MeshBuilder room("room");
     room.box({-3.5f, 0.0f, -4.0f}, {4.75f, 3.2f, 3.0f}, {Wall, Wall, Floor, Wall, Back, Wall}, true);
-    // Wide lamps: what a mirror throws of a small one on diffuse things would take too long to average.
+    // Large lamps: a mirror's caustics of small ones would take too many samples to converge.
     addLamp(room, {-1.2f, 3.19f, 1.0f}, 1.3f, 1.0f, Light);
     addLamp(room, {2.6f, 3.19f, -2.0f}, 1.0f, 1.0f, Light);
     addBlock(room, {-2.3f, -2.6f}, {0.4f, 0.4f}, 2.6f, 0.3f, Block);

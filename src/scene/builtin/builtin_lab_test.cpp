@@ -1,4 +1,5 @@
-// The laboratory's scenes: small, lit, closed; they move when they say, and the mirror is where it says.
+// Tests the lab's scenes: small, lit, closed; they move at the documented times, and the mirror is at the
+// documented position.
 #include "scene/builtin/builtin_lab.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ const Instance& instanceNamed(const Scene& scene, const std::string& name) {
     return *found;
 }
 
-/// Where the instance's origin is, in the scene's only clip.
+/// Returns the position of the instance's origin in the scene's only clip.
 vec3 positionAt(const Scene& scene, const std::string& name, double time) {
     const RigPose pose = evaluate(scene.rig, &scene.rig.clips.at(0), time);
     return vec3(pose.toWorld.at(static_cast<size_t>(instanceNamed(scene, name).node))[3]);
@@ -49,7 +50,7 @@ struct Hit {
     bool front = false;
 };
 
-/// Moeller and Trumbore's test against every triangle.
+/// Tests every triangle with Moeller and Trumbore's algorithm.
 Hit nearest(const Scene& scene, const vec3& origin, const vec3& direction) {
     Hit hit;
     for (const Instance& instance : scene.instances) {
@@ -75,7 +76,7 @@ vec3 eyeOf(const Camera& camera) {
     return vec3(camera.toWorld[3]);
 }
 
-/// Where a point appears, -1 to 1 over a picture of 16:9, y up; nothing if it is behind.
+/// Projects a point to -1 to 1 on a picture of 16:9, y up; returns nothing if it is behind the camera.
 std::optional<vec2> onScreen(const Camera& camera, const vec3& point) {
     const vec3 p = vec3(glm::inverse(camera.toWorld) * vec4(point, 1.0f));
     if (p.z >= 0.0f) return std::nullopt;
@@ -83,7 +84,7 @@ std::optional<vec2> onScreen(const Camera& camera, const vec3& point) {
     return vec2(p.x / (slope * 16.0f / 9.0f), p.y / slope) / -p.z;
 }
 
-/// Seen from its front, every face has u to the right and v down; walls have v against +Y.
+/// Seen from the front, every face has u to the right and v down; on walls, v points against +Y.
 TEST(Wallpaper, IsUprightAndNeverMirrored) {
     for (const bool inside : {false, true}) {
         MeshBuilder builder("box");
@@ -126,7 +127,7 @@ TEST(LabScenes, AreSmallLitAndUsable) {
     }
 }
 
-/// No ray from the camera leaves: every one meets something, the front of it.
+/// Every camera ray hits something, and its front face.
 TEST(LabScenes, AreClosed) {
     for (const std::string& name : labNames()) {
         const Scene scene = builtinScene(name);
@@ -157,7 +158,8 @@ TEST(LabScenes, OneOfTwoLightsGoesOutAtOnce) {
     for (const double time : {1.001, 4.0}) EXPECT_EQ(positionAt(scene, "key", time), out) << time;
     const vec3 floor(0.0f, 0.05f, 1.0f);
     const auto seen = [&](const vec3& light) {
-        return nearest(scene, floor, light - floor).distance > 0.999f;  // in lengths of the way
+        return nearest(scene, floor, light - floor).distance > 0.999f;  // in units of the distance to the
+                                                                        // light
     };
     EXPECT_TRUE(seen(on));
     EXPECT_FALSE(seen(out)) << "the ceiling is in between";
@@ -185,7 +187,7 @@ TEST(LabMirror, ConstantsAreTheGeometry) {
     const Scene scene = builtinScene("lab-mirror");
     const MirrorLab& lab = mirrorLab();
     const Mesh& picture = scene.meshes[static_cast<size_t>(instanceNamed(scene, "picture").mesh)];
-    // The picture's own coordinates, so that it is neither turned nor flipped.
+    // Uses the picture's own coordinates, to check that it is neither rotated nor flipped.
     const vec2 uv[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     for (size_t i = 0; i < 4; ++i) {
         const auto vertex = static_cast<size_t>(std::find(picture.uv0.begin(), picture.uv0.end(), uv[i]) -
@@ -203,7 +205,7 @@ TEST(LabMirror, ConstantsAreTheGeometry) {
     EXPECT_EQ(material.metallic, 1.0f);
 }
 
-/// The ray to what is seen in the mirror meets the mirror, and there turns to the picture's front.
+/// Checks that the ray to the mirror image hits the mirror, and its reflection the picture's front.
 void expectSeenBothWays(const Scene& scene, const Camera& camera, const vec3& point) {
     const MirrorLab& lab = mirrorLab();
     const vec3 eye = eyeOf(camera), toImage = lab.reflected(point) - eye;
@@ -219,7 +221,7 @@ void expectSeenBothWays(const Scene& scene, const Camera& camera, const vec3& po
     EXPECT_TRUE(after.front);
 }
 
-/// Of a quadrangle on the screen, whose corners are in order.
+/// Returns the area of a quadrangle on the screen, with its corners in order.
 float areaOf(const std::array<vec2, 4>& p) {
     float sum = 0.0f;
     for (size_t i = 0; i < 4; ++i) {
@@ -250,7 +252,7 @@ TEST(LabMirror, BothImagesStayInViewForFourSeconds) {
             const float ratio = areaOf(mirrored) / areaOf(direct);
             EXPECT_GT(ratio, 0.6f);
             EXPECT_LT(ratio, 1.5f);
-            // None on the diagonal between the picture's triangles.
+            // None of the points is on the diagonal between the picture's triangles.
             for (const float u : {0.02f, 0.45f, 0.97f}) {
                 for (const float v : {0.02f, 0.45f, 0.97f}) {
                     expectSeenBothWays(scene, camera,

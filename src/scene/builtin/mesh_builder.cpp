@@ -73,7 +73,7 @@ MeshBuilder& MeshBuilder::sphere(const vec3& center, float radius, uint32_t segm
     const auto first = static_cast<uint32_t>(mesh_.positions.size());
     for (uint32_t ring = 0; ring <= rings; ++ring) {
         const float theta = pi * static_cast<float>(ring) / static_cast<float>(rings);
-        // sin(pi) is not 0 in float; the poles' vertices must coincide or the sphere has cracks.
+        // sin(pi) is not exactly 0 in float, but the poles' vertices must coincide or the sphere has cracks.
         const float sine = ring == 0 || ring == rings ? 0.0f : std::sin(theta);
         for (uint32_t segment = 0; segment <= segments; ++segment) {
             const float phi =

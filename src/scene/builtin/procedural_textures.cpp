@@ -22,7 +22,7 @@ uint8_t toByte(float value) {
     return static_cast<uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
-/// A texture of paint(uv) -> colour for the centre of every texel.
+/// Makes a texture with the colour paint(uv) at the centre of every texel.
 template <typename Paint>
 Texture painted(std::string name, uint32_t width, uint32_t height, bool srgb, const Paint& paint) {
     Texture texture;
@@ -46,7 +46,7 @@ float smoothstep(float low, float high, float x) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-/// Numbers at the corners of cells.x by cells.y cells, smooth between; repeats over 0 to 1. 0 to 1.
+/// Smooth noise, 0 to 1, from random values at the corners of cells.x by cells.y cells; tiles over 0 to 1.
 float valueNoise(const vec2& uv, const uvec2& cells, uint32_t seed) {
     const vec2 p = (uv - glm::floor(uv)) * vec2(cells);
     const uvec2 first = uvec2(p) % cells;
@@ -58,7 +58,7 @@ float valueNoise(const vec2& uv, const uvec2& cells, uint32_t seed) {
     return glm::mix(glm::mix(corner(0, 0), corner(1, 0), tx), glm::mix(corner(0, 1), corner(1, 1), tx), ty);
 }
 
-/// Five octaves, 0 to 1.
+/// Noise of five octaves, 0 to 1.
 float cloudNoise(const vec2& uv, uint32_t cells, uint32_t seed) {
     float sum = 0.0f, weight = 0.5f;
     for (uint32_t octave = 0; octave < 5; ++octave, weight *= 0.5f)
@@ -66,14 +66,14 @@ float cloudNoise(const vec2& uv, uint32_t cells, uint32_t seed) {
     return sum / 0.96875f;
 }
 
-/// The bump map's normals by central differences over a texel; `depth` in pictures.
+/// Makes a normal map of a height field with central differences; `depth` is in units of the picture's size.
 template <typename Height>
 Texture normalsOf(std::string name, uint32_t size, float depth, const Height& height) {
     const float step = 1.0f / static_cast<float>(size);
     return painted(std::move(name), size, size, false, [&](const vec2& uv) {
         const float alongU = height(uv + vec2(step, 0.0f)) - height(uv - vec2(step, 0.0f));
         const float alongV = height(uv + vec2(0.0f, step)) - height(uv - vec2(0.0f, step));
-        // Green is up the picture, against v.
+        // Green points up the picture, against v.
         const vec3 n = glm::normalize(vec3(-alongU * depth, alongV * depth, 2.0f * step));
         return 0.5f * n + 0.5f;
     });
@@ -92,21 +92,21 @@ BrickPoint brickAt(const vec2& at) {
     const float shifted = uv.x * columns + (point.course % 2 == 0 ? 0.0f : 0.5f);
     point.column = static_cast<uint32_t>(shifted) % columns;
     const vec2 inside(shifted - std::floor(shifted), uv.y * courses - static_cast<float>(point.course));
-    // Distance to the brick's edge, in courses; a brick is twice as long as high.
+    // Distance to the brick's edge, in units of a course's height; a brick is twice as long as high.
     const float edge =
         std::min(2.0f * std::min(inside.x, 1.0f - inside.x), std::min(inside.y, 1.0f - inside.y));
     point.height = smoothstep(0.05f, 0.14f, edge) * (0.85f + 0.3f * cloudNoise(uv, 16, 7));
     return point;
 }
 
-/// A sign of print: of 5 x 7 dots, by chance, darkened where `dot` falls on ink.
+/// Returns whether `uv` is on ink of a printed text: each character is a random pattern of 5 x 7 dots.
 bool isInk(const vec2& uv, uint32_t columns, uint32_t lines) {
     const vec2 p = uv * vec2(columns, lines);
     const auto column = static_cast<uint32_t>(p.x), line = static_cast<uint32_t>(p.y);
     const vec2 inside = p - glm::floor(p);
     const auto dotX = static_cast<uint32_t>(inside.x * 6.0f), dotY = static_cast<uint32_t>(inside.y * 9.0f);
     const bool gap = dotX >= 5 || dotY >= 7 || hash(column / 2, line, 11) % 7 == 0;
-    // Left and right halves alike, as in most letters.
+    // Mirror-symmetric, like many letters.
     return !gap && hash(std::min(dotX, 4 - dotX) + 8 * dotY, column + 64 * line, 13) % 2 == 0;
 }
 
@@ -119,7 +119,7 @@ vec3 hueColor(float hue) {
 }
 
 vec3 checkerPatch(const vec2& uv) {
-    // Squares halve from column to column.
+    // The size of squares halves from column to column.
     const auto column = static_cast<uint32_t>(uv.x * 4.0f);
     const float squares = static_cast<float>(8u << column);
     const auto x = static_cast<uint32_t>(uv.x * squares), y = static_cast<uint32_t>(uv.y * squares * 0.75f);
@@ -180,7 +180,7 @@ Texture woodTexture() {
         const vec2 wave(0.06f * (cloudNoise(uv, 3, 31) - 0.5f), 0.12f * (cloudNoise(uv, 2, 37) - 0.5f));
         const vec2 p = (uv + wave - vec2(0.45f, -0.2f)) * vec2(1.0f, 0.25f);
         const float ring = 22.0f * glm::length(p), phase = ring - std::floor(ring);
-        // Late wood darkens slowly and ends at once.
+        // Late wood darkens slowly and ends abruptly.
         const float late = smoothstep(0.1f, 0.9f, phase) * (1.0f - smoothstep(0.92f, 1.0f, phase));
         const float fibre = valueNoise(uv, {128, 16}, 41);
         return glm::mix(vec3(0.8f, 0.62f, 0.42f), vec3(0.58f, 0.38f, 0.23f), late) * (0.85f + 0.2f * fibre);
@@ -196,7 +196,7 @@ Texture hammeredNormalTexture() {
         const auto x = static_cast<uint32_t>(p.x), y = static_cast<uint32_t>(p.y);
         float nearest = 2.0f;
         for (uint32_t i = 0; i < 9; ++i) {
-            const uint32_t cx = x + i % 3, cy = y + i / 3;  // one more than the cell's number
+            const uint32_t cx = x + i % 3, cy = y + i / 3;  // one more than the cell's index
             const uint32_t wx = (cx + cells - 1) % cells, wy = (cy + cells - 1) % cells;
             const vec2 dent(static_cast<float>(cx) - 1.0f + random01(wx, wy, 51),
                             static_cast<float>(cy) - 1.0f + random01(wx, wy, 52));
@@ -210,7 +210,7 @@ Texture hammeredNormalTexture() {
 Texture wornRoughnessTexture(float smooth, float rough) {
     return painted("worn", 512, 512, false, [&](const vec2& uv) {
         const float patches = smoothstep(0.4f, 0.6f, cloudNoise(uv, 6, 61));
-        // Far longer than wide.
+        // Stretched noise looks like scratches.
         const float scratches = smoothstep(0.86f, 0.9f, valueNoise(uv, {8, 128}, 67));
         return vec3(1.0f, glm::mix(smooth, rough, std::max(patches, 0.7f * scratches)), 1.0f);
     });

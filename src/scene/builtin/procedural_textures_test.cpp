@@ -1,4 +1,4 @@
-// The pictures of the built-in scenes: the same every time, of every grey they promise, without seams.
+// Tests the textures of the built-in scenes: deterministic, with the expected range of values, and seamless.
 #include "scene/builtin/procedural_textures.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ uint8_t texel(const Texture& texture, uint32_t x, uint32_t y, size_t channel) {
     return texture.rgba[4 * (size_t{y} * texture.width + x) + channel];
 }
 
-/// The mean difference between two columns of texels, all channels.
+/// Returns the mean difference between two columns of texels over all channels.
 double difference(const Texture& texture, uint32_t column, uint32_t other) {
     double sum = 0.0;
     for (uint32_t y = 0; y < texture.height; ++y) {
@@ -56,7 +56,7 @@ TEST(ProceduralTextures, AreTheSameEveryTimeAndOpaque) {
     }
 }
 
-/// The step from the last column to the first is like the steps between columns elsewhere.
+/// The difference between the last and first column is like that between neighbouring columns.
 TEST(ProceduralTextures, RepeatWithoutASeam) {
     for (const Painter& painter : painters()) {
         if (!painter.repeats) continue;

@@ -10,7 +10,7 @@
 namespace limpid::scene {
 namespace {
 
-/// On the floor: nothing else may stand there.
+/// A place on the floor that is occupied.
 struct Place {
     vec2 center;
     float radius;
@@ -42,7 +42,7 @@ class RandomRoom : RandomScene {
         return chance(0.35f) ? patterned(std::move(wall), 0.25f, 1.5f) : wall;
     }
 
-    /// One material a side; the side towards +Z may have a hole.
+    /// Adds the walls, with one material per side. The side towards +Z may have an opening.
     void addRoom() {
         enum Side : uint16_t { Left, Right, Floor, Ceiling, Back, Front };
         const int first = static_cast<int>(scene_.materials.size());
@@ -91,7 +91,8 @@ class RandomRoom : RandomScene {
         scene_.lights.push_back(sun);
     }
 
-    /// Together they give every square metre of the floor about as much, however many and large they are.
+    /// Scales the lamps so that a square metre of floor gets about the same light, whatever their number and
+    /// size.
     void addLamps() {
         const int count = whole(1, chance(0.2f) ? 24 : 5);
         const float brightness =
@@ -131,7 +132,7 @@ class RandomRoom : RandomScene {
         places_.push_back({{eye.x, eye.z}, 0.35f});
     }
 
-    /// None may be free.
+    /// Finds a free place on the floor; returns false if there is none.
     bool findPlace(float radius, vec2& center) {
         constexpr int attempts = 12;
         for (int i = 0; i < attempts; ++i) {
@@ -215,7 +216,7 @@ class RandomRoom : RandomScene {
         addFlat(block, false);
     }
 
-    vec2 half_{0.0f};  ///< of the floor's width and depth
+    vec2 half_{0.0f};  ///< half of the floor's width and depth
     float height_ = 0.0f;
     bool isOpen_ = false, hasWindow_ = false;
     std::vector<Place> places_;

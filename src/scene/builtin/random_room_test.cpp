@@ -38,7 +38,7 @@ TEST(RandomRoom, IsTheSameForTheSameSeed) {
     }
 }
 
-/// Seeds that are neighbours do not make rooms that are alike.
+/// Consecutive seeds give rooms that are not alike.
 TEST(RandomRoom, IsAnotherForAnotherSeed) {
     int left = 0, many = 0;
     std::set<float> widths;

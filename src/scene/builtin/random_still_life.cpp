@@ -12,7 +12,7 @@
 namespace limpid::scene {
 namespace {
 
-/// Texture coordinates for meshes with normals: a projection along a slanted axis, which has no seam.
+/// Adds texture coordinates to meshes with normals: a projection along a slanted axis, which has no seam.
 void addSlantedCoordinates(Mesh& mesh) {
     for (const vec3& p : mesh.positions)
         mesh.uv0.emplace_back(p.x + 0.37f * p.y, 0.21f * p.x + p.z + 0.83f * p.y);
@@ -37,7 +37,7 @@ class RandomStillLife : RandomScene {
   private:
     vec3 strongly(float least, float most, const vec3& light) { return logarithmic(least, most) * light; }
 
-    /// What things stand on is at height 0.
+    /// Adds the surface that objects stand on, at height 0.
     void addSupport() {
         const float kind = random_.next(0.0f, 1.0f);
         if (kind > 0.65f) return;
@@ -66,7 +66,7 @@ class RandomStillLife : RandomScene {
         return texture;
     }
 
-    /// A rectangle, or the ellipse in it; goes on at the other side.
+    /// Paints a rectangle, or the ellipse in it, wrapping around at the edges.
     static void paint(Texture& texture, const uvec2& first, const uvec2& extent, const vec3& shade,
                       bool isDisc) {
         for (uint32_t y = 0; y < extent.y; ++y) {
@@ -88,7 +88,7 @@ class RandomStillLife : RandomScene {
         return textured(std::move(material), addTexture(scene_, texture, repeats));
     }
 
-    /// Some of the materials with a picture, bumps, or uneven gloss on them.
+    /// Returns a material, sometimes with a picture, bumps or varying roughness.
     Material richMaterial(float pictures) {
         Material material = anyMaterial(true);
         if (material.transmission > 0.0f) return material;
@@ -109,7 +109,7 @@ class RandomStillLife : RandomScene {
         return material;
     }
 
-    /// Blocks and balls that are meant to be seen, and those that are to be seen with much around them.
+    /// Adds a large object, or a small one in the background.
     void addThing() {
         const float size = size_ * random_.next(0.4f, 1.0f);
         vec3 center = offset(reach_ - 0.5f * size);
@@ -133,7 +133,7 @@ class RandomStillLife : RandomScene {
         }
     }
 
-    /// Turned about a random upright axis or, if it floats, any.
+    /// Rotates by a random angle about the vertical axis; objects that float, about any axis.
     mat4 placed(const vec3& center) {
         mat4 transform = glm::translate(mat4(1.0f), center);
         transform = glm::rotate(transform, random_.next(0.0f, 2.0f * pi), vec3(0, 1, 0));
@@ -189,7 +189,7 @@ class RandomStillLife : RandomScene {
         addPlacedFlat(box, center, 0.4f);
     }
 
-    /// A painting or a poster.
+    /// Adds a painting or a poster.
     void addBoard(const vec3& center, float size) {
         MeshBuilder board("board");
         const vec3 half{size * random_.next(0.5f, 1.2f), size, 0.02f * size};
@@ -197,7 +197,7 @@ class RandomStillLife : RandomScene {
         addPlacedFlat(board, center, 0.9f);
     }
 
-    /// Bars that may be finer than a pixel.
+    /// Adds bars that may be thinner than a pixel.
     void addGrille(const vec3& center, float size) {
         MeshBuilder grille("grille");
         const int bars = whole(4, 30);
@@ -209,7 +209,7 @@ class RandomStillLife : RandomScene {
         addPlacedFlat(grille, center, 0.2f);
     }
 
-    /// As in samples of materials: every ball of its own.
+    /// Adds a row of balls with different materials, like material samples.
     void addRowOfBalls(const vec3& center, float size) {
         const int count = whole(3, 8);
         const float radius = size / static_cast<float>(count);
@@ -229,7 +229,7 @@ class RandomStillLife : RandomScene {
         scene_.instances[addMesh(scene_, row.take(), first)].transform = transform;
     }
 
-    /// A tube that glows.
+    /// Adds a glowing tube.
     void addSign(const vec3& center, float size) {
         MeshBuilder tube("sign", true);
         const float radius = random_.next(0.01f, 0.08f) * size;
@@ -238,8 +238,8 @@ class RandomStillLife : RandomScene {
         addPlaced(tube.take(), center, emitter("sign", vec3(0.3f), radiance));
     }
 
-    /// A bulb in a shade that lets light through or not, with or without a point light in place of much of
-    /// the bulb.
+    /// Adds a bulb in an opaque or translucent shade; sometimes a point light replaces most of the bulb's
+    /// power.
     void addShadedLamp(const vec3& center, float size) {
         constexpr int sides = 20;
         const float bottom = size * random_.next(0.4f, 0.9f), top = size * random_.next(0.3f, 0.8f);
@@ -292,7 +292,7 @@ class RandomStillLife : RandomScene {
         addStudio(strength);
     }
 
-    /// Walls of two colours in clouds, with windows and lamps in them.
+    /// Makes an environment of cloudy walls in two colours, with windows and lamps.
     void addStudio(float strength) {
         Environment& picture = scene_.environment;
         picture = {128, 64, {}};
@@ -345,7 +345,7 @@ class RandomStillLife : RandomScene {
 
     void placeCamera() {
         const float fov = random_.next(0.4f, 1.2f);
-        const float fills = logarithmic(0.4f, 2.0f);  // of the picture's height
+        const float fills = logarithmic(0.4f, 2.0f);  // fraction of the picture's height
         const float distance = std::max(1.4f * reach_ / (std::tan(0.5f * fov) * fills), 2.2f * reach_);
         const float around = random_.next(0.0f, 2.0f * pi),
                     above = random_.next(stands_ ? 0.03f : -0.9f, 0.9f);
@@ -358,7 +358,7 @@ class RandomStillLife : RandomScene {
     }
 
     float reach_ = 1.0f, size_ = 0.5f;
-    bool stands_ = false;  ///< on something at height 0
+    bool stands_ = false;  ///< whether there is a surface at height 0
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t binCount = 16;
 constexpr uint32_t parallelThreshold = 4096;
-/// Costs of the surface area heuristic: a visit to a binary node against one triangle test.
+/// Costs in the surface area heuristic: visiting a binary node, and testing a triangle.
 constexpr float traversalCost = 0.7f;
 constexpr float intersectionCost = 1.0f;
 
@@ -36,7 +36,7 @@ struct Bin {
 
 struct Split {
     int axis = -1;
-    uint32_t bin = 0;  ///< primitives of this bin and below go left
+    uint32_t bin = 0;  ///< primitives of this bin and lower ones go left
     float cost = std::numeric_limits<float>::max();
 };
 
@@ -82,7 +82,7 @@ class BinaryBuilder {
         }
     }
 
-    /// Reorders the range and returns the left part's size; 0 makes a leaf.
+    /// Partitions the range and returns the left part's size; 0 makes a leaf.
     uint32_t partition(const Aabb& bounds, const Aabb& centers, uint32_t first, uint32_t count,
                        uint32_t depth) {
         const Split split = depth < sahDepth_ ? findSplit(centers, first, count) : Split{};
@@ -178,7 +178,7 @@ float cellSize(uint8_t exponent) {
     return std::bit_cast<float>(static_cast<uint32_t>(exponent) << 23);
 }
 
-/// The smallest power of two (as a biased exponent) of which 255 cells from `low` reach `high`.
+/// Returns the smallest power of two (as a biased exponent) of which 255 cells reach from `low` to `high`.
 uint8_t gridExponent(float low, float high) {
     const float size = high - low;
     int exponent = 1;
@@ -193,7 +193,7 @@ void quantise(BvhNode& node, uint32_t child, const Aabb& box) {
         const float origin = node.origin[axis];
         int low = std::clamp(static_cast<int>(std::floor((box.lower[axis] - origin) / cell)), 0, 255);
         int high = std::clamp(static_cast<int>(std::ceil((box.upper[axis] - origin) / cell)), 0, 255);
-        // The division rounds; what the shader decodes must still enclose the box.
+        // The division rounds, but the box that the shader decodes must enclose the original.
         while (low > 0 && origin + static_cast<float>(low) * cell > box.lower[axis]) --low;
         while (high < 255 && origin + static_cast<float>(high) * cell < box.upper[axis]) ++high;
         node.lower[axis][child] = static_cast<uint8_t>(low);
@@ -201,12 +201,12 @@ void quantise(BvhNode& node, uint32_t child, const Aabb& box) {
     }
 }
 
-/// Collapses the binary tree: a node adopts its grandchildren, the largest first, until it has four children.
+/// Collapses the binary tree: a node replaces its largest child by that child's children until it has four.
 class WideBuilder {
   public:
     WideBuilder(const BinaryBuilder& binary, Bvh& out) : binary_(binary), out_(out) {}
 
-    /// Emits the node for `children` and returns how many stack entries its subtree needs.
+    /// Writes the node for `children` and returns how many stack entries its subtree needs.
     uint32_t emit(uint32_t index, std::vector<uint32_t> children) {
         open(children);
         std::vector<BvhChild> wide;
@@ -280,7 +280,7 @@ BvhNode makeBvhNode(std::span<const BvhChild> children) {
         quantise(node, slot, children[slot].bounds);
         node.children[slot] = children[slot].ref;
     }
-    // Far away an absent child's inverted box can vanish in rounding: its reference must be harmless.
+    // Far away, rounding can make a missing child's inverted box valid, so its reference must be harmless.
     for (size_t slot = children.size(); slot < 4; ++slot) node.children[slot] = node.children[0];
     return node;
 }
@@ -293,7 +293,7 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDept
     Bvh bvh;
     bvh.nodes.emplace_back();
     if (boxes.empty()) {
-        // Leaves beyond the end of the triangles: reads there give zeros, which no ray hits.
+        // Leaves beyond the end of the triangles: reads there return zeros, which no ray hits.
         for (int axis = 0; axis < 3; ++axis) bvh.nodes[0].lower[axis].fill(255);
         bvh.nodes[0].exponents.fill(127);
         bvh.nodes[0].children.fill(BvhRef::leaf(0, 1));

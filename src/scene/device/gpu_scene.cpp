@@ -64,7 +64,7 @@ void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
     uint64_t vertices = 0, matrices = 0;
     for (const DeformingInstance& d : data.motion.deforming) {
         vertices += d.vertexCount;
-        // This frame's and the previous one's.
+        // Matrices of this frame and the previous one.
         matrices += 2 * (uint64_t{d.jointCount} * layout::POSE_MATRIX_TEXELS + (d.targetCount + 3) / 4);
     }
     add("restVertices", Format::RGBA32Uint, data.motion.restVertices);
@@ -109,7 +109,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_VOLUME", features_.volume},
             {"HAS_SPECULAR_TEXTURES", features_.specularTextures},
             {"HAS_ROUGH_GLASS", features_.roughGlass},
-            {"STACK_SIZE", stackSize_ + 3},  // three stores past the top are made and ignored
+            {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},
             {"EXPANDED_NODES", gpuTraversal_}};

@@ -29,13 +29,13 @@ vec4 texelAt(const Texture& texture, uint32_t x, uint32_t y) {
     return {color(p[0]), color(p[1]), color(p[2]), static_cast<float>(p[3]) / 255.0f};
 }
 
-/// `texel(x, y)`: the linear values of the level above, whose size is given.
+/// `texel(x, y)` returns the linear values of the level above, which has the given size.
 template <typename Texel>
 Level halve(uint32_t width, uint32_t height, const Texel& texel) {
     Level to{std::max(1u, width / 2), std::max(1u, height / 2), {}};
     to.texels.resize(size_t{to.width} * to.height);
     for (uint32_t y = 0; y < to.height; ++y) {
-        // An odd row or column would be dropped by a plain 2x2 average: let the last cell reach to the edge.
+        // A plain 2x2 average would drop an odd row or column, so the last cell extends to the edge.
         const uint32_t y0 = std::min(2 * y, height - 1), y1 = y + 1 == to.height ? height : 2 * y + 2;
         for (uint32_t x = 0; x < to.width; ++x) {
             const uint32_t x0 = std::min(2 * x, width - 1), x1 = x + 1 == to.width ? width : 2 * x + 2;
@@ -86,7 +86,7 @@ void appendMipLevels(const Texture& texture, std::vector<uint32_t>& result) {
         result.push_back(uint32_t{p[0]} | uint32_t{p[1]} << 8 | uint32_t{p[2]} << 16 | uint32_t{p[3]} << 24);
     Level level{texture.width, texture.height, {}};
     for (uint32_t i = 1; i < mipLevelCount(texture); ++i) {
-        // The first level is never held as floats, which would be four times the picture.
+        // The first level is never stored as floats, which would take four times the picture's memory.
         level = i == 1 ? halve(level.width, level.height,
                                [&](uint32_t x, uint32_t y) { return texelAt(texture, x, y); })
                        : halve(level.width, level.height, [&](uint32_t x, uint32_t y) {

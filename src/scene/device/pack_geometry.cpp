@@ -12,13 +12,14 @@
 namespace limpid::scene {
 namespace {
 
-/// Triangles per leaf: larger leaves cost more tests but fewer nodes (measured in docs/benchmarks.md).
+/// Maximum triangles per leaf: larger leaves cost more tests but fewer nodes (measured in
+/// docs/benchmarks.md).
 constexpr uint32_t maxTrianglesPerLeaf = 4;
-/// A mesh whose copies together have at most this many triangles is copied into the static tree instead of
-/// instanced: one tree is walked faster than a tree over trees.
+/// A mesh whose copies have at most this many triangles in total is copied into the static tree instead of
+/// instanced, since one tree is traversed faster than two levels.
 constexpr size_t mergeLimit = 4096;
 
-/// A direction that stays usable when the transform or the input degenerates.
+/// Normalises a vector; returns `otherwise` if it is degenerate.
 vec3 safeNormalize(const vec3& v, const vec3& otherwise) {
     const float length = glm::length(v);
     return length > 1e-20f && std::isfinite(length) ? v / length : otherwise;
@@ -37,7 +38,7 @@ struct Transform {
     vec3 normal(const vec3& n) const { return safeNormalize(normalMatrix * n, vec3(0, 0, 1)); }
     vec3 direction(const vec3& d) const { return safeNormalize(mat3(matrix) * d, vec3(1, 0, 0)); }
 
-    /// The inverse transpose times the determinant: right for normals even where the inverse does not exist.
+    /// The inverse transpose times the determinant: transforms normals correctly even if there is no inverse.
     static mat3 cofactor(const mat3& m) {
         return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
     }
@@ -80,7 +81,7 @@ class GeometryPacker {
     struct Tree {
         uint32_t root, stackSize;
         Aabb bounds;
-        uint32_t number;  ///< in SceneData::trees
+        uint32_t number;  ///< index in SceneData::trees
     };
 
     void findInstancedMeshes() {
@@ -114,7 +115,7 @@ class GeometryPacker {
         const auto meshIndex = static_cast<size_t>(instance.mesh);
         const Mesh& mesh = scene_.meshes[meshIndex];
         const Transform transform(instance.transform);
-        // What moves may turn inside out on its way.
+        // A moving transform may become mirrored later.
         data_.features.mirrored |= transform.mirrored || instance.movement == Movement::Rigid;
         uint32_t firstTriangle = meshFirstTriangle_[meshIndex];
         uint32_t flags = transform.mirrored ? layout::INSTANCE_MIRRORED : 0u;
@@ -135,7 +136,7 @@ class GeometryPacker {
         record[3] = {static_cast<uint32_t>(instance.material), layout::NONE, firstTriangle, flags};
     }
 
-    /// Vertices and triangles of its own, and what poses them.
+    /// Packs the instance's own vertices and triangles, and the data that poses them.
     uint32_t packDeforming(uint32_t index, const Mesh& mesh) {
         const uint32_t firstVertex = vertexCount_;
         const uint32_t firstTriangle = packShading(mesh, Transform(mat4(1.0f)), 0);
@@ -156,7 +157,7 @@ class GeometryPacker {
         triangles.push_back(leaf);
     }
 
-    /// Appends vertices and shading triangles, transformed; returns the first triangle's index.
+    /// Appends transformed vertices and shading triangles; returns the first triangle's index.
     uint32_t packShading(const Mesh& mesh, const Transform& transform, uint32_t material) {
         const uint32_t firstVertex = vertexCount_;
         vertexCount_ += static_cast<uint32_t>(mesh.positions.size());
@@ -178,7 +179,7 @@ class GeometryPacker {
         const vec3 normal = mesh.normals.empty() ? vec3(0, 0, 1) : transform.normal(mesh.normals[v]);
         const vec4 tangent = mesh.tangents.empty() ? vec4(1, 0, 0, 1) : mesh.tangents[v];
         uint32_t tangentBits = packDirection(transform.direction(vec3(tangent))) & ~1u;
-        // A mirroring transform turns the handedness of the tangent frame.
+        // A mirroring transform changes the handedness of the tangent frame.
         if ((tangent.w < 0.0f) != transform.mirrored) tangentBits |= 1u;
         const vec2 uv0 = mesh.uv0.empty() ? vec2(0.0f) : mesh.uv0[v];
         const vec2 uv1 = mesh.uv1.empty() ? vec2(0.0f) : mesh.uv1[v];
@@ -231,7 +232,7 @@ class GeometryPacker {
         return static_cast<uint32_t>(data_.bvhNodes.size() / layout::BVH_NODE_TEXELS);
     }
 
-    /// Trees over the static tree and over every instance of the instanced meshes.
+    /// Builds the static tree, a tree per instanced mesh, and a top-level tree over all instances.
     void packTwoLevels() {
         packPreviousInstances();
         if (!staticBoxes_.empty()) {
@@ -300,7 +301,7 @@ class GeometryPacker {
         findRefitLevels(data_);
     }
 
-    /// Room for the nodes that every frame writes.
+    /// Reserves space for the nodes that are written in every frame.
     void reserveMovingTree(uint32_t stillStack) {
         MotionData& motion = data_.motion;
         motion.firstTopNode = data_.params.rootNode = nodeCount();
@@ -342,10 +343,10 @@ class GeometryPacker {
 
     const Scene& scene_;
     SceneData& data_;
-    std::vector<bool> instanced_;  ///< meshes
+    std::vector<bool> instanced_;  ///< by mesh
     std::vector<TopLeaf> still_;
     uint32_t vertexCount_ = 0;
-    uint32_t deepest_ = 0;  ///< stack entries of the deepest tree below the top
+    uint32_t deepest_ = 0;  ///< stack entries of the deepest tree below the top level
     std::vector<uint32_t> meshFirstTriangle_;
     std::vector<Aabb> staticBoxes_;
     std::vector<LeafTriangle> staticTriangles_;

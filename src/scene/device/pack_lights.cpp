@@ -14,11 +14,11 @@
 namespace limpid::scene {
 namespace {
 
-/// How often next-event estimation asks the environment where there are other lights too.
+/// The probability of sampling the environment in next-event estimation if there are other lights.
 constexpr float environmentShare = 0.5f;
-/// ... and how often at least triangles and punctual lights of what is left, where there are both.
+/// The minimum probabilities of triangles and of punctual lights among the other samples, if there are both.
 constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
-/// Of the triangles' samples: shared equally by all lamps, the rest by power.
+/// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
 constexpr double uniformShare = 0.25;
 
 double luminance(const vec3& c) {
@@ -30,8 +30,8 @@ vec2 transformed(const TextureRef& ref, const vec2& uv) {
     return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
 }
 
-/// Mean luminance of the emission texture over a triangle, from points as dense as its texels (16 to 1,024 of
-/// them).
+/// Returns the mean luminance of the emission texture over a triangle, from points as dense as its texels (16
+/// to 1,024 points).
 double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
                             vec2 c) {
     a = transformed(ref, a);
@@ -86,8 +86,8 @@ class LightPacker {
             data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
     }
 
-    /// By power, and in part the same for every lamp: how much of a lamp's power reaches a surface is not
-    /// known here.
+    /// Weights by power, and partly equal for every lamp, since it is unknown how much of a lamp's power
+    /// reaches a surface.
     std::vector<double> triangleWeights() const {
         const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
         std::vector<double> ofLamp;
@@ -178,15 +178,15 @@ class LightPacker {
         data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
         data_.lights.push_back(bits(v[1], 0u));
         data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
-        const bool changes = ref || material.clearcoat > 0.0f;  // from point to point, or with direction
+        const bool changes = ref || material.clearcoat > 0.0f;  // varies between points, or with direction
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
         const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
         return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
     }
 
-    /// Returns its power; a spot's as if it shone all around: where its cone ends, other lights count, but
-    /// within it, it is as bright as that.
+    /// Returns its power. A spot counts as if it shone in all directions: outside its cone other lights
+    /// matter, but inside it is that bright.
     double packPunctual(const PunctualLight& light) {
         const double strength = luminance(light.intensity);
         uint32_t kind = light.kind == PunctualLight::Kind::Spot ? layout::LIGHT_SPOT : layout::LIGHT_POINT;
@@ -214,14 +214,15 @@ class LightPacker {
     const Scene& scene_;
     SceneData& data_;
     std::vector<double> weights_;  ///< powers of the triangle lights, which come first
-    std::vector<size_t> lamps_;    ///< which lamp each is part of: one material of one instance
+    std::vector<size_t> lamps_;    ///< the lamp that each belongs to: one material of one instance
     std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
     std::vector<float> areas_;                ///< of the triangle lights
-    std::vector<uint32_t> lightOfPrimitive_;  ///< of every primitive of an emissive instance, or NONE
+    std::vector<uint32_t> lightOfPrimitive_;  ///< index of the light, or NONE, for every primitive of an
+                                              ///< emissive instance
 };
 
-/// Texel weights follow what bilinear look-up can return there: a tent over the neighbours, times the texel's
-/// solid angle.
+/// Weights each texel by what a bilinear look-up can return there: a tent filter over the neighbours, times
+/// the texel's solid angle.
 std::vector<double> environmentWeights(const Environment& env) {
     const auto width = static_cast<int>(env.width), height = static_cast<int>(env.height);
     std::vector<double> weights(size_t{env.width} * env.height);
@@ -247,7 +248,7 @@ std::vector<double> environmentWeights(const Environment& env) {
 
 void packEnvironment(const Environment& env, SceneData& data) {
     data.features.environment = true;
-    // Nothing is held longer than needed: an environment of 8,192 by 4,096 pixels has 400 MB of weights.
+    // Free memory early: an environment of 8,192 by 4,096 pixels has 400 MB of weights.
     AliasTable table = buildAliasTable(environmentWeights(env));
     data.environmentAlias = std::move(table.entries);
     data.environment.reserve(env.radiance.size());
@@ -268,7 +269,7 @@ void packLamps(const Scene& scene, SceneData& data) {
 void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
     params.environmentScale = env.scale;
     params.environmentTurn = env.turn;
-    // Nobody asks what sends nothing, if there is something else to ask.
+    // Do not sample a black environment if there are other lights.
     const float share = env.scale == vec3(0.0f) ? 0.0f : environmentShare;
     params.environmentProbability = params.triangleLightCount + params.punctualCount > 0 ? share : 1.0f;
 }

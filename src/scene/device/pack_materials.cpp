@@ -17,8 +17,8 @@ struct PlacedTexture {
     uint32_t levels = 1;
 };
 
-/// Puts the texture with its mip levels into the first texel buffer that has room. `allTexels`, of all
-/// textures, is reserved: a buffer that grows would be there twice.
+/// Appends the texture with its mip levels to the first texel buffer with enough space. `allTexels`, the
+/// total of all textures, is reserved, because a growing buffer would temporarily exist twice.
 PlacedTexture placeTexture(const Texture& texture, uint64_t allTexels, SceneData& data) {
     const uint64_t texels = mipTexelCount(texture);
     for (uint32_t index = 0; index < layout::TEXEL_BUFFERS; ++index) {

@@ -16,7 +16,8 @@ constexpr size_t maxWarnings = 16;
 
 }  // namespace
 
-/// Whether the image could be read. Each is tried once: a thousand materials may name it.
+/// Returns false if the image cannot be read. Each image is tried once, since a thousand materials may use
+/// it.
 bool TexturePool::decode(const std::string& key, bool srgb,
                          const std::function<std::vector<std::byte>()>& read, Texture& texture) {
     if (const auto known = decoded_.find(key); known != decoded_.end()) {

@@ -10,7 +10,7 @@
 namespace limpid::scene {
 
 uint32_t topStackLimit(size_t leaves) {
-    // Halving gives a binary tree of this depth; every wide level takes at most three entries.
+    // Splitting in halves gives a binary tree of this depth; every wide level needs at most three entries.
     return 3 * (static_cast<uint32_t>(std::bit_width(std::max<size_t>(leaves, 1))) + 1);
 }
 
@@ -45,7 +45,7 @@ Aabb transformed(const Aabb& box, const mat4& m) {
                      corner & 4 ? box.upper.z : box.lower.z);
         result.grow(vec3(m * vec4(p, 1.0f)));
     }
-    // Rays meet the instance in its own space; their rounding there must not exceed its box here.
+    // Rays are intersected in the instance's own space; the rounding there must not exceed the box here.
     const vec3 margin = 1e-5f * (glm::abs(result.lower) + glm::abs(result.upper) + result.size());
     result.lower -= margin;
     result.upper += margin;

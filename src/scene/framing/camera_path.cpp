@@ -18,7 +18,7 @@
 namespace limpid::scene {
 namespace {
 
-/// All numbers of a key: eye, target, up, field of view.
+/// All values of a key: eye, target, up, field of view.
 using KeyValues = std::array<float, 10>;
 
 KeyValues valuesOf(const CameraKey& k) {
@@ -26,7 +26,7 @@ KeyValues valuesOf(const CameraKey& k) {
             k.target.z, k.up.x,  k.up.y,  k.up.z,     k.verticalFov};
 }
 
-/// d value / d time at key i, from its neighbours in the same shot.
+/// Returns the derivative of a value by time at key i, from its neighbours in the same shot.
 float tangentAt(const std::vector<CameraKey>& keys, size_t i, size_t component) {
     const bool hasBefore = i > 0 && !keys[i].cut;
     const bool hasAfter = i + 1 < keys.size() && !keys[i + 1].cut;
@@ -50,7 +50,7 @@ KeyValues interpolate(const std::vector<CameraKey>& keys, size_t i, double time)
 }
 
 vec3 sums(double time, float phase) {
-    // Frequencies without a common period, as of a hand.
+    // Frequencies without a common period, like a hand's.
     const auto wave = [&](double f, float p) {
         return static_cast<float>(std::sin(2.0 * pi * f * time + p));
     };
@@ -75,7 +75,7 @@ CameraKey keyOf(std::string_view name, const CameraKey& start, double time) {
         const auto share = static_cast<float>(0.2 * (1.0 - std::cos(2.0 * pi * time / 4.0)));
         key.eye = start.eye - share * view;
     } else {
-        // Starts at the camera's own place.
+        // Starts at the camera's own position.
         key.eye += 0.01f * distance * (sums(time, 0.3f) - sums(0.0, 0.3f));
         key.target += 0.02f * distance * (sums(time, 1.7f) - sums(0.0, 1.7f));
     }
@@ -93,7 +93,7 @@ void requireUsable(const gltf::Object& source, const CameraKey& key) {
     }
 }
 
-/// A key that is not known is most likely one that is misspelt.
+/// An unknown key is most likely a misspelt one.
 void requireKnownKeys(const gltf::Object& source, std::initializer_list<std::string_view> known) {
     for (const std::string& key : source.keys()) {
         if (std::ranges::find(known, key) == known.end())
@@ -171,7 +171,7 @@ CameraPath builtinCameraPath(std::string_view name, const Scene& scene, const Ca
     const vec3 forward = -glm::normalize(vec3(camera.toWorld[2]));
     const auto [center, radius] = boundingSphere(scene);
     start.target = start.eye + forward * std::max(glm::dot(center - start.eye, forward), 0.25f * radius);
-    // Keys dense enough that interpolation adds nothing to be seen.
+    // Dense keys make the interpolation error invisible.
     constexpr double step = 1.0 / 60.0;
     std::vector<CameraKey> keys;
     const auto count = static_cast<size_t>(std::ceil(std::max(seconds, 0.0) / step)) + 2;

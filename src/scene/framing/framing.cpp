@@ -15,9 +15,9 @@
 namespace limpid::scene {
 namespace {
 
-/// Above this many triangles only the corners of each mesh's box are looked at.
+/// Above this number of triangles, only the corners of each mesh's box are used.
 constexpr size_t maxExactTriangles = size_t{1} << 24;
-/// A triangle belongs to a side of the box if it is nearer than this fraction of the box's size.
+/// A triangle belongs to a side of the box if its distance is below this fraction of the box's size.
 constexpr float wallDistance = 0.05f;
 
 struct Box {
@@ -82,7 +82,7 @@ Box exactBox(const Scene& scene) {
     return box;
 }
 
-/// Of what moves, at so many moments of the clip.
+/// The number of times in the clip at which moving objects are checked.
 constexpr int clipMoments = 16;
 
 /// Calls use(point) with each vertex of a moving instance.
@@ -102,7 +102,7 @@ void forEachMovedPoint(const Scene& scene, const RigPose& pose, const Instance& 
         use(joints.empty() ? transformed(toWorld, position) : position);
 }
 
-/// Calls use(point, moment) with where the chosen clip takes things, moments 0 to clipMoments.
+/// Calls use(point, moment) with the positions of moving objects at moments 0 to clipMoments of the clip.
 template <typename Use>
 void forEachClipPoint(const Scene& scene, const Use& use) {
     if (scene.clip == none) return;
@@ -116,20 +116,21 @@ void forEachClipPoint(const Scene& scene, const Use& use) {
     }
 }
 
-/// How much of each side of the box triangles cover, as fractions: -X, +X, -Y, +Y, -Z, +Z.
+/// The fraction of each side of the box that triangles cover: -X, +X, -Y, +Y, -Z, +Z.
 struct Walls {
     std::array<float, 6> covered{};
-    float facingInward = 0.0f;    ///< sum over all sides, triangles that face outward counted negative
-    float seenFromBehind = 0.0f;  ///< as facingInward, but of all triangles that show their backs
+    float facingInward = 0.0f;    ///< sum over all sides; triangles that face outward count as negative
+    float seenFromBehind = 0.0f;  ///< like facingInward, but only for triangles that show their back faces
     bool somethingInside = false, lightInside = false;
 
     bool isWall(size_t side) const { return covered[side] > 0.5f; }
     bool closed() const {
         return std::all_of(covered.begin(), covered.end(), [](float c) { return c > 0.5f; });
     }
-    /// A closed box that faces outward is a thing, not a room; thick walls face both ways.
+    /// A closed box that faces outward is an object, not a room; thick walls face both ways.
     bool facesOutward() const { return facingInward <= -0.5f; }
-    /// ... unless it hides what it is about: furniture that could be seen from within, or a lamp.
+    /// True if such a box contains furniture that is visible from inside, or a lamp, and so is a room after
+    /// all.
     bool hidesSomething() const {
         return lightInside || (somethingInside && seenFromBehind > 0.5f * covering());
     }
@@ -179,7 +180,7 @@ mat4 lookFrom(const vec3& eye, const vec3& towardsEye) {
     return {vec4(right, 0), vec4(glm::cross(back, right), 0), vec4(back, 0), vec4(eye, 1)};
 }
 
-/// How far from the box's centre the eye must be to see all of it in a square picture.
+/// Returns the distance from the box's centre at which a square picture shows all of it.
 float fittingDistance(const Box& box, const mat4& view, float fov) {
     const float slope = std::tan(0.5f * fov);
     float distance = 0.0f;
@@ -193,10 +194,10 @@ float fittingDistance(const Box& box, const mat4& view, float fov) {
 }
 
 constexpr float outsideFov = pi / 4;
-/// The part of the picture that is left free on each side.
+/// The fraction of the picture that stays free on each side.
 constexpr float margin = 1.0f / 42.0f;
 
-/// A room, straight through its opening.
+/// Looks into a room straight through its opening.
 Camera throughOpening(const Box& box, const vec3& towardsEye) {
     Camera camera;
     camera.verticalFov = outsideFov;
@@ -206,7 +207,8 @@ Camera throughOpening(const Box& box, const vec3& towardsEye) {
     return camera;
 }
 
-/// Calls use(point) with all that is seen as the clip begins; of an enormous scene, the corners of its box.
+/// Calls use(point) with everything visible at the clip's start; for a very large scene, with the corners of
+/// its box.
 template <typename Use>
 void forEachFirstPoint(const Scene& scene, const Box& box, bool isExact, const Use& use) {
     for (int i = 0; i < 8 && !isExact; ++i) use(box.corner(i));
@@ -223,7 +225,7 @@ void forEachFirstPoint(const Scene& scene, const Box& box, bool isExact, const U
     });
 }
 
-/// So near that all that ever moves is just seen, unless what is there first would be small.
+/// Moves so close that the whole movement just fits, unless that would make the first pose too small.
 Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3& towardsEye) {
     constexpr float least = 0.5f;
     Camera camera;
@@ -248,10 +250,10 @@ Camera fromOutside(const Scene& scene, const Box& box, bool isExact, const vec3&
 }
 
 constexpr float insideFov = pi / 3;
-/// What half of such a view should exceed, of the box's depth.
+/// The minimum median distance of a view inside a room, as a fraction of the box's depth.
 constexpr float farEnough = 0.3f;
 
-/// The distance that half of what a camera of `insideFov` shows in a picture of 16:9 exceeds.
+/// Returns the median distance in the view of a camera with `insideFov` and a picture of 16:9.
 float medianDistance(const Occupancy& room, const mat4& view) {
     constexpr int columns = 16, rows = 9;
     const float slope = std::tan(0.5f * insideFov);
@@ -266,8 +268,8 @@ float medianDistance(const Occupancy& room, const mat4& view) {
     return distances[distances.size() / 2];
 }
 
-/// Of horizontal views from a grid of places where there is some room, the one that shows the most distant
-/// things.
+/// Returns the horizontal view with the largest median distance, among positions on a grid with some space
+/// around them.
 mat4 openestView(const Occupancy& room, const Box& box, const mat4& otherwise) {
     constexpr int places = 12, directions = 8, elbowRoom = 2;
     mat4 best = otherwise;
@@ -281,7 +283,7 @@ mat4 openestView(const Occupancy& room, const Box& box, const mat4& otherwise) {
             const float angle = 2.0f * pi * static_cast<float>(k) / directions;
             const mat4 view = lookFrom(eye, {std::sin(angle), 0.0f, std::cos(angle)});
             const float distance = medianDistance(room, view);
-            // Of equals the first: what stands a little nearer does not matter.
+            // Prefers the first of nearly equal views.
             if (distance > 1.02f * farthest) {
                 best = view;
                 farthest = distance;
@@ -291,13 +293,13 @@ mat4 openestView(const Occupancy& room, const Box& box, const mat4& otherwise) {
     return best;
 }
 
-/// A camera in a room, and how far half of what it shows is away.
+/// A camera in a room, and the median distance in its view.
 struct InsideView {
     Camera camera;
     float distance = 0.0f;
 };
 
-/// From the front, unless something stands before the eye there: a building has rooms within its box.
+/// Looks from the front, unless something blocks the view there: a building may have rooms within its box.
 InsideView fromInside(const Scene& scene, const Box& box) {
     constexpr int cells = 96;
     Camera camera;
@@ -312,17 +314,17 @@ InsideView fromInside(const Scene& scene, const Box& box) {
     return {camera, medianDistance(room, camera.toWorld)};
 }
 
-/// None if the scene is no closed room.
+/// Returns nothing if the scene is not a closed room.
 std::optional<Camera> inClosedRoom(const Scene& scene, const Box& box, const Walls& walls) {
     if (!walls.closed()) return std::nullopt;
     const InsideView view = fromInside(scene, box);
     const vec3 size = box.size();
-    // A closed thing may have much in it, but no room.
+    // A closed object may be hollow without being a room.
     if (walls.facesOutward() && view.distance < farEnough * std::min(size.x, size.z)) return std::nullopt;
     return view.camera;
 }
 
-/// The side through which a room with one open wall is seen.
+/// Returns the side through which a room with one open wall is seen.
 std::optional<vec3> openSide(const Walls& walls) {
     const bool left = walls.isWall(0), right = walls.isWall(1), back = walls.isWall(4),
                front = walls.isWall(5);

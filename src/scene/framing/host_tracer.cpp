@@ -9,10 +9,11 @@
 namespace limpid::scene {
 namespace {
 
-/// Three a level; buildBvh() makes no tree deeper than maxSahDepth and the logarithm of 2^28.
+/// Three entries per level; buildBvh() makes no tree deeper than maxSahDepth plus the logarithm of 2^28.
 constexpr size_t maxStack = size_t{3} * (maxSahDepth + 28) + 4;
 
-/// Whether the ray, given by its origin and one over its direction, is in the box between the two distances.
+/// Returns true if the ray passes through the box between the two distances. `inverse` is one over its
+/// direction.
 bool meets(const Aabb& box, const vec3& origin, const vec3& inverse, float nearest, float farthest) {
     const vec3 a = (box.lower - origin) * inverse, b = (box.upper - origin) * inverse;
     const vec3 low = glm::min(a, b), high = glm::max(a, b);

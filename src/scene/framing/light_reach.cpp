@@ -15,12 +15,12 @@ namespace {
 
 constexpr uint32_t width = 64, height = 36, pathsPerPixel = 4;
 constexpr int bounces = 8;
-/// Backs of single-sided surfaces that a camera ray passes at most.
+/// The maximum number of back faces of single-sided surfaces that a camera ray passes through.
 constexpr int maxCulled = 16;
 constexpr float farAway = 1e30f;
-/// Below this a texel is black: what JPEG makes of it, up to 6 of 255.
+/// A texel below this is black: JPEG compression turns black into values up to 6 of 255.
 constexpr float compressedBlack = 0.002f;
-/// Of the mean of all surfaces: what is darker is black on a screen.
+/// Darker surfaces, relative to the mean of all, look black on a screen.
 constexpr float darkest = 1.0f / 1024.0f;
 
 class Random {
@@ -43,7 +43,7 @@ vec3 cosineDirection(const vec3& normal, Random& random) {
     return glm::dot(direction, direction) > 1e-8f ? glm::normalize(direction) : normal;
 }
 
-/// Emissive triangles, by power, and punctual lights.
+/// Emissive triangles, sampled by power, and punctual lights.
 class Lights {
   public:
     Lights(const Scene& scene, const HostTracer& tracer) : scene_(scene), tracer_(tracer) {
@@ -65,7 +65,7 @@ class Lights {
         return black ? vec3(0.0f) : material.emission * texel;
     }
 
-    /// The irradiance from one emissive triangle and one punctual light, chosen at random.
+    /// Returns the irradiance from one emissive triangle and one punctual light, chosen at random.
     vec3 irradiance(const vec3& from, const vec3& normal, float offset, Random& random) const {
         vec3 sum(0.0f);
         if (!emissive_.empty()) sum += fromTriangle(from, normal, offset, random);
@@ -130,7 +130,7 @@ struct Ray {
     vec3 origin, direction;
 };
 
-/// What a path finds; less than 0 if it met no surface. Materials are diffuse, mirrors or clear.
+/// Returns the radiance of a path; negative if it hits no surface. Materials are diffuse, mirrors or clear.
 class Paths {
   public:
     Paths(const Scene& scene, const Camera& camera)
@@ -172,7 +172,7 @@ class Paths {
     }
 
   private:
-    /// True if the path goes on in the only direction that there is, so that no light was sampled here.
+    /// Returns true if the path continues in the only possible direction, so that no light was sampled here.
     bool scatter(const Material& material, const vec3& color, const vec3& normal, Ray& ray, vec3& throughput,
                  vec3& found, float offset, Random& random) const {
         const float choice = random.next();

@@ -6,7 +6,7 @@
 namespace limpid::scene {
 namespace {
 
-/// Of the rays' steps and of the points on a triangle, in cells: fine enough to jump over none.
+/// Step of the rays and distance of sample points on a triangle, in cells; small enough to skip no cell.
 constexpr float spacing = 0.5f;
 
 }  // namespace

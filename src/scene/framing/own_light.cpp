@@ -11,7 +11,7 @@
 namespace limpid::scene {
 namespace {
 
-/// Numbers between commas; empty if it is anything else.
+/// Parses numbers separated by commas; returns nothing if the text is anything else.
 std::vector<float> numbers(const std::string& text) {
     std::vector<float> result;
     std::istringstream stream(text);

@@ -13,8 +13,8 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// An accessor without a buffer view is zeros that no byte of the file pays for, and each use of it makes
-/// vertices or triangles. Where they mean something (the base of a sparse morph target) the document holds as
+/// An accessor without a buffer view is zeros without using bytes in the file, and each use of it makes
+/// vertices or triangles. Where it makes sense (the base of a sparse morph target), the document contains as
 /// many vertices, of several bytes each.
 uint64_t maxZeroElements(const Document& document) {
     return 4096 + document.byteCount();
@@ -56,7 +56,7 @@ size_t componentsOf(const Object& accessor) {
     accessor.fail("type", "is '" + type.substr(0, 20) + "', which is none of glTF's");
 }
 
-/// Elements that lie in a buffer: `data` covers all `count` of them. Empty data: zeros.
+/// Elements in a buffer: `data` covers all `count` of them. Empty data means zeros.
 struct Elements {
     std::span<const std::byte> data;
     size_t stride = 0;
@@ -73,7 +73,7 @@ uint64_t countOf(const Object& owner) {
     return count;
 }
 
-/// The elements of `owner` (an accessor, or the indices or values of a sparse one) in its buffer view.
+/// Finds the elements of `owner` (an accessor, or the indices or values of a sparse one) in its buffer view.
 void locate(const Document& document, const Object& owner, bool mayStride, Elements& elements) {
     const auto& views = document.lists().bufferViews;
     const int index = owner.index("bufferView", views.size());
@@ -124,13 +124,13 @@ Target convert(Source value, [[maybe_unused]] bool normalized) {
 template <typename Source, typename Target>
 void copyElement(const std::byte* from, size_t components, bool normalized, Target* to) {
     for (size_t c = 0; c < components; ++c) {
-        Source value;  // the data need not be aligned
+        Source value;  // copied, since the data may be unaligned
         std::memcpy(&value, from + c * sizeof(Source), sizeof(Source));
         to[c] = convert<Source, Target>(value, normalized);
     }
 }
 
-/// Element i of `elements` goes to target[slot(i) * components ...].
+/// Copies element i of `elements` to target[slot(i) * components ...].
 template <typename Target, typename Slot>
 void copyElements(const Elements& elements, std::span<Target> target, const Slot& slot) {
     if (elements.data.empty()) return;
@@ -193,7 +193,7 @@ void applySparse(const Document& document, const Object& accessor, const Element
 }
 
 struct Shape {
-    size_t least, most;  ///< number of components
+    size_t least, most;  ///< range of the number of components
     bool integers;       ///< unsigned integers only
 };
 
@@ -222,7 +222,7 @@ std::vector<Target> readFlat(const Document& document, int index, const Shape& s
     return target;
 }
 
-/// Rows of `N` numbers, where each may have fewer in the document; the rest are `filler`.
+/// Reads rows of `N` numbers. If the document has fewer per row, the rest are `filler`.
 template <typename Vector, typename Target>
 std::vector<Vector> readRows(const Document& document, int index, const Shape& shape, Target filler) {
     size_t components = 0;

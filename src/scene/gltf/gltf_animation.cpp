@@ -32,7 +32,7 @@ Interpolation readInterpolation(const Object& sampler) {
     sampler.fail("interpolation", "is '" + text.substr(0, 20) + "', not STEP, LINEAR or CUBICSPLINE");
 }
 
-/// How many morph targets the node's mesh has.
+/// Returns the number of morph targets of the node's mesh.
 size_t targetCount(const Document& document, const Object& node) {
     const int mesh = node.index("mesh", document.lists().meshes.size());
     if (mesh == none) return 0;
@@ -52,13 +52,13 @@ void readValues(const Document& document, const Object& sampler, Channel& channe
         sampler.fail("output", fmt::format("has {} numbers, but {} times need {}", channel.values.size(),
                                            channel.times.size(), needed));
     }
-    // Larger numbers would overflow in matrices.
+    // Larger values would overflow in matrices.
     if (!std::all_of(channel.values.begin(), channel.values.end(),
                      [](float v) { return std::abs(v) < 1e18f; }))
         sampler.fail("output", "has a value that is too large or not finite");
 }
 
-/// False: the channel is ignored.
+/// Returns false if the channel is ignored.
 bool readTarget(Document& document, const Object& source, const std::vector<Node>& nodes, Channel& channel) {
     const auto target = source.object("target");
     if (!target) source.fail("has no target");

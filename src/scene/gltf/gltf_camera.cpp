@@ -26,7 +26,7 @@ void readOrthographic(const Object& source, Camera& camera) {
     const auto orthographic = source.object("orthographic");
     if (!orthographic) source.fail("has no orthographic");
     camera.orthographic = true;
-    // Negative magnifications are discouraged but allowed; the view's size is what counts.
+    // Negative magnifications are discouraged but allowed; only their size matters.
     camera.halfHeight = std::abs(orthographic->number("ymag", 0.0f));
     const float halfWidth = std::abs(orthographic->number("xmag", 0.0f));
     if (camera.halfHeight == 0.0f || halfWidth == 0.0f) orthographic->fail("its view has no size");

@@ -20,13 +20,13 @@ namespace {
 
 constexpr size_t maxWarnings = 16;
 
-/// What this loader understands, beside the compressions that the build may lack.
+/// Supported extensions, except the compressions, which depend on the build.
 constexpr std::array supportedExtensions = {
     "KHR_lights_punctual",  "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
     "KHR_materials_ior",    "KHR_materials_specular",  "KHR_materials_transmission",
     "KHR_materials_unlit",  "KHR_materials_volume",    "KHR_mesh_quantization",
     "KHR_texture_transform"};
-/// Metadata: ignoring it changes no picture, so no warning either.
+/// Metadata that does not affect pictures, so it is ignored without a warning.
 constexpr std::array harmlessExtensions = {"KHR_xmp", "KHR_xmp_json_ld"};
 
 template <size_t N>
@@ -55,7 +55,7 @@ struct Chunk {
     std::span<const std::byte> data;
 };
 
-/// The chunks of a GLB, whose stated lengths must fit the file.
+/// Returns the chunks of a GLB after checking that their lengths fit the file.
 std::vector<Chunk> readChunks(const std::filesystem::path& file, std::span<const std::byte> content) {
     if (content.size() < 12) throw InputError(file, "is too short for a GLB header");
     if (const uint32_t version = littleEndian(content, 4); version != 2) {
@@ -80,8 +80,8 @@ std::vector<Chunk> readChunks(const std::filesystem::path& file, std::span<const
     return chunks;
 }
 
-/// Throws InputError unless the content can be JSON with an object (or a list, which the parser then
-/// refuses).
+/// Throws InputError unless the content looks like JSON with an object (or a list, which the parser then
+/// rejects).
 void requireJsonText(const std::filesystem::path& file, std::span<const std::byte> content) {
     std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
@@ -201,7 +201,8 @@ void Document::readBuffers() {
     decodedBytesLeft_ = std::min(decodedFloor + decodedPerByte * total, maxDecodedBytes);
 }
 
-/// A buffer that stands for what its compressed views decode to: marked as such, or without any data.
+/// True if a buffer only stands for the decoded data of its compressed views: it is marked so, or has no
+/// data.
 bool Document::isPlaceholder(const Object& buffer) const {
     if (!canDecodeMeshopt()) return false;
     const auto extension = buffer.extension(meshoptExtension);
@@ -239,7 +240,7 @@ std::span<const std::byte> Document::bytes(int bufferView) const {
     return slice(lists_->bufferViews[static_cast<size_t>(bufferView)]);
 }
 
-/// The part of a buffer that a buffer view, or its compressed form, names.
+/// Returns the part of a buffer that a buffer view, or its compressed form, refers to.
 std::span<const std::byte> Document::slice(const Object& view) const {
     const int buffer = view.index("buffer", buffers_.size());
     if (buffer == none) view.fail("has no buffer");

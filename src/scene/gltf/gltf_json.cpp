@@ -16,7 +16,7 @@ namespace {
 constexpr int maxDepth = 256;
 constexpr size_t maxJsonBytes = size_t{1} << 30;
 
-/// Counted before parsing: destroying, and reading, a document a million levels deep costs stack or memory.
+/// Checked before parsing, since a document a million levels deep would exhaust the stack or memory.
 bool nestsTooDeep(std::span<const std::byte> text) {
     int depth = 0;
     bool inString = false;
@@ -36,8 +36,8 @@ bool nestsTooDeep(std::span<const std::byte> text) {
     return false;
 }
 
-/// The library's message without its own tag ("[json.exception.parse_error.101] "), and not longer than a
-/// line or two.
+/// Returns the library's message without its tag ("[json.exception.parse_error.101] "), shortened to a line
+/// or two.
 std::string shortened(const char* message) {
     std::string text(message);
     if (const size_t tag = text.find("] "); text.starts_with("[json.") && tag != std::string::npos)
@@ -55,7 +55,7 @@ std::optional<uint64_t> asWhole(const Json& value) {
         const auto number = value.get<uint64_t>();
         return number <= limit ? std::optional(number) : std::nullopt;
     }
-    // Some exporters write 3.0 where glTF wants 3.
+    // Some exporters write 3.0 where glTF requires 3.
     if (!value.is_number_float()) return std::nullopt;
     const double number = value.get<double>();
     if (!(number >= 0.0 && number <= static_cast<double>(limit)) || number != std::floor(number))
@@ -66,7 +66,7 @@ std::optional<uint64_t> asWhole(const Json& value) {
 std::optional<float> asFinite(const Json& value) {
     if (!value.is_number()) return std::nullopt;
     const double number = value.get<double>();
-    // A double beyond float's range would be undefined to convert.
+    // Converting a double beyond float's range is undefined behaviour.
     if (!(std::abs(number) <= 3.4028234e38)) return std::nullopt;
     return static_cast<float>(number);
 }

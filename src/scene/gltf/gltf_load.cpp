@@ -18,7 +18,7 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// One document's way into a Scene.
+/// Converts one document to a Scene.
 class Loader {
   public:
     Loader(const std::filesystem::path& file, const LoadOptions& options)
@@ -56,7 +56,7 @@ class Loader {
     TextureLibrary textures_;
     NodeTree tree_;
     std::map<int, std::vector<mat4>> joints_;  ///< by skin
-    std::vector<bool> animated_;               ///< nodes that some clip moves
+    std::vector<bool> animated_;               ///< by node: whether a clip moves it
     int defaultMaterial_ = none;
 };
 
@@ -142,7 +142,7 @@ const std::vector<mat4>& Loader::jointMatrices(int skin) {
     return entry->second;
 }
 
-/// Whether the transform flattens what it moves, so that it has no inverse.
+/// True if the transform flattens objects, so that it has no inverse.
 bool isSingular(const mat4& transform) {
     const mat3 m(transform);
     const float lengths = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
@@ -156,11 +156,11 @@ void Loader::addInstance(size_t nodeIndex, int mesh, int material, const Pose& p
     Instance instance{.mesh = mesh, .material = material, .name = node.text("name", node.place())};
     instance.node = static_cast<int>(nodeIndex);
     instance.skin = pose.skin;
-    // Skinned vertices are in world space already: the node's own transform does not count (glTF 3.7.3.3).
+    // Skinned vertices are already in world space, so the node's own transform is ignored (glTF 3.7.3.3).
     if (!pose.joints) instance.transform = tree_.toWorld[nodeIndex];
     if (isSingular(instance.transform) && !isAnimated(nodeIndex)) {
         const mat3 m(instance.transform);
-        // A scale of zero in all directions is a way of hiding things.
+        // A scale of zero in all directions is used to hide objects.
         if (m[0] == vec3(0.0f) && m[1] == vec3(0.0f) && m[2] == vec3(0.0f)) return;
         document_.warn(node.place() + " is flattened by its transform and loses its normals");
         instance.mesh = meshes_.flatten(node, mesh, instance.transform);

@@ -6,7 +6,7 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// A factor of glTF's range 0 to `most`.
+/// Reads a factor with the range 0 to `most`.
 float factor(Document& document, const Object& owner, const char* key, float absent, float most = 1.0f) {
     const float value = owner.number(key, absent);
     const float clamped = std::clamp(value, 0.0f, most);
@@ -37,10 +37,10 @@ void readEmission(Document& document, const Object& source, TextureLibrary& text
         emission *= factor(document, *extension, "emissiveStrength", 1.0f, 1e30f);
     }
     material.emission = glm::min(emission, vec3(1e30f));
-    // A texture that a zero factor switches off need not be loaded.
+    // A texture that is multiplied by zero need not be loaded.
     if (emission == vec3(0.0f)) return;
     material.emissionTexture = textures.add(source, "emissiveTexture", true);
-    // The factor alone would make all of the surface glow.
+    // Without the texture, the factor alone would make the whole surface glow.
     if (source.has("emissiveTexture") && !material.emissionTexture) material.emission = vec3(0.0f);
 }
 
@@ -53,14 +53,14 @@ void readAlpha(Document& document, const Object& source, Material& material) {
     } else if (mode != "OPAQUE") {
         source.fail("alphaMode", "is '" + mode.substr(0, 20) + "', which is none of glTF's");
     }
-    // A cutoff above 1 is allowed: it hides everything.
+    // A cutoff above 1 is allowed and hides everything.
     material.alphaCutoff = factor(document, source, "alphaCutoff", 0.5f, 1e6f);
 }
 
 void readSpecular(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
     if (const auto ior = source.extension("KHR_materials_ior")) {
         const float value = ior->number("ior", 1.5f);
-        // The extension uses 0 for "Fresnel reflectance 1".
+        // The extension uses 0 for a Fresnel reflectance of 1.
         if (value != 0.0f && value < 1.0f) document.warn(ior->place() + ".ior is below 1 and clamped");
         material.ior = value == 0.0f ? 1e3f : std::clamp(value, 1.0f, 1e3f);
     }
@@ -68,7 +68,7 @@ void readSpecular(Document& document, const Object& source, TextureLibrary& text
     if (!specular) return;
     material.specular = factor(document, *specular, "specularFactor", 1.0f);
     material.specularColor = glm::max(specular->vector("specularColorFactor", vec3(1.0f)), vec3(0.0f));
-    // What a zero factor switches off need not be loaded.
+    // Textures that are multiplied by zero need not be loaded.
     if (material.specular == 0.0f) return;
     material.specularTexture = textures.add(*specular, "specularTexture", false);
     if (material.specularColor == vec3(0.0f)) return;
@@ -98,7 +98,7 @@ void readTransmission(Document& document, const Object& source, TextureLibrary& 
     }
 }
 
-/// The thickness only says whether there is a body at all: how much of it a ray crosses is traced.
+/// The thickness only tells whether the object is solid; the distance inside is traced.
 void readVolume(Document& document, const Object& source, Material& material) {
     const auto volume = source.extension("KHR_materials_volume");
     if (!volume) return;

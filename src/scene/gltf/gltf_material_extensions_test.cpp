@@ -1,4 +1,4 @@
-// KHR_materials_clearcoat, _specular and _volume as the loader reads them.
+// Tests KHR_materials_clearcoat, _specular and _volume in the loader.
 #include <cmath>
 #include <limits>
 
@@ -79,7 +79,7 @@ TEST_F(MaterialExtensionsTest, Volume) {
         load(R"({"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume":
         {"thicknessFactor": 0.25, "attenuationDistance": 0.5, "attenuationColor": [0.25, 1, 0]}})");
     EXPECT_FALSE(m.thin);
-    // c after the distance d: sigma = -log(c) / d.
+    // Transmission c after the distance d: sigma = -log(c) / d.
     EXPECT_NEAR(std::exp(-0.5f * m.absorption.r), 0.25f, 1e-6f);
     EXPECT_EQ(m.absorption.g, 0.0f);
     EXPECT_TRUE(std::isfinite(m.absorption.b));

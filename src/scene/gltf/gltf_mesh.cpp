@@ -14,7 +14,7 @@ namespace {
 
 enum Mode : uint64_t { Triangles = 4, TriangleStrip = 5, TriangleFan = 6 };
 
-/// Three vertices per triangle, from a list, a strip or a fan (glTF 2.0, section 3.7.2.1).
+/// Returns three vertices per triangle from a list, a strip or a fan (glTF 2.0, section 3.7.2.1).
 std::vector<uint32_t> toTriangles(std::vector<uint32_t> order, uint64_t mode) {
     if (mode == Triangles) {
         order.resize(order.size() / 3 * 3);
@@ -48,7 +48,7 @@ void requireFinitePositions(const Object& primitive, const Mesh& mesh) {
 
 }  // namespace
 
-/// What a primitive is made of, as accessor indices.
+/// A primitive's parts, as accessor indices.
 struct MeshLibrary::Source {
     int position, normal, tangent, uv0, uv1, color, indices;
     uint64_t mode;
@@ -75,7 +75,7 @@ MeshLibrary::Source MeshLibrary::readSource(const Object& primitive) const {
     return source;
 }
 
-/// Two primitives with the same key have the same vertices.
+/// Adds the pose to the key. Primitives with the same key have the same vertices.
 static void addPose(const Document& document, const Object& primitive, const Pose& pose,
                     std::vector<int64_t>& key) {
     const size_t accessors = document.lists().accessors.size();

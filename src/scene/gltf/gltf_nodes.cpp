@@ -30,7 +30,7 @@ Node readNode(const Object& source) {
     node.scale = source.vector("scale", vec3(1.0f));
     const vec4 rotation = source.vector("rotation", vec4(0, 0, 0, 1));
     const float length = glm::length(rotation);
-    // A quaternion of zeros turns nothing.
+    // A quaternion of zeros is no rotation.
     if (length > 1e-20f && length < 1e18f) {
         node.rotation = glm::quat(rotation.w, rotation.x, rotation.y, rotation.z) / length;
     }
@@ -56,7 +56,7 @@ Children readChildren(const std::vector<Object>& nodes, std::vector<Node>& read)
     return children;
 }
 
-/// Parents before children. Nodes on a cycle have no root above them and are missing.
+/// Returns parents before children. Nodes on a cycle are unreachable from roots and are missing.
 std::vector<int> topDown(const std::vector<Node>& nodes, const Children& children) {
     std::vector<int> order;
     for (size_t i = 0; i < nodes.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// How far from 1 the weights of a vertex may add up to before a warning.
+/// Maximum deviation from 1 of the sum of a vertex's weights without a warning.
 constexpr float weightTolerance = 1e-2f;
 
 std::vector<vec3> readDeltas(const Document& document, const Object& target, const char* name,
@@ -28,7 +28,7 @@ std::vector<vec3> readDeltas(const Document& document, const Object& target, con
     return deltas;
 }
 
-/// Every vertex' weights, brought to a sum of 1.
+/// Normalises every vertex's weights to a sum of 1.
 void normaliseWeights(Document& document, const Object& primitive, std::vector<vec4>& weights) {
     size_t odd = 0;
     for (vec4& weight : weights) {
@@ -37,7 +37,7 @@ void normaliseWeights(Document& document, const Object& primitive, std::vector<v
         const float sum = weight.x + weight.y + weight.z + weight.w;
         const bool usable = isFinite(weight) && sum > 1e-20f && std::isfinite(sum);
         if (negative || !usable || std::abs(sum - 1.0f) > weightTolerance) ++odd;
-        // Dividing by the sum also covers files that spread weights over WEIGHTS_1.
+        // Dividing by the sum also handles files that use WEIGHTS_1 too.
         weight = usable ? weight / sum : vec4(0.0f);
     }
     if (odd > 0) {

@@ -1,5 +1,5 @@
-// KHR_mesh_quantization: vertices of bytes and shorts, normalised or not, each padded to four bytes as the
-// extension wants; the values by its own table (section "Encoding Quantized Data").
+// Tests KHR_mesh_quantization: vertices of bytes and shorts, normalised or not, each padded to four bytes as
+// the extension requires; expected values are from its own table (section "Encoding Quantized Data").
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 namespace limpid::scene::test {
 namespace {
 
-/// The integers' ends, zero, and some in between.
+/// Returns the limits of the integer type, zero, and some values in between.
 template <typename T>
 std::vector<T> samples(size_t count) {
     std::vector<T> values{std::numeric_limits<T>::min(), std::numeric_limits<T>::max(), T{0}, T{1}};
@@ -32,7 +32,7 @@ GltfFile quantizedFile() {
     return file;
 }
 
-/// A clip that moves the triangle's node: with it the loader keeps what deforms.
+/// Adds a clip that moves the triangle's node, so that the loader keeps deformations.
 GltfFile animatedFile() {
     GltfFile file = quantizedFile();
     const int input = file.addFloats({0, 1}, "SCALAR", 1),
@@ -86,7 +86,7 @@ TYPED_TEST(SignedQuantizationTest, NormalsAndTangents) {
         file, {one, 0, 0, one, part(0.8), 0, part(-0.6), minusOne, 0, 0, one, least}, "VEC4", 4, true);
     const Mesh mesh = loadScene(file.save(this->folder)).meshes.at(0);
     log::setLevel(log::Level::Info);
-    // A step of the integers off, at most; unit length again.
+    // At most a step of the integers off; normalised again.
     const float tolerance = 1.5f / static_cast<float>(one);
     const vec3 normals[] = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -1, 0}};
     const vec4 tangents[] = {{1, 0, 0, 1}, {0.8f, 0, -0.6f, -1}, {0, 0, 1, -1}};
@@ -150,7 +150,7 @@ TYPED_TEST(UnsignedQuantizationTest, JointsAndWeights) {
     const Deformation& deformation = *scene.meshes.at(0).deformation;
     for (size_t i = 0; i < 12; ++i) {
         EXPECT_EQ(deformation.joints.at(i / 4)[i % 4], joints[i]);
-        // The loader divides by the sum, which is 1 to the last bit or two.
+        // The loader divides by the sum, which is 1 except for rounding.
         EXPECT_NEAR(deformation.weights.at(i / 4)[static_cast<int>(i % 4)], expected(weights[i], true),
                     1e-6f);
     }

@@ -1,4 +1,4 @@
-// glTF: what files say is what the Scene holds. Malformed files: bad_input_test.cpp.
+// Tests that the Scene contains what a glTF file describes. bad_input_test.cpp tests malformed files.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -51,9 +51,9 @@ void setMinFilter(const Object& source, Sampler& sampler) {
     sampler.minLinear = filter == Linear || filter == LinearMipmapNearest || filter == LinearMipmapLinear;
 }
 
-/// KHR_texture_transform: translate * rotate * scale. A positive rotation turns the coordinates
-/// counter-clockwise as seen with v pointing down, so the sine's signs are not those of the listing in the
-/// extension's early drafts (KhronosGroup/glTF issue 1563).
+/// KHR_texture_transform: translate * rotate * scale. A positive rotation is counter-clockwise with v
+/// pointing down, so the signs of the sine differ from the listing in the extension's early drafts
+/// (KhronosGroup/glTF issue 1563).
 void applyTransform(const Object& transform, TextureRef& ref) {
     const vec2 offset = transform.vector("offset", vec2(0.0f));
     const vec2 scale = transform.vector("scale", vec2(1.0f));
@@ -91,7 +91,7 @@ int TextureLibrary::texture(int index, bool srgb) {
     const Object& source = document_.lists().textures[static_cast<size_t>(index)];
     const int image = source.index("source", document_.lists().images.size());
     if (image == none) {
-        // glTF 2.0, 5.29.2: what a texture without source looks like is undefined.
+        // glTF 2.0, 5.29.2: the appearance of a texture without a source is undefined.
         document_.warn(source.place() +
                        " is used, but has no image in a format that is supported (PNG, JPEG); a plain colour "
                        "is used");
@@ -110,7 +110,7 @@ std::string TextureLibrary::imageName(int image) const {
                        name.empty() ? "" : " '" + name + "'");
 }
 
-/// Throws at once what is wrong with the document; what is wrong with the image, when it is read.
+/// Throws immediately if the document is invalid; errors in the image are thrown when it is read.
 std::function<std::vector<std::byte>()> TextureLibrary::imageReader(int image) {
     const Object& source = document_.lists().images[static_cast<size_t>(image)];
     if (source.has("uri")) {

@@ -1,5 +1,5 @@
-// Malformed scene files: each is refused with its name and fault, in bounded time and memory. Run with
-// sanitizers (LIMPID_SANITIZE) to see that nothing is read or written out of bounds on the way.
+// Tests malformed scene files: each is rejected with its name and fault, in bounded time and memory. Run with
+// sanitizers (LIMPID_SANITIZE) to detect out-of-bounds accesses.
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -28,12 +28,12 @@ class BadInput : public FolderTest {
         put(folder / name, content);
         return folder / name;
     }
-    /// Saves a changed copy of `file` and expects that it is refused.
+    /// Saves a modified copy of `file` and expects that it is rejected.
     void expectFault(GltfFile file, const std::string& fault, const std::function<void(GltfFile&)>& change) {
         change(file);
         expectRefused(file.save(folder), fault);
     }
-    /// Either outcome is right, as long as a refusal is a proper one and what loads can be prepared.
+    /// Accepts either outcome: a proper rejection, or a scene that can be prepared.
     void expectLoadsOrIsRefused(const fs::path& path) {
         try {
             Scene scene = loadScene(path);
@@ -54,7 +54,7 @@ json parse(const char* text) {
     return json::parse(text);
 }
 
-/// A document that uses most of what the loader reads, so that mutations reach it.
+/// A document that uses most features of the loader, so that mutations reach them.
 GltfFile richFile(const fs::path& folder) {
     GltfFile file = square();
     image::writePng(folder / "a.png", {2, 2, 4, std::vector<uint8_t>(16, 200)});
@@ -172,7 +172,7 @@ TEST_F(BadInput, ImagesThatCannotBeHadAreNamedAndPlain) {
     std::string huge = png;
     huge[16] = huge[20] = '\x7f';  // 2 billion pixels wide and high
     expectContent(huge);
-    // glTF has no TGA.
+    // glTF does not support TGA.
     expectContent(tgaOf(1, 1, {1, 2, 3}));
 }
 
@@ -244,7 +244,7 @@ TEST_F(BadInput, TheAssetRootBoundsWhatMayBeRead) {
                 << refusal.what();
         }
     }
-    // The scene's own folder counts whatever the root is; without a root it alone does.
+    // Files in the scene's own folder are allowed whatever the root is, and without a root only those.
     EXPECT_NO_THROW(SceneFiles(inner / "scene.obj", root / "textures").resolve("own.bin"));
     EXPECT_THROW(SceneFiles(inner / "scene.obj").resolve("linked/wood.bin"), InputError);
     EXPECT_THROW(SceneFiles(inner / "scene.obj", root / "none"), InputError);
@@ -439,12 +439,12 @@ TEST_F(BadInput, ManyAccessorsOfNothingAreBoundedTogether) {
         const int accessor =
             file.add("accessors", {{"componentType", 5126}, {"count", 2'000'000 - i}, {"type", "VEC3"}});
         const int index = file.add("accessors", {{"componentType", 5121}, {"count", 1}, {"type", "SCALAR"}});
-        // One index makes no triangle, so that the mesh is dropped again at once.
+        // One index makes no triangle, so the mesh is discarded immediately.
         primitives.push_back({{"attributes", {{"POSITION", accessor}}}, {"indices", index}});
     }
     file.document["meshes"][0]["primitives"] = primitives;
     expectRefused(file.save(folder), "too many for an accessor without data");
-    // A document of two million bytes may have accessors of as many zeros, but not without end.
+    // A document of two million bytes may have accessors of as many zeros, but not arbitrarily many.
     file.finishBuffer("scene.bin");
     expectRefused(write("scene.gltf", file.document.dump() + std::string(2'000'000, ' ')),
                   "vertices or triangles");
@@ -485,7 +485,7 @@ TEST_F(BadInput, NodesThatAreNoTree) {
     expectNodes(R"([{"children": [1, 2]}, {"children": [3]}, {"children": [3]}, {"mesh": 0}])",
                 "already has the parent");
     expectNodes(R"([{"children": [1, 1]}, {"mesh": 0}])", "already has the parent");
-    GltfFile file = triangle();  // doubles at each level: 2^60 instances, were it allowed
+    GltfFile file = triangle();  // doubles at each level: 2^60 instances if it were allowed
     for (int i = 0; i < 60; ++i) file.add("nodes", {{"mesh", 0}, {"children", {i, i}}});
     file.document["scenes"][0]["nodes"] = {60};
     expectRefused(file.save(folder), "already has the parent");
@@ -540,7 +540,7 @@ TEST_F(BadInput, ObjAbuse) {
     std::string polygon = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
     for (int i = 0; i < 300'000; ++i) polygon += i % 3 == 0 ? " 1" : i % 3 == 1 ? " 2" : " 3";
     EXPECT_EQ(loadScene(write("scene.obj", polygon + "\n")).triangleCount(), 299'998u);
-    std::string zigzag;  // star-shaped: the slow way of triangulating
+    std::string zigzag;  // star-shaped: the slow case of triangulation
     std::string face = "f";
     for (int i = 0; i < 256; ++i) {
         const float angle = static_cast<float>(i) * 2.0f * pi / 256.0f;
@@ -574,7 +574,7 @@ TEST_F(BadInput, Environments) {
 // --- random damage
 // ----------------------------------------------------------------------------------------------
 
-/// Flips bits, and sometimes deletes or repeats a run of bytes.
+/// Flips bits, and sometimes deletes or repeats a range of bytes.
 std::string damaged(std::string content, std::mt19937& random) {
     const auto below = [&](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
     const size_t changes = 1 + below(4);
@@ -630,7 +630,7 @@ TEST_F(BadInput, RandomValues) {
         for (size_t i = 0, n = 1 + below(3); i < n; ++i) {
             const auto leaf = std::next(flat.begin(), static_cast<std::ptrdiff_t>(below(flat.size())));
             json::json_pointer place(leaf.key());
-            // Sometimes the container instead of the leaf.
+            // Sometimes change the container instead of the leaf.
             if (below(4) == 0) place = place.parent_pointer();
             if (changed.contains(place)) changed[place] = values[below(values.size())];
         }

@@ -33,7 +33,7 @@ mat4 withoutScale(const mat4& m) {
     vec3 up = safeNormalize(vec3(m[1]));
     up = safeNormalize(up - back * glm::dot(up, back));
     if (up == vec3(0.0f)) up = anyPerpendicular(back);
-    // From the other two axes: a mirrored transform must not mirror the picture.
+    // Computed from the other two axes: a mirrored transform must not mirror the picture.
     return {vec4(glm::cross(up, back), 0), vec4(up, 0), vec4(back, 0), vec4(vec3(m[3]), 1)};
 }
 

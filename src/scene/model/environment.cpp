@@ -14,7 +14,7 @@ vec3 skyRadiance(float up) {
     constexpr vec3 zenith(0.45f, 0.65f, 1.0f);
     constexpr vec3 ground(0.3f, 0.28f, 0.26f);
     if (up >= 0.0f) return glm::mix(horizon, zenith, std::sqrt(up));
-    // A short blend instead of an edge at the horizon.
+    // A short blend at the horizon avoids a hard edge.
     return glm::mix(horizon, ground, std::min(-up * 8.0f, 1.0f));
 }
 

@@ -7,7 +7,7 @@
 namespace limpid::scene {
 namespace {
 
-/// Materials that emit and that some triangle has.
+/// Returns the emissive materials that at least one triangle uses.
 std::set<int> emittersOf(const Scene& scene) {
     std::set<int> used;
     for (const Instance& instance : scene.instances) {

@@ -17,7 +17,7 @@ namespace {
 
 using Kind = LightControl::Kind;
 
-/// An emissive ceiling, a lamp, a sun and an environment.
+/// A scene with an emissive ceiling, a lamp, a sun and an environment.
 Scene litScene() {
     Scene scene = cornellScene();
     PunctualLight lamp;
@@ -44,7 +44,7 @@ TEST(LightControl, ListsEveryLight) {
     EXPECT_EQ(controls[3].kind, Kind::Environment);
 }
 
-/// The records that are uploaded are those of a scene that was built with the lights as they are now.
+/// The uploaded records equal those of a scene built with the current lights.
 TEST(LightControl, ChangesAreWhatBuildingTheSceneAnewWouldGive) {
     Scene scene = litScene();
     const SceneData built = buildSceneData(scene);
@@ -73,7 +73,7 @@ TEST(LightControl, ChangesAreWhatBuildingTheSceneAnewWouldGive) {
     EXPECT_EQ(frame.params.environmentProbability, 0.0f);
     EXPECT_EQ(anew.params.environmentProbability, 0.0f);
     EXPECT_EQ(anew.params.environmentScale, vec3(0.0f));
-    // Materials as uploaded, over what was built.
+    // Apply the uploads of materials to what was built.
     std::vector<uvec4> materials = built.materials;
     for (const SceneFrame::Upload& upload : frame.uploads) {
         if (upload.buffer == "materials")
@@ -81,7 +81,7 @@ TEST(LightControl, ChangesAreWhatBuildingTheSceneAnewWouldGive) {
                                                 static_cast<std::ptrdiff_t>(upload.offset));
     }
     EXPECT_EQ(materials, anew.materials);
-    // And back.
+    // Restore the original lights.
     applyLightControls(scene, before, now);
     live.update(scene);
     EXPECT_EQ(live.packed().lights, built.lights);
@@ -101,7 +101,7 @@ TEST(LightControl, WhatIsOffHasNoPowerAndKeepsItsPlace) {
     EXPECT_EQ(dark.params.punctualCount, built.params.punctualCount);
     EXPECT_EQ(dark.features, built.features);
     for (const PunctualLight& light : scene.lights) EXPECT_EQ(light.intensity, vec3(0.0f));
-    // One light alone is asked more often than among others.
+    // A light on its own is sampled more often than among others.
     const std::vector<LightControl> off = now;
     now[0].on = true;
     applyLightControls(scene, now, off);

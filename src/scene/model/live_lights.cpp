@@ -8,7 +8,7 @@
 namespace limpid::scene {
 namespace {
 
-/// Uploads of one frame must not overlap: what the frame already writes into the buffer goes into ours.
+/// Merges the frame's own writes to the buffer into ours, since uploads of one frame must not overlap.
 void addWhole(SceneFrame& frame, std::string_view buffer, std::span<const std::byte> values) {
     if (values.empty()) return;
     std::vector<std::byte> whole(values.begin(), values.end());

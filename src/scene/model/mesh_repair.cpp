@@ -26,7 +26,7 @@ void repairNormals(Mesh& mesh, Repairs& repairs) {
 }
 
 void repairTangents(Mesh& mesh, Repairs& repairs) {
-    // Without normals the tangents given mean nothing (glTF says: ignore them).
+    // Tangents without normals are meaningless (glTF says: ignore them).
     if (mesh.normals.empty()) mesh.tangents.clear();
     for (size_t i = 0; i < mesh.tangents.size(); ++i) {
         const vec3& normal = mesh.normals[i];

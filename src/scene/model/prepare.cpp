@@ -15,7 +15,7 @@
 namespace limpid::scene {
 namespace {
 
-/// The material slots that each mesh uses.
+/// Returns the material slots that each mesh uses.
 std::vector<std::vector<uint16_t>> slotsOfMeshes(const Scene& scene) {
     std::vector<std::vector<uint16_t>> slots;
     for (const Mesh& mesh : scene.meshes) {

@@ -1,4 +1,4 @@
-// What prepare() adds to a scene: camera, tangents, sky; and what it refuses.
+// Tests what prepare() adds to a scene (camera, tangents, sky) and what it rejects.
 #include "scene/model/prepare.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace limpid::scene::test {
 namespace {
 
-/// A square of two triangles in the XY plane; its texture stands upright.
+/// A square of two triangles in the XY plane with an upright texture.
 Scene squareScene() {
     Scene scene;
     Mesh mesh;
@@ -93,8 +93,7 @@ TEST(Prepare, StandsInsideAClosedRoomButOutsideABox) {
     EXPECT_GT(frameScene(scene).toWorld[3].z, 1.0f);
 }
 
-/// As OBJ files and Blender's cubes have it: walls that face outward and show both sides, with something
-/// within.
+/// As in OBJ files and Blender's cubes: walls that face outward and are double-sided, with an object inside.
 TEST(Prepare, StandsInsideARoomWhoseWallsFaceOutward) {
     const auto outwardRoom = [](bool bothSides, bool table, bool lamp) {
         Scene scene = roomScene(0);
@@ -117,7 +116,7 @@ TEST(Prepare, StandsInsideARoomWhoseWallsFaceOutward) {
     EXPECT_FALSE(isInside(outwardRoom(false, true, false))) << "its walls cannot be seen from within";
 }
 
-/// The larger of a mesh's width and height in a square picture, and whether all of it is seen.
+/// The larger of a mesh's width and height in a square picture, and whether it is completely visible.
 struct Seen {
     float size = 0.0f;
     bool whole = true;
@@ -142,7 +141,7 @@ TEST(Prepare, ModelsFillThePicture) {
     std::vector<vec3>& positions = scene.meshes[0].positions;
     scene.meshes[0].normals.clear();
     const std::vector<std::vector<vec3>> models{
-        {{0, 0, 0}, {1, 0.02f, 1}, {1, 1, 1}, {0, 0.98f, 0}},                  // a screen that stands askew
+        {{0, 0, 0}, {1, 0.02f, 1}, {1, 1, 1}, {0, 0.98f, 0}},                  // a screen at an angle
         {{-3, 0, 3}, {-2.9f, 0, 3}, {3, 6, -3}, {2.9f, 6, -3}},                // a diagonal beam
         {{-90, 0, 4400}, {90, 0, 4400}, {90, 200, -4400}, {-90, 200, -4400}},  // a street in centimetres
         {{0, 0, 0}, {1e-3f, 0, 0}, {1e-3f, 1e-3f, 1e-3f}, {0, 1e-3f, 1e-3f}},
@@ -164,7 +163,7 @@ TEST(Prepare, ABlockWithSomethingOnItsBackIsNoRoom) {
     EXPECT_GT(frameScene(scene).toWorld[3].z, 1.0f);
 }
 
-/// A clip that takes a small thing far away.
+/// A clip that moves a small object far away.
 TEST(Prepare, WhatAClipTakesAwayFillsHalfOfThePicture) {
     for (const float distance : {0.5f, 200.0f}) {
         Scene scene = squareScene();
@@ -185,7 +184,7 @@ TEST(Prepare, WhatAClipTakesAwayFillsHalfOfThePicture) {
     }
 }
 
-/// Two rooms behind each other, of which the front one is small: a closet before the eye.
+/// Two rooms behind each other, of which the front one is a small closet.
 TEST(Prepare, StandsInTheLargestRoomOfABuilding) {
     Scene scene = roomScene(0);
     Mesh& mesh = scene.meshes[0];
@@ -280,7 +279,7 @@ TEST(Prepare, AddsASkyWhereTheScenesLightsLeaveItDark) {
     EXPECT_TRUE(getsSky(punctual)) << "is off";
 }
 
-/// A texture that is black but for what JPEG leaves, and one that is not.
+/// A texture that is black except for JPEG artefacts, and one that is not.
 TEST(Prepare, KnowsBlackEmissionTextures) {
     for (const uint8_t level : {uint8_t{3}, uint8_t{90}}) {
         Scene scene = squareScene();

@@ -16,22 +16,21 @@ constexpr std::array<uint8_t, share::count> shares{
 #include "scene/device/tables/dielectric_share.inc"
 };
 
-/// Nodes of the index ratio: the logarithm of 1 + (|log eta| - first) / scale is in proportion to the node's
-/// number.
+/// The nodes of the index ratio: log(1 + (|log eta| - first) / scale) is proportional to the node's number.
 struct EtaNodes {
     uint32_t count;
     float scale;
 
     float last() const { return std::log(1.0f + (std::log(layout::DIELECTRIC_ETA_MAX) - first()) / scale); }
-    /// From where a boundary is one at all.
+    /// The smallest |log eta| that counts as a boundary.
     static float first() { return std::log(1.0f + layout::SMOOTH_IOR_DIFFERENCE); }
-    /// The first half is below 1.
+    /// Returns a node's eta. The first half of the nodes is below 1.
     float eta(uint32_t node) const {
         const float coordinate = static_cast<float>(node % count) / static_cast<float>(count - 1);
         const float logarithm = first() + scale * (std::exp(coordinate * last()) - 1.0f);
         return std::exp(node < count ? -logarithm : logarithm);
     }
-    /// From 0 at the first node to 1 at the last.
+    /// Returns 0 at the first node to 1 at the last.
     float coordinate(float eta) const {
         return std::log(1.0f + std::max(std::abs(std::log(eta)) - first(), 0.0f) / scale) / last();
     }
@@ -39,14 +38,14 @@ struct EtaNodes {
 constexpr EtaNodes tableEtas{.count = nodes, .scale = layout::DIELECTRIC_ETA_SCALE};
 constexpr EtaNodes shareEtas{.count = share::etas, .scale = 0.02f};
 
-/// The cosine at which total reflection sets in, of the side where it does.
+/// Returns the critical cosine of total reflection, on the side where it occurs.
 float criticalCosine(float eta) {
     const float below = std::min(eta, 1.0f / eta);
     return std::sqrt((1.0f - below) * (1.0f + below));
 }
 
-/// From 0 to 1 as the cosine is. Total reflection sets in near the middle whatever eta is, so that tables can
-/// be interpolated between values of eta.
+/// Maps the cosine to 0 to 1 so that total reflection begins near the middle for every eta. This allows
+/// tables to be interpolated between values of eta.
 float columnOf(float cosine, float eta) {
     const float critical = criticalCosine(eta);
     return cosine * (1.0f + critical) / (cosine + critical);
@@ -68,7 +67,7 @@ float fresnelDielectric(float cosine, float eta) {
     return 0.5f * (s * s + p * p);
 }
 
-/// 2 * integral of f(c) c dc over [0, 1] of the function that the shader interpolates.
+/// Returns 2 * integral of f(c) c dc over [0, 1] of the function that the shader interpolates.
 vec2 cosineAverage(const vec4* texels, float eta) {
     constexpr uint32_t parts = 8;
     vec2 sum(0.0f);
@@ -86,15 +85,14 @@ vec2 cosineAverage(const vec4* texels, float eta) {
     return sum;
 }
 
-/// The two texels of one entry, without the averages.
+/// Fills the two texels of an entry, without the averages.
 void fillEntry(float cosine, float roughness, float eta, vec4* texels) {
     static const std::vector<vec2> disk = halfDisk(1024);
     const FirstFacet first = firstFacet(cosine, std::max(roughness * roughness, 1e-4f), eta, disk);
     const float missing = std::max(first.missing(), 0.0f);
     const float part = reflectedShare(cosine, roughness, eta);
     const vec2 several(missing * part, missing * (1.0f - part));
-    // Where the indices are close, light goes on in nearly the direction that it had, however many facets it
-    // meets.
+    // If the indices are similar, light keeps almost the same direction, however many facets it hits.
     const float rough = followingShare(roughness);
     const float following = rough + (1.0f - rough) * std::exp(-10.0f * std::abs(std::log(eta)));
     const vec2 facet(first.reflected, first.transmitted);
@@ -195,7 +193,7 @@ std::vector<vec4> makeTable() {
 }  // namespace
 
 void fillDielectricTable(std::vector<vec4>& table) {
-    // The same for all scenes, and a second of work.
+    // Computed once: the table is the same for all scenes and takes a second.
     static const std::vector<vec4> made = makeTable();
     table = made;
 }

@@ -1,5 +1,6 @@
-// Directional albedos of microfacet reflection, and how what several facets of a metal scatter is spread; by
-// quasi-random integration. The formulas are those of shaders/material/bsdf.glsl, which reads the table.
+// Computes directional albedos of microfacet reflection, and the distribution of a metal's multiple
+// scattering, by quasi-random integration. The formulas are those of shaders/material/bsdf.glsl, which reads
+// the table.
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -14,12 +15,12 @@ constexpr uint32_t size = layout::GGX_TABLE_SIZE;
 constexpr uint32_t sampleCount = 1024;
 constexpr float step = 1.0f / static_cast<float>(size - 1);
 
-/// What one direction of sight reflects to a direction of this cosine, of all.
+/// The reflection from one view direction to a direction with this cosine.
 struct Reflected {
     float cosine, weight;
 };
 
-/// (A, B): the albedo is F0 A + F90 B with Schlick's Fresnel term. `reflected` gets the samples.
+/// Returns (A, B): the albedo is F0 A + F90 B with Schlick's Fresnel term. Stores the samples in `reflected`.
 vec2 reflectionAlbedo(float cosine, float alpha, Reflected* reflected) {
     const vec3 wo = directionAt(cosine);
     const float out = smithLambda(wo.z, alpha);
@@ -41,7 +42,8 @@ vec2 reflectionAlbedo(float cosine, float alpha, Reflected* reflected) {
     return {a / sampleCount, b / sampleCount};
 }
 
-/// 2 * integral of f(c) c dc over [0, 1] of the piecewise linear function that the shader interpolates.
+/// Returns 2 * integral of f(c) c dc over [0, 1] of the piecewise linear function that the shader
+/// interpolates.
 template <typename Function>
 auto cosineAverage(const Function& f) {
     decltype(f(0u)) sum{0.0f};
@@ -52,9 +54,9 @@ auto cosineAverage(const Function& f) {
     return sum;
 }
 
-/// q with integral of f q(wo) q(wi) = 1 - E(wo), f: the lobe of one facet without Fresnel term, E: its
-/// albedo. A lobe f (1 + q q) then reflects everything, and the same both ways. Fixed-point iteration (R.
-/// Sinkhorn, 1964).
+/// Finds q such that the integral of f q(wo) q(wi) is 1 - E(wo), where f is the lobe of one facet without
+/// Fresnel term and E its albedo. Then the lobe f (1 + q q) reflects all energy and is reciprocal.
+/// Fixed-point iteration (R. Sinkhorn, 1964).
 void solveFollowing(const std::vector<Reflected>& reflected, vec4* entries) {
     std::array<float, size> q{};
     for (uint32_t i = 0; i < size; ++i) {
@@ -78,10 +80,10 @@ void solveFollowing(const std::vector<Reflected>& reflected, vec4* entries) {
     for (uint32_t i = 0; i < size; ++i) entries[i].z = q[i];
 }
 
-/// d: how far the diffuse-like lobe of a metal is from a product m(wo) m(wi) of missing energies, which d(wo)
-/// d(wi) corrects without changing any albedo: light that came in grazing leaves grazing more often than by
-/// the product, light from above leaves upwards. Shape and amount fitted to random walks
-/// (tests/reference/microfacet_walk.h).
+/// Fills d, which corrects the diffuse-like lobe of a metal. The product m(wo) m(wi) of missing energies is
+/// changed by d(wo) d(wi) without changing any albedo: light that arrives at grazing angles leaves at grazing
+/// angles more often than the product says, and light from above leaves upwards. Shape and amount are fitted
+/// to random walks (tests/reference/microfacet_walk.h).
 void fillCorrection(float roughness, vec4* entries) {
     const auto missing = [&](uint32_t i) { return std::max(1.0f - entries[i].x - entries[i].y, 0.0f); };
     const auto shape = [](uint32_t i) { return 1.0f / (1.0f + 3.0f * static_cast<float>(i) * step); };

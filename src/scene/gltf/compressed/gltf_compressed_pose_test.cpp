@@ -1,5 +1,5 @@
-// Skins, morph targets and animations whose data are compressed: every view of a document by
-// EXT_meshopt_compression, a primitive with its joints and weights by KHR_draco_mesh_compression.
+// Tests compressed skins, morph targets and animations: all views of a document with EXT_meshopt_compression,
+// and a primitive with joints and weights with KHR_draco_mesh_compression.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 #include <meshoptimizer.h>
@@ -25,7 +25,7 @@ std::vector<uint32_t> gridIndices() {
     return indices;
 }
 
-/// `components` for each vertex: value(vertex, component).
+/// Returns `components` values for each vertex: value(vertex, component).
 template <typename T, typename Value>
 std::vector<T> perVertex(size_t components, const Value& value) {
     std::vector<T> values;
@@ -43,7 +43,7 @@ uint32_t weightOf(uint32_t vertex, size_t slot) {
     return slot == 0 ? first : slot == 1 ? 255 - first : 0;
 }
 
-/// Nodes 1 to 3 are the joints of node 0, whose mesh also has a morph target; all of it quantised.
+/// Nodes 1 to 3 are the joints of node 0, whose mesh also has a morph target; all data is quantised.
 GltfFile actor() {
     GltfFile file;
     json& attributes = file.primitive()["attributes"];
@@ -76,7 +76,7 @@ GltfFile actor() {
     return file;
 }
 
-/// A second of movement: the middle joint turns (shorts), the morph weight grows (floats).
+/// Adds an animation of one second: the middle joint rotates (shorts), the morph weight grows (floats).
 void animate(GltfFile& file) {
     constexpr int keys = 25;
     std::vector<float> times, weights;
@@ -97,7 +97,7 @@ void animate(GltfFile& file) {
             {{"sampler", 1}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}});
 }
 
-/// Bytes of one element of the accessor that reads the view, padding included.
+/// Returns the bytes of one element of the accessor that reads the view, including padding.
 size_t strideOf(const json& document, size_t view) {
     if (const json& v = document["bufferViews"][view]; v.contains("byteStride")) return v["byteStride"];
     for (const json& accessor : document["accessors"]) {
@@ -108,7 +108,7 @@ size_t strideOf(const json& document, size_t view) {
     throw Error("no accessor reads the view");
 }
 
-/// The same document with every view compressed; the uncompressed buffer is left out.
+/// Saves the document with every view compressed and without the uncompressed buffer.
 fs::path saveCompressed(const GltfFile& plain, const fs::path& folder) {
     json document = plain.document;
     std::string bytes;
@@ -209,7 +209,7 @@ std::string encodeDraco(int method) {
     for (size_t i = 0; i < indices.size(); i += 3)
         mesh.AddFace({draco::PointIndex(indices[i]), draco::PointIndex(indices[i + 1]),
                       draco::PointIndex(indices[i + 2])});
-    // x is the vertex's number: it tells them apart after the encoder has put them in another order.
+    // x is the vertex's number, which identifies it after the encoder has changed the order.
     addAttribute(mesh, draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32, false,
                  perVertex<float>(3, [](uint32_t v, size_t c) {
                      return c == 0 ? v : c == 1 ? v / columns : 0;
@@ -249,7 +249,7 @@ GltfFile dracoActor(int method) {
     return file;
 }
 
-/// Joints and weights go with their vertices, in whatever order the method leaves those.
+/// Joints and weights stay with their vertices, whatever order the method produces.
 TEST_F(CompressedPoseTest, DracoSkins) {
     for (const int method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
         const Scene scene = loadScene(dracoActor(method).save(folder));

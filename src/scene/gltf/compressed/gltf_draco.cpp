@@ -12,18 +12,18 @@
 namespace limpid::scene::gltf {
 namespace {
 
-// A stream of no entropy (a flat regular grid, or an attack) is as long for a thousand triangles as for a
-// billion. So a stream may expand to this much and no more; real meshes take several bits a triangle.
+// A stream without entropy (a flat regular grid, or an attack) has the same length for a thousand triangles
+// as for a billion. So expansion is limited to this; real meshes take several bits per triangle.
 constexpr uint64_t trianglesOfAnyStream = uint64_t{1} << 18;
 constexpr uint64_t trianglesPerByte = 32;
 constexpr uint64_t maxBytesPerPoint =
-    256;  // of all attributes; positions, normals, tangents, ... take some 150
+    256;  // of all attributes; positions, normals, tangents and so on take about 150
 constexpr uint32_t maxAttributes = 32;
 
-/// What a stream says of itself ahead of the connectivity.
+/// The counts that a stream states before the connectivity.
 struct Stated {
     uint32_t triangles = 0;
-    uint32_t points = 0;  ///< or vertices, which are fewer
+    uint32_t points = 0;  ///< or of vertices, which are fewer
     uint32_t attributes = 0;
 };
 
@@ -43,7 +43,7 @@ bool readStated(const draco::MeshSequentialDecoder&, draco::DecoderBuffer& buffe
     return draco::DecodeVarint(&stated.triangles, &buffer) && draco::DecodeVarint(&stated.points, &buffer);
 }
 
-/// One of Draco's decoders that checks, before each step that allocates, how much it is going to.
+/// A Draco decoder that checks the size of each allocation beforehand.
 template <typename Decoder>
 class Guarded : public Decoder {
   public:
@@ -137,7 +137,7 @@ uint64_t componentTypeOf(const Object& extension, const draco::PointAttribute& a
     }
 }
 
-/// The values in the order of the points, with every index checked: the stream may say anything.
+/// Returns the values in the order of the points. Checks every index, since the stream is untrusted.
 DracoAttribute readAttribute(const Object& extension, const draco::Mesh& mesh, uint64_t number) {
     const draco::PointAttribute* source =
         number <= UINT32_MAX ? mesh.GetAttributeByUniqueId(static_cast<uint32_t>(number)) : nullptr;

@@ -1,4 +1,4 @@
-// In place of gltf_draco.cpp where Draco is not installed.
+// Replaces gltf_draco.cpp if Draco is not installed.
 #include "scene/gltf/compressed/gltf_draco.h"
 
 namespace limpid::scene::gltf {

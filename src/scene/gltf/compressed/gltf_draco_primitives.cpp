@@ -18,13 +18,13 @@ namespace {
 
 enum Mode : uint64_t { Triangles = 4, TriangleStrip = 5 };
 
-/// A primitive's extension, checked against the primitive.
+/// A primitive's Draco extension, checked against the primitive.
 struct Source {
     int view = none, indices = none;
     uint64_t mode = Triangles;
-    std::vector<std::string> names;  ///< of the attributes that the stream has
-    std::vector<int> accessors;      ///< theirs
-    std::vector<uint64_t> numbers;   ///< theirs, in the stream
+    std::vector<std::string> names;  ///< of these attributes
+    std::vector<int> accessors;      ///< of these attributes
+    std::vector<uint64_t> numbers;   ///< of these attributes, in the stream
 
     std::string key() const {
         std::string text = fmt::format("{} {} {}", view, indices, mode);
@@ -34,7 +34,7 @@ struct Source {
     }
 };
 
-/// The accessors that take the place of a primitive's own.
+/// The accessors that replace those of a primitive.
 struct Expanded {
     std::vector<std::pair<std::string, size_t>> attributes;
     size_t indices = 0;
@@ -178,7 +178,7 @@ class Expander {
     const Document::Lists& lists_;
     size_t firstBuffer_;
     uint64_t bytesLeft_;
-    std::map<std::string, Expanded> known_;  ///< by Source::key
+    std::map<std::string, Expanded> known_;  ///< key: Source::key
     std::vector<Change> changes_;
     Json::array_t accessors_, views_;
     std::vector<std::vector<std::byte>> buffers_;

@@ -1,4 +1,4 @@
-// KHR_draco_mesh_compression: what Draco's encoder made of known geometry, read back; and damaged files.
+// Tests KHR_draco_mesh_compression: reads known geometry back that Draco's encoder wrote, and damaged files.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 #include <draco/point_cloud/point_cloud_builder.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* extensionName = "KHR_draco_mesh_compression";
 
-/// A torus of size x size squares, each vertex at another place: positions tell the vertices apart.
+/// A torus of size x size squares. All positions differ, so they identify the vertices.
 struct Torus {
     std::vector<vec3> positions, normals;
     std::vector<vec2> uvs;
@@ -63,7 +63,7 @@ struct Encoding {
     bool withMetadata = false;
 };
 
-/// Unique numbers: 0 positions, 1 normals, 2 coordinates, 3 joints, 4 colours.
+/// Encodes the attributes with unique numbers: 0 positions, 1 normals, 2 coordinates, 3 joints, 4 colours.
 std::string encode(const Torus& torus, const Encoding& encoding) {
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<uint32_t>(torus.positions.size()));
@@ -120,7 +120,7 @@ GltfFile dracoFile(const Torus& torus, const Encoding& encoding = {}) {
     return dracoFile(encode(torus, encoding), torus.positions.size(), torus.indices.size());
 }
 
-/// Each triangle as its vertices' numbers, the least first, in order: what two meshes can be compared by.
+/// Returns each triangle as its vertices' numbers, lowest first, sorted, for comparing two meshes.
 std::vector<std::array<uint32_t, 3>> trianglesOf(const std::vector<uint32_t>& indices,
                                                  const std::vector<uint32_t>& numbers) {
     std::vector<std::array<uint32_t, 3>> triangles;
@@ -138,7 +138,7 @@ class DracoTest : public FolderTest {
     DracoTest() { log::setLevel(log::Level::Error); }
     ~DracoTest() override { log::setLevel(log::Level::Info); }
 
-    /// The torus' vertex that each of the mesh's vertices is, by position.
+    /// Returns the number of the torus vertex for each of the mesh's vertices, found by position.
     static std::vector<uint32_t> numbersOf(const Mesh& mesh, const Torus& torus) {
         std::vector<uint32_t> numbers;
         for (const vec3& p : mesh.positions) {
@@ -155,7 +155,7 @@ class DracoTest : public FolderTest {
         const Mesh& mesh = scene.meshes.at(0);
         ASSERT_EQ(mesh.positions.size(), torus.positions.size());
         const std::vector<uint32_t> numbers = numbersOf(mesh, torus);
-        // Half a step of the widest extent, per coordinate; a little for rounding.
+        // Half a quantisation step of the largest extent per coordinate, and a little for rounding.
         const float positionStep =
             encoding.positionBits ? 8.0f / static_cast<float>((1 << encoding.positionBits) - 1) : 0.0f;
         const float uvStep = encoding.uvBits ? 1.0f / static_cast<float>((1 << encoding.uvBits) - 1) : 0.0f;
@@ -192,7 +192,7 @@ TEST_F(DracoTest, EveryMethodGivesTheGeometryBack) {
     }
 }
 
-/// Without quantisation and with the sequential method nothing changes, not even the order.
+/// Without quantisation, the sequential method changes nothing, not even the order.
 TEST_F(DracoTest, LosslessIsExact) {
     const Torus torus(8);
     const Encoding lossless{
@@ -203,7 +203,7 @@ TEST_F(DracoTest, LosslessIsExact) {
     EXPECT_EQ(mesh.positions, torus.positions);
     EXPECT_EQ(mesh.uv0, torus.uvs);
     EXPECT_EQ(mesh.indices, torus.indices);
-    // What skins will read: through the document, as any accessor.
+    // As skins read it: through the document's accessors.
     const gltf::Document document(path);
     const gltf::Object primitive = document.lists().meshes.at(0).objects("primitives").at(0);
     const auto joints = gltf::readJoints(
@@ -225,7 +225,7 @@ TEST_F(DracoTest, PrimitivesOfOneStreamShareAMesh) {
     EXPECT_EQ(scene.instances.size(), 2u);
 }
 
-/// Two streams behind the same accessors are two meshes all the same.
+/// Two streams with the same accessors give two meshes.
 TEST_F(DracoTest, StreamsMayShareAccessors) {
     Torus small(6), large(6);
     for (vec3& p : large.positions) p *= 10.0f;
@@ -255,8 +255,8 @@ TEST_F(DracoTest, AttributesBesideTheStream) {
     EXPECT_LT(glm::distance(mesh.positions.at(7), torus.positions[7] + vec3(2.0f)), 1e-3f);
 }
 
-/// A flat regular grid compresses to next to nothing; the guard against streams that expand without bound
-/// must let one of a real scene's size pass.
+/// A flat regular grid compresses to almost nothing. The limit on expansion must still accept one of a
+/// realistic size.
 TEST_F(DracoTest, FlatGrid) {
     Torus grid(300);
     for (uint32_t i = 0; i < grid.positions.size(); ++i)
@@ -317,7 +317,7 @@ TEST_F(DracoTest, NoViewNoAttributesNoIndices) {
         expectRefused(file.save(folder), std::string("has no ") + key);
     }
     GltfFile file = dracoFile(torus);
-    file.primitive().erase("indices");  // the stream has them anyway
+    file.primitive().erase("indices");  // the stream has its own indices
     EXPECT_EQ(loadScene(file.save(folder)).triangleCount(), 72u);
 }
 
@@ -334,7 +334,7 @@ TEST_F(DracoTest, PointCloudsAreNoMeshes) {
     expectRefused(dracoFile(std::string(buffer.data(), buffer.size()), 3, 3).save(folder), "holds no mesh");
 }
 
-/// The header claims a billion triangles and as many vertices; so do the accessors.
+/// The header and the accessors claim a billion triangles and as many vertices.
 TEST_F(DracoTest, HugeCounts) {
     const auto varint = [](uint32_t value) {
         std::string text;

@@ -8,8 +8,8 @@
 namespace limpid::scene::gltf {
 namespace {
 
-/// An attribute block of 256 elements that do not change costs 4 bytes for each byte of an element; triangles
-/// and indices cost at least a byte each.
+/// An attribute block of 256 constant elements takes 4 bytes for each byte of an element; triangles and
+/// indices take at least a byte each.
 constexpr uint64_t greatestExpansion = 64;  // Document::decodedPerByte covers it
 
 enum class Mode { Attributes, Triangles, Indices };
@@ -46,7 +46,7 @@ bool strideFits(Mode mode, Filter filter, uint64_t stride) {
     return stride > 0 && stride <= 256 && stride % 4 == 0;
 }
 
-/// What the library takes for granted, and would not check.
+/// Checks what the library assumes without checking.
 Layout readLayout(const Object& view, const Object& extension, size_t encodedBytes) {
     Layout layout{readMode(extension), readFilter(extension)};
     const uint64_t stride = extension.whole("byteStride"), count = extension.whole("count");

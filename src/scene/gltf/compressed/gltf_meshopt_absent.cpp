@@ -1,4 +1,4 @@
-// In place of gltf_meshopt.cpp where meshoptimizer is not installed.
+// Replaces gltf_meshopt.cpp if meshoptimizer is not installed.
 #include "scene/gltf/compressed/gltf_meshopt.h"
 
 namespace limpid::scene::gltf {

@@ -1,4 +1,5 @@
-// EXT_meshopt_compression: what meshoptimizer's encoder made of known geometry, read back; and damaged files.
+// Tests EXT_meshopt_compression: reads known geometry back that meshoptimizer's encoder wrote, and damaged
+// files.
 #include <meshoptimizer.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@
 namespace limpid::scene::test {
 namespace {
 
-/// A bumpy sheet of size x size squares: positions, normals (not unit), coordinates, indices in the cache's
+/// A bumpy sheet of size x size squares: positions, normals (not unit), coordinates, and indices in cache
 /// order.
 struct Sheet {
     std::vector<float> positions, uvs;
@@ -70,7 +71,7 @@ std::string encodeIndices(const std::vector<uint32_t>& indices, size_t vertices)
 
 constexpr const char* extensionName = "EXT_meshopt_compression";
 
-/// A document whose views are compressed; their uncompressed form would be in buffer 1, which has no data.
+/// A document with compressed views. Their uncompressed data would be in buffer 1, which has none.
 struct CompressedFile : GltfFile {
     size_t decodedBytes = 0;
 
@@ -140,7 +141,7 @@ GltfFile plainSheet(const Sheet& sheet) {
     return file;
 }
 
-/// The mode TRIANGLES keeps triangles and their order, but may start each at another corner.
+/// The mode TRIANGLES keeps the order of triangles, but may rotate the corners of each.
 std::vector<uint32_t> withMinFirst(std::vector<uint32_t> indices) {
     for (size_t i = 0; i + 2 < indices.size(); i += 3) {
         const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
@@ -182,7 +183,7 @@ TEST_F(MeshoptTest, ReadsGlb) {
     file.saveCompressed(folder);
     const json buffers = file.document["buffers"];
     std::string glb = file.glb();
-    // glb() leaves only its own buffer: put the fallback buffer back, in the same number of bytes or more.
+    // glb() keeps only its own buffer, so put the fallback buffer back in at least as many bytes.
     file.document["buffers"] = {{{"byteLength", file.bytes.size()}}, buffers[1]};
     std::string text = file.document.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -197,7 +198,7 @@ TEST_F(MeshoptTest, ReadsGlb) {
               loadScene(plainSheet(sheet).save(folder, "plain")).meshes.at(0).positions);
 }
 
-/// The compressed data are used even where uncompressed ones exist: these here differ, so it shows.
+/// Compressed data is preferred over uncompressed data; here they differ to show that.
 TEST_F(MeshoptTest, PrefersTheCompressedData) {
     const Sheet sheet(2);
     CompressedFile file = compressedSheet(sheet, "TRIANGLES", 4);
@@ -224,7 +225,7 @@ std::vector<vec4> someUnitVectors(size_t count, bool quaternions) {
     return vectors;
 }
 
-/// A document with one compressed accessor, and what the accessor code makes of it.
+/// Returns what the accessor code reads from a document with one compressed accessor.
 std::vector<vec4> readBack(const fs::path& folder, const std::string& encoded, size_t count, size_t stride,
                            const char* filter, int componentType) {
     CompressedFile file;
@@ -243,8 +244,8 @@ TEST_F(MeshoptTest, OctahedralFilter) {
         const auto read = readBack(folder, encodeAttributes(filtered.data(), vectors.size(), stride),
                                    vectors.size(), stride, "OCTAHEDRAL", stride == 4 ? 5120 : 5122);
         ASSERT_EQ(read.size(), vectors.size());
-        // A step of the octahedron's square is at most sqrt(3) times as long on the sphere; rounding is half
-        // of it.
+        // A step on the octahedron's square is at most sqrt(3) times as long on the sphere; rounding is half
+        // of that.
         const float tolerance = 2.0f / static_cast<float>((1 << (bits - 1)) - 1);
         for (size_t i = 0; i < read.size(); ++i)
             EXPECT_LT(glm::distance(vec3(read[i]), vec3(vectors[i])), tolerance) << i;
@@ -258,7 +259,7 @@ TEST_F(MeshoptTest, QuaternionFilter) {
     const auto read = readBack(folder, encodeAttributes(filtered.data(), vectors.size(), 8), vectors.size(),
                                8, "QUATERNION", 5122);
     ASSERT_EQ(read.size(), vectors.size());
-    // Both signs are the same rotation. The extension allows an error of 1/32767 in each number of the
+    // Both signs are the same rotation. The extension allows an error of 1/32767 in each component of the
     // result.
     for (size_t i = 0; i < read.size(); ++i) {
         EXPECT_GT(std::abs(glm::dot(glm::normalize(read[i]), vectors[i])), 1.0f - 2e-6f) << i;
@@ -271,7 +272,7 @@ TEST_F(MeshoptTest, ExponentialFilter) {
     for (size_t i = 0; i < vectors.size(); ++i)
         vectors[i] *= std::pow(10.0f, static_cast<float>(i % 9) - 4.0f);
     std::string filtered(vectors.size() * 16, '\0');
-    // One exponent each number; 16 bits of mantissa, one of them the sign.
+    // One exponent per number; 16 bits of mantissa including the sign.
     meshopt_encodeFilterExp(filtered.data(), vectors.size() * 4, 4, 16, &vectors[0].x);
     const auto read = readBack(folder, encodeAttributes(filtered.data(), vectors.size(), 16), vectors.size(),
                                16, "EXPONENTIAL", 5126);
@@ -282,7 +283,7 @@ TEST_F(MeshoptTest, ExponentialFilter) {
     }
 }
 
-/// Not a mesh at all: the accessors that skins and animations read.
+/// Accessors of skins and animations instead of a mesh.
 TEST_F(MeshoptTest, CompressedMatrices) {
     std::vector<float> numbers;
     for (int i = 0; i < 5 * 16; ++i) numbers.push_back(std::cos(static_cast<float>(i)));
@@ -351,7 +352,7 @@ TEST_F(MeshoptTest, TrianglesInThrees) {
     expectRefused(folder / "scene.gltf", "no multiple of 3");
 }
 
-/// A stream of a few bytes that claims a terabyte is refused before anything is allocated.
+/// A stream of a few bytes that claims a terabyte is rejected before anything is allocated.
 TEST_F(MeshoptTest, HugeCounts) {
     for (const size_t stride : {4u, 256u}) {
         CompressedFile file;
