@@ -25,7 +25,8 @@ std::optional<int> hexDigit(char c) {
     return std::nullopt;
 }
 
-/// RFC 3986: letter, then letters, digits, '+', '-', '.', then ':'. Also a drive letter.
+/// Recognises a URI scheme (RFC 3986: a letter, then letters, digits, '+', '-', '.', then ':') or a drive
+/// letter.
 bool hasScheme(std::string_view text) {
     const size_t colon = text.find(':');
     if (colon == std::string_view::npos || colon == 0) return false;
@@ -34,7 +35,7 @@ bool hasScheme(std::string_view text) {
                        [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
 }
 
-/// A reference as a message shows it: bounded, and without characters that would confuse a terminal.
+/// Returns a reference for messages: shortened, and without characters that would confuse a terminal.
 std::string shown(std::string_view reference) {
     std::string text(reference.substr(0, 200));
     for (char& c : text) {
@@ -45,7 +46,7 @@ std::string shown(std::string_view reference) {
 
 bool isInside(const fs::path& folder, const fs::path& path) {
     const auto [inFolder, inPath] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-    // A folder that ends with '/' has an empty last element.
+    // A path that ends with '/' has an empty last element.
     return inFolder == folder.end() || inFolder->empty();
 }
 
@@ -53,7 +54,7 @@ fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Whether other users' folders, or the whole system, lie in `folder`: too much for a scene file to read
+/// True if `folder` contains other users' folders or the whole system: too much for a scene file to read
 /// from.
 bool holdsHomeFolders(const fs::path& folder) {
     if (folder == folder.root_path() || folder == "/home" || folder == "/Users") return true;

@@ -42,7 +42,7 @@ std::vector<uint32_t> addFlatNormals(Mesh& mesh) {
 }
 
 struct Face {
-    vec3 alongU{0.0f};  ///< unit, or zero if the texture is not spread over the triangle
+    vec3 alongU{0.0f};  ///< unit, or zero if the texture coordinates are degenerate
     bool mirrored = false;
 };
 
@@ -52,7 +52,7 @@ Face faceTangent(const Mesh& mesh, const std::vector<vec2>& uv, size_t first) {
     const vec3 e2 = mesh.positions[corner[2]] - mesh.positions[corner[0]];
     const vec2 d1 = uv[corner[1]] - uv[corner[0]];
     const vec2 d2 = uv[corner[2]] - uv[corner[0]];
-    // v points down the picture, so that a picture that is not mirrored has a negative area.
+    // v points down the picture, so an unmirrored picture has a negative area.
     const float area = d1.x * d2.y - d2.x * d1.y;
     if (area == 0.0f) return {};
     return {safeNormalize((e1 * d2.y - e2 * d1.y) * (area > 0.0f ? 1.0f : -1.0f)), area > 0.0f};
@@ -60,10 +60,10 @@ Face faceTangent(const Mesh& mesh, const std::vector<vec2>& uv, size_t first) {
 
 struct Split {
     std::vector<uint32_t> from;  ///< the old vertex that each new one copies
-    std::vector<bool> mirrored;  ///< of each new one
+    std::vector<bool> mirrored;  ///< for each new vertex
 };
 
-/// Gives triangles on either side of a mirroring edge vertices of their own.
+/// Splits the vertices on edges between mirrored and unmirrored triangles.
 Split splitMirrored(Mesh& mesh, const std::vector<Face>& faces) {
     constexpr uint32_t unset = ~0u;
     const size_t vertices = mesh.positions.size();
@@ -111,8 +111,8 @@ std::vector<vec3> sumTangents(const Mesh& mesh, const std::vector<Face>& faces) 
     return sums;
 }
 
-/// generateTangents() for the mesh as it stands. Returns the old vertex that each new one copies, which
-/// follows from the indices and texture coordinates alone.
+/// Implements generateTangents() for the mesh at rest. Returns the old vertex that each new one copies, which
+/// depends only on the indices and texture coordinates.
 std::vector<uint32_t> generateStill(Mesh& mesh, int uvSet) {
     mesh.tangents.clear();
     std::vector<uint32_t> flat;
@@ -140,7 +140,7 @@ void generateTangents(Mesh& mesh, int uvSet) {
         generateStill(mesh, uvSet);
         return;
     }
-    // What moves the vertices is split as they are, and starts from normals and tangents of the mesh at rest.
+    // The deformation's vertices are split in the same way, and start from the normals and tangents at rest.
     Deformation deformation = *mesh.deformation;
     Mesh rest;
     rest.positions = std::move(deformation.positions);
@@ -156,7 +156,7 @@ void generateTangents(Mesh& mesh, int uvSet) {
     for (MorphTarget& target : deformation.targets) {
         gather(target.positions, from);
         gather(target.normals, from);
-        target.tangents.clear();  // they would belong to tangents that the file does not have
+        target.tangents.clear();  // would belong to tangents that the file does not have
     }
     gather(deformation.joints, from);
     gather(deformation.weights, from);

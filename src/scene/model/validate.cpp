@@ -33,7 +33,7 @@ bool fits(const std::vector<Vector>& values, const Mesh& mesh) {
     return values.empty() || values.size() == mesh.positions.size();
 }
 
-/// The arrays of a deformation, which are indexed by vertex without further checks.
+/// Checks the lengths of a deformation's arrays, which are later indexed by vertex without checks.
 bool fitsDeformation(const Mesh& mesh) {
     const Deformation& d = *mesh.deformation;
     const auto sameAs = [&](const auto& values, bool present) {
@@ -100,7 +100,8 @@ Fault checkMaterial(const Material& m, size_t textures) {
     return {};
 }
 
-/// The mesh's corners in the world: their sums stay finite too, since boxes are averaged and subtracted.
+/// Checks the mesh's bounds in world space; sums must stay finite too, since boxes are averaged and
+/// subtracted.
 bool staysFinite(const vec3& lower, const vec3& upper, const mat4& toWorld) {
     constexpr float limit = 1e18f;  // squared lengths and areas must not overflow
     for (int corner = 0; corner < 8; ++corner) {

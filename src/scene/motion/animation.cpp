@@ -15,7 +15,7 @@ glm::quat toQuat(const float* xyzw) {
 
 void storeUnit(const glm::quat& q, std::vector<float>& result) {
     const float length = glm::length(q);
-    // A quaternion of zeros turns nothing.
+    // A quaternion of zeros is no rotation.
     const glm::quat unit =
         length > 1e-20f && std::isfinite(length) ? q / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
     result = {unit.x, unit.y, unit.z, unit.w};

@@ -1,4 +1,4 @@
-// Animations: known values at known times, files that are wrong, camera paths.
+// Tests animations: known values at known times, invalid files, camera paths.
 #include "scene/motion/animation.h"
 
 #include <cmath>
@@ -41,7 +41,7 @@ TEST(Channels, StepLinearAndCubicBetweenKeys) {
     const Channel linear =
         channel(AnimatedValue::Scale, Interpolation::Linear, 3, {0, 2}, {1, 1, 1, 3, 5, 9});
     EXPECT_EQ(at(linear, 0.5), (std::vector<float>{1.5f, 2, 3}));
-    // A cubic through tangents of its own slope is that line; tangents are per second.
+    // A cubic whose tangents match its slope is a line; tangents are per second.
     const Channel line =
         channel(AnimatedValue::Weights, Interpolation::CubicSpline, 1, {0, 2}, {9, 1, 4, 4, 9, 9});
     EXPECT_NEAR(at(line, 0.5)[0], 3.0f, 1e-6f);
@@ -53,7 +53,7 @@ TEST(Channels, StepLinearAndCubicBetweenKeys) {
 
 TEST(Channels, RotationsTakeTheShortWayAndStayUnit) {
     const float h = std::sqrt(0.5f);
-    // 90 degrees about y, written with the other sign: half way is 45 degrees, not 135.
+    // 90 degrees about y, with the quaternion's sign flipped: half way is 45 degrees, not 135.
     const Channel c =
         channel(AnimatedValue::Rotation, Interpolation::Linear, 4, {0, 1}, {0, 0, 0, 1, 0, -h, 0, -h});
     const std::vector<float> q = at(c, 0.5);
@@ -117,7 +117,7 @@ TEST_F(AnimationFile, PlaysAllClipsTogether) {
     GltfFile file = moving();
     json& clips = file.document["animations"];
     const json first = clips[0];
-    // The second clip moves another node, and ends later; the third moves the first's node another way.
+    // The second clip moves another node and ends later; the third moves the first's node in another way.
     file.document["nodes"].push_back({{"name", "other"}});
     file.document["scenes"][0]["nodes"] = {0, 1};
     const auto add = [&](int node, const std::vector<float>& times, const std::vector<float>& values) {
@@ -140,7 +140,7 @@ TEST_F(AnimationFile, PlaysAllClipsTogether) {
     EXPECT_EQ(scene.instances[0].movement, Movement::Rigid);
     EXPECT_EQ(playTogether(loadScene(file.save(folder)).rig).overridden, 0u);
 
-    // Chosen again, and in the file loaded anew.
+    // The choice can be repeated, in the same scene and after loading the file again.
     const size_t clipsNow = scene.rig.clips.size();
     chooseClip(scene, clipChoice(scene));
     EXPECT_EQ(scene.rig.clips.size(), clipsNow);
@@ -158,7 +158,7 @@ TEST_F(AnimationFile, PlaysAllClipsTogether) {
     EXPECT_EQ(evaluate(loadScene(file.save(folder)).rig, &conflict.clip, 1.0).toWorld[0][3].z, 8.0f)
         << "the last clip counts";
 
-    // One clip is all there are; a clip of that name is meant first.
+    // With a single clip, "all" selects it; a clip named "all" takes precedence.
     Scene one = loadScene(moving().save(folder));
     chooseClip(one, "all");
     EXPECT_EQ(one.clip, 0);
@@ -173,7 +173,7 @@ TEST_F(AnimationFile, TellsWhatMoves) {
     Scene scene = loadScene(file.save(folder));
     chooseClip(scene, "");
     EXPECT_EQ(scene.instances[0].movement, Movement::Deforming);
-    // The node of a skinned mesh does not count, its joints do.
+    // The node of a skinned mesh is ignored, but its joints are not.
     target(file)["node"] = 0;
     scene = loadScene(file.save(folder));
     chooseClip(scene, "");
@@ -275,11 +275,11 @@ TEST_F(CameraPathFile, FollowsItsKeys) {
         {"time": 2, "eye": [2, 0, 5], "target": [2, 0, 0], "fov": 40},
         {"time": 3, "eye": [9, 9, 9], "target": [0, 0, 0], "fov": 60, "cut": true}]})");
     const CameraPath path = loadCameraPath(folder / "path.json");
-    // Constant speed stays constant speed.
+    // Constant speed is preserved.
     EXPECT_NEAR(path.at(0.25).toWorld[3].x, 0.25f, 1e-5f);
     EXPECT_NEAR(path.at(1.75).toWorld[3].x, 1.75f, 1e-5f);
     EXPECT_NEAR(path.at(1.5).verticalFov, glm::radians(40.0f), 1e-6f);
-    // The shot holds until the cut.
+    // The camera holds the last pose of the shot until the cut.
     EXPECT_EQ(path.at(2.9).toWorld[3].x, 2.0f);
     EXPECT_EQ(path.at(3.0).toWorld[3].x, 9.0f);
     EXPECT_EQ(path.at(99.0).toWorld[3].x, 9.0f);

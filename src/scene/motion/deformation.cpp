@@ -13,7 +13,7 @@ void addDeltas(const std::vector<vec3>& deltas, float weight, std::vector<Vector
     }
 }
 
-/// The inverse transpose up to a factor; defined for singular matrices too.
+/// The inverse transpose up to a factor; also defined for singular matrices.
 mat3 cofactors(const mat3& m) {
     return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }

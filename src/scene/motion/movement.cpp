@@ -11,7 +11,7 @@
 namespace limpid::scene {
 namespace {
 
-/// The clip of all clips; made once.
+/// Returns the clip that combines all clips, creating it once.
 int clipOfAll(Rig& rig) {
     if (rig.clips.size() == 1) return 0;
     ClipsTogether all = playTogether(rig);
@@ -63,7 +63,7 @@ void chooseClip(Scene& scene, std::string_view choice) {
             deforming = !mesh.deformation->targets.empty() && animatesWeights(clip, instance.node);
             if (instance.skin != none) {
                 const Skin& skin = scene.rig.skins[static_cast<size_t>(instance.skin)];
-                rigid = false;  // the node's own transform does not count
+                rigid = false;  // the node's own transform is ignored
                 deforming |= std::any_of(skin.joints.begin(), skin.joints.end(), isMoved);
             }
         }

@@ -44,7 +44,7 @@ void packMorphTarget(const MorphTarget& target, size_t vertices, std::vector<vec
     }
 }
 
-/// Boxes from which the posed instance's box follows without touching a vertex.
+/// Computes boxes from which the posed instance's box can be derived without reading vertices.
 void findBounds(const Deformation& d, DeformingInstance& out) {
     for (const MorphTarget& target : d.targets) {
         Aabb box;
@@ -65,13 +65,13 @@ void findBounds(const Deformation& d, DeformingInstance& out) {
     out.jointBounds.assign(boxes.begin(), boxes.end());
 }
 
-/// Height above the leaves, of every node of the trees.
+/// Returns a node's height above the leaves.
 uint32_t heightOf(const SceneData& data, uint32_t node, std::vector<uint32_t>& heights) {
     const uvec4* texels = &data.bvhNodes[size_t{node} * layout::BVH_NODE_TEXELS];
     uint32_t height = 0;
     for (int slot = 0; slot < 4; ++slot) {
         const uint32_t child = texels[3][slot];
-        const bool isCopy = slot > 0 && child == texels[3][0];  // stands where there is no child
+        const bool isCopy = slot > 0 && child == texels[3][0];  // marks a missing child
         if (!BvhRef::isLeaf(child) && !isCopy) height = std::max(height, heightOf(data, child, heights) + 1);
     }
     heights[node - data.motion.firstRefitNode] = height;

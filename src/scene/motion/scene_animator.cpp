@@ -13,10 +13,10 @@
 
 namespace limpid::scene {
 
-/// The scene's pose at one time, as far as it moves.
+/// The pose of the moving parts of the scene at one time.
 struct SceneAnimator::Moment {
     RigPose pose;
-    std::vector<mat4> transforms;            ///< of the moving leaves
+    std::vector<mat4> transforms;            ///< for the moving leaves
     std::map<int, std::vector<mat4>> skins;  ///< joint matrices of the skins in use
 };
 
@@ -42,8 +42,8 @@ bool isMirrored(const mat4& m) {
     return glm::determinant(mat3(m)) < 0.0f;
 }
 
-/// Far enough from overflow for squared lengths and areas: the limit of findFault() for scenes at rest. The
-/// empty box of what has become NaN is not in it.
+/// True if squared lengths and areas cannot overflow: the same limit as findFault() for scenes at rest. Boxes
+/// that became NaN are empty and fail.
 bool isInRange(const Aabb& box) {
     const auto small = [](const vec3& v) {
         return std::abs(v.x) < 1e18f && std::abs(v.y) < 1e18f && std::abs(v.z) < 1e18f;
@@ -55,7 +55,7 @@ bool isInRange(const Aabb& box) {
     throw Error(fmt::format("instance '{}' leaves the range of numbers", instance.name));
 }
 
-/// `box` with each corner moved by weight * something in `delta`.
+/// Returns `box` with its corners moved by up to weight times `delta`.
 Aabb widened(Aabb box, const Aabb& delta, float weight) {
     const vec3 a = weight * delta.lower, b = weight * delta.upper;
     box.lower += glm::min(a, b);
@@ -72,7 +72,7 @@ SceneAnimator::SceneAnimator(const Scene& scene, const SceneData& data)
         records_.push_back(data.instances[size_t{leaf.instance} * layout::INSTANCE_TEXELS + 3]);
     for (const gpu::TriangleTree& tree : data.trees) firstTriangles_.push_back(tree.first);
     setLights(data);
-    // On the device already, and the largest part.
+    // Free data that is already on the device; it is the largest part.
     motion_.restVertices.clear();
     motion_.morphDeltas.clear();
 }
@@ -183,8 +183,8 @@ void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneF
     }
 }
 
-/// Skinned positions lie between where the joints alone would take them (weights are not negative), so joint
-/// by joint boxes hold them all.
+/// Skinned positions are convex combinations of what single joints give (weights are not negative), so the
+/// union of the joints' boxes contains them.
 Aabb SceneAnimator::boundsOf(const DeformingInstance& deforming, const Moment& moment) const {
     const Instance& instance = scene_.instances[deforming.instance];
     const std::vector<float>& weights = moment.pose.weights[static_cast<size_t>(instance.node)];
@@ -221,7 +221,7 @@ void SceneAnimator::addMovingTree(const Moment& now, SceneFrame& frame) const {
     Aabb all = motion_.stillBounds;
     all.grow(moving.bounds);
     if (!moving.bounds.empty()) children.push_back({BvhRef::node(firstMoving), moving.bounds});
-    // Always there, or a scene where everything moves and nothing is in sight would have no node.
+    // Always added; otherwise a scene in which everything moves and nothing is visible would have no node.
     Aabb still = motion_.stillBounds;
     if (still.empty()) still.grow(all.empty() ? vec3(0.0f) : all.center());
     children.push_back({BvhRef::node(motion_.stillRoot), still});
@@ -267,7 +267,7 @@ void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame) cons
             const vec3 v0 = positions[index[0]];
             const vec3 v1 = positions[index[mirrored ? 2 : 1]], v2 = positions[index[mirrored ? 1 : 2]];
             const uint64_t at = (lights.firstLight + i) * stride;
-            // The fourth word of each texel stays as it is, but for the kind's mirror bit.
+            // The fourth word of each texel is unchanged, except for the mirror bit of the kind.
             const auto addCorner = [&](uint64_t texel, const vec3& v) {
                 addUpload<vec3>(frame, "lights", at + texel * sizeof(uvec4), std::span(&v, 1));
             };

@@ -23,7 +23,7 @@ namespace {
 
 constexpr size_t maxGroups = size_t{1} << 20;
 
-/// Indices into the file's lists, from 0; none where a face gives none.
+/// Indices into the file's lists, from 0; `none` if the face gives none.
 struct Corner {
     int position = none, uv = none, normal = none;
     bool operator==(const Corner&) const = default;
@@ -127,7 +127,7 @@ void ObjLoader::readVertex(Words& words) {
     float extra[3] = {1, 1, 1};
     int count = 0;
     while (count < 3 && !words.peek().empty()) extra[count++] = number();
-    const bool isColored = count == 3;  // one more number is a weight, which only curves use
+    const bool isColored = count == 3;  // a single additional number is a weight, which only curves use
     if (isColored && colors_.empty()) colors_.resize(positions_.size() - 1, vec3(1.0f));
     if (isColored || !colors_.empty()) {
         colors_.push_back(isColored ? vec3(extra[0], extra[1], extra[2]) : vec3(1.0f));
@@ -148,7 +148,7 @@ int ObjLoader::readIndex(std::string_view text, size_t size, const char* kind) c
     return static_cast<int>(index > 0 ? index - 1 : count + index);
 }
 
-/// "v", "v/vt", "v//vn" or "v/vt/vn"
+/// Parses "v", "v/vt", "v//vn" or "v/vt/vn".
 Corner ObjLoader::readCorner(std::string_view word) const {
     Corner corner;
     const size_t first = word.find('/');
@@ -208,7 +208,7 @@ bool ObjLoader::tryLibrary(const std::string& name) {
     return true;
 }
 
-/// A name that is refused is as good as missing, but says why.
+/// A rejected name counts as missing, but the warning gives the reason.
 bool ObjLoader::libraryExists(const std::string& name) {
     try {
         std::error_code error;
@@ -223,7 +223,8 @@ void ObjLoader::useLibraries(std::string_view names) {
     if (names.empty()) lines_.fail("mtllib without a file name");
     std::string all(names);
     std::replace(all.begin(), all.end(), '\\', '/');
-    // One name with blanks in it, or several names: the format does not say, so try.
+    // The rest of the line may be one name with blanks or several names; the format does not say, so try
+    // both.
     if (tryLibrary(all)) return;
     Words words(all);
     while (!words.peek().empty()) {
@@ -269,7 +270,7 @@ Mesh ObjLoader::toMesh(const Group& group) const {
     std::unordered_map<Corner, uint32_t, CornerHash> known;
     for (const Corner& corner : group.corners) {
         const auto [entry, isNew] = known.try_emplace(corner, static_cast<uint32_t>(mesh.positions.size()));
-        // A corner without normal among others with: its own vertex, whose normal becomes its face's.
+        // A corner without a normal in a mesh with normals gets its own vertex, with the face's normal.
         const bool isLonely = hasNormals && corner.normal == none;
         mesh.indices.push_back(isLonely ? static_cast<uint32_t>(mesh.positions.size()) : entry->second);
         if (!isNew && !isLonely) continue;

@@ -15,7 +15,7 @@
 namespace limpid::scene {
 namespace {
 
-/// A map statement: the file and the options that matter here.
+/// A map statement: the file and the options that Limpid uses.
 struct Map {
     std::string file;  ///< relative to the scene's folder
     vec2 scale{1.0f};
@@ -23,10 +23,10 @@ struct Map {
     bool clamp = false;
 };
 
-/// The statements of one file that mean something, but nothing here.
+/// Valid statements that are ignored, to warn about each once.
 using Ignored = std::set<std::string, std::less<>>;
 
-/// A material's statements as written.
+/// The statements of a material as written.
 struct Statements {
     std::string name;
     std::optional<vec3> ambient, diffuse, specular, emission, filter;
@@ -43,7 +43,7 @@ vec3 readColor(const Lines& lines, Words& words) {
     const std::string_view first = words.next();
     if (first == "spectral" || first == "xyz") lines.fail("only RGB colours are read");
     vec3 color(lines.number(first));
-    // One number stands for three.
+    // A single number stands for all three.
     if (!words.peek().empty()) color = {color.x, lines.number(words.next()), lines.number(words.next())};
     return glm::max(color, vec3(0.0f));
 }
@@ -78,7 +78,7 @@ Map readMap(const Lines& lines, Words& words, const std::filesystem::path& folde
     if (words.rest().empty()) lines.fail("a map without a file name");
     std::string name(words.rest());
     std::replace(name.begin(), name.end(), '\\', '/');
-    // An absolute name stays absolute, and is then refused.
+    // An absolute name stays absolute and is rejected later.
     map.file = (folder / name).generic_string();
     return map;
 }
@@ -164,7 +164,7 @@ void setEmission(const Statements& m, MapReader& read, Material& material) {
     if (m.emission) material.emission = *m.emission;
     if (m.emissionMap && material.emission == vec3(0.0f)) material.emission = vec3(1.0f);
     material.emissionTexture = read(m.emissionMap, true);
-    // The factor alone would make all of the surface glow.
+    // Without the texture, the factor alone would make the whole surface glow.
     if (m.emissionMap && !material.emissionTexture) material.emission = vec3(0.0f);
     const bool isSilent = !m.emission && !m.emissionMap;
     if (isSilent && m.ambient && isNamedLight(m.name)) material.emission = *m.ambient;
@@ -181,7 +181,7 @@ void setAlpha(const Statements& m, Material& material) {
     }
 }
 
-/// Mirrors and glass. Returns whether the material is glass.
+/// Sets up mirrors and glass. Returns true for glass.
 bool setIllumination(const Statements& m, Material& material) {
     if (m.illumination == 5) {
         const vec3 specular = m.specular.value_or(vec3(0.0f));

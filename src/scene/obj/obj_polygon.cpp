@@ -10,7 +10,7 @@ constexpr size_t maxEarCorners = 256;
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-/// Newell's normal: right for any polygon that is nearly planar, concave ones too.
+/// Newell's normal: correct for any nearly planar polygon, including concave ones.
 vec3 newellNormal(std::span<const vec3> corners) {
     vec3 normal(0.0f);
     for (size_t i = 0; i < corners.size(); ++i) {
@@ -19,7 +19,7 @@ vec3 newellNormal(std::span<const vec3> corners) {
     return normal;
 }
 
-/// The polygon on the plane that it faces most, counter-clockwise.
+/// Projects the polygon along the dominant axis of its normal, counter-clockwise.
 std::vector<vec2> project(std::span<const vec3> corners) {
     const vec3 normal = newellNormal(corners);
     const vec3 size = glm::abs(normal);
@@ -42,7 +42,7 @@ bool isEar(const std::vector<vec2>& flat, const std::vector<uint32_t>& left, siz
     if (!(turn(flat[a], flat[b], flat[c]) > 0.0f)) return false;
     for (const uint32_t p : left) {
         if (p == a || p == b || p == c) continue;
-        // A corner at the same place as one of the ear's does not block it.
+        // A corner at the same position as one of the ear's corners does not block it.
         if (flat[p] == flat[a] || flat[p] == flat[b] || flat[p] == flat[c]) continue;
         if (turn(flat[a], flat[b], flat[p]) >= 0.0f && turn(flat[b], flat[c], flat[p]) >= 0.0f &&
             turn(flat[c], flat[a], flat[p]) >= 0.0f) {

@@ -1,4 +1,4 @@
-// OBJ and MTL: what files say is what the Scene holds. Malformed files: bad_input_test.cpp.
+// Tests that the Scene contains what OBJ and MTL files describe. bad_input_test.cpp tests malformed files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ class ObjTest : public FolderTest {
         put(folder / "scene.obj", (mtl.empty() ? "" : "mtllib scene.mtl\n") + obj);
         return loadScene(folder / "scene.obj");
     }
-    /// The material "m" of an MTL file with these statements.
+    /// Returns the material "m" of an MTL file with these statements.
     Material material(const std::string& statements, const std::string& name = "m") {
         return load(corners + "usemtl " + name + "\nf 1 2 3\n", "newmtl " + name + "\n" + statements)
             .materials.at(0);
@@ -125,12 +125,12 @@ TEST_F(ObjTest, ReadsMaps) {
     EXPECT_EQ(scene.textures[static_cast<size_t>(m.baseColorTexture.texture)].sampler.wrapU,
               Wrap::ClampToEdge);
     EXPECT_FALSE(scene.textures[static_cast<size_t>(m.normalTexture.texture)].srgb);
-    // v = 1 - v' of the file: 0 is the file's 1, scaled to 3, which is -2 from the top
+    // v = 1 - v' of the file: 0 is 1 in the file, which is scaled to 3, which is -2 from the top
     EXPECT_EQ(m.baseColorTexture.rowU, vec3(2, 0, 0.5f));
     EXPECT_EQ(m.baseColorTexture.rowV, vec3(0, 3, -2));
 }
 
-/// Two by two: red, green over blue, white; rows from bottom to top, as TGA and BMP have them.
+/// Two by two pixels: red, green above blue, white; rows from bottom to top, as in TGA and BMP.
 const std::vector<uint8_t> fourColors = {255, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0};
 
 std::string bmpOfFourColors() {

@@ -87,7 +87,7 @@ std::optional<float> Lines::tryNumber(std::string_view word) const {
     if (digits.empty() || end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
         return std::nullopt;
     }
-    // Out of a double's range: too small is zero, too large is refused with infinity and NaN.
+    // Outside a double's range: too small becomes zero; too large is rejected like infinity and NaN.
     if (error == std::errc::result_out_of_range && word.find("e-") != std::string_view::npos) return 0.0f;
     if (error != std::errc() || !(std::abs(value) < 3.4e38)) {
         fail(fmt::format("'{}' is not a finite number", word.substr(0, 40)));

@@ -22,7 +22,7 @@ enum Mode : uint64_t { Triangles = 4, TriangleStrip = 5 };
 struct Source {
     int view = none, indices = none;
     uint64_t mode = Triangles;
-    std::vector<std::string> names;  ///< of these attributes
+    std::vector<std::string> names;  ///< of the attributes in the stream
     std::vector<int> accessors;      ///< of these attributes
     std::vector<uint64_t> numbers;   ///< of these attributes, in the stream
 
