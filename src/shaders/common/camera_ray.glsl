@@ -1,4 +1,5 @@
-// Between the picture and the world: the ray through a point of the picture, and the point that sees a place.
+// Converts between the picture and the world: the ray through a point of the picture, and the projection of a
+// point.
 #ifndef LIMPID_CAMERA_RAY_GLSL
 #define LIMPID_CAMERA_RAY_GLSL
 
@@ -6,7 +7,7 @@
 #include "shaders/common/rng.glsl"
 #include "shaders/trace/trace.glsl"
 
-/// Point `index` of the Halton sequence in the bases 2 and 3, in [0, 1)^2.
+/// Returns point `index` of the Halton sequence in bases 2 and 3, in [0, 1)^2.
 vec2 halton(uint index) {
     vec2 point = vec2(float(bitfieldReverse(index) >> 8) / float(0x01000000), 0.0);
     for (float digit = 1.0 / 3.0; index > 0u; index /= 3u) {
@@ -16,7 +17,8 @@ vec2 halton(uint index) {
     return point;
 }
 
-/// The point in the pixel; draws two numbers in every mode, so that all that follow are the same.
+/// Returns the position within the pixel. Draws two random numbers in every mode, so that later numbers are
+/// the same.
 vec2 subpixel(ViewParams view, uint sampleOfLaunch, inout uint rng) {
     const vec2 u = random2(rng);
     const uint index = view.firstSample + sampleOfLaunch;
@@ -35,32 +37,34 @@ Ray cameraRay(ViewParams view, vec2 pixel) {
     return cameraRay(view.camera, vec2(view.width, view.height), pixel);
 }
 
-/// How wide a ray is, for textures: at the eye, and what that grows by with distance (T. Akenine-Moeller et al.,
-/// "Texture level of detail strategies for real-time ray tracing", Ray Tracing Gems, 2019).
+/// The ray cone for texture filtering: the width at the eye, and its growth with distance (T. Akenine-Moeller
+/// et al., "Texture level of detail strategies for real-time ray tracing", Ray Tracing Gems, 2019).
 struct Cone {
     float width, spread;
 };
 
-/// The width of the n-th ray, from 1, that looks at the same: 1 / sqrt(n), as if n rays shared it evenly. The mean tends
-/// to what no filter has blurred, and few rays are still smooth (likewise kernels shrink in C. Knaus, M. Zwicker,
-/// "Progressive photon mapping: a probabilistic approach", ACM TOG 2011).
+/// Returns the relative width of the n-th ray (from 1) through the same pixel: 1 / sqrt(n), as if n rays
+/// shared it evenly. The mean converges to the unfiltered texture, while few rays are still smooth (compare
+/// the shrinking kernels in C. Knaus, M. Zwicker, "Progressive photon mapping: a probabilistic approach", ACM
+/// TOG 2011).
 float shareOfRay(float n) {
     return inversesqrt(n);
 }
 
-/// Which of its pixel's rays this is, from 1, over all launches of a mean.
+/// Returns the number of the ray within its pixel, from 1, over all launches of a mean.
 float rayNumber(ViewParams view, uint sampleIndex) {
     return view.samplesBefore + float(sampleIndex) + 1.0;
 }
 
-/// A camera ray's share of its pixel; all of it where every ray goes through the centre.
+/// Returns the cone of a camera ray: its share of the pixel, or the whole pixel if every ray goes through the
+/// centre.
 Cone pixelCone(ViewParams view, uint sampleIndex) {
     const float n = view.jitter != JITTER_OFF ? rayNumber(view, sampleIndex) : 1.0;
     const float width = view.camera.spread * shareOfRay(n);
     return view.camera.orthographic != 0u ? Cone(width, 0.0) : Cone(0.0, width);
 }
 
-/// Pixel that sees the point (of a miss: the direction) in xy; distance in z; valid in w.
+/// Projects a point (for a miss: a direction) to a pixel position in xy; distance in z; valid in w.
 vec4 project(CameraParams camera, vec2 size, vec3 point, bool isDirection) {
     const vec3 d = isDirection ? point : point - camera.origin;
     const vec2 along = vec2(dot(d, camera.right) / dot(camera.right, camera.right),

@@ -1,13 +1,15 @@
-// Images that a filter reads many times over: storage images, or texels in buffers (gpu::Backing) where the including
-// shader defines LIMPID_FILTER_BUFFERS. Declare with READ_*, WRITE_* and UPDATE_* (both), access with LOAD_* and STORE_*;
-// the including shader's `params` has the picture's `width`. HALF4: four halves. UINT2: two words.
+// Images that a filter reads many times: storage images, or texels in buffers (gpu::Backing) if the including
+// shader defines LIMPID_FILTER_BUFFERS. Declare them with READ_*, WRITE_* and UPDATE_* (both), access them
+// with LOAD_* and STORE_*. The including shader's `params` must have the picture's `width`. HALF4: four
+// halves. UINT2: two words.
 #ifndef LIMPID_FILTER_IMAGE_GLSL
 #define LIMPID_FILTER_IMAGE_GLSL
 
 const float MAX_HALF = 65504.0;
 
-/// To the nearest half, ties to even, of magnitudes from 2^-14 (smaller ones keep too many bits) to MAX_HALF. Drivers
-/// round towards zero, in packHalf2x16 or when they store: from level to level of a filter the picture would darken.
+/// Rounds to the nearest half, ties to even, for magnitudes from 2^-14 (smaller ones keep too many bits) to
+/// MAX_HALF. Drivers round towards zero in packHalf2x16 and in stores, which would darken the picture with
+/// every level of a filter.
 vec4 nearestHalf(vec4 value) {
     const uvec4 bits = floatBitsToUint(value);
     return uintBitsToFloat((bits + 0xFFFu + (bits >> 13 & 1u)) & ~0x1FFFu);

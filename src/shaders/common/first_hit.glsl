@@ -1,4 +1,4 @@
-// What the camera sees first, for the layers.
+// The first hit of a camera ray, for the layers.
 #ifndef LIMPID_FIRST_HIT_GLSL
 #define LIMPID_FIRST_HIT_GLSL
 
@@ -6,17 +6,17 @@
 #include "shaders/common/camera_ray.glsl"
 #include "shaders/common/motion.glsl"
 
-/// Backs of single-sided surfaces that a camera ray passes at most.
+/// The maximum number of back faces of single-sided surfaces that a camera ray passes through.
 const uint MAX_CULLED = 64u;
 
 struct FirstHit {
     bool hit;
-    vec3 position;  // of a miss: the direction
+    vec3 position;  // for a miss: the direction
     vec3 normal, albedo, albedoSpecular;
     float depth;
     uvec2 ids;                // instance, material
     PreviousPoint previous;  // the same point in the previous frame
-    vec4 reflectionMotion;   // shaders/common/reflection.glsl; 0: unknown
+    vec4 reflectionMotion;   // see shaders/common/reflection.glsl; 0: unknown
 };
 
 FirstHit noHit(vec3 direction) {
@@ -29,15 +29,16 @@ FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth, PreviousPoint previ
                     specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous, vec4(0.0));
 }
 
-/// glTF: the back of a single-sided material is not seen. It still blocks light. True if a camera ray goes on behind it,
-/// from `origin`.
+/// In glTF, the back of a single-sided material is invisible to the camera but still blocks light. Returns
+/// true if a camera ray continues behind it from `origin`.
 bool passesBack(Surface surface, inout uint culled, inout vec3 origin) {
     const bool passes = surface.culled && ++culled < MAX_CULLED;
     if (passes) origin = offsetRay(surface.position, -surface.geometricNormal, surface.magnitude);
     return passes;
 }
 
-/// Previous pixel minus this one, previous distance minus this one; 1 in w if there is a previous frame that saw the point.
+/// Returns previous pixel minus this one and previous distance minus this one; w is 1 if there is a previous
+/// frame that saw the point.
 vec4 motionOf(FirstHit first, ViewParams view) {
     const vec2 size = vec2(view.width, view.height);
     const vec4 now = project(view.camera, size, first.position, !first.hit);

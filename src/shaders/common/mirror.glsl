@@ -1,13 +1,13 @@
-// Primary surface replacement: where the camera sees a perfect mirror, its first hit is what the mirror shows, at the place
-// where it is seen. Denoisers then see through mirrors as through windows. Exact for plane mirrors; curved ones are taken
-// for their tangent plane.
+// Primary surface replacement: where the camera sees a perfect mirror, its first hit is replaced by what the
+// mirror shows, at its mirrored position. Denoisers then see through mirrors like through windows. Exact for
+// plane mirrors; curved ones are approximated by their tangent plane.
 #ifndef LIMPID_MIRROR_GLSL
 #define LIMPID_MIRROR_GLSL
 
 #include "shaders/common/first_hit.glsl"
 
 struct Mirror {
-    vec3 position, normal;  // where the camera sees it
+    vec3 position, normal;  // of the mirror at the camera ray's hit
     PreviousPoint previous;
 };
 
@@ -15,7 +15,7 @@ vec3 pointMirroredAt(vec3 p, vec3 onMirror, vec3 normal) {
     return p - 2.0 * dot(p - onMirror, normal) * normal;
 }
 
-/// `seen` by the reflected ray, whose light arrives times `tint`.
+/// Returns `seen`, the reflected ray's hit, as if seen directly. Its light is multiplied by `tint`.
 FirstHit shownBy(Mirror mirror, FirstHit seen, vec3 tint) {
     seen.albedo *= tint;
     seen.albedoSpecular *= tint;

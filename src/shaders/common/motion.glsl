@@ -1,4 +1,5 @@
-// Where the point that a ray hit was in the previous frame: the same barycentrics on the previous frame's triangle.
+// Finds the hit point's position in the previous frame: the same barycentrics on the previous frame's
+// triangle.
 #ifndef LIMPID_MOTION_GLSL
 #define LIMPID_MOTION_GLSL
 
@@ -15,7 +16,7 @@ vec3 previousToWorld(uint instance, vec4 p) {
                 dot(uintBitsToFloat(imageLoad(previousGeometry, at + 2)), p));
 }
 
-/// A right-handed orthonormal frame with `normal` as its third axis and the first along `edge`.
+/// Returns a right-handed orthonormal frame whose third axis is `normal` and whose first axis follows `edge`.
 mat3 surfaceFrame(vec3 normal, vec3 edge) {
     const vec3 along = edge - normal * dot(normal, edge);
     const vec3 x = dot(along, along) > 1e-30 ? normalize(along) : frameAround(normal)[0];
@@ -27,8 +28,8 @@ vec3 safeNormalize(vec3 v, vec3 otherwise) {
     return length2 > 1e-30 ? v * inversesqrt(length2) : otherwise;
 }
 
-/// `surface` is what loadSurface() made of `hit`. The normal turns as the surface's frame does, so that a normal map turns
-/// with it: exact for rigid motion and for interpolated normals.
+/// `surface` is the result of loadSurface() for `hit`. The normal rotates with the surface's frame, including
+/// a normal map: exact for rigid motion and for interpolated normals.
 PreviousPoint previousPoint(Hit hit, Surface surface, SceneParams scene) {
     PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
     if (!HAS_MOTION || hit.instance == NONE) return previous;
@@ -40,7 +41,7 @@ PreviousPoint previousPoint(Hit hit, Surface surface, SceneParams scene) {
     const bool deforming = (flags & INSTANCE_DEFORMING) != 0u;
     const bool isSmooth = HAS_VERTEX_DATA && (corners.w & TRIANGLE_SMOOTH) != 0u;
 
-    // Both frames in the instance's own space first; only deforming vertices differ there.
+    // Both frames in the instance's own space first; they only differ for deforming vertices.
     const vec3 edgeNow = v[1] - v[0];
     vec3 normalNow = cross(edgeNow, v[2] - v[0]), normalBefore = normalNow;
     if (isSmooth) normalBefore = normalNow = loadVertexData(corners.xyz, hit.barycentrics).normal;
@@ -62,7 +63,8 @@ PreviousPoint previousPoint(Hit hit, Surface surface, SceneParams scene) {
     const vec3 r0 = previousToWorld(hit.instance, vec4(1.0, 0.0, 0.0, 0.0));
     const vec3 r1 = previousToWorld(hit.instance, vec4(0.0, 1.0, 0.0, 0.0));
     const vec3 r2 = previousToWorld(hit.instance, vec4(0.0, 0.0, 1.0, 0.0));
-    // Columns; their cross products are the inverse transpose up to the determinant, whose sign keeps the side.
+    // Columns; their cross products are the inverse transpose except for the determinant, whose sign keeps
+    // the side.
     const vec3 n = safeNormalize(normalBefore, up);
     const vec3 turned = cross(r1, r2) * n.x + cross(r2, r0) * n.y + cross(r0, r1) * n.z;
     const vec3 worldBefore = safeNormalize(dot(r0, cross(r1, r2)) < 0.0 ? -turned : turned, worldNow);

@@ -1,25 +1,27 @@
-// How a reflection moves over a glossy surface: as what lies behind the surface, not as the surface.
+// The motion of a reflection on a glossy surface: it moves like an object behind the surface, not like the
+// surface.
 #ifndef LIMPID_REFLECTION_GLSL
 #define LIMPID_REFLECTION_GLSL
 
 #include "shaders/common/mirror.glsl"
 
-/// Light that rougher surfaces reflect moves with them.
+/// On rougher surfaces, reflected light is assumed to move with the surface.
 const float MAX_REFLECTING_ROUGHNESS = 0.3;
-/// Cosine between shading and true normal: what is rounder has its reflections elsewhere.
+/// Minimum cosine between shading and geometric normal: on rounder surfaces, reflections are elsewhere.
 const float FLAT = 0.9999;
 
-/// How far behind the surface its reflections lie, as a share of where a mirror's would: the lobe's dominant direction leans
-/// from the mirrored one to the normal by as much (S. Lagarde and C. de Rousiers, "Moving Frostbite to Physically Based
-/// Rendering", 2014, section 4.9).
+/// The depth of the reflected image behind the surface, as a share of a perfect mirror's: the lobe's dominant
+/// direction leans from the mirrored direction towards the normal by the same share (S. Lagarde and C. de
+/// Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.9).
 float reflectionShare(Surface surface) {
     if (surface.roughness >= MAX_REFLECTING_ROUGHNESS || abs(dot(surface.normal, surface.geometricNormal)) < FLAT) return 0.0;
     const float smoothness = 1.0 - surface.roughness;
     return smoothness * (sqrt(smoothness) + surface.roughness);
 }
 
-/// `seen` by the reflected ray. Previous pixel where the reflector showed the same minus the one where it does now;
-/// distance of the reflector there, which is taken for its tangent plane, minus `first.depth`; 1 in w if all of that is known.
+/// `seen` is the reflected ray's hit. Returns the previous pixel at which the reflector showed the same point
+/// minus the current one; the distance of the reflector there (approximated by its tangent plane) minus
+/// `first.depth`; w is 1 if all of that is known.
 vec4 reflectionMotionOf(Mirror reflector, FirstHit seen, float share, FirstHit first, ViewParams view) {
     FirstHit shown = shownBy(reflector, seen, vec3(1.0));
     if (seen.hit) {
@@ -33,7 +35,7 @@ vec4 reflectionMotionOf(Mirror reflector, FirstHit seen, float share, FirstHit f
     const Ray ray = cameraRay(view.previousCamera, size, before);
     const PreviousPoint plane = reflector.previous;
     const float distanceBefore = dot(plane.position - ray.origin, plane.normal) / dot(ray.direction, plane.normal);
-    // Where the ray does not meet the plane it is no tangent of what was there.
+    // If the ray misses the plane, the plane does not approximate the surface there.
     return distanceBefore > 0.0 ? vec4(motion.xy, distanceBefore - first.depth, 1.0) : vec4(0.0);
 }
 

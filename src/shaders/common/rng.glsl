@@ -20,7 +20,7 @@ uint tea(uint v0, uint v1) {
     return v0;
 }
 
-/// The stream of a pixel in a frame; `seed` 0 gives the document's.
+/// Returns the stream of a pixel in a frame; `seed` 0 gives the default one.
 uint startStream(uint pixel, uint frame, uint seed) {
     return tea(pixel, frame ^ (seed * 0x9e3779b9u));
 }
@@ -30,7 +30,7 @@ uint pcgOutput(uint state) {
     return (word >> 22) ^ word;
 }
 
-/// Uniform in [0, 1), a multiple of 2^-24.
+/// Returns a uniform number in [0, 1), a multiple of 2^-24.
 float random(inout uint state) {
     if (SAMPLER_TEA) {
         state = 1664525u * state + 1013904223u;
@@ -41,7 +41,7 @@ float random(inout uint state) {
     return float(result >> 8) / float(0x01000000);
 }
 
-/// A number that follows from the state and two more, and leaves the state as it is.
+/// Returns a number that depends on the state and two more values, without changing the state.
 float randomOf(uint state, uint a, uint b) {
     const uint mixed = pcgOutput(state ^ pcgOutput(a * 747796405u + 2891336453u) ^ (b * 277803737u));
     return float(pcgOutput(mixed * 747796405u + 2891336453u) >> 8) / float(0x01000000);

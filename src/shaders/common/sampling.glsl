@@ -1,4 +1,4 @@
-// Frames, spherical maps and warps of the unit square.
+// Orthonormal frames, spherical maps and warps of the unit square.
 #ifndef LIMPID_SAMPLING_GLSL
 #define LIMPID_SAMPLING_GLSL
 
@@ -9,12 +9,13 @@ float luminance(vec3 c) {
 }
 
 bool isFinite(vec3 v) {
-    // On the bits: compilers may assume that no NaN exists and drop isnan().
+    // Checks bits, since compilers may assume that NaN does not occur and remove isnan().
     const uvec3 exponents = floatBitsToUint(v) & 0x7f800000u;
     return all(notEqual(exponents, uvec3(0x7f800000u)));
 }
 
-/// An orthonormal frame around a unit vector: T. Duff et al., "Building an orthonormal basis, revisited", JCGT 2017.
+/// Returns an orthonormal frame around a unit vector: T. Duff et al., "Building an orthonormal basis,
+/// revisited", JCGT 2017.
 mat3 frameAround(vec3 n) {
     const float s = n.z >= 0.0 ? 1.0 : -1.0;
     const float a = -1.0 / (s + n.z);
@@ -22,14 +23,14 @@ mat3 frameAround(vec3 n) {
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
-/// pdf cos(theta) / pi about +Z.
+/// Samples a direction with probability density cos(theta) / pi about +Z.
 vec3 sampleCosineHemisphere(vec2 u) {
     const float r = sqrt(u.x);
     const float phi = 2.0 * PI * u.y;
     return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
 }
 
-/// Uniform barycentrics (of vertices 1 and 2).
+/// Samples uniform barycentrics (of vertices 1 and 2).
 vec2 sampleTriangle(vec2 u) {
     const float s = sqrt(u.x);
     return vec2(s * (1.0 - u.y), s * u.y);
@@ -41,9 +42,9 @@ float powerHeuristic(float a, float b) {
     return a2 > 0.0 ? a2 / (a2 + b2) : 0.0;
 }
 
-/// Lat-long map: row 0 is +Y, the centre column is -Z (scene/model/environment.h).
+/// Latitude-longitude map: row 0 is +Y, the centre column is -Z (scene/model/environment.h).
 vec2 latLongOf(vec3 d) {
-    // Not acos(d.y): lavapipe's is off by 5e-5 of the picture's height.
+    // Not acos(d.y): lavapipe's has an error of 5e-5 of the picture's height.
     return vec2(atan(d.x, -d.z) / (2.0 * PI) + 0.5, atan(length(d.xz), d.y) / PI);
 }
 
@@ -52,14 +53,15 @@ vec3 directionOfLatLong(vec2 uv) {
     return vec3(sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi));
 }
 
-/// A unit vector in 2 x snorm16: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010. 0 becomes +Z.
+/// Encodes a unit vector as 2 x snorm16: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010. 0
+/// becomes +Z.
 uint encodeOctahedral(vec3 n) {
     const vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
     const vec2 signs = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
     return packSnorm2x16(n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * signs);
 }
 
-/// 32,768 added as a bit: GPUs convert integers at an eighth of the rate at which they add.
+/// Adds 32,768 as a bit, because GPUs convert integers at an eighth of their addition rate.
 float signed16(uint low) {
     return uintBitsToFloat(0x4B000000u | (low ^ 0x8000u)) - (8388608.0 + 32768.0);
 }
@@ -73,16 +75,18 @@ vec3 decodeOctahedral(uint packed) {
     return normalize(n);
 }
 
-/// A start for secondary rays that the surface cannot hit again through rounding. `n` is the geometric normal on the
-/// ray's side, `magnitude` the largest coordinate that took part in computing p: the error of p is a few of its ulps,
-/// so the offset scales with it and holds for a watch as for a mountain, near the origin and far from it.
+/// Offsets the origin of a secondary ray so that rounding cannot make it hit the same surface again. `n` is
+/// the geometric normal on the ray's side. `magnitude` is the largest coordinate used in computing p: the
+/// error of p is a few of its ulps, so the offset scales with it and works at any scale and distance from the
+/// origin.
 vec3 offsetRay(vec3 p, vec3 n, float magnitude) {
     const float ulps = 128.0 / 16777216.0;
     return p + n * (ulps * magnitude);
 }
 
-/// The pixel of an invocation of an 8x8 group, such that every eight consecutive ones cover 4x2 pixels and every 32 cover
-/// 8x4: a SIMD unit's rays stay together (13 % fewer instructions on lavapipe in `heavy` than rows of eight).
+/// Maps an invocation of an 8x8 group to a pixel so that every eight consecutive ones cover 4x2 pixels and
+/// every 32 cover 8x4. This keeps a SIMD unit's rays coherent (13 % fewer instructions on lavapipe in `heavy`
+/// than rows of eight).
 uvec2 pixelOfInvocation(uvec2 group, uint local) {
     return group * 8u + uvec2((local & 3u) | ((local >> 3) & 1u) << 2, ((local >> 2) & 1u) | (local >> 4) << 1);
 }

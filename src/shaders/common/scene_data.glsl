@@ -1,5 +1,5 @@
-// The scene's buffers (layout: scene_layout.h) and the specialisation constants that remove what a scene has not.
-// lavapipe runs both sides of every `if`, so what is removed here is the difference between 1x and several x.
+// The scene's buffers (layout: scene_layout.h), and specialisation constants that remove features a scene
+// does not use. lavapipe runs both sides of every `if`, so removing code here makes it several times faster.
 #ifndef LIMPID_SCENE_DATA_GLSL
 #define LIMPID_SCENE_DATA_GLSL
 
@@ -9,7 +9,7 @@ layout(constant_id = 0) const bool TWO_LEVEL = true;         // instances above 
 layout(constant_id = 1) const bool HAS_VERTEX_DATA = true;   // normals, coordinates, tangents or colours
 layout(constant_id = 2) const bool HAS_TEXTURES = true;
 layout(constant_id = 3) const bool HAS_ALPHA = true;         // masked or blended materials
-layout(constant_id = 4) const bool HAS_SPECULAR = true;      // anything not Lambertian
+layout(constant_id = 4) const bool HAS_SPECULAR = true;      // anything that is not Lambertian
 layout(constant_id = 5) const bool HAS_TRANSMISSION = true;
 layout(constant_id = 6) const bool HAS_TRIANGLE_LIGHTS = true;
 layout(constant_id = 7) const bool HAS_PUNCTUAL_LIGHTS = true;
@@ -17,7 +17,7 @@ layout(constant_id = 8) const bool HAS_ENVIRONMENT = true;
 layout(constant_id = 9) const int STACK_SIZE = 64;           // traversal stack entries
 layout(constant_id = 11) const bool HAS_MIRRORED = true;      // instances with a negative determinant
 layout(constant_id = 10) const int TEXEL_BUFFER_COUNT = 1;   // of texels0..3 in use
-layout(constant_id = 12) const bool CPU_LOOPS = false;          // for CPUs, where no branch skips its body
+layout(constant_id = 12) const bool CPU_LOOPS = false;          // for CPUs, where branches cannot skip code
 layout(constant_id = 17) const bool EXPANDED_NODES = false;     // the format of bvhNodes
 layout(constant_id = 13) const bool HAS_MOTION = false;         // something moves from frame to frame
 layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
@@ -45,6 +45,6 @@ layout(set = 0, binding = 16, r32ui) uniform readonly uimageBuffer texels1;
 layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;
 layout(set = 0, binding = 18, r32ui) uniform readonly uimageBuffer texels3;
 layout(set = 0, binding = 19, rgba32ui) uniform readonly uimageBuffer previousGeometry;
-// Binding 20 and up belong to the pass that includes this file.
+// Bindings from 20 on belong to the pass that includes this file.
 
 #endif

@@ -1,14 +1,15 @@
-// The material's scattering function: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
+// The material's BSDF: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
 //
-//   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
+// f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
-// metal: GGX reflection plus what bounces several times between the facets (multipleReflection). plastic: GGX
-// reflection over a diffuse base that gets exactly the energy the coat lets through, in and out. glass: thin (a pane:
-// the transmitted lobe is the reflected one mirrored behind the surface) or a boundary that refracts, plus what meets
-// several facets (addDielectricMultiple). Both pluses are fitted to a random walk on microfacets (E. Heitz et al.,
-// "Multiple-scattering microfacet BSDFs with the Smith model", SIGGRAPH 2016; tests/reference/microfacet_walk.h; docs/gltf.md).
-// A white surface of any kind reflects and transmits everything. Energy form: crossing a boundary does not scale
-// radiance by eta^2; the factors cancel for every path that leaves the body again.
+// metal: GGX reflection plus multiple scattering between the facets (multipleReflection). plastic: GGX
+// reflection over a diffuse base that gets exactly the energy that the coat transmits, in and out. glass:
+// thin (a pane: the transmitted lobe is the reflected one mirrored behind the surface) or a refracting
+// boundary, plus multiple scattering (addDielectricMultiple). Both multiple-scattering terms are fitted to a
+// random walk on microfacets (E. Heitz et al., "Multiple-scattering microfacet BSDFs with the Smith model",
+// SIGGRAPH 2016; tests/reference/microfacet_walk.h; docs/gltf.md). A white surface of any kind reflects and
+// transmits all energy. Energy form: crossing a boundary does not scale radiance by eta^2; the factors cancel
+// for every path that leaves the body again.
 //
 // All f below include the cosine. Directions are local: the shading normal is +Z.
 #ifndef LIMPID_BSDF_GLSL
@@ -21,27 +22,27 @@
 struct Bsdf {
     mat3 frame;
     vec3 wo;
-    vec3 geometricNormal;  // world, on the viewer's side
+    vec3 geometricNormal;  // world space, on the viewer's side
     vec3 diffuse;          // albedo of the base below the coat
     vec3 f0;               // Schlick's terms of the reflecting lobe
     float f90;
     float coatF0, coatF90;  // of the dielectric coat alone
     float metal;           // weight of the metal
     vec3 metalF0;
-    vec3 multiple;         // about what is left of white light after several facets of the metal
+    vec3 multiple;         // roughly the share of white light that remains after several facets of the metal
     vec3 through;          // tint and weight of the thin pane's transmitted lobe
     vec3 glass;            // tint of the refracting boundary's transmitted light
     float glassWeight;     // of the refracting boundary
-    float roughGlass;      // the same, 0 where its lobes are perfectly smooth
+    float roughGlass;      // same, but 0 if its lobes are perfectly smooth
     float alpha, roughness, eta;
     bool smoothSurface;
     vec4 albedo;     // ggxAlbedo at wo
     vec3 average;    // ggxAverage
-    float coatLoss;  // energy that the coat keeps from the base at wo
-    vec2 glassGain;     // what light that meets several facets adds to the refracting boundary's two lobes, unmasked
-    vec2 glassDiffuse;  // what the boundary reflects and transmits besides, like diffuse light
-    vec4 probability;   // of choosing diffuse, reflecting, thin transmitting, refracting lobe
-    float belowProbability;  // of choosing the diffuse-like transmission
+    float coatLoss;  // share of energy that the coat keeps from the base at wo
+    vec2 glassGain;     // multiple scattering's gain of the refracting boundary's two lobes, without masking
+    vec2 glassDiffuse;  // diffuse-like part of multiple scattering at the boundary: reflected and transmitted
+    vec4 probability;   // of sampling the diffuse, reflecting, thin transmitting and refracting lobe
+    float belowProbability;  // of sampling the diffuse-like transmission
     Clearcoat clearcoat;
 };
 
@@ -53,7 +54,7 @@ struct BsdfValue {
 struct BsdfSample {
     vec3 direction;  // world
     BsdfValue value;
-    bool delta;       // no other technique finds this direction
+    bool delta;       // only BSDF sampling can find this direction
     bool valid;
 };
 
@@ -66,8 +67,9 @@ Bsdf lambertianBsdf(Surface s, vec3 toViewer) {
     return b;
 }
 
-/// What is left of white light that several facets of the metal reflect from wo to this cosine. f: the mean Fresnel
-/// term of such facets, e: the part that escapes after each; both fitted to random walks at roughness 0.5 to 1.
+/// Returns the tint of white light that several facets of the metal reflect from wo to this cosine. f: the
+/// mean Fresnel term of such facets; e: the fraction that escapes after each. Both are fitted to random walks
+/// at roughness 0.5 to 1.
 vec3 multipleTint(Bsdf b, float cosine) {
     const float x = min(1.0 - b.roughness, 0.5);
     const vec2 grazing = 1.0 - vec2(b.wo.z, cosine);
@@ -89,7 +91,7 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.smoothSurface = s.roughness < SMOOTH_ROUGHNESS;
     b.eta = s.front ? s.ior : 1.0 / s.ior;
     const float root = (s.ior - 1.0) / (s.ior + 1.0);
-    // KHR_materials_specular: the base below gets what the strongest channel of the coat lets through.
+    // KHR_materials_specular: the base gets what the coat's strongest channel transmits.
     const vec3 coatF0 = min(root * root * s.specularColor, vec3(1.0)) * s.specular;
     b.coatF0 = max(coatF0.r, max(coatF0.g, coatF0.b));
     b.coatF90 = s.specular;
@@ -128,7 +130,7 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     return b;
 }
 
-/// True if light is reflected in one direction and goes nowhere else.
+/// True if all light is reflected in a single direction.
 bool isPerfectMirror(Bsdf b) {
     if (!HAS_SPECULAR) return false;
     if (HAS_CLEARCOAT) {
@@ -137,30 +139,30 @@ bool isPerfectMirror(Bsdf b) {
     return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
 }
 
-/// True if some light goes through the surface.
+/// True if the surface transmits light.
 bool isTransmitting(Bsdf b) {
     return b.glassWeight > 0.0 || b.through != vec3(0.0);
 }
 
-/// True if wi leaves on the side of the true surface that it leaves on at the shading normal.
+/// True if wi is on the same side of the geometric normal as of the shading normal.
 bool sidesAgree(Bsdf b, vec3 wi) {
     return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;
 }
 
-/// Density of the half vector m seen from wo, as a density of the reflected direction.
+/// Returns the density of the half vector m seen from wo, converted to a density of the reflected direction.
 float reflectionPdf(Bsdf b, vec3 m) {
     return ggxDistribution(m, b.alpha) / (4.0 * b.wo.z * (1.0 + ggxLambda(b.wo.z, b.alpha)));
 }
 
-/// What several facets of a metal reflect, as far as it is spread like diffuse light: f for white metal. The product
-/// of missing energies is that of C. Kulla, A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH
-/// 2017. The rest follows the lobe of one facet (addReflection).
+/// Returns the diffuse-like part of a metal's multiple scattering: f for white metal. The product of missing
+/// energies is from C. Kulla, A. Conty, "Revisiting physically based shading at Imageworks", SIGGRAPH 2017.
+/// The remainder follows the single-facet lobe (addReflection).
 float multipleReflection(Bsdf b, vec4 albedo) {
     const float missing = (1.0 - b.albedo.x - b.albedo.y) * (1.0 - albedo.x - albedo.y);
     return max(b.average.z * missing / (PI * max(1.0 - b.average.x - b.average.y, 1e-6)) + b.albedo.w * albedo.w, 0.0);
 }
 
-/// How likely light that meets a facet of this reflectance is taken to be reflected, in sampling.
+/// Returns the probability with which sampling reflects at a facet of this reflectance.
 float reflectionChance(Bsdf b, float reflectance) {
     const float reflected = reflectance * (1.0 + b.glassGain.x);
     return reflected / (reflected + (1.0 - reflectance) * (1.0 + b.glassGain.y));
@@ -218,9 +220,9 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     value.pdf += b.probability.w * (1.0 - reflectionChance(b, reflectance)) * pdf;
 }
 
-/// What several facets of a refracting boundary reflect or transmit, as far as it is spread like diffuse light: a
-/// product of what is missing in both directions, as for metals; on the other side, of what is missing seen from
-/// there. What is not spread follows the lobes of one facet: the gains in addReflection and addTransmission.
+/// Adds the diffuse-like part of multiple scattering at a refracting boundary: a product of the missing
+/// energies of both directions, as for metals; for transmission, the missing energy seen from the other side.
+/// The remainder follows the single-facet lobes: the gains in addReflection and addTransmission.
 void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
     const bool above = wi.z > 0.0;
     const float cosinePdf = abs(wi.z) / PI;
@@ -230,7 +232,7 @@ void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
     value.pdf += above ? 0.0 : b.belowProbability * cosinePdf;
 }
 
-/// f cos and the density with which sampleBsdf draws wi (local); without the perfectly smooth lobes.
+/// Returns f cos and the density with which sampleBsdf draws wi (local), without perfectly smooth lobes.
 BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
     BsdfValue value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
     if (!HAS_SPECULAR) {
@@ -261,7 +263,7 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
     return value;
 }
 
-/// A perfectly smooth lobe's direction; value holds f cos / pdf of the lobe with pdf 1.
+/// Samples a perfectly smooth lobe; value holds f cos / pdf of the lobe with pdf 1.
 BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), true, true);
     const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
@@ -284,7 +286,7 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     return result;
 }
 
-/// The coat's direction in place of the base's; only a smooth coat's value is set.
+/// Samples the coat instead of the base; the value is only set for a smooth coat.
 BsdfSample sampleCoat(Bsdf b, vec2 u) {
     BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), b.clearcoat.smoothSurface, true);
     result.direction = sampleClearcoat(b.clearcoat, u);
@@ -294,7 +296,7 @@ BsdfSample sampleCoat(Bsdf b, vec2 u) {
     return result;
 }
 
-/// A local direction from the chosen lobe; z = 0 if there is none.
+/// Samples a local direction from the chosen lobe; z = 0 if there is none.
 vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
     const vec3 m = sampleVisibleNormal(b.wo, b.alpha, u);
     const float cosine = dot(b.wo, m);
@@ -309,7 +311,7 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
     return refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-/// Draws a direction; value.diffuse + value.specular over value.pdf is the throughput.
+/// Samples a direction; value.diffuse + value.specular over value.pdf is the throughput.
 BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
     const vec2 u = random2(rng);
     if (HAS_CLEARCOAT) {
@@ -328,7 +330,8 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
         bounds.y += bounds.x;
         bounds.z = bounds.w - b.probability.w;
         lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : choice < bounds.w ? 3u : 4u;
-        // Reusing the number inside its interval, for the choice between reflection and refraction.
+        // Rescales the random number within its interval, to reuse it for the choice between reflection and
+        // refraction.
         choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
         const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
         if (lobe != 0u && smoothLobe) return sampleSmooth(b, lobe, choice);
@@ -340,7 +343,7 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
     return BsdfSample(direction, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
 }
 
-/// What the specular lobes reflect and transmit of uniform light: the albedoSpecular layer.
+/// Returns the specular lobes' reflection and transmission of uniform light: the albedoSpecular layer.
 vec3 specularAlbedo(Bsdf b) {
     if (!HAS_SPECULAR) return vec3(0.0);
     const float missing = 1.0 - b.albedo.x - b.albedo.y;

@@ -1,11 +1,11 @@
-// KHR_materials_clearcoat: a layer of GGX facets of a dielectric of index 1.5, with a normal of its own, over everything
-// else a material does.
+// KHR_materials_clearcoat: a layer of GGX facets of a dielectric of index 1.5, with a normal of its own, over
+// the rest of the material.
 //
-//   f = weight * coat + (1 - weight * E(wo)) * material,   E: what the coat reflects of uniform light
+// f = weight * coat + (1 - weight * E(wo)) * material,   E: the coat's reflection of uniform light
 //
-// The extension leaves the layering operator open and suggests the Fresnel term at the viewer's cosine for E, which is
-// what E is for a smooth coat; for a rough one E also has the facets' angles and their masking, so that a coat over a
-// white material is white. Emission is below the coat too.
+// The extension leaves the layering operator open and suggests the Fresnel term at the viewer's cosine for E.
+// That is E for a smooth coat; for a rough one, E also includes the facets' angles and masking, so that a
+// coat over a white material is white. Emission is below the coat too.
 #ifndef LIMPID_CLEARCOAT_GLSL
 #define LIMPID_CLEARCOAT_GLSL
 
@@ -24,12 +24,12 @@ float clearcoatFresnel(float cosine) {
     return mix(CLEARCOAT_F0, 1.0, schlickWeight(cosine));
 }
 
-/// `baseAlbedo`: roughly what the material below reflects.
+/// `baseAlbedo`: roughly the reflection of the material below.
 Clearcoat makeClearcoat(Surface s, vec3 toViewer, float baseAlbedo) {
     Clearcoat c;
     c.frame = frameAround(s.clearcoatNormal);
     c.wo = toViewer * c.frame;
-    // From within a body its coat is on the other side, where the light that leaves meets it.
+    // Seen from inside a body, the coat is on the other side, where light leaves the body.
     c.weight = s.front || s.thin || s.transmission == 0.0 ? s.clearcoat : 0.0;
     c.alpha = max(s.clearcoatRoughness * s.clearcoatRoughness, 1e-4);
     c.smoothSurface = s.clearcoatRoughness < SMOOTH_ROUGHNESS;
@@ -39,7 +39,8 @@ Clearcoat makeClearcoat(Surface s, vec3 toViewer, float baseAlbedo) {
     return c;
 }
 
-/// f cos and the density of sampleClearcoat; 0 for a smooth coat. `normal` is the geometric one, on the viewer's side.
+/// Returns f cos and the density of sampleClearcoat; 0 for a smooth coat. `normal` is the geometric one, on
+/// the viewer's side.
 vec2 evaluateClearcoat(Clearcoat c, vec3 normal, vec3 direction) {
     const vec3 wi = direction * c.frame;
     if (c.smoothSurface || wi.z <= 0.0 || dot(direction, normal) <= 0.0) return vec2(0.0);
@@ -49,7 +50,7 @@ vec2 evaluateClearcoat(Clearcoat c, vec3 normal, vec3 direction) {
     return vec2(c.weight * clearcoatFresnel(dot(c.wo, m)) * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn), 1.0) * pdf;
 }
 
-/// A direction (world) that the coat reflects to; it may point below the surface.
+/// Samples a direction (world space) of the coat's reflection; it may point below the surface.
 vec3 sampleClearcoat(Clearcoat c, vec2 u) {
     const vec3 m = c.smoothSurface ? vec3(0.0, 0.0, 1.0) : sampleVisibleNormal(c.wo, c.alpha, u);
     return c.frame * (2.0 * dot(c.wo, m) * m - c.wo);

@@ -1,4 +1,5 @@
-// The lat-long environment: bilinear look-up, and importance sampling by texel (pbrt 4th ed., section 12.5).
+// The latitude-longitude environment: bilinear look-up, and importance sampling by texel (pbrt 4th ed.,
+// section 12.5).
 #ifndef LIMPID_ENVIRONMENT_GLSL
 #define LIMPID_ENVIRONMENT_GLSL
 
@@ -11,12 +12,12 @@ struct EnvironmentSample {
     float pdf;  // per solid angle
 };
 
-/// From a direction (latLongOf) to the picture.
+/// Converts the coordinates of a direction (latLongOf) to those of the picture.
 vec2 turnedUv(vec2 uv, SceneParams scene) {
     return vec2(fract(uv.x - scene.environmentTurn), uv.y);
 }
 
-/// `uv` of the picture.
+/// `uv` is in the picture's coordinates.
 vec3 texelRadiance(vec2 uv, SceneParams scene) {
     const ivec2 size = ivec2(scene.environmentWidth, scene.environmentHeight);
     const vec2 p = uv * vec2(size) - 0.5;
@@ -29,18 +30,18 @@ vec3 texelRadiance(vec2 uv, SceneParams scene) {
                mix(imageLoad(environment, row1 + x0).rgb, imageLoad(environment, row1 + x1).rgb, f.x), f.y);
 }
 
-/// `uv` of a direction.
+/// `uv` is that of a direction.
 vec3 environmentRadiance(vec2 uv, SceneParams scene) {
     return texelRadiance(turnedUv(uv, scene), scene);
 }
 
-/// A texel's probability as a density per solid angle.
+/// Converts a texel's probability to a density per solid angle.
 float environmentDensity(float probability, float v, SceneParams scene) {
     const float texels = float(scene.environmentWidth) * float(scene.environmentHeight);
     return probability * texels / (2.0 * PI * PI * max(sin(v * PI), 1e-6));
 }
 
-/// `uv` of a direction.
+/// `uv` is that of a direction.
 float environmentPdf(vec2 uv, SceneParams scene) {
     uv = turnedUv(uv, scene);
     const uvec2 size = uvec2(scene.environmentWidth, scene.environmentHeight);
@@ -49,7 +50,8 @@ float environmentPdf(vec2 uv, SceneParams scene) {
     return environmentDensity(probability, uv.y, scene);
 }
 
-/// `cell` picks a texel (row and column by themselves: one float has too few bits for both), `u` the point in it.
+/// `cell` selects a texel (row and column separately, since one float has too few bits for both), `u` the
+/// point in it.
 EnvironmentSample sampleEnvironment(vec2 cell, vec2 u, SceneParams scene) {
     const uvec2 size = uvec2(scene.environmentWidth, scene.environmentHeight);
     const uvec2 texel = min(uvec2(cell * vec2(size)), size - 1u);

@@ -1,5 +1,6 @@
-// Next-event estimation: one light, one point on it; and the density of that for a ray that found a light by itself
-// (multiple importance sampling). Punctual lights: KHR_lights_punctual. docs/lighting.md says which light is drawn how often.
+// Next-event estimation: samples one light and one point on it; and returns the probability density of that
+// for a ray that hit a light (multiple importance sampling). Punctual lights: KHR_lights_punctual.
+// docs/lighting.md describes the sampling probabilities.
 #ifndef LIMPID_LIGHTS_GLSL
 #define LIMPID_LIGHTS_GLSL
 
@@ -7,18 +8,20 @@
 #include "shaders/material/material.glsl"
 #include "shaders/trace/trace.glsl"
 
-/// Next-event estimation looks at each punctual light if there are at most so many ...
+/// Up to this number of punctual lights, next-event estimation evaluates all of them.
 const uint PUNCTUAL_LIGHTS_ALL_LOOKED_AT = 256u;
-/// ... and else at so many, drawn by power.
+/// With more lights, it evaluates this many candidates, drawn by power.
 const uint PUNCTUAL_CANDIDATES = 32u;
-/// Probability of choosing any punctual light that reaches, not by how much.
+/// The probability of choosing uniformly among the punctual lights that reach the point, instead of by
+/// contribution.
 const float PUNCTUAL_UNIFORM_SHARE = 0.4;
 
-/// Where light is wanted.
+/// The point that is lit.
 struct Receiver {
     vec3 position, normal, geometricNormal;
-    bool bothSides;  // of the surface: light may arrive from behind
-    float grazing;   // least weight of a light before the surface, where a cosine is not what counts
+    bool bothSides;  // light may also arrive from behind the surface
+    float grazing;   // minimum weight of a light in front of the surface, for materials where the cosine does
+                     // not matter
 };
 
 Receiver receiverAt(Surface s) {
@@ -26,7 +29,8 @@ Receiver receiverAt(Surface s) {
     return Receiver(s.position, s.normal, s.geometricNormal, HAS_TRANSMISSION && s.transmission > 0.0, coated ? 0.1 : 0.0);
 }
 
-/// The probabilities of asking the environment and the emissive triangles; what is left is for punctual lights.
+/// The probabilities of sampling the environment and the emissive triangles; the remainder is for punctual
+/// lights.
 struct LightShares {
     float environment, triangles;
 };
@@ -34,8 +38,8 @@ struct LightShares {
 struct LightSample {
     vec3 direction;
     float distance;  // INFINITE_DISTANCE: no target, only a direction
-    vec3 target;     // just before the light: where the shadow ray ends
-    vec3 radiance;   // incident, for punctual lights divided by nothing: weight = radiance / pdf
+    vec3 target;     // just before the light: the end of the shadow ray
+    vec3 radiance;   // incident; not divided by the density: weight = radiance / pdf
     float pdf;       // per solid angle; for punctual lights the probability of choosing the light
     bool delta;      // only this technique finds the light
 };
@@ -57,7 +61,8 @@ float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, 
     return attenuation;
 }
 
-/// Barycentrics are of the mesh, not of the light; `cosine` is of the direction in which the light leaves.
+/// Barycentrics are those of the mesh, not of the light; `cosine` is that of the direction in which light
+/// leaves.
 vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float cosine) {
     vec3 emission = uintBitsToFloat(record3.xyz);
     if (HAS_TEXTURES || HAS_CLEARCOAT) {
@@ -123,8 +128,8 @@ LightSample samplePunctualLight(int at, vec3 from) {
     return light;
 }
 
-/// The ray that must be free for the light to count. It runs from start to target, both moved off their surfaces: along
-/// the unmoved direction the two offsets could cancel and let the light shadow itself.
+/// Returns the shadow ray. It runs from start to target, both offset from their surfaces; along the original
+/// direction the two offsets could cancel and let the light shadow itself.
 Ray shadowRay(vec3 start, LightSample light) {
     if (light.distance == INFINITE_DISTANCE) return Ray(start, light.direction, INFINITE_DISTANCE);
     const vec3 path = light.target - start;
@@ -132,7 +137,7 @@ Ray shadowRay(vec3 start, LightSample light) {
     return Ray(start, path / max(distance, 1e-37), distance);
 }
 
-/// Of what a punctual light sends to `from`, what a diffuse surface there can use; visibility is not looked at.
+/// Returns how much of a punctual light a diffuse surface could use, ignoring visibility.
 float usableLight(Receiver from, LightSample light) {
     const float cosine = dot(from.normal, light.direction);
     float usable = max(cosine, from.grazing);
@@ -141,20 +146,22 @@ float usableLight(Receiver from, LightSample light) {
     return luminance(light.radiance) * usable;
 }
 
-/// A punctual light for `from`; pdf 0: none of those looked at reaches it.
+/// A punctual light for the point; pdf 0: no candidate reaches it.
 struct PunctualChoice {
-    int at;  // in `lights`
+    int at;  // position in `lights`
     float pdf;
 };
 
-/// Looks at all punctual lights, or at PUNCTUAL_CANDIDATES of them drawn by power (resampled importance sampling,
-/// J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005), and chooses by usable light or, with
-/// PUNCTUAL_UNIFORM_SHARE, any that has some: the brightest may be hidden. One pass: two weighted reservoirs.
+/// Evaluates all punctual lights, or PUNCTUAL_CANDIDATES of them drawn by power (resampled importance
+/// sampling, J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005). Chooses by
+/// usable light or, with probability PUNCTUAL_UNIFORM_SHARE, uniformly among those with any, since the
+/// brightest may be occluded. One pass with two weighted reservoirs.
 PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
     const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
     const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
     float u = random(rng), v = random(rng);
-    PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf: the weight, for now
+    PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf holds the weight for
+                                                                                 // now
     float bestSource = 1.0, anySource = 1.0, sum = 0.0, reaching = 0.0;
     for (uint i = 0u; i < count; ++i) {
         uint index = i;
@@ -180,7 +187,7 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
             any = PunctualChoice(at, weight);
             anySource = source;
         }
-        // What is left of the numbers is as random as they were.
+        // The rescaled remainder of each number is again uniform.
         u = u < share ? u / share : (u - share) / (1.0 - share);
         v = v < uniformShare ? v / uniformShare : (v - uniformShare) / (1.0 - uniformShare);
     }
@@ -199,7 +206,7 @@ LightShares lightShares(bool punctual, SceneParams scene) {
     if (HAS_TRIANGLE_LIGHTS) shares.triangles = 1.0 - shares.environment;
     if (HAS_PUNCTUAL_LIGHTS) {
         shares.triangles *= punctual ? scene.triangleLightProbability : 1.0;
-        // Where no other light can be: all for the environment.
+        // Without other lights, always sample the environment.
         if (HAS_ENVIRONMENT && !HAS_TRIANGLE_LIGHTS && !punctual) shares.environment = 1.0;
     }
     return shares;
@@ -214,8 +221,8 @@ LightSample chooseTriangleLight(Receiver from, float choice, float decision, vec
                                imageLoad(lights, at + 3), from.position, u);
 }
 
-/// A light as seen from `from`; pdf 0: nothing to be had there. `shares` are what lightPdf() and its like need for a ray
-/// that leaves from here.
+/// Samples a light; pdf 0: no light reaches the point. `shares` are needed by lightPdf() and similar
+/// functions for a ray that leaves from here.
 LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
     PunctualChoice punctual = PunctualChoice(0, 0.0);
     if (HAS_PUNCTUAL_LIGHTS) punctual = choosePunctualLight(from, scene, rng);
@@ -245,7 +252,8 @@ LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out Li
     return light;
 }
 
-/// Density per solid angle with which sampleLight draws the point where a ray of length `distance` met the surface.
+/// Returns the density per solid angle with which sampleLight draws the hit point of a ray of length
+/// `distance`.
 float lightPdf(Surface s, float distance, vec3 direction, LightShares shares) {
     const uint first = imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).y;
     if (first == NONE) return 0.0;
@@ -254,7 +262,7 @@ float lightPdf(Surface s, float distance, vec3 direction, LightShares shares) {
     return cosine > 0.0 ? shares.triangles * perArea * distance * distance / cosine : 0.0;
 }
 
-/// The same for a ray that met nothing.
+/// Like lightPdf(), but for a ray that misses.
 float environmentLightPdf(vec2 uv, LightShares shares, SceneParams scene) {
     return environmentPdf(uv, scene) * shares.environment;
 }

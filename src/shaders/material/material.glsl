@@ -1,5 +1,5 @@
-// From a hit to the surface there: geometry, material parameters after textures and vertex colours, alpha test.
-// Materials: glTF 2.0, section 3.9 and appendix B.
+// Computes the surface at a hit: geometry, material parameters after textures and vertex colours, and the
+// alpha test. Materials: glTF 2.0, section 3.9 and appendix B.
 #ifndef LIMPID_MATERIAL_GLSL
 #define LIMPID_MATERIAL_GLSL
 
@@ -12,8 +12,8 @@ struct Surface {
     vec3 position;
     vec3 geometricNormal;  // unit, on the viewer's side
     vec3 normal;           // shading normal: unit, on the viewer's side
-    float magnitude;       // the largest coordinate behind `position`, for offsetRay
-    bool front;            // the viewer is on the side that the winding calls front
+    float magnitude;       // the largest coordinate used in computing `position`, for offsetRay
+    bool front;            // the viewer is on the front side, according to the winding order
     uint instance, primitive, material;
     vec3 baseColor;
     float metallic, roughness, specular, ior, transmission;
@@ -21,24 +21,24 @@ struct Surface {
     bool thin, unlit;
     float clearcoat, clearcoatRoughness;
     vec3 clearcoatNormal;  // unit, on the viewer's side
-    vec3 absorption;       // of the body whose boundary this is, per unit of length; 0 if it is none
-    bool culled;    // the back of a single-sided, not transmitting material
+    vec3 absorption;       // of the body that begins at this surface, per unit of length; 0 if there is none
+    bool culled;    // the back of a single-sided material without transmission
     vec3 emission;  // radiance towards the viewer
     float area;     // of the triangle
 };
 
-/// Whether another medium begins behind the surface: a body that lets light in, not a thin wall.
+/// True if another medium begins behind the surface: a transmitting body, not a thin wall.
 bool isBoundary(Surface s) {
     return !s.thin && s.transmission > 0.0;
 }
 
-/// Where a ray that leaves the surface in `direction` starts.
+/// Returns the origin of a ray that leaves the surface in `direction`.
 vec3 leavingPoint(Surface s, vec3 direction) {
     const float side = dot(direction, s.geometricNormal) < 0.0 ? -1.0 : 1.0;
     return offsetRay(s.position, side * s.geometricNormal, s.magnitude);
 }
 
-/// What a triangle in bvhTriangles says of itself.
+/// The ids stored with a triangle in bvhTriangles.
 struct TriangleIds {
     uint instance, primitive, shadingTriangle;
 };
@@ -50,7 +50,8 @@ TriangleIds loadTriangleIds(uint triangle, uint instance) {
     return TriangleIds(named != NONE ? named : instance, primitive, floatBitsToUint(imageLoad(bvhTriangles, at + 2).w));
 }
 
-/// Materials of static triangles are absolute; those of instanced meshes count from the instance's.
+/// Material indices of static triangles are absolute; those of instanced meshes are relative to the
+/// instance's material.
 uint materialOf(uint word, uint instance) {
     uint material = word & TRIANGLE_MATERIAL_MASK;
     if (TWO_LEVEL && instance != NONE) {
@@ -68,7 +69,7 @@ struct VertexData {
     vec4 tangent;
     vec2 uv0, uv1;
     vec4 color;
-    vec4 uv0Edges, uv1Edges;  // how far the two edges from the first vertex go in uv
+    vec4 uv0Edges, uv1Edges;  // uv differences along the two edges from the first vertex
 };
 
 VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
@@ -85,7 +86,8 @@ VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
         colors[i] = vec4(unpackUnorm2x16(b.z), unpackUnorm2x16(b.w));
     }
     const float u = barycentrics.x, v = barycentrics.y;
-    // From the first vertex: exact where all three are equal, as an alpha at its cutoff must be.
+    // Interpolates from the first vertex, which is exact if all three are equal, as needed for an alpha at
+    // its cutoff.
     VertexData data;
     data.normal = interpolate(normals[0], normals[1], normals[2], barycentrics);
     data.tangent.xyz = interpolate(tangents[0].xyz, tangents[1].xyz, tangents[2].xyz, barycentrics);
@@ -98,29 +100,32 @@ VertexData loadVertexData(uvec3 indices, vec2 barycentrics) {
     return data;
 }
 
-/// A ray's cone where it meets a surface: textures are averaged over it.
+/// A ray's cone at a hit: textures are averaged over it.
 struct RayCone {
     float width;
-    /// Sent here by a rough surface's lobe. Then next-event estimation can find the same emission, and reads it at points:
-    /// both must tell of one light for their weighted sum to be right. Other textures need less care: the lobe blurs.
+    /// The ray comes from a rough surface's lobe. Next-event estimation can sample the same emission and
+    /// reads it at points. Both must use the same light for their weighted sum to be correct, so emission is
+    /// read at a point here too. Other textures need less precision, since the lobe blurs them.
     bool scattered;
-    bool wide;  // as wide across as along, for rays through the centres of pixels: nothing else keeps those from shimmering
+    bool wide;  // as wide across as along the ray; for rays through pixel centres, which would otherwise
+                // shimmer
 };
 
-/// The axes of a ray's footprint on a triangle: whole widths, in barycentrics.
+/// The axes of a ray's footprint on a triangle: full widths, in barycentrics.
 struct Footprint {
     vec2 across, along;
-    bool exact;  // what sampleFootprint() makes of it
+    bool exact;  // argument of sampleFootprint()
 };
 
-/// Of a vector in the triangle's plane. `unitNormal`: of edge1 x edge2, whose length is doubleArea.
+/// Returns the barycentrics of a vector in the triangle's plane. `unitNormal` is that of edge1 x edge2, whose
+/// length is doubleArea.
 vec2 barycentricsOf(vec3 v, vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea) {
     return vec2(dot(cross(v, edge2), unitNormal), dot(cross(edge1, v), unitNormal)) / doubleArea;
 }
 
-/// Where a cone of this width meets the triangle's plane: an ellipse, longer by 1 / cosine along the ray (T.
-/// Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021); a circle around it if
-/// the cone is `wide`.
+/// Intersects a cone of this width with the triangle's plane: an ellipse, longer by 1 / cosine along the ray
+/// (T. Akenine-Moeller et al., "Improved shader and texture level of detail using ray cones", JCGT 2021), or
+/// a circle around it if the cone is `wide`.
 Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea, vec3 toViewer, RayCone cone) {
     const float cosine = dot(unitNormal, toViewer);
     const vec3 inPlane = toViewer - cosine * unitNormal;
@@ -134,7 +139,7 @@ Footprint footprintOn(vec3 edge1, vec3 edge2, vec3 unitNormal, float doubleArea,
                      !cone.scattered);
 }
 
-/// Looks a material's texture up; white if it has none.
+/// Looks up a material's texture over the footprint; white if it has none.
 vec4 materialTexture(uint index, VertexData data, Footprint footprint) {
     vec4 result = vec4(1.0);
     if (index != NONE) {
@@ -149,7 +154,7 @@ vec4 materialTexture(uint index, VertexData data, Footprint footprint) {
     return result;
 }
 
-/// The same at the point itself, in the finest level.
+/// Like above, but at the point itself, in the finest level.
 vec4 materialTexture(uint index, VertexData data) {
     vec4 result = vec4(1.0);
     if (index != NONE) {
@@ -160,8 +165,8 @@ vec4 materialTexture(uint index, VertexData data) {
     return result;
 }
 
-/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by `rng` and the triangle together, so
-/// that neither the order of candidates nor asking twice makes a difference.
+/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by a hash of `rng` and the
+/// triangle, so that neither the order of candidates nor repeated tests make a difference.
 bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) {
     const TriangleIds ids = loadTriangleIds(triangle, instance);
     const uvec4 indices = imageLoad(triangles, int(ids.shadingTriangle));
@@ -180,7 +185,7 @@ bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) 
     return opaque || (blend ? alpha > threshold : alpha >= threshold);
 }
 
-/// The tangent-space normal of the map, in world space.
+/// Returns the normal map's normal in world space.
 vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
     const vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
     const float length2 = dot(t, t);
@@ -191,8 +196,8 @@ vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
     return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : normal;
 }
 
-/// What a clear coat lets through of light emitted below it. By the geometric normal, so that light sampling, which knows
-/// no other, agrees with rays that find the light.
+/// Returns the share of emission that a clear coat transmits. It uses the geometric normal, since light
+/// sampling knows no other and must agree with rays that hit the light.
 float emissionThroughClearcoat(float weight, float cosine) {
     return 1.0 - weight * mix(CLEARCOAT_F0, 1.0, schlickWeight(cosine));
 }
@@ -202,7 +207,7 @@ vec3 objectToWorldNormal(uint instance, vec3 n) {
     const vec3 r0 = uintBitsToFloat(imageLoad(instances, at).xyz);
     const vec3 r1 = uintBitsToFloat(imageLoad(instances, at + 1).xyz);
     const vec3 r2 = uintBitsToFloat(imageLoad(instances, at + 2).xyz);
-    // Cofactors: the inverse transpose up to the determinant, whose sign keeps the side.
+    // Cofactors: the inverse transpose except for the determinant, whose sign keeps the side.
     const vec3 result = vec3(dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n));
     return normalize(dot(r0, cross(r1, r2)) < 0.0 ? -result : result);
 }
@@ -213,9 +218,9 @@ vec3 objectToWorld(uint instance, vec4 p) {
                 dot(uintBitsToFloat(imageLoad(instances, at + 2)), p));
 }
 
-/// The shading normal on the viewer's side. A mapped or interpolated normal may point away from the viewer, or mirror
-/// them into the surface, which would be black; it is tilted just as far as it takes to face them and to mirror them
-/// along the surface.
+/// Returns the shading normal on the viewer's side. A mapped or interpolated normal may face away from the
+/// viewer, or reflect the view direction into the surface, which would be black. It is tilted just enough to
+/// face the viewer and to reflect along the surface.
 vec3 facingNormal(vec3 normal, vec3 geometricNormal, vec3 toViewer) {
     const float least = 0.01;
     vec3 facing = normal;
@@ -242,14 +247,14 @@ void applyClearcoatTextures(inout Surface s, int material, VertexData data, Foot
     s.clearcoatRoughness *= materialTexture(refs.w, data, footprint).g;
 }
 
-/// The coat has a normal map of its own or none: the base's does not change it.
+/// The coat has its own normal map or none; the base's does not affect it.
 vec3 clearcoatNormal(int material, VertexData data, Footprint footprint, vec3 normal, vec4 tangent) {
     const uvec4 coat = imageLoad(materials, material + 7);
     if (coat.x == NONE) return normal;
     return mappedNormal(normal, tangent, materialTexture(coat.x, data, footprint).rgb, uintBitsToFloat(coat.w));
 }
 
-/// `toViewer`: unit.
+/// `toViewer` is a unit vector.
 Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toViewer, RayCone cone) {
     Surface s;
     const int at = int(triangle * BVH_TRIANGLE_TEXELS);

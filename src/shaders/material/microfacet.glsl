@@ -8,7 +8,7 @@
 
 float ggxDistribution(vec3 m, float alpha) {
     const float a2 = alpha * alpha;
-    // 1 - z^2 as x^2 + y^2: near the pole the difference would have no digits left.
+    // 1 - z^2 as x^2 + y^2, since the difference would cancel near the pole.
     const float d = m.x * m.x + m.y * m.y + a2 * m.z * m.z;
     return a2 / (PI * d * d);
 }
@@ -23,7 +23,8 @@ float stirling(float x) {
     return (x - 0.5) * log(x) + (1.0 / 12.0 - 1.0 / (360.0 * x * x)) / x;
 }
 
-/// G2 / G1 of transmission: G2 is the Beta function of 1 + Lambda at both sides (E. Heitz et al., SIGGRAPH 2016).
+/// G2 / G1 for transmission: G2 is the Beta function of 1 + Lambda at both sides (E. Heitz et al., SIGGRAPH
+/// 2016).
 float transmittedMasking(float lambdaOut, float lambdaIn) {
     return exp(stirling(2.0 + lambdaOut) + stirling(2.0 + lambdaIn) - stirling(2.0 + lambdaOut + lambdaIn) - 1.0810615) /
            (1.0 + lambdaIn);
@@ -47,9 +48,9 @@ float schlickWeight(float cosine) {
     return c2 * c2 * c;
 }
 
-/// Unpolarised reflectance; eta = index behind the surface over the index before it.
+/// Returns the unpolarised reflectance; eta = index behind the surface over the index in front of it.
 float fresnelDielectric(float cosine, float eta) {
-    // Not as 1 - sin^2 / eta^2: for eta near 1 and grazing angles that has no digits left.
+    // Not 1 - sin^2 / eta^2, which cancels for eta near 1 at grazing angles.
     const float transmitted2 = (cosine * cosine + (eta - 1.0) * (eta + 1.0)) / (eta * eta);
     const float transmitted = sqrt(max(0.0, transmitted2));
     const float s = (cosine - eta * transmitted) / (cosine + eta * transmitted);
@@ -57,7 +58,8 @@ float fresnelDielectric(float cosine, float eta) {
     return transmitted2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-/// Single-scattering albedo as F0 * x + F90 * y; z and w spread metals' multiple scattering (scene/device/tables/ggx_table.cpp).
+/// Returns the single-scattering albedo as F0 * x + F90 * y; z and w describe metals' multiple scattering
+/// (scene/device/tables/ggx_table.cpp).
 vec4 ggxAlbedo(float cosine, float roughness) {
     const float last = float(GGX_TABLE_SIZE - 1u);
     const vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * last;
@@ -69,7 +71,8 @@ vec4 ggxAlbedo(float cosine, float roughness) {
                mix(imageLoad(ggxTable, below), imageLoad(ggxTable, below + 1), f.x), f.y);
 }
 
-/// Cosine-weighted averages of ggxAlbedo's x and y, and the share of multiple scattering that is diffuse-like.
+/// Returns cosine-weighted averages of ggxAlbedo's x and y, and the diffuse-like share of multiple
+/// scattering.
 vec3 ggxAverage(float roughness) {
     const int size = int(GGX_TABLE_SIZE);
     const float p = clamp(roughness, 0.0, 1.0) * float(size - 1);
@@ -78,7 +81,7 @@ vec3 ggxAverage(float roughness) {
     return mix(imageLoad(ggxTable, at).xyz, imageLoad(ggxTable, at + 1).xyz, p - float(row));
 }
 
-/// One of the two texels of the entry (scene/device/tables/dielectric_table.cpp, scene_layout.h).
+/// Returns one of the two texels of a table entry (scene/device/tables/dielectric_table.cpp, scene_layout.h).
 vec4 dielectricEntry(float cosine, float roughness, float eta, int texel) {
     const int size = int(DIELECTRIC_TABLE_SIZE);
     const vec3 last = vec3(vec2(size - 1), float(DIELECTRIC_ETA_NODES - 1u));

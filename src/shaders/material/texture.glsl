@@ -1,5 +1,6 @@
-// Texture look-up from texel buffers: wrap modes, nearest and bilinear filters and mip levels as glTF's samplers say
-// (glTF 2.0, section 3.8.4; OpenGL ES 3.0, section 3.8.10), and the mean over a ray's footprint.
+// Texture look-up from texel buffers: wrap modes, nearest and bilinear filters and mip levels according to
+// glTF's samplers (glTF 2.0, section 3.8.4; OpenGL ES 3.0, section 3.8.10), and the mean over a ray's
+// footprint.
 #ifndef LIMPID_TEXTURE_GLSL
 #define LIMPID_TEXTURE_GLSL
 
@@ -34,13 +35,13 @@ vec4 decodeTexel(uint texel, bool srgb) {
 int wrapTexel(int x, int size, uint mode) {
     if (mode == 1u) return clamp(x, 0, size - 1);
     const int period = mode == 2u ? 2 * size : size;
-    // Integer division: in float, some GPUs put a whole quotient just below itself.
+    // Integer division: in float, some GPUs round an integer quotient to just below itself.
     const int remainder = x - period * (x / period);
     const int m = remainder < 0 ? remainder + period : remainder;
     return clamp(mode == 2u && m >= size ? period - 1 - m : m, 0, size - 1);
 }
 
-/// `filtered` false: the nearest texel; all of one mip level.
+/// `filtered` false: the nearest texel. Reads one mip level.
 vec4 sampleLevel(TextureRef ref, vec2 uv, uint level, bool filtered) {
     uint first = ref.firstTexel;
     uint width = ref.width, height = ref.height;
@@ -51,7 +52,7 @@ vec4 sampleLevel(TextureRef ref, vec2 uv, uint level, bool filtered) {
     }
     const uint wrapU = (ref.flags >> TEXTURE_WRAP_U_SHIFT) & 3u, wrapV = (ref.flags >> TEXTURE_WRAP_V_SHIFT) & 3u;
     const bool srgb = (ref.flags & TEXTURE_SRGB) != 0u;
-    // Far coordinates would leave the integers' range, and have no fraction left anyway.
+    // Large coordinates would overflow the integers, and have no fraction left anyway.
     const vec2 p = clamp(uv * vec2(width, height), vec2(-1e8), vec2(1e8)) - (filtered ? 0.5 : 0.0);
     const ivec2 base = ivec2(floor(p));
     const vec2 f = filtered ? p - floor(p) : vec2(0.0);
@@ -64,7 +65,8 @@ vec4 sampleLevel(TextureRef ref, vec2 uv, uint level, bool filtered) {
     return mix(top, bottom, f.y);
 }
 
-/// The mean of `taps` points, from `first` on, that lie `step_` apart. `lod`: log2 of the footprint in texels.
+/// Returns the mean of `taps` points, starting at `first`, with the spacing `step_`. `lod`: log2 of the
+/// footprint in texels.
 vec4 sampleTaps(TextureRef ref, vec2 first, vec2 step_, uint taps, float lod) {
     const uint mip = (ref.flags >> TEXTURE_MIP_SHIFT) & 3u;
     const bool minified = lod > 0.0;
@@ -74,8 +76,8 @@ vec4 sampleTaps(TextureRef ref, vec2 first, vec2 step_, uint taps, float lod) {
     const float fraction = mip == 2u ? level - floor(level) : 0.0;
     const uint levels = fraction > 0.0 ? 2u : 1u;
     vec4 sum = vec4(0.0);
-    // One loop, not one in the other: CPUs run the body of each once more, masked. (With the test at the end of the body
-    // lavapipe 22.3 goes on adding in lanes that are done.)
+    // A single loop instead of nested ones, since CPUs run the body of each once more, masked. (With the test
+    // at the end of the body, lavapipe 22.3 keeps adding in lanes that have finished.)
     const uint count = taps * levels;
     for (uint i = 0u; i < count; ++i) {
         const uint coarser = i & (levels - 1u);
@@ -90,12 +92,13 @@ vec4 sampleTexture(TextureRef ref, vec2 uv, float lod) {
     return sampleTaps(ref, uv, vec2(0.0), 1u, lod);
 }
 
-/// The most taps along a footprint's long axis. Footprints that are longer yet read coarser levels.
+/// The maximum number of taps along a footprint's long axis. Longer footprints use coarser levels.
 const uint MAX_TAPS = 4u;
 
-/// The mean over a parallelogram around `uv` with these axes (whole widths, in units of uv): the level is chosen by the
-/// short extent, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996). Without mip levels,
-/// one tap, as the sampler says. `exact` false: one tap in one level, of the same area.
+/// Returns the mean over a parallelogram around `uv` with these axes (full widths, in units of uv). The short
+/// extent selects the level, and taps lie along the long one (A. Schilling et al., "Texram", IEEE CG&A 1996).
+/// Without mip levels: one tap, according to the sampler. `exact` false: one tap in one level, for the same
+/// area.
 vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exact) {
     const vec2 size = vec2(ref.width, ref.height);
     const vec2 a = across * size, b = along * size;
@@ -104,7 +107,7 @@ vec4 sampleFootprint(TextureRef ref, vec2 uv, vec2 across, vec2 along, bool exac
     const float area = abs(a.x * b.y - a.y * b.x);
     const float shortExtent = max(area / longExtent, longExtent / float(MAX_TAPS));
     const bool oneTap = !exact || ((ref.flags >> TEXTURE_MIP_SHIFT) & 3u) == 0u;
-    // Below a texel there is nothing that taps would tell apart.
+    // Within a texel, several taps would make no difference.
     const float wanted = min(ceil(longExtent / max(shortExtent, 1.0)), float(MAX_TAPS));
     const uint taps = oneTap ? 1u : max(uint(wanted), 1u);
     const vec2 step_ = (firstLonger ? across : along) / float(taps);

@@ -1,4 +1,4 @@
-// A ray against the four children of a node, in either format of scene_layout.h.
+// Intersects a ray with the four children of a node, in either format of scene_layout.h.
 #ifndef LIMPID_BVH_NODE_GLSL
 #define LIMPID_BVH_NODE_GLSL
 
@@ -9,11 +9,12 @@ const uint KEY_MISS = 0xffffffffu;
 struct TraversalRay {
     vec3 origin, direction, inverse;
     vec3 acrossX, acrossY;        // perpendicular to the ray, of any length
-    vec3 offsetNear, offsetFar;  // t of a plane at p is p * inverse + offset, at least and at most
+    vec3 offsetNear, offsetFar;  // the t of a plane at p is p * inverse + offset; lower and upper bound
 };
 
 TraversalRay traversalRay(vec3 origin, vec3 direction) {
-    // A component of 0 would make 0 * infinity; the smallest direction that does not overflow stands for it.
+    // A component of 0 would give 0 * infinity, so it is replaced by the smallest value that does not
+    // overflow.
     const vec3 tiny = vec3(1e-18);
     const vec3 safe = mix(direction, mix(tiny, -tiny, lessThan(direction, vec3(0.0))), lessThan(abs(direction), tiny));
     const vec3 acrossX = abs(direction.x) > abs(direction.z) ? vec3(-direction.y, direction.x, 0.0)
@@ -24,8 +25,8 @@ TraversalRay traversalRay(vec3 origin, vec3 direction) {
                         offset + padding);
 }
 
-/// Entry distances as sortable keys: distance bits with the child's number in the lowest two; KEY_MISS where the ray
-/// misses.
+/// Returns entry distances as sortable keys: distance bits with the child's number in the lowest two;
+/// KEY_MISS if the ray misses.
 uvec4 keysOf(vec4 tNear, vec4 tFar) {
     const uvec4 keys = (floatBitsToUint(tNear) & ~3u) | uvec4(0u, 1u, 2u, 3u);
     return mix(uvec4(KEY_MISS), keys, lessThanEqual(tNear, tFar));
@@ -48,8 +49,9 @@ uvec4 intersectQuantised(uint node, TraversalRay ray, float tMax, out uvec4 chil
     const vec3 scale = ray.inverse * vec3(exponentScale(head.w & 255u), exponentScale((head.w >> 8) & 255u),
                                           exponentScale((head.w >> 16) & 255u));
     const vec3 base = (uintBitsToFloat(head.xyz) - ray.origin) * ray.inverse;
-    // Rounding of origin and cells in ray space, at most: both sides of a box move outwards by it, so that a flat box or
-    // a hit on an edge of one is not lost (compare T. Ize, "Robust BVH ray traversal", JCGT 2013).
+    // Both sides of a box move outwards by a bound on the rounding error of origin and cells in ray space, so
+    // that flat boxes and hits on their edges are not lost (compare T. Ize, "Robust BVH ray traversal", JCGT
+    // 2013).
     const vec3 padding = 5e-7 * (abs(base) + 255.0 * abs(scale));
     const vec3 baseNear = base - padding, baseFar = base + padding;
     const bvec3 flip = lessThan(ray.inverse, vec3(0.0));
@@ -64,7 +66,7 @@ uvec4 intersectQuantised(uint node, TraversalRay ray, float tMax, out uvec4 chil
     return keysOf(tNear, tFar);
 }
 
-/// Faster where arithmetic counts and not the number of loads: on GPUs.
+/// Faster on GPUs, where arithmetic costs more than loads.
 uvec4 intersectExpanded(uint node, TraversalRay ray, float tMax, out uvec4 children) {
     const int at = int(node * EXPANDED_NODE_TEXELS);
     children = imageLoad(bvhNodes, at + 6);
@@ -78,7 +80,7 @@ uvec4 intersectExpanded(uint node, TraversalRay ray, float tMax, out uvec4 child
     const vec4 farZ = uintBitsToFloat(imageLoad(bvhNodes, far.z)) * ray.inverse.z + ray.offsetFar.z;
     const vec4 tNear = max(max(nearX, nearY), max(nearZ, vec4(0.0)));
     const vec4 tFar = min(min(farX, farY), min(farZ, vec4(tMax)));
-    // The offsets are padded by their own rounding; this is that of the sum.
+    // The offsets include their own rounding error; this is that of the sum.
     return keysOf(tNear, tFar * 1.000001);
 }
 

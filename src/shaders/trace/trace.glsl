@@ -1,6 +1,6 @@
-// The one interface through which passes trace rays. Implementations: trace_compute.glsl (our tree, walked in a
-// compute shader) and, where the including shader defines LIMPID_TRACE_HARDWARE, trace_hardware.glsl (the driver's, from
-// ray generation). Shading never depends on which one is used.
+// The interface through which passes trace rays. Implementations: trace_compute.glsl (our own tree, traversed
+// in a compute shader) and, if the including shader defines LIMPID_TRACE_HARDWARE, trace_hardware.glsl (the
+// driver's tree, from ray generation). Shading does not depend on which one is used.
 #ifndef LIMPID_TRACE_GLSL
 #define LIMPID_TRACE_GLSL
 
@@ -15,10 +15,10 @@ struct Ray {
 const float INFINITE_DISTANCE = 1e30;
 
 struct Hit {
-    float t;            // distance; INFINITE_DISTANCE: nothing hit
+    float t;            // distance; INFINITE_DISTANCE: no hit
     vec2 barycentrics;  // of vertices 1 and 2
-    uint triangle;      // in bvhTriangles; its record names instance, primitive and shading triangle
-    uint instance;      // of an instanced mesh; NONE: the triangle's record names it
+    uint triangle;      // in bvhTriangles; its record has instance, primitive and shading triangle
+    uint instance;      // for instanced meshes; NONE: the triangle's record has it
 };
 
 bool isHit(Hit hit) {

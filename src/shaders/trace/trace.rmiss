@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_scalar_block_layout : require
-// Nothing was hit.
+// Reports a miss.
 #include "shaders/trace/trace_payload.glsl"
 
 layout(location = 0) rayPayloadInEXT TracePayload payload;

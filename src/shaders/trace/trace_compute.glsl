@@ -1,10 +1,10 @@
-// Ray traversal of the four-wide trees that scene/device/bvh.h describes.
+// Ray traversal of the four-wide trees described in scene/device/bvh.h.
 //
-// On a CPU, two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs",
-// HPG 2009): first all lanes descend to a leaf, then all test triangles. On a GPU one loop, where each lane takes one step
-// of its own, a node or a triangle ("if-if" there). The triangle test is watertight: S. Woop, C. Benthin, I. Wald,
-// "Watertight ray/triangle intersection", JCGT 2013, with two vectors across the ray in place of their shear; a vertex
-// projects to the same point whichever triangle it is seen from.
+// CPUs use two nested loops ("while-while": T. Aila, S. Laine, "Understanding the efficiency of ray traversal
+// on GPUs", HPG 2009): first all lanes descend to a leaf, then all test triangles. GPUs use one loop in which
+// each lane takes its own step, a node or a triangle ("if-if" there). The triangle test is watertight: S.
+// Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2013, but with two vectors across
+// the ray instead of their shear; a vertex projects to the same point for all its triangles.
 #ifndef LIMPID_TRACE_COMPUTE_GLSL
 #define LIMPID_TRACE_COMPUTE_GLSL
 
@@ -16,21 +16,22 @@ const uint REF_COUNT_SHIFT = 28u;
 const uint REF_DONE = 0xffffffffu;           // an unreachable leaf: traversal ends
 const uint REF_LEAVE_INSTANCE = 0xfffffffeu;  // back to world space
 
-/// Ascending, by a network of five comparisons.
+/// Sorts in ascending order with a network of five comparisons.
 uvec4 sortKeys(uvec4 k) {
     k = uvec4(min(k.xy, k.zw), max(k.xy, k.zw));
     k = uvec4(min(k.x, k.y), max(k.x, k.y), min(k.z, k.w), max(k.z, k.w));
     return uvec4(k.x, min(k.y, k.z), max(k.y, k.z), k.w);
 }
 
-/// Where a point relative to the ray's origin is seen across the ray. `precise`: the same for every triangle.
+/// Projects a point relative to the ray's origin across the ray. `precise`, so that it is the same for every
+/// triangle.
 vec2 across(TraversalRay ray, vec3 p) {
     precise const float x = fma(p.x, ray.acrossX.x, fma(p.y, ray.acrossX.y, p.z * ray.acrossX.z));
     precise const float y = fma(p.x, ray.acrossY.x, fma(p.y, ray.acrossY.y, p.z * ray.acrossY.z));
     return vec2(x, y);
 }
 
-/// Replaces `hit` if the triangle is nearer.
+/// Replaces `hit` if the triangle is hit at a smaller distance.
 void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hit, uint rng) {
     const int at = int(index * BVH_TRIANGLE_TEXELS);
     const vec4 texel0 = imageLoad(bvhTriangles, at);
@@ -38,7 +39,8 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const vec3 v1 = imageLoad(bvhTriangles, at + 1).xyz - ray.origin;
     const vec3 v2 = imageLoad(bvhTriangles, at + 2).xyz - ray.origin;
     const vec2 a = across(ray, v0), b = across(ray, v1), c = across(ray, v2);
-    // Each difference has the right sign or is 0, which counts as inside: no gap between neighbours.
+    // Each difference has the correct sign or is 0, which counts as inside, so there are no gaps between
+    // neighbours.
     precise const float weight0 = c.x * b.y - c.y * b.x;
     precise const float weight1 = a.x * c.y - a.y * c.x;
     precise const float weight2 = b.x * a.y - b.y * a.x;
@@ -47,7 +49,7 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     const vec3 normal = cross(v1 - v0, v2 - v0);
     const float t = dot(v0, normal) / dot(normal, ray.direction);
     const float area = weight0 + weight1 + weight2;
-    // Written so that a NaN from a degenerate triangle is no hit.
+    // Written so that NaN from a degenerate triangle counts as a miss.
     bool accepted = area != 0.0 && t > 0.0 && t < hit.t;
     const vec2 barycentrics = vec2(weight1, weight2) / area;
     if (HAS_ALPHA) {
@@ -58,7 +60,7 @@ void intersectTriangle(uint index, TraversalRay ray, uint instance, inout Hit hi
     if (accepted) hit = Hit(t, barycentrics, index, instance);
 }
 
-/// With `anyHit` the first hit found ends the traversal.
+/// With `anyHit`, traversal ends at the first hit found.
 Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
     Hit hit = Hit(worldRay.tMax, vec2(0.0), NONE, NONE);
     TraversalRay ray = traversalRay(worldRay.origin, worldRay.direction);
@@ -66,14 +68,14 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
     bool inTopTree = TWO_LEVEL;
     uint stack[STACK_SIZE];
     stack[0] = REF_DONE;
-    int top = 1;  // entries in use
+    int top = 1;  // number of entries in use
     uint current = rootNode;
     while (true) {
-        // Of these two loops a device has one.
+        // Each device uses only one of these two loops.
         while (CPU_LOOPS && current < REF_LEAF) {
             uvec4 children;
             const uvec4 keys = sortKeys(intersectChildren(current, ray, hit.t, children));
-            // Branches cost both sides here; stores past the top are harmless.
+            // Branches cost both sides here, and stores past the top are harmless.
             stack[top] = childOf(keys.w, children);
             top += keys.w != KEY_MISS ? 1 : 0;
             stack[top] = childOf(keys.z, children);
@@ -86,7 +88,7 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
         if (!CPU_LOOPS && current < REF_LEAF) {
             uvec4 children;
             uvec4 keys = intersectChildren(current, ray, hit.t, children);
-            // Any hit will do for a shadow ray: its order does not matter.
+            // The order does not matter for shadow rays, which end at any hit.
             if (!anyHit) keys = sortKeys(keys);
             if (keys.w != KEY_MISS) stack[top++] = childOf(keys.w, children);
             if (keys.z != KEY_MISS) stack[top++] = childOf(keys.z, children);
@@ -106,7 +108,7 @@ Hit traverse(Ray worldRay, uint rootNode, const bool anyHit, uint rng) {
             const vec4 row1 = uintBitsToFloat(imageLoad(bvhInstances, at + 1));
             const vec4 row2 = uintBitsToFloat(imageLoad(bvhInstances, at + 2));
             const uvec4 record = imageLoad(bvhInstances, at + 3);
-            // Not normalised: distances stay those of world space.
+            // Not normalised, so distances stay those of world space.
             const vec4 origin = vec4(worldRay.origin, 1.0), direction = vec4(worldRay.direction, 0.0);
             ray = traversalRay(vec3(dot(row0, origin), dot(row1, origin), dot(row2, origin)),
                                vec3(dot(row0, direction), dot(row1, direction), dot(row2, direction)));

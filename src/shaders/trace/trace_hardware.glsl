@@ -1,5 +1,5 @@
-// Rays through the driver's acceleration structures, from a ray-generation shader. Its trees are made of the triangles in
-// bvhTriangles, in that order (gpu/graph/resources.h).
+// Traces rays through the driver's acceleration structures, from a ray-generation shader. Its trees consist
+// of the triangles in bvhTriangles, in that order (gpu/graph/resources.h).
 #ifndef LIMPID_TRACE_HARDWARE_GLSL
 #define LIMPID_TRACE_HARDWARE_GLSL
 
@@ -17,7 +17,7 @@ Hit traceClosest(Ray ray, uint rootNode, uint rng) {
 
 bool traceAny(Ray ray, uint rootNode, uint rng) {
     payload.rng = rng;
-    payload.t = 0.0;  // the closest-hit shader is skipped; only a miss speaks
+    payload.t = 0.0;  // the closest-hit shader is skipped; only a miss changes it
     traceRayEXT(topLevel, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 0u, 0u, 0u,
                 ray.origin, 0.0, ray.direction, ray.tMax, 0);
     return payload.t >= 0.0;

@@ -1,9 +1,9 @@
-// What a ray of the `hardware` tracer carries between its shaders.
+// The payload of the `hardware` tracer's rays.
 #ifndef LIMPID_TRACE_PAYLOAD_GLSL
 #define LIMPID_TRACE_PAYLOAD_GLSL
 
 struct TracePayload {
-    float t;  // negative: nothing hit
+    float t;  // negative: no hit
     vec2 barycentrics;
     uint triangle;  // in bvhTriangles
     uint instance;
