@@ -1,4 +1,4 @@
-// `limpid bench svgf`: the three charts, as numbers and as pictures.
+// Tests `limpid bench svgf`: the three charts, as numbers and as pictures.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 

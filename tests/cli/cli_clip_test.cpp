@@ -1,4 +1,4 @@
-// limpid render to a clip, by the program ffmpeg; without that the tests are skipped.
+// Tests `limpid render` to a clip with the program ffmpeg; skipped if it is not installed.
 #include <sys/wait.h>
 
 #include <chrono>
@@ -23,7 +23,7 @@ class CliClipTest : public CliTest {
         std::cerr << "\n***** NOT TESTED: clips; the program ffmpeg is not installed *****\n\n";
         GTEST_SKIP();
     }
-    /// One line about the video: "width,height,frames".
+    /// Returns one line about the video: "width,height,frames".
     std::string probe(const std::string& name) const {
         return runProgram(
                    "ffprobe -v error -count_frames -select_streams v -show_entries "
@@ -34,7 +34,7 @@ class CliClipTest : public CliTest {
     size_t files() const {
         return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
     }
-    /// A program of the name ffmpeg that does this instead.
+    /// Creates a program named ffmpeg that runs this script instead.
     std::string fakeFfmpeg(const std::string& script) const {
         fs::create_directories(folder_ / "bin");
         put("bin/ffmpeg", "#!/bin/sh\n" + script);
@@ -57,7 +57,7 @@ TEST_F(CliClipTest, WritesEveryFormat) {
     EXPECT_EQ(probe("a.mp4"), "34,18,3\n") << "yuv420p wants even sizes";
     EXPECT_EQ(probe("a.webm"), "34,18,3\n");
     EXPECT_EQ(probe("a.gif"), "33,17,3\n");
-    // Debian's ffprobe cannot decode animated WebP: count its frames by their chunks.
+    // Debian's ffprobe cannot decode animated WebP, so count its frames by their chunks.
     const std::string webp = get("a.webp");
     EXPECT_EQ(webp.substr(0, 4) + webp.substr(8, 4), "RIFFWEBP");
     size_t frames = 0;
@@ -67,11 +67,12 @@ TEST_F(CliClipTest, WritesEveryFormat) {
 }
 
 TEST_F(CliClipTest, ColoursAreThoseOfThePictures) {
-    // Of even size and with little noise: halved colours of noisy pixels leave the range and are clamped.
+    // Even size and little noise, since halving the chroma of noisy pixels leaves the valid range and is
+    // clamped.
     const std::string render =
         "render builtin:cornell-moving --width 64 --height 36 --spp 64 --device cpu --integrator path "
         "--frames 1 ";
-    // From afar, before a bright sky, which automatic exposure does not look at.
+    // From a distance, with a bright background, which automatic exposure ignores.
     for (const char* view :
          {"--exposure 1 ", "--exposure auto --background 90,90,90 --eye 0.3,0.3,4 --target 0.3,0.3,0 "}) {
         ASSERT_EQ(run(render + view + "-o " + path("a.mp4")).code, 0);
@@ -131,7 +132,7 @@ TEST_F(CliClipTest, AnInterruptedRenderLeavesNoFile) {
             std::_Exit(127);
         }
         ASSERT_GT(process, 0);
-        // The temporary shows that ffmpeg runs.
+        // A temporary file shows that ffmpeg is running.
         for (int i = 0; i < 600 && files() == 0; ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         EXPECT_EQ(files(), 1u);

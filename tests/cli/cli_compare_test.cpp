@@ -1,4 +1,4 @@
-// `limpid compare` as its users and scripts meet it: stills, sequences, exit codes.
+// Tests `limpid compare` as users and scripts use it: stills, sequences, exit codes.
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr uint32_t width = 40, height = 30;
 
-/// A still texture, and sequences of a window on it that moves two pixels to the right a frame.
+/// A still texture, and sequences of a window on it that moves two pixels to the right per frame.
 class CliCompareTest : public CliTest {
   protected:
     CliCompareTest() {
@@ -42,7 +42,7 @@ class CliCompareTest : public CliTest {
         for (float& v : image.pixels) v += offset;
         return image;
     }
-    /// `motion`: of every pixel along x; none writes no layer.
+    /// `motion`: that of every pixel along x; none writes no layer.
     void putExr(const std::string& name, const Image& color, std::optional<float> motion = {}) const {
         LayeredImage layers;
         layers.add("", "RGB", color, Storage::Float);
@@ -53,12 +53,12 @@ class CliCompareTest : public CliTest {
         }
         image::writeExr(folder_ / name, layers);
     }
-    /// ref.0001 .. ref.0004 moving, test.0001 .. with the given brightness added.
+    /// Writes moving frames ref.0001 to ref.0004, and test.0001 to test.0004 with the given brightness added.
     void putSequences(const std::vector<float>& errors, bool withMotion) const {
         for (size_t i = 0; i < errors.size(); ++i) {
             const std::string number = ".000" + std::to_string(i + 1) + ".exr";
             const Image picture = view(static_cast<uint32_t>(2 * i));
-            // The first frame has nowhere to come from.
+            // The first frame has no previous one.
             const float motion = i == 0 ? image::invalidMotion : 2.0f;
             putExr("ref" + number, picture, withMotion ? std::optional(motion) : std::nullopt);
             putExr("test" + number, plus(picture, errors[i]));
@@ -106,7 +106,7 @@ TEST_F(CliCompareTest, ASequenceReportsEveryFrameMeanAndWorst) {
     EXPECT_NEAR(all["mean"]["relmse"].get<double>(), sum / 4.0, 1e-12);
     EXPECT_EQ(all["exposure"], 0.0);
     EXPECT_EQ(all["width"], width);
-    // Each frame's numbers are those of the pair alone.
+    // Each frame's scores equal those of the pair alone.
     const json pair = compareJson(path("test.0003.exr") + " " + path("ref.0003.exr") + " --exposure 0");
     for (const char* name : {"psnr", "ssim", "relmse", "flip", "hdr_flip"})
         EXPECT_EQ(all["frames"][2][name], pair[name]) << name;
@@ -117,7 +117,7 @@ TEST_F(CliCompareTest, FlickerFollowsTheReferencesMotion) {
     const json steady = compareJson(sequences() + " --exposure 0");
     EXPECT_EQ(steady["motion"], "reference");
     EXPECT_NEAR(steady["frames"][1]["flicker_pixels"].get<double>(), 38.0 / 40.0, 1e-9);
-    // A constant error in radiance is not quite one after sRGB, but it moves along.
+    // A constant error in radiance is not exactly constant in sRGB, but it moves with the picture.
     EXPECT_NEAR(steady["mean"]["flicker"].get<double>(), 0.0, 1e-7);
     EXPECT_LT(steady["mean"]["psnr"].get<double>(), 30.0);
     EXPECT_TRUE(steady["frames"][0]["temporal_error"].is_null());
@@ -163,7 +163,7 @@ TEST_F(CliCompareTest, OneReferenceServesAllFrames) {
 }
 
 TEST_F(CliCompareTest, OneExposureForAllFrames) {
-    // Averages 2^-3 and 2^1 times 0.18: one stop up brings their geometric mean to 0.18.
+    // Averages 2^-3 and 2^1 times 0.18: one stop more brings their geometric mean to 0.18.
     for (const auto& [number, value] : {std::pair{"1", 0.0225f}, {"2", 0.36f}}) {
         putExr("ref." + std::string(number) + ".exr", Image(width, height, 3, value));
         putExr("test." + std::string(number) + ".exr", Image(width, height, 3, value));

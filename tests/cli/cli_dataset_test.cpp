@@ -1,4 +1,5 @@
-// limpid dataset: the same files whatever the shards, healed when damaged, right by a furnace.
+// Tests `limpid dataset`: the files do not depend on the shards, damaged ones are rendered again, and a
+// furnace has its known brightness.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -76,7 +77,7 @@ double meanOf(const Tensor& tensor) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Every surface emits 1 and reflects half: what 8 reflections bring is 1 - 1/256.
+/// Every surface emits 1 and reflects half, so 8 reflections give 1 - 1/256.
 TEST_F(CliDatasetTest, AFurnaceIsAsBrightAsItMustBe) {
     expect(
         "dataset --device cpu --rooms 0 --scene builtin:furnace --width 24 --height 16 --samples 2,16 "

@@ -1,4 +1,4 @@
-// limpid render with pipelines that go from frame to frame, and limpid denoise on the files of others.
+// Tests `limpid render` with pipelines that reuse frames, and `limpid denoise` on files of other renderers.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ constexpr const char* tiny = " --device cpu --width 16 --height 9 ";
 
 class CliDenoiseTest : public CliTest {
   protected:
-    /// Noisy frames with every layer, as the pipelines trace them.
+    /// Renders noisy frames with every layer, as the pipelines trace them.
     void renderNoisy(const std::string& layers, const std::string& more = "") {
         const Result result =
             run("render builtin:cornell-moving -o " + path("noisy.%02d.exr") + small +
@@ -48,7 +48,7 @@ TEST_F(CliDenoiseTest, GivesExactlyWhatTheRenderersOwnPipelineGives) {
     }
 }
 
-/// The layers beside a denoised picture are what it was made of, whatever the integrator.
+/// The layers beside a denoised picture are the denoiser's input, whatever the integrator.
 TEST_F(CliDenoiseTest, LayersOfDenoisedFramesCanBeDenoisedAgain) {
     for (const std::string integrator : {"ao", "direct"}) {
         const Result rendered = run(
@@ -139,12 +139,12 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output,
                 HasSubstr("the presets are ambient-occlusion-tutorial history-tracking-course"));
-    // One preset describes a whole method: a second one would override parts of it.
+    // A preset describes a whole method, and a second one would override parts of it.
     result = run("render builtin:cornell -o " + path("a.png") +
                  " --preset history-tracking-course --preset ambient-occlusion-tutorial");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("--preset"));
-    // A preset that the pipeline would ignore.
+    // The pipeline would ignore the preset.
     result = run("render builtin:cornell -o " + path("a.png") + " --denoiser kpcn --preset svgf-paper");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("svgf-paper: is not for --denoiser kpcn, but for svgf"));

@@ -1,4 +1,4 @@
-// Odd numbers, names and kinds of files on the command line.
+// Tests unusual numbers, names and kinds of files on the command line.
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ class CliFilesTest : public CliTest {
         ::mkfifo((folder_ / name).c_str(), 0600);
         return path(name);
     }
-    /// A program that waits for a pipe is stopped, and that is a failure.
+    /// A program that waits for a pipe is stopped, and the test fails.
     static void expectSoon(const std::string& arguments, int code, const std::string& part) {
         const Result result = runProgram(std::string("timeout 20 '") + LIMPID_PROGRAM + "' " + arguments);
         EXPECT_EQ(result.code, code) << arguments << "\n" << result.output;

@@ -1,5 +1,5 @@
-// What one picture takes of the host's memory, from its file to the device, stays below --max-image-memory:
-// the peak of `limpid render` with a large picture against that with one of a pixel.
+// Tests that the host memory for one picture, from its file to the device, stays below --max-image-memory:
+// compares the peak of `limpid render` with a large picture and with one of a single pixel.
 #include <fcntl.h>
 #include <stb/stb_image_write.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint64_t megabyte = uint64_t{1} << 20;
 constexpr uint64_t bound = 64 * megabyte;
-/// Of two renderings alike, which differ in what drivers and allocators happen to hold.
+/// The difference between two equal renders, caused by drivers and allocators.
 constexpr uint64_t noise = 16 * megabyte;
 
 class ImageMemoryTest : public CliTest {
@@ -29,13 +29,13 @@ class ImageMemoryTest : public CliTest {
         put("scene.mtl", "newmtl m\nmap_Kd picture.png\n");
     }
 
-    /// Black, of one component. The zeros pack well: 38 million pixels in 37 KB.
+    /// Writes a black picture with one component. Zeros compress well: 38 million pixels in 37 KB.
     void putPng(int size) const {
         const std::vector<uint8_t> pixels(static_cast<size_t>(size) * static_cast<size_t>(size));
         stbi_write_png(path("picture.png").c_str(), size, size, 1, pixels.data(), size);
     }
 
-    /// One colour, in runs of 127 for each component.
+    /// Writes one colour, in runs of 127 for each component.
     void putHdr(uint32_t width, uint32_t height) const {
         std::string row{2, 2, static_cast<char>(width >> 8), static_cast<char>(width & 255)};
         for (const char value : {'\x80', '\x40', '\x20', '\x81'}) {
@@ -98,7 +98,7 @@ TEST_F(ImageMemoryTest, ALargeTextureIsScaledDownAndStaysBelowTheBound) {
     putPng(1);
     const Run small = render({});
     ASSERT_EQ(small.code, 0) << small.output;
-    putPng(6144);  // whole it takes 144 MB as RGBA alone, 553 MB with mip levels and the device's
+    putPng(6144);  // at full size it takes 144 MB as RGBA alone, 553 MB with mip levels and the device's copy
     const Run large = render({});
     ASSERT_EQ(large.code, 0) << large.output;
     EXPECT_NE(large.output.find("picture.png: scaled down from 6144x6144 to 2048x2048"), std::string::npos)
@@ -111,7 +111,7 @@ TEST_F(ImageMemoryTest, ALargeEnvironmentIsScaledDownAndStaysBelowTheBound) {
     putHdr(8, 4);
     const Run small = render({"--env", path("sky.hdr")});
     ASSERT_EQ(small.code, 0) << small.output;
-    putHdr(4096, 2048);  // whole it takes 503 MB
+    putHdr(4096, 2048);  // at full size it takes 503 MB
     const Run large = render({"--env", path("sky.hdr")});
     ASSERT_EQ(large.code, 0) << large.output;
     EXPECT_NE(large.output.find("sky.hdr: scaled down from 4096x2048 to 1365x682"), std::string::npos)

@@ -1,4 +1,4 @@
-// The network on the command line: its weights, the layers that it needs, and that it denoises.
+// Tests the network on the command line: its weights, the layers it needs, and that it denoises.
 #include <gmock/gmock.h>
 
 #include "image/io/exr/exr.h"
@@ -31,7 +31,7 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
     const image::Image truth = pictureOf("truth.exr");
     const double noisy = image::relMse(pictureOf("noisy.exr"), truth);
     EXPECT_LT(image::relMse(pictureOf("clean.exr"), truth), 0.15 * noisy);
-    // The network of the course, which needs no --weights either.
+    // The network of the course also needs no --weights.
     mustRun("denoise " + path("noisy.exr") + " -o " + path("course.exr") +
             " --device cpu --preset kpcn-cis565");
     const double course = image::relMse(pictureOf("course.exr"), truth);
@@ -40,8 +40,8 @@ TEST_F(CliKpcnTest, TheShippedNetworkCleansAFrame) {
     EXPECT_NE(course, image::relMse(pictureOf("clean.exr"), truth));
 }
 
-/// Against a mean over the pixels, on a scene with many edges. Samples that all went through the pixels'
-/// centres had stair-stepped edges whatever --jitter said.
+/// Compares with a mean over the pixels' areas, on a scene with many edges. Earlier, all samples went through
+/// the pixels' centres, which gave jagged edges whatever --jitter said.
 TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
     const std::string scene = "render builtin:lab-disocclusion" + std::string(small) + "-o ";
     mustRun(scene + path("truth.exr") + " --spp 192 --samples-per-launch 4 --seed 3");
@@ -58,7 +58,7 @@ TEST_F(CliKpcnTest, StillsHaveSmoothEdges) {
     EXPECT_NE(psnrOf(" --jitter frame"), stepped);
 }
 
-/// With few samples and with enough of them for kpcn.errors.
+/// With few samples, and with enough samples for kpcn.errors.
 TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
     for (const std::string samples : {"--spp 4 ", "--spp 8 "}) {
         const std::string errors = "--set kpcn.errors=2";

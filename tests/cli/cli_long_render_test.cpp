@@ -1,4 +1,5 @@
-// Renders that are killed, limited in time or split in shards: the same bits as one undisturbed run.
+// Tests renders that are killed, limited in time or divided into shards: they give the same bits as one
+// undisturbed run.
 #include <fcntl.h>
 #include <fmt/format.h>
 
@@ -38,7 +39,7 @@ class CliLongRenderTest : public CliTest {
         return count;
     }
 
-    /// Starts the program and kills it after `milliseconds`; false if it ended before.
+    /// Starts the program and kills it after `milliseconds`; returns false if it ended before.
     static bool startAndKill(const std::vector<std::string>& arguments, int milliseconds) {
         std::vector<char*> argv{const_cast<char*>(LIMPID_PROGRAM)};
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -59,7 +60,7 @@ class CliLongRenderTest : public CliTest {
         return WIFSIGNALED(status);
     }
 
-    /// Kills the render ten times at random moments, resuming each time, and lets the last run end.
+    /// Kills the render ten times at random times, resuming each time, then lets the last run finish.
     static void killTenTimes(const std::vector<std::string>& arguments) {
         const char* given = std::getenv("LIMPID_TEST_SEED");
         const auto seed =
@@ -183,7 +184,7 @@ TEST_F(CliLongRenderTest, TimeLimitsAreKeptAndGoneOnFrom) {
     const std::string scene = "render builtin:cornell --spp 640 --json" + std::string(small);
     expectDone(scene + "-o " + path("whole.exr"));
     const std::string limited = scene + "--checkpoint " + path("a.ck") + " --resume -o " + path("a.exr");
-    // So little time that only the one launch that a picture needs fits in.
+    // Only the one launch that a picture needs fits into this time.
     const Result first = run(limited + " --time-limit 0.001");
     ASSERT_EQ(first.code, 0) << first.output;
     EXPECT_NE(first.output.find("\"samples\": 1,"), std::string::npos) << first.output;

@@ -1,4 +1,4 @@
-// `limpid bench quality` as its users and scripts meet it: reports, kept references, exit codes.
+// Tests `limpid bench quality` as users and scripts use it: reports, stored references, exit codes.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -18,10 +18,10 @@ class CliQualityTest : public CliTest {
     static json numbers(const std::string& more) {
         const Result result = run(options("--json " + more));
         EXPECT_EQ(result.code, 0) << result.output;
-        const size_t start = std::min(result.output.find('{'), result.output.size());  // after the log
+        const size_t start = std::min(result.output.find('{'), result.output.size());  // skips the log
         return json::parse(result.output.substr(start), nullptr, false);
     }
-    /// Runs may differ in time, and in how they were called.
+    /// Removes values that may differ between runs: times, and the command line.
     static void dropTimes(json& value) {
         if (value.is_object()) {
             for (const char* name : {"command", "median_ms", "denoising_ms"}) value.erase(name);

@@ -1,4 +1,5 @@
-// The command line as its users and scripts meet it: exit codes, messages, and outputs that survive failures.
+// Tests the command line as users and scripts use it: exit codes, messages, and outputs that survive
+// failures.
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/cli_fixture.h"
@@ -26,7 +27,7 @@ TEST_F(CliTest, WrongUsageIsExitCode2) {
     expect("render builtin:cornell -o " + path("a.png") + tiny + "--dump none", 2, "its passes are");
 }
 
-/// Black is black only where it is asked for.
+/// The background is only black if the user asks for it.
 TEST_F(CliTest, DarkScenesGetASkyUnlessABackgroundIsChosen) {
     put("plate.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
     const std::string render = "render " + path("plate.obj") + " -o " + path("a.png") + tiny;
@@ -70,7 +71,7 @@ TEST_F(CliTest, AFailedRunLeavesTheOldOutputAlone) {
 
 TEST_F(CliTest, AFileSizeLimitActsLikeAFullDisk) {
     put("a.exr", "old");
-    // SIGXFSZ ignored, so that the write fails as it does on a full disk.
+    // Ignores SIGXFSZ, so that the write fails as on a full disk.
     const std::string inner =
         std::string("trap \"\" XFSZ; ulimit -f 1; exec \"") + LIMPID_PROGRAM +
         "\" render builtin:cornell --width 256 --height 144 --spp 1 --device cpu --aov all -o " +
@@ -153,7 +154,7 @@ TEST_F(CliTest, InfoListsWhatASceneHoldsAndWhatItListsCanBeChosen) {
     EXPECT_NE(get("0.exr"), get("1.exr"));
     expect(render + path("a.exr") + " --camera 2", 2, "1 'top'");
 
-    // Each clip and both together are three pictures.
+    // Each clip alone, both together and no clip give different pictures.
     for (const char* clip : {"none", "0", "shrink", "all"})
         ASSERT_EQ(run(render + path(std::string(clip) + ".exr") + " --time 1 --animation " + clip).code, 0);
     EXPECT_NE(get("all.exr"), get("0.exr"));

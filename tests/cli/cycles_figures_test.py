@@ -35,7 +35,8 @@ class FiguresTest(unittest.TestCase):
         spread = numpy.std([r.value for r in drawn])
         self.assertAlmostEqual(numpy.mean([r.error for r in drawn]) / spread, 1, delta=0.1)
         self.assertAlmostEqual(numpy.mean([r.value for r in drawn]), 1, delta=4 * spread / 500**0.5)
-        # The components of a pixel often err together: gray noise has the spread of one component, not of three.
+        # The components of a pixel often have the same error: gray noise has the spread of one component, not
+        # of three.
         gray = [figures.ratio([TRUTH + random.normal(0, 0.3, (16, 20, 1)) for _ in range(2)], [TRUTH] * 2)
                 for _ in range(500)]
         self.assertAlmostEqual(numpy.mean([r.error for r in gray]) / numpy.std([r.value for r in gray]), 1, delta=0.1)

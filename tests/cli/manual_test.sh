@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
-# manual_test.sh PROGRAM: the man page has every command, and bash completes commands and options.
+# manual_test.sh PROGRAM: checks that the man page has every command, and that bash completes commands and
+# options.
 set -euo pipefail
 program=$1
 fail() { echo "manual_test.sh: $*" >&2; exit 1; }
 page=$("$program" help --man)
 source <("$program" completion bash)
 for shell in zsh fish; do
-    script=$("$program" completion $shell)  # not through a pipe that closes early: the program would fail
+    script=$("$program" completion $shell)  # not through a pipe that closes early, since the program would fail
     [[ $script == *limpid* ]] || fail "nothing for $shell"
 done
 
-# completes EXPECTED WORD ...: the last word is the one that is typed.
+# completes EXPECTED WORD ...: the last word is the one being typed.
 completes() {
     COMP_WORDS=("${@:2}")
     COMP_CWORD=$((${#COMP_WORDS[@]} - 1))

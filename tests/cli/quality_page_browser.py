@@ -25,7 +25,7 @@ class Browser:
         self.input, from_browser = os.pipe()
 
         def place_pipes():
-            # Chromium reads commands from descriptor 3 and writes answers to 4.
+            # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
             reading, writing = os.dup(to_browser), os.dup(from_browser)
             os.dup2(reading, 3)
             os.dup2(writing, 4)
@@ -228,7 +228,7 @@ def check_silence(browser, address):
 def test(browser, address):
     for domain in ('Page', 'Runtime', 'Network', 'Log'):
         browser.call(f'{domain}.enable')
-    browser.size(1200, 3000)  # nothing has to be scrolled to
+    browser.size(1200, 3000)  # large enough that nothing must be scrolled
     browser.call('Page.navigate', url=address)
     browser.evaluate('''new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))
       .then(() => Promise.allSettled([...document.images].map(image => image.decode())))''')

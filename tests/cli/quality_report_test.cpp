@@ -1,4 +1,4 @@
-// The report of `limpid bench quality`: its numbers, its page, and what the page's data is escaped against.
+// Tests the report of `limpid bench quality`: its numbers, its page, and the escaping of the page's data.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -68,7 +68,7 @@ QualityRun runOf() {
     return run;
 }
 
-/// The page's data, as a browser finds it: up to the first end of a script element.
+/// Returns the page's data as a browser finds it: up to the first end of a script element.
 json dataOf(const std::string& page) {
     const std::string start = R"(<script type="application/json" id="data">)";
     const size_t from = page.find(start) + start.size();
@@ -156,7 +156,7 @@ TEST(QualityReport, ThePageAsksForNothingElse) {
     const std::string page = qualityPage(runOf());
     for (const char* outside : {"http:", "https:", "src=\"", "@import", "url("}) {
         size_t at = page.find(outside);
-        // The name of SVG is no address.
+        // The SVG namespace is not an address that is loaded.
         if (at != std::string::npos && page.compare(at, 26, "http://www.w3.org/2000/svg") == 0)
             at = page.find(outside, at + 1);
         EXPECT_EQ(at, std::string::npos) << page.substr(at, 80);
