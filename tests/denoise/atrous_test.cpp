@@ -1,4 +1,4 @@
-// Every pass of the a-trous filter, on identical inputs, against the version in double precision.
+// Compares every pass of the a-trous filter with the version in double precision, on identical inputs.
 #include <gmock/gmock.h>
 
 #include "tests/denoise/denoise_fixture.h"
@@ -21,7 +21,7 @@ std::string nameOf(const testing::TestParamInfo<std::tuple<Case, gpu::Backing>>&
            std::string(std::get<1>(info.param) == gpu::Backing::Image ? "Images" : "Buffers");
 }
 
-/// Half precision: 1e-3 of the value; the least half is 6e-8.
+/// The tolerance of half precision: 1e-3 of the value; the smallest half is 6e-8.
 void expectNear(const std::vector<dvec4>& values, const std::vector<dvec4>& expected, double relative,
                 const std::string& what) {
     ASSERT_EQ(values.size(), expected.size()) << what;

@@ -1,5 +1,5 @@
-// What must hold of every denoiser, whatever it does: design, section 11.4. A new one is in it by being in
-// denoise::denoisers(). Networks are in kpcn_test.cpp.
+// Properties that every denoiser must have: design, section 11.4. A new denoiser is tested once it is in
+// denoise::denoisers(). kpcn_test.cpp tests networks.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -23,7 +23,7 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
   protected:
     static const denoise::Denoiser& method() { return *denoise::findDenoiser(GetParam()); }
 
-    /// The last picture of a sequence, from fresh histories.
+    /// Returns the last picture of a sequence, starting with empty histories.
     std::vector<float> denoiseSequence(const SyntheticScene& scene, const DenoiserSettings& settings = {},
                                        int count = frames) {
         graph_.beginFrame();
@@ -95,7 +95,7 @@ TEST_P(DenoiserSuite, NoNanGoesInOrComesOut) {
             if (!layer.isMean()) continue;
             std::vector<float>& pixels = frame[layer];
             for (const float value : bad) {
-                if (&pixels == &frame.emission && value == bad[3]) continue;  // it passes by as it is
+                if (&pixels == &frame.emission && value == bad[3]) continue;  // emission is not filtered
                 pixels[at % pixels.size()] = value;
                 at += 617;
             }
@@ -128,7 +128,7 @@ TEST_P(DenoiserSuite, ResizeAndResetStartAnew) {
     EXPECT_EQ(denoiseSequence(scene), fresh) << "after a reset; and the same input gives the same bits";
 }
 
-/// Both ends of the range, and one that is neither.
+/// Both ends of the range, and a value in between.
 std::vector<std::string> numbersOf(const ParamInfo& info) {
     if (!std::holds_alternative<int>(info.defaultValue)) {
         const double between = std::min(std::ceil(info.minimum) + 1.0, 0.5 * (info.minimum + info.maximum));
@@ -138,7 +138,7 @@ std::vector<std::string> numbersOf(const ParamInfo& info) {
     return {std::to_string(min), std::to_string(std::min(min + 1, max)), std::to_string(max)};
 }
 
-/// What must be set besides for a parameter to matter.
+/// Returns the settings that are required for a parameter to have an effect.
 std::vector<std::string> neededFor(const std::string& parameter) {
     if (parameter == "temporal.grey" || parameter == "temporal.grey_misses")
         return {"temporal.grey_restart=on"};
@@ -188,7 +188,7 @@ TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
     }
 }
 
-/// dB of PSNR over the noisy frames, after 24 of them.
+/// PSNR gain in dB over the noisy frames, after 24 frames.
 constexpr double minGain = 8.0;
 
 TEST_P(DenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {

@@ -1,5 +1,5 @@
-// What a moving object leaves behind: the bias of denoised frames where it has been, against that elsewhere
-// on the same wall.
+// Tests for ghosts of a moving object: compares the bias of denoised frames where the object has been with
+// that elsewhere on the same wall.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -16,7 +16,7 @@ constexpr size_t pixels = size_t{extent.width} * extent.height;
 constexpr uint64_t lastFrame = 30;
 constexpr uint32_t seeds = 16;
 
-/// By pixel: was the object seen here before, and is what it stood before seen now?
+/// By pixel: the object was here and the wall behind it is visible now; or the same wall, never covered.
 struct Regions {
     std::vector<bool> swept, elsewhere;
 };
@@ -39,7 +39,7 @@ class GhostsTest : public SequenceTest {
         return result;
     }
 
-    /// Beauty of the last frame; `ids` of every frame are given to `look`.
+    /// Returns the beauty of the last frame; passes the `ids` of every frame to `look`.
     template <typename Look>
     std::vector<float> denoised(const Pipeline& pipeline, uint32_t seed, Look look) {
         FrameRenderer renderer(device(), *gpuScene_, settings(pipeline, seed), 1);
@@ -53,7 +53,7 @@ class GhostsTest : public SequenceTest {
         return layers.beauty;
     }
 
-    /// The wall is the still thing that the moving ones uncover most of.
+    /// The wall is the static object that moving ones uncover most.
     Regions regions() {
         std::vector<std::vector<uint32_t>> seen;
         denoised(parsePipeline("path", "temporal"), 1, [&](const std::vector<uint32_t>& ids) {
@@ -85,7 +85,7 @@ class GhostsTest : public SequenceTest {
     }
 };
 
-/// Mean over the region of (mean - truth)^2 less the mean's own variance.
+/// Returns the mean over the region of (mean - truth)^2 minus the mean's own variance.
 double squaredBias(const std::vector<std::vector<float>>& pictures, const image::Image& truth,
                    const std::vector<bool>& region) {
     double sum = 0.0;
@@ -113,7 +113,7 @@ TEST_F(GhostsTest, WhereAnObjectHasBeenThePictureIsAsRightAsElsewhere) {
     ASSERT_GT(sizeOf(found.elsewhere), 100);
     const image::Image truth = reference(lastFrame, settings({}, 0), 2048);
     for (const denoise::Denoiser& method : denoise::denoisers()) {
-        if (method.network) continue;  // without a past there are no ghosts
+        if (method.network) continue;  // without a history there are no ghosts
         std::vector<std::vector<float>> pictures;
         for (uint32_t seed = 1; seed <= seeds; ++seed)
             pictures.push_back(denoised({Integrator::Path, &method}, seed, [](const auto&) {}));

@@ -1,5 +1,5 @@
-// The kernel-predicting network against PyTorch (training/limpid_training/fixture.py), and what must hold of
-// every denoiser.
+// Compares the kernel-predicting network with PyTorch (training/limpid_training/fixture.py), and tests what
+// every denoiser must satisfy.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ KpcnWeights weightsOf(const std::string& network) {
     return weights;
 }
 
-/// A network of random weights.
+/// A network with random weights.
 KpcnWeights randomWeights(uint32_t hidden, uint32_t channels, uint32_t width) {
     std::mt19937 generator(7);
     KpcnWeights weights{width, {}};
@@ -51,7 +51,7 @@ KpcnWeights randomWeights(uint32_t hidden, uint32_t channels, uint32_t width) {
     return weights;
 }
 
-/// Tensors (channels, rows, columns) to four floats a pixel.
+/// Converts tensors (channels, rows, columns) to four floats per pixel.
 std::vector<float> pixelsOf(const TensorFile& file, const std::string& name, const std::string& fourth) {
     const neural::Tensor& tensor = file.tensors.at(name);
     const std::vector<float> values = neural::valuesOf(tensor);
@@ -92,14 +92,14 @@ bool single(KpcnPrecision precision) {
     return precision == KpcnPrecision::Float || precision == KpcnPrecision::Host;
 }
 
-/// Of the fourth of four floats a pixel.
+/// Returns the fourth of the four floats of each pixel.
 std::vector<float> alphaOf(const std::vector<float>& texels) {
     std::vector<float> result;
     for (size_t i = 3; i < texels.size(); i += 4) result.push_back(texels[i]);
     return result;
 }
 
-/// Root of the squared differences over that of the squares. Of texels the color counts, of numbers each.
+/// Returns the root of the summed squared differences over that of the squares. `texels`: skips alpha.
 double relativeError(const std::vector<float>& picture, const std::vector<float>& truth, bool texels = true) {
     double differences = 0.0, squares = 0.0;
     for (size_t i = 0; i < truth.size(); ++i) {
@@ -110,7 +110,7 @@ double relativeError(const std::vector<float>& picture, const std::vector<float>
     return std::sqrt(differences / squares);
 }
 
-/// The largest difference of a pixel, relative to it and to a tenth of the mean.
+/// Returns the largest difference of a pixel, relative to its value plus a tenth of the mean.
 double largestError(const std::vector<float>& picture, const std::vector<float>& truth) {
     double mean = 0.0, largest = 0.0;
     for (const float value : truth) mean += std::abs(double{value}) / static_cast<double>(truth.size());
@@ -126,16 +126,16 @@ class KpcnTest : public DenoiseTest {
   protected:
     static const denoise::Denoiser& method() { return *denoise::findDenoiser("kpcn"); }
 
-    /// Takes the network from now on.
+    /// Uses this network from now on.
     DenoiserSettings settingsWith(const KpcnWeights& weights, KpcnPrecision precision, int tile = 512) {
         DenoiserSettings settings;
-        settings.kpcn.standardErrors = 0.0f;  // the network alone
+        settings.kpcn.standardErrors = 0.0f;  // only the network
         settings.kpcn.levels = 0;
         settings.kpcn.tile = tile;
         networks_.kpcn = std::make_shared<KpcnNetwork>(device(), weights, precision);
         return settings;
     }
-    /// With all that comes after the network.
+    /// Settings with all steps after the network.
     DenoiserSettings smallSettings() {
         DenoiserSettings settings =
             settingsWith(randomWeights(1, 7, 5), denoise::kpcnPrecision(device().info(), true));
@@ -181,13 +181,13 @@ TEST_F(KpcnTest, IsWhatPyTorchComputes) {
     }
 }
 
-/// One level after the kernels, by the formula of docs/kpcn.md in double precision.
+/// One level of the filter after the kernels, by the formula of docs/kpcn.md in double precision.
 class DoubleLevel {
   public:
     DoubleLevel(const HostFrame& frame, bool specular, int step, double phiColor)
         : frame_(frame), specular_(specular), step_(step), phiColor_(phiColor) {}
 
-    /// `clean`: light and deviation. Texel by texel.
+    /// `clean`: light and deviation per texel.
     std::vector<dvec4> operator()(const std::vector<dvec4>& clean) const {
         std::vector<dvec4> result;
         for (int y = 0; y < static_cast<int>(frame_.height); ++y) {
@@ -210,7 +210,7 @@ class DoubleLevel {
         const float* a = &frame_.albedo[4 * at(x, y)];
         return dvec3(a[0], a[1], a[2]) + 0.00316;
     }
-    /// Of light at (x, y).
+    /// Returns the luminance of the light at (x, y).
     double luminance(dvec3 light, int x, int y) const {
         const dvec3 weights(0.2126, 0.7152, 0.0722);
         if (specular_) return glm::dot(light, weights);
@@ -260,7 +260,7 @@ class DoubleLevel {
     double phiColor_;
 };
 
-/// `frame` beside itself and below itself.
+/// Repeats `frame` to the right and downwards.
 HostFrame repeated(const HostFrame& frame, uint32_t across, uint32_t down) {
     HostFrame result = frame;
     result.width *= across;
@@ -283,7 +283,7 @@ HostFrame repeated(const HostFrame& frame, uint32_t across, uint32_t down) {
 }
 
 TEST_F(KpcnTest, LevelsAgreeWithDoublePrecision) {
-    // 90x111 pixels: the fourth level's taps would be further apart than a tenth of an edge.
+    // 90x111 pixels, where the fourth level's taps would be further apart than a tenth of an edge.
     const HostFrame frame =
         repeated(frameOf(neural::readTensorFile(dataFolder + "kpcn_cases.safetensors"), "small"), 2, 3);
     const std::vector<int> steps{8, 2, 1};
@@ -313,11 +313,11 @@ TEST_F(KpcnTest, LevelsAgreeWithDoublePrecision) {
     }
 }
 
-/// Of the network's light, by the formula of docs/kpcn.md in double precision.
+/// Limits the network's light by the formula of docs/kpcn.md in double precision.
 TEST_F(KpcnTest, LightStaysNearWhatTheSamplesAreSureOf) {
     const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
     HostFrame frame = frameOf(cases, "small");
-    frame.samples = 9;  // of fewer than 8 nothing is moved
+    frame.samples = 9;  // with fewer than 8, nothing is changed
     for (std::vector<float>* layer :
          {&frame.diffuse, &frame.specular, &frame.albedo, &frame.normal, &frame.depth}) {
         for (size_t i = 3; i < layer->size(); i += 4)
@@ -329,8 +329,7 @@ TEST_F(KpcnTest, LightStaysNearWhatTheSamplesAreSureOf) {
     const std::vector<float> picture = denoise(method(), frame, settings);
     const std::vector<float> diffuse = graph_.downloadFloat(device(), sideOf("diffuse", precision)),
                              specular = graph_.downloadFloat(device(), sideOf("specular", precision));
-    // By pixel and side: the share of the way to the noisy light that is to go, positive if that is the
-    // darker.
+    // By pixel and side: the fraction of the way to the noisy light, positive if that is darker.
     const auto lights = [&](size_t at, int side) {
         dvec3 clean, noisy;
         for (int c = 0; c < 3; ++c) {
@@ -391,8 +390,8 @@ TEST_F(KpcnTest, TilesDoNotShow) {
     }
 }
 
-/// Of every precision against single precision, which is PyTorch's: shapes whose channels do and do not fill
-/// whole slabs.
+/// Compares every precision with single precision, which is PyTorch's, for shapes whose channels do and do
+/// not fill whole slabs.
 TEST_F(KpcnTest, AnyShapeOfNetwork) {
     const HostFrame frame = SyntheticScene({}).frame(3, 41, 23, 1);
     for (const auto& [hidden, channels, width] :
@@ -440,7 +439,7 @@ TEST_F(KpcnTest, NoNanGoesInOrComesOut) {
     for (auto* layer :
          {&frame.diffuse, &frame.specular, &frame.emission, &frame.albedo, &frame.normal, &frame.depth}) {
         for (const float value : bad) {
-            if (layer == &frame.emission && value == bad[3]) continue;  // it passes by as it is
+            if (layer == &frame.emission && value == bad[3]) continue;  // emission is not filtered
             for (size_t i = 0; i < 4; ++i) (*layer)[(at += 617) % layer->size()] = value;
         }
     }
@@ -456,7 +455,7 @@ TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
     const size_t first = graph.passes().size();
     method().record(graph, input, settings, networks_);
     // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
-    // bytes, twice, light of 16 and faces of 4. Of the picture: distances, two sides, three levels of each
+    // bytes, twice, light of 16 and faces of 4. For the picture: distances, two sides, three levels of each
     // (the fourth would be too wide), beauty; and the largest of 38x25, 5x4 and 1.
     const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16 + 4);
     const uint64_t images = uint64_t{300} * 200 * (4 + 9 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
