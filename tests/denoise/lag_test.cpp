@@ -1,5 +1,5 @@
-// How soon a denoised picture has followed a light: lab-light's slides along the ceiling for a second, and
-// stops.
+// Tests how quickly a denoised picture follows a light: lab-light's slides along the ceiling for a second,
+// then stops.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ class LagTest : public SequenceTest {
         return result;
     }
 
-    /// Mean squared error of what a screen shows, from the frame on in which the light has stopped.
+    /// Returns the mean squared error of the displayed picture, from the frame in which the light has
+    /// stopped.
     std::vector<double> errors(const RenderSettings& chosen, const image::Image& truth) {
         const float stops = *image::measuredExposure(truth);
         const image::Image shown = image::displayEncode(truth, stops);
@@ -49,7 +50,7 @@ class LagTest : public SequenceTest {
 };
 
 TEST_F(LagTest, SvgfHasFollowedALightWithinEightFrames) {
-    // Of every frame after the light has stopped: the camera stands still.
+    // The camera stands still, so this is the reference for every frame after the light has stopped.
     const image::Image truth = reference(end, settings(0), 1024);
     std::vector<double> mean(end - stop);
     for (uint32_t seed = 1; seed <= seeds; ++seed) {

@@ -1,5 +1,5 @@
-// Layers of what a perfect mirror shows (primary surface replacement): in closed form where mirror, things
-// and camera move; and a picture that is denoised as well through a mirror as when it is seen directly.
+// Tests the layers of a perfect mirror (primary surface replacement): in closed form with moving mirror,
+// objects and camera; and that a picture is denoised as well through a mirror as when seen directly.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ dvec2 centreOf(size_t p, gpu::Extent extent) {
     return dvec2(static_cast<double>(p % extent.width), static_cast<double>(p / extent.width)) + 0.5;
 }
 
-/// Pixels and distance; perspective only.
+/// Returns pixel position and distance; perspective only.
 dvec3 seenAt(const CameraParams& camera, gpu::Extent extent, const dvec3& point) {
     const dvec3 v = point - dvec3(camera.origin), right(camera.right), up(camera.up);
     const double w = glm::dot(v, dvec3(camera.forward));
@@ -37,8 +37,8 @@ dvec3 reflectedAt(const dvec3& v, const dvec3& normal) {
     return v - 2.0 * glm::dot(v, normal) * normal;
 }
 
-// A room of one side: the mirror stands in z = 0 and goes towards +z, before it a block goes along x over a
-// floor.
+// An open scene: the mirror stands at z = 0 and moves towards +z; in front of it, a block moves along x over
+// a floor.
 const dvec3 mirrorVelocity(0, 0, 0.5), blockVelocity(1.2, 0, 0.3);
 constexpr double framesPerSecond = 24.0;
 const vec3 lampRadiance(3.0f, 2.0f, 1.0f);
@@ -83,7 +83,7 @@ class MirrorTest : public RenderTest {
     static constexpr gpu::Extent extent{160, 90};
     static constexpr uint64_t frame = 5;
 
-    /// Of `frame`, with the camera on the path `shake`.
+    /// Renders the layers of `frame`, with the camera on the path `shake`.
     RenderedLayers layersOf(const scene::Scene& scene, bool throughMirrors) {
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene gpuScene(device(), data);
@@ -105,7 +105,7 @@ class MirrorTest : public RenderTest {
                double{layers.depth[4 * p]} * directionAt(moment_.camera, extent, centreOf(p, extent));
     }
 
-    /// Where the mirror stands.
+    /// Returns the mirror's position.
     static double mirrorZ() { return mirrorVelocity.z * static_cast<double>(frame) / framesPerSecond; }
 
     void expectAsThroughAWindow(const RenderedLayers& layers, size_t p, const dvec3& seen) const {
@@ -206,7 +206,7 @@ TEST_F(MirrorTest, ReflectionsMoveAsWhatTheMirrorShows) {
     EXPECT_GT(seen, 1000u);
 }
 
-/// The picture of lab-mirror and its reflection, in frames of one sample while the camera moves.
+/// The picture of lab-mirror and its reflection, in frames of one sample with a moving camera.
 class MirroredPictureTest : public SequenceTest {
   protected:
     static constexpr gpu::Extent extent{160, 90};
@@ -230,7 +230,7 @@ class MirroredPictureTest : public SequenceTest {
         return result;
     }
 
-    /// Whether the pixel's centre lies in the quadrangle with these corners.
+    /// True if the pixel's centre is in the quadrangle with these corners.
     static bool lies(const dvec2& at, const CameraParams& camera, const std::array<vec3, 4>& corners) {
         int side = 0;
         for (size_t i = 0; i < 4; ++i) {
@@ -251,7 +251,7 @@ class MirroredPictureTest : public SequenceTest {
         for (vec3& corner : reflected) corner = lab.reflected(corner);
         for (size_t p = 0; p < map.pixels.size(); ++p) {
             const dvec2 at = centreOf(p, extent);
-            // The panel hides some of its reflection.
+            // The panel hides part of its own reflection.
             if (lies(at, camera, lab.panelCorners)) {
                 flip.direct += double{map.pixels[p]};
                 ++flip.directPixels;

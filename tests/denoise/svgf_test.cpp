@@ -1,5 +1,5 @@
-// Every pass of SVGF, on identical inputs, against the version in double precision: each frame starts from
-// what the device stored in the frame before.
+// Compares every pass of SVGF with the version in double precision, on identical inputs: each frame starts
+// from what the device stored in the previous frame.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ struct Case {
     int resizeAt = -1;     ///< from this frame on the picture is smaller
     int jumpAt = -1;       ///< from this frame on the light is three times as bright
     bool hasNans = false;  ///< and infinities, in radiance and albedo
-    int mixesFrom = 0;     ///< until this frame filtered light is not stabilised
+    int mixesFrom = 0;     ///< before this frame, filtered light is not stabilised
 };
 
 SvgfSettings preset(const char* name) {
@@ -74,7 +74,7 @@ std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
            (std::get<2>(info.param) == gpu::Backing::Image ? "Images" : "Buffers");
 }
 
-/// What the steps up to that of young pixels' variance stored.
+/// The stored results of the steps up to the variance of young pixels.
 struct Stored {
     std::vector<dvec4> color, moments;
     std::vector<double> tiles;      ///< none without anti-lag
@@ -83,14 +83,15 @@ struct Stored {
 
 constexpr double halfRounding = 1e-3, minHalf = 1e-7, floatRounding = 1e-5;
 
-/// `error` bounds what float32 makes of the difference of moments whose root is taken, then it is a half.
+/// `error` bounds float32's error of the difference of moments under the root; the result is stored as a
+/// half.
 bool isDeviation(double value, double expected, double error) {
     const double square = expected * expected;
     const double least = std::sqrt(std::max(square - error, 0.0)), most = std::sqrt(square + error);
     return value >= least * (1.0 - halfRounding) - minHalf && value <= most * (1.0 + halfRounding) + minHalf;
 }
 
-/// 2^-16 of a pixel or so, by which float32's position may be off, explains 1e-4 of the slope.
+/// The position in float32 may be off by about 2^-16 of a pixel, which explains 1e-4 of the slope.
 dvec4 toleranceOf(const dvec4& expected, const dvec4& slope, const dvec4& operands, double relative) {
     return relative * glm::abs(expected) + 1e-4 * slope + 1e-6 * operands + minHalf;
 }
@@ -136,7 +137,8 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     DoubleSvgfParams params_;
     std::map<std::string, SvgfHistory> before_;  ///< by signal
     double largestLag_ = 0.0;                    ///< in the last frame
-    size_t tiles_ = 0, sharp_ = 0;               ///< compared so far, and of them with errors below 0.1
+    size_t tiles_ = 0, sharp_ = 0;               ///< number compared so far, and of those with errors below
+                                                 ///< 0.1
 };
 
 HostFrame SvgfPassTest::frameOf(int number) {
@@ -190,8 +192,8 @@ Stored SvgfPassTest::stored(const Signal& signal) {
     return result;
 }
 
-/// Returns which pixels are not compared, or not the same. The deviation that is stored here is visible only
-/// where the next step left it alone.
+/// Returns the pixels that were not compared or that differ. The stored deviation is only visible where the
+/// next step did not change it.
 std::vector<bool> SvgfPassTest::compareAccumulated(const SvgfAccumulated& expected, const Stored& is) {
     const size_t count = is.moments.size();
     std::vector<bool> leftOut(count);
@@ -219,13 +221,14 @@ std::vector<bool> SvgfPassTest::compareAccumulated(const SvgfAccumulated& expect
         leftOut[p] = !agrees;
         EXPECT_TRUE(agrees || !pixel.rejected) << "too few to be let off, pixel " << p;
     }
-    // A position that rounds across a pixel's centre takes taps that the slope does not know.
+    // If rounding moves a position across a pixel's centre, other taps are used, which the slope does not
+    // include.
     EXPECT_LE(wrong, count / 1000);
     EXPECT_LE(doubtful, count / 1000);
     return leftOut;
 }
 
-/// `expected`: before anti-lag, of which nothing is left on the device.
+/// `expected`: before anti-lag; the device does not keep these values.
 void SvgfPassTest::compareTiles(const HostFrame& frame, const SvgfAccumulated& expected,
                                 const std::vector<bool>& leftOut, const Stored& is) {
     constexpr uint32_t edge = 8;
@@ -238,7 +241,7 @@ void SvgfPassTest::compareTiles(const HostFrame& frame, const SvgfAccumulated& e
             toleranceOf(expected.moments[p], pixel.momentsSlope, pixel.momentsOperands, floatRounding));
         if (leftOut[p]) skipped[p / frame.width / edge * columns + p % frame.width / edge] = true;
     }
-    // Where no lag is large enough to be noticed, the device has still got what the tiles saw.
+    // If no lag is large enough to matter, the device still has the input of the tiles.
     const bool noneShortened = *std::ranges::max_element(is.tiles) < 0.1;
     const SvgfTiles tiles = noneShortened ? svgfTiles(frame, is.moments, params_)
                                           : svgfTiles(frame, expected.moments, params_, errors);
@@ -262,8 +265,8 @@ void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surf
     }
 }
 
-/// Appends what every level stored to `colors`, which holds the first one's input. The last one's is
-/// stabilised.
+/// Appends the stored result of every level to `colors`, which contains the first one's input. The last one's
+/// is stabilised.
 void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
                                  const Stored& is, std::vector<std::vector<dvec4>>& colors) {
     for (int i = 0; i < settings_.levels; ++i) {
@@ -285,7 +288,7 @@ void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& sur
     }
 }
 
-/// All passes of the last frame.
+/// Compares all passes of the last frame.
 void SvgfPassTest::compare(const HostFrame& frame) {
     const SvgfSurfaces seen = surfaces(frame);
     std::vector<SvgfFiltered> filtered;
@@ -392,7 +395,7 @@ INSTANTIATE_TEST_SUITE_P(
         testing::Bool(), testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
     nameOf);
 
-/// Pixels of one signal over an ensemble of independent sequences.
+/// Statistics of one signal's pixels over an ensemble of independent sequences.
 struct Ensemble {
     explicit Ensemble(size_t pixels) : sum(pixels, 0.0), squares(sum), first(sum), last(sum) {}
 
@@ -410,8 +413,8 @@ class SvgfVarianceTest : public DenoiseTest {
         for (size_t p = 0; p < sums.size(); ++p) sums[p] += color[p].w * color[p].w;
     }
 
-    /// Means over the pixels that see something of E[sigma^2] / (true variance), of the two frames. Both are
-    /// relative to the square of the mean first, so that bright pixels count no more than dark ones.
+    /// Returns the mean over pixels with a hit of E[sigma^2] / (true variance), for both frames. Both are
+    /// first divided by the squared mean, so that bright pixels count as much as dark ones.
     static dvec2 ratios(const HostFrame& frame, const Ensemble& e) {
         const double samples = double{seeds} * frames;
         double variance = 0.0;
@@ -431,7 +434,7 @@ TEST_F(SvgfVarianceTest, TheDeviationIsThatOfTheNoise) {
     ASSERT_NE(method, nullptr);
     DenoiserSettings settings;
     settings.svgf.levels = 0;     // moments are never filtered
-    settings.svgf.boost = false;  // it exceeds the samples' deviation, which is what is measured here
+    settings.svgf.boost = false;  // it exceeds the samples' deviation, which this test measures
     const SyntheticScene scene({});
     const std::vector<Signal> signals = signalsOf(settings.svgf);
     std::vector<Ensemble> ensembles(signals.size(), Ensemble(size_t{columns} * rows));
@@ -480,7 +483,7 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         const double bytes =
             static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
         EXPECT_EQ(bytes, separate ? 232.125 : 136.0625);
-        // Of one signal the same image is read as both.
+        // With one signal, the same image is bound to both.
         const auto modulate =
             std::ranges::find(graph_.passes(), std::string("svgf/modulate"), &gpu::RecordedPass::name);
         ASSERT_NE(modulate, graph_.passes().end());

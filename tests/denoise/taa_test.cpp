@@ -1,5 +1,5 @@
-// The pass of temporal anti-aliasing, on identical inputs, against the version in double precision: each
-// frame starts from what the device stored in the frame before.
+// Compares the pass of temporal anti-aliasing with the version in double precision, on identical inputs: each
+// frame starts from what the device stored in the previous frame.
 #include "denoise/stages/taa/taa.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Case {
     float frames = 8.0f;
     uint32_t columns = 101, rows = 57;
     int resizeAt = -1;     ///< from this frame on the picture is smaller
-    float light = 1.0f;    ///< the scene's is multiplied by it
+    float light = 1.0f;    ///< factor of the scene's light
     bool hasNans = false;  ///< and infinities, in distance and motion
 };
 
@@ -26,7 +26,7 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
     return info.param.name;
 }
 
-/// A picture with what the frame saw: hard edges, and noise if the scene has any.
+/// Returns a picture with the frame's content: hard edges, and noise if the scene has any.
 std::vector<float> beautyOf(const HostFrame& frame) {
     std::vector<float> beauty(frame.diffuse.size(), 1.0f);
     for (size_t i = 0; i < beauty.size(); ++i) {
@@ -35,7 +35,7 @@ std::vector<float> beautyOf(const HostFrame& frame) {
     return beauty;
 }
 
-/// 2^-16 of a pixel or so, by which float32's position may be off, explains 1e-4 of the slope.
+/// The position in float32 may be off by about 2^-16 of a pixel, which explains 1e-4 of the slope.
 dvec3 toleranceOf(const TaaPixel& expected) {
     return 1e-5 * expected.mean + 1e-4 * expected.slope + expected.rounding;
 }
@@ -44,7 +44,7 @@ bool isNear(const dvec3& value, const dvec3& expected, const dvec3& tolerance) {
     return glm::all(glm::lessThanEqual(glm::abs(value - expected), tolerance));
 }
 
-/// What the next frame starts from.
+/// Compares the history for the next frame.
 bool isStored(const dvec4& stored, const TaaPixel& expected) {
     constexpr double rounding = 1e-3, minHalf = 1e-7, largestHalf = 65504.0;
     return isNear(dvec3(stored), glm::min(expected.mean, dvec3(largestHalf)),
@@ -61,7 +61,8 @@ class TaaPassTest : public DenoiseTest, public testing::WithParamInterface<Case>
 
     gpu::ImageHandle result_;
     TaaPast past_;
-    size_t restarted_ = 0, full_ = 0;  ///< pixels of the last frame: without a past; mean over all frames
+    size_t restarted_ = 0, full_ = 0;  ///< pixels of the last frame: without history; with a mean over all
+                                       ///< frames
 };
 
 HostFrame TaaPassTest::frameOf(int number) {
@@ -94,7 +95,7 @@ void TaaPassTest::antialias(const HostFrame& frame, const std::vector<float>& be
     graph_.execute(device());
 }
 
-/// The other image that the pass writes.
+/// Returns the other image that the pass writes.
 gpu::ImageHandle TaaPassTest::stored() const {
     const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("taa");
     if (images.size() != 2) throw Error("the pass does not write its result and a history");

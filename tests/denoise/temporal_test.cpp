@@ -1,4 +1,4 @@
-// The pass of temporal accumulation, on identical inputs, against the version in double precision.
+// Compares the pass of temporal accumulation with the version in double precision, on identical inputs.
 #include <gmock/gmock.h>
 
 #include "base/params.h"
@@ -23,7 +23,7 @@ DoubleTemporalParams inDouble(const denoise::TemporalSettings& s) {
             .identity = s.identity};
 }
 
-/// Where float32's error of the position, or of the numbers, does not explain the difference.
+/// True if float32's errors of the position and of the numbers do not explain the difference.
 bool differs(const dvec4& value, const dvec4& expected, const dvec4& slope) {
     for (int c = 0; c < 4; ++c) {
         const double tolerance = 1e-4 * slope[c] + 1e-5 * (1.0 + std::abs(expected[c]));
@@ -35,7 +35,7 @@ bool differs(const dvec4& value, const dvec4& expected, const dvec4& slope) {
 struct Sequence {
     const char* name;
     SyntheticOptions options;
-    const char* parameters;  ///< "name=value" of the group temporal, by blanks
+    const char* parameters;  ///< "name=value" of the group temporal, separated by blanks
     int resizeAt = -1;       ///< from this frame on the picture is smaller
 };
 
@@ -62,7 +62,7 @@ class TemporalPassTest : public DenoiseTest, public testing::WithParamInterface<
         return result;
     }
 
-    /// Compares a frame on the device with the double version, which starts from what the device had before.
+    /// Compares a frame on the device with the double version, starting from the device's previous state.
     void compare(const HostFrame& frame, const TemporalImages& before, const denoise::TemporalSettings& s,
                  int number) {
         const TemporalResult expected = accumulateTemporally(frame, before, inDouble(s));
@@ -80,7 +80,8 @@ class TemporalPassTest : public DenoiseTest, public testing::WithParamInterface<
                      differs(now.normalDepth[p], expected.images.normalDepth[p], dvec4(0.0)) ||
                      differs(now.albedoId[p], expected.images.albedoId[p], dvec4(0.0));
         }
-        // A position that rounds across a pixel's centre takes taps that the slope does not know.
+        // If rounding moves a position across a pixel's centre, other taps are used, which the slope does not
+        // include.
         EXPECT_LE(wrong, frame.pixelCount() / 1000) << "frame " << number;
         EXPECT_LE(doubtful, frame.pixelCount() / 1000) << "frame " << number;
         counts_ = denoise::countDisocclusion(disocclusion);
@@ -151,7 +152,7 @@ TEST_F(TemporalTest, RejectedSamplesAreCountedAndLeaveTheHistoryAlone) {
     frame.specular[4 * 500 + 2] = std::numeric_limits<float>::infinity();
     denoise(method, frame);
     const std::vector<dvec4> after = download("temporal/accumulate", "color");
-    // Dividing by the albedo and multiplying again may cost the last bit.
+    // Dividing by the albedo and multiplying again may change the last bit.
     EXPECT_LT(glm::distance(after[300], before[300]), 1e-6);
     EXPECT_LT(glm::distance(after[500], before[500]), 1e-6);
     EXPECT_NE(after[301], before[301]);
