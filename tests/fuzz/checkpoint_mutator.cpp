@@ -1,5 +1,5 @@
-// libFuzzer's mutations of a file of sums, either of its header or of what follows; then the length of the
-// header, that of the sums and the checksum are made right again, which no fuzzer guesses.
+// Mutates a file of sums with libFuzzer, either its header or what follows. Then corrects the length of the
+// header, that of the sums and the checksum, which a fuzzer cannot guess.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -21,7 +21,7 @@ using Bytes = std::vector<uint8_t>;
 constexpr size_t prefix = 16, countsSize = 24, hashSize = 8;
 
 struct File {
-    Bytes start, header, rest;  ///< magic, version, length; JSON; all that follows, without the checksum
+    Bytes start, header, rest;  ///< magic, version, length; JSON; everything after it except the checksum
 };
 
 bool split(const uint8_t* data, size_t size, File& file) {
@@ -42,8 +42,8 @@ void mutate(Bytes& bytes, size_t maxSize) {
     bytes.resize(LLVMFuzzerMutate(bytes.data(), size, bytes.size()));
 }
 
-/// What the header says that `rest` is long, given its bits of blocks; 0 if the header is refused, or says
-/// too much.
+/// Returns the length of `rest` that the header implies, given its block bits; 0 if the header is invalid or
+/// implies too much.
 size_t lengthOfRest(const File& file, size_t maxSize) {
     try {
         const std::string_view text(reinterpret_cast<const char*>(file.header.data()), file.header.size());
@@ -82,7 +82,7 @@ size_t join(const File& file, uint8_t* data, size_t maxSize) {
 
 extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t maxSize, unsigned seed) {
     File file;
-    // One in eight keeps its damage: the checks are part of the reader.
+    // One in eight keeps its damage, since the checks are part of the reader.
     if (seed % 8 == 0 || !split(data, size, file)) return LLVMFuzzerMutate(data, size, maxSize);
     const size_t room = maxSize - size;
     if (seed % 2 == 0) {

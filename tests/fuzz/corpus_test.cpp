@@ -1,5 +1,5 @@
-// Every input of tests/fuzz/corpus through the same functions as the fuzzers, in any build. The name says
-// what must come of it: "ok-..." is read, "bad-..." refused.
+// Runs every input of tests/fuzz/corpus through the fuzz targets, in any build. The name states the expected
+// result: "ok-..." is read, "bad-..." is refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -9,13 +9,13 @@
 namespace limpid::fuzz {
 namespace {
 
-/// The picture that the sums give, as `limpid merge` and a resumed render make it.
+/// Makes the picture of the sums, like `limpid merge` and a resumed render.
 void makePicture(const Accumulation& read) {
     const RenderedLayers means = read.sums.means();
     toLayeredImage(means, read.header.layers, image::Storage::Half);
 }
 
-/// A header that was read must be written as it was read.
+/// Checks that a header that was read is written unchanged.
 void writeHeader(const AccumulationHeader& header) {
     const std::string text = toJson(header);
     if (toJson(headerFromJson(text, "again.sums")) != text) throw Error("the header does not come back");

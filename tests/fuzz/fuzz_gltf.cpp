@@ -20,8 +20,8 @@ void appendWords(std::vector<std::byte>& target, std::array<uint32_t, 2> words) 
     append(target, std::as_bytes(std::span(words)));
 }
 
-/// A GLB with a right header, so that the fuzzer need not find the lengths. (The words are little-endian,
-/// like the machines that fuzz.)
+/// Adds a valid GLB header, so that the fuzzer need not guess the lengths. (Words are little-endian, like the
+/// machines used for fuzzing.)
 std::vector<std::byte> toGlb(const Parts& parts) {
     const auto size = [](Bytes bytes) { return static_cast<uint32_t>(bytes.size()); };
     std::vector<std::byte> glb;

@@ -1,4 +1,4 @@
-// libFuzzer's entry for one target, LIMPID_FUZZ_TARGET: a function of targets.h.
+// libFuzzer's entry point for one target, LIMPID_FUZZ_TARGET: a function of targets.h.
 #include <signal.h>
 #include <sys/time.h>
 #include <tbb/global_control.h>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Processor time, not the clock's: a fuzzer that is stopped, or waits for other programs, has not hung.
+/// Processor time, not wall-clock time: a fuzzer that is stopped or waits for other programs does not hang.
 constexpr time_t secondsPerInput = 10;
 
 void setTimer(time_t seconds) {
@@ -24,7 +24,7 @@ void setTimer(time_t seconds) {
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     limpid::log::setLevel(limpid::log::Level::Error);
-    // libFuzzer takes an abort for a finding and keeps the input.
+    // libFuzzer treats an abort as a finding and keeps the input.
     ::signal(SIGPROF, [](int) { std::abort(); });
     static const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
     return 0;

@@ -8,8 +8,8 @@
 namespace limpid::fuzz {
 
 bool png(Bytes input) {
-    // From memory, as OBJ's maps reach the decoder (glTF's are the same without TGA and BMP); small enough
-    // that larger ones are scaled down.
+    // From memory, as OBJ's maps are decoded (glTF's are the same without TGA and BMP), with a limit that
+    // makes larger ones be scaled down.
     image::ByteImage bytes;
     const image::TextureDecoding how{.tgaAndBmp = true, .maxMemory = uint64_t{1} << 25};
     const bool asTexture = accepts([&] { bytes = image::decodeTexture(input, "a.png", how); });

@@ -1,5 +1,5 @@
-// Mutations that keep the JSON of a glTF input well-formed, so that most inputs get past the parser: values
-// are replaced, exchanged, repeated, removed. libFuzzer's own mutations do the rest, and all of the binary
+// Mutations that keep the JSON of a glTF input valid, so that most inputs pass the parser: values are
+// replaced, exchanged, repeated, removed. libFuzzer's own mutations do the rest, including the whole binary
 // part.
 #include <algorithm>
 #include <cstdint>
@@ -142,7 +142,7 @@ void edit(json& document, Random& random) {
     }
 }
 
-/// The changed text, or nothing if the text is no JSON.
+/// Returns the changed text, or nothing if the text is not JSON.
 std::string edited(Bytes text, Random& random) {
     const auto* begin = reinterpret_cast<const char*>(text.data());
     json document = json::parse(begin, begin + text.size(), nullptr, false);

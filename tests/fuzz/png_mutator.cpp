@@ -1,5 +1,5 @@
-// libFuzzer's mutations, after which the checksums of a PNG's chunks are made right again: the reader refuses
-// a wrong one at once, and no fuzzer guesses a right one.
+// Applies libFuzzer's mutations, then corrects the checksums of a PNG's chunks: the reader rejects wrong ones
+// immediately, and a fuzzer cannot guess correct ones.
 #include <cstdint>
 #include <cstring>
 
@@ -32,7 +32,7 @@ void repairChecksums(uint8_t* data, size_t size) {
 
 extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t maxSize, unsigned seed) {
     const size_t mutated = LLVMFuzzerMutate(data, size, maxSize);
-    // One in eight keeps its damage: the check is part of the reader.
+    // One in eight keeps its damage, since the check is part of the reader.
     if (seed % 8 != 0 && mutated > 8 && data[1] == 'P') repairChecksums(data, mutated);
     return mutated;
 }

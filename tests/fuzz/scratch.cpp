@@ -62,7 +62,7 @@ scene::SceneData pack(const scene::Scene& scene) {
 
 namespace {
 
-/// Frames of one clip, as `limpid render --animation` makes them.
+/// Computes frames of one clip, like `limpid render --animation`.
 void play(scene::Scene& scene, size_t clip) {
     scene::chooseClip(scene, std::to_string(clip));
     const scene::SceneData data = pack(scene);
@@ -73,7 +73,7 @@ void play(scene::Scene& scene, size_t clip) {
         try {
             animator.frame(time, previous);
         } catch (const Error&) {
-            // A clip may lead out of the range of numbers; that is noticed in the frame where it happens.
+            // A clip may move vertices out of range, which is detected in that frame.
         }
         for (const scene::Camera& camera : scene.cameras)
             scene::cameraParams(scene::cameraAt(scene, camera, time), 16, 9);
@@ -86,7 +86,7 @@ void play(scene::Scene& scene, size_t clip) {
 bool reachesDevice(const fs::path& sceneFile) {
     scene::Scene scene;
     if (!accepts([&] { scene = scene::loadScene(sceneFile); })) return false;
-    // From here on nothing may be refused: what the loader lets pass can be rendered.
+    // From here on nothing may be refused: every scene that the loader accepts must be renderable.
     scene::prepare(scene);
     for (const scene::Camera& camera : scene.cameras) scene::cameraParams(camera, 16, 9);
     pack(scene);
