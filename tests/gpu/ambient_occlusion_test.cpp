@@ -1,4 +1,5 @@
-// Ambient occlusion against known answers, an independent tracer and the path tracer under a white sky.
+// Compares ambient occlusion with known answers, an independent tracer, and the path tracer under a white
+// sky.
 #include "passes/ambient_occlusion/ambient_occlusion.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double pi64 = std::numbers::pi;
 
-/// Two planes that meet at a right angle in the x axis and end 100 from it, seen from `distance`.
+/// Two perpendicular planes that meet in the x axis and extend 100 from it, seen from `distance`.
 scene::Scene crease(float distance) {
     scene::Scene scene;
     scene::MeshBuilder builder("crease");
@@ -62,7 +63,7 @@ class AmbientOcclusionTest : public PassTest {
         return frame;
     }
 
-    /// Means of the red channel over frames of random numbers of their own.
+    /// Returns the mean of the red channel over frames with independent random numbers.
     std::vector<double> meanOver(Stage& stage, CameraLaunch launch, const AmbientOcclusionSettings& settings,
                                  uint32_t frames) {
         std::vector<double> sum(size_t{launch.extent.width} * launch.extent.height);
@@ -89,8 +90,8 @@ TEST_P(AmbientOcclusionTest, APlaneAloneIsOpen) {
     }
 }
 
-/// A perpendicular plane hides half of the cosine-weighted hemisphere; where it ends is out of sight of all
-/// but a share of distance / 100 or so.
+/// A perpendicular plane hides half of the cosine-weighted hemisphere. Because it ends, a share of about
+/// distance / 100 is missing.
 TEST_P(AmbientOcclusionTest, ARightAngleIsHalfOpen) {
     const scene::Scene scene = crease(0.1f);
     Stage stage(device(), scene, GetParam());
@@ -107,8 +108,8 @@ TEST_P(AmbientOcclusionTest, ARightAngleIsHalfOpen) {
     EXPECT_LT(worst, 5.0 * std::sqrt(0.25 / (frames * rays)));
 }
 
-/// The wall is met within R if the direction's component towards it is at least c = distance / R.
-/// Cosine-weighted directions are uniform on the disc below the hemisphere, so that the share is a segment's
+/// A ray hits the wall within R if the direction's component towards it is at least c = distance / R.
+/// Cosine-weighted directions are uniform on the disc below the hemisphere, so the share is that of a segment
 /// of the unit disc.
 TEST_P(AmbientOcclusionTest, ALimitedRayMissesAFarWall) {
     const scene::Scene scene = crease(2.0f);
@@ -142,7 +143,7 @@ TEST_P(AmbientOcclusionTest, ALimitedRayMissesAFarWall) {
     EXPECT_LT(worst, 5.0);
 }
 
-/// Ray by ray: the same directions in double precision, and a tracer without any tree.
+/// Checks ray by ray, with the same directions in double precision and a tracer without a tree.
 TEST_P(AmbientOcclusionTest, CountsTheRaysThatBruteForceFindsOpen) {
     const scene::Scene scene = clutter();
     Stage stage(device(), scene, GetParam());
@@ -196,7 +197,8 @@ TEST_P(AmbientOcclusionTest, CountsTheRaysThatBruteForceFindsOpen) {
     EXPECT_GT(below, 0u);
 }
 
-/// Without a limit it is what a white diffuse surface reflects of a white sky, normals interpolated and all.
+/// Without a limit, it equals a white diffuse surface's reflection of a white sky, including interpolated
+/// normals.
 TEST_P(AmbientOcclusionTest, IsThePathTracersWhiteSky) {
     scene::Scene scene = clutter();
     scene.materials[0] = lambertian(vec3(1.0f));
@@ -245,7 +247,7 @@ TEST_P(AmbientOcclusionTest, IsThePathTracersWhiteSky) {
     EXPECT_LT(std::abs(z), 4.0);
 }
 
-/// Rays of several dispatches are counted once each.
+/// Rays split over several dispatches are each counted once.
 TEST_P(AmbientOcclusionTest, ManyRaysHaveTheMeanOfManyFrames) {
     const scene::Scene scene = clutter();
     Stage stage(device(), scene, GetParam());

@@ -1,4 +1,4 @@
-// Blocks summed on the host against the running mean on the device, which sees the same random numbers.
+// Compares blocks summed on the CPU with the running mean on the device, which uses the same random numbers.
 #include "renderer/long/block_renderer.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ class BlockRendererTest : public RenderTest {
     }
     static bool always(uint32_t) { return true; }
 
-    /// The components of a layer, and its variance where there is one.
+    /// Compares the components of a layer, and its variance if it has one.
     static void expectNear(const LayerSums& layer, const std::vector<float>& a, const std::vector<float>& b) {
         ASSERT_EQ(a.size(), b.size()) << layer.info->name;
         for (size_t i = 0; i < a.size(); ++i) {
@@ -41,7 +41,7 @@ TEST_F(BlockRendererTest, SumsAreTheRunningMeansOfTheSameSamples) {
     const scene::Scene scene = prepared();
     const RenderSettings settings = smallLayers();
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
-    // The blocks' launches are those of the running mean: 48 samples are 16 launches of 3.
+    // The blocks' launches equal those of the running mean: 48 samples are 16 launches of 3.
     const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
     BlockRenderer renderer(device(), gpuScene, settings, plan);
     renderer.begin({.camera = camera(scene, settings)});

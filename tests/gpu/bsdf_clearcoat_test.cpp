@@ -1,5 +1,5 @@
-// The clear coat (shaders/material/clearcoat.glsl) against its formula in double precision, with a normal of
-// its own.
+// Compares the clear coat (shaders/material/clearcoat.glsl) with its formula in double precision, with its
+// own normal.
 #include <functional>
 
 #include "tests/gpu/bsdf_fixture.h"
@@ -17,7 +17,7 @@ dmat3 frameAround(const dvec3& n) {
 
 class ClearcoatTest : public BsdfTest {
   protected:
-    /// What the coat reflects of uniform light, its weight included.
+    /// Returns the coat's reflection of uniform light, including its weight.
     double albedoOf(const BsdfParams& p, double cosine) const {
         if (p.clearcoatRoughness < layout::SMOOTH_ROUGHNESS)
             return double{p.clearcoat} * schlick(0.04, 1.0, cosine);
@@ -73,7 +73,7 @@ TEST_F(ClearcoatTest, OverALambertianBase) {
     fmt::print("clear coat: within {:.2g} of the formula\n", worst);
 }
 
-/// The energy that the coat keeps from the base is what it reflects: no more, no less.
+/// The energy that the coat keeps from the base equals the energy it reflects.
 TEST_F(ClearcoatTest, KeepsFromTheBaseWhatItReflects) {
     for (const float roughness : {0.05f, 0.3f, 0.8f}) {
         for (const float cosine : {0.99f, 0.5f, 0.15f}) {

@@ -1,4 +1,4 @@
-// White furnace: a white surface of any kind sends back all the light that it gets.
+// White furnace: a white surface of any kind returns all light that it receives.
 #include <cmath>
 
 #include "tests/gpu/bsdf_fixture.h"
@@ -8,8 +8,8 @@ namespace {
 
 class BsdfEnergyTest : public BsdfTest {
   protected:
-    /// Smooth lobes by sampling, which has no noise to speak of there; rough ones by quadrature, which has
-    /// none.
+    /// Uses sampling for smooth lobes, which has hardly any noise there, and quadrature for rough ones, which
+    /// has none.
     double albedo(const BsdfParams& params) {
         const bool smoothCoat = params.clearcoat > 0.0f && params.clearcoatRoughness < 0.05f;
         if (params.roughness >= 0.05f && !smoothCoat) return integrate(params).integral().f;
@@ -62,7 +62,7 @@ TEST_F(BsdfEnergyTest, WhiteSolidGlassFromInside) {
     expectWhite({"white glass from inside", {.transmission = 1.0f, .thin = 0, .front = 0}}, 0.01);
 }
 
-/// Towards an index of 1 total reflection sets in at grazing angles only: hard for a table.
+/// Near an index of 1, total reflection only occurs at grazing angles, which is difficult for a table.
 TEST_F(BsdfEnergyTest, WhiteSolidGlassOfOtherIndices) {
     for (const float ior : {1.05f, 1.33f, 2.4f}) {
         for (const uint32_t front : {1u, 0u}) {
@@ -78,7 +78,7 @@ TEST_F(BsdfEnergyTest, WhiteMixture) {
     expectWhite({"white solid mixture", {.metallic = 0.2f, .transmission = 0.5f, .thin = 0}}, 0.01);
 }
 
-/// A clear coat takes from what is below just what it reflects: white stays white.
+/// A clear coat takes exactly what it reflects from the layers below: white stays white.
 TEST_F(BsdfEnergyTest, WhiteBelowAClearCoat) {
     for (const NamedMaterial& base :
          {NamedMaterial{"plastic", {}}, NamedMaterial{"metal", {.metallic = 1.0f}},

@@ -1,4 +1,4 @@
-// Values of the scattering function against the published formulas, in double precision:
+// Compares values of the BSDF with the published formulas, in double precision:
 // B. Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007; E. Heitz,
 // "Understanding the masking-shadowing function in microfacet-based BRDFs", JCGT 2014; C. Kulla, A. Conty,
 // SIGGRAPH 2017 course.
@@ -10,7 +10,7 @@
 namespace limpid::test {
 namespace {
 
-/// Exact Fresnel reflectance by angles.
+/// Returns the exact Fresnel reflectance from angles.
 double fresnel(double cosine, double eta) {
     const double sine = std::sqrt(1.0 - cosine * cosine) / eta;
     if (sine >= 1.0) return 1.0;
@@ -20,8 +20,8 @@ double fresnel(double cosine, double eta) {
     return 0.5 * (s * s + p * p);
 }
 
-/// f cos of refraction (Walter, equation 21), masking height-correlated (Heitz 2014, equation 99); times
-/// eta^2: the energy form that bsdf.glsl states. The light comes from behind the surface, where the index is
+/// f cos of refraction (Walter, equation 21) with height-correlated masking (Heitz 2014, equation 99), times
+/// eta^2: the energy form described in bsdf.glsl. The light comes from behind the surface, where the index is
 /// eta times that of the viewer's side.
 double refracted(const dvec3& wo, const dvec3& wi, double alpha, double eta) {
     dvec3 h = -(wo + eta * wi);
@@ -36,8 +36,8 @@ double refracted(const dvec3& wo, const dvec3& wi, double alpha, double eta) {
     return f * eta * eta * std::abs(wi.z);
 }
 
-/// One of the two texels of the table of dielectrics, linear in its three dimensions; one half for eta below
-/// 1, one for eta from 1 on.
+/// Returns one of the two texels of the table of dielectrics, interpolated linearly in its three dimensions;
+/// one half is for eta below 1, the other for eta from 1 on.
 glm::dvec4 dielectricTable(const std::vector<vec4>& table, double cosine, double roughness, double eta,
                            int texel) {
     const int size = static_cast<int>(layout::DIELECTRIC_TABLE_SIZE),
@@ -66,7 +66,7 @@ glm::dvec4 dielectricTable(const std::vector<vec4>& table, double cosine, double
     return sum;
 }
 
-/// What is left of white light after several facets of a metal (bsdf.glsl, multipleTint).
+/// Returns the tint of white light after several facets of a metal (bsdf.glsl, multipleTint).
 double tint(double f0, double roughness, double out, double in) {
     const double x = std::min(1.0 - roughness, 0.5);
     const double e = std::min(0.48 + 0.89 * x - 0.66 * x * x + (0.2 - 0.095 * x) * (2.0 - out - in), 1.0);
@@ -89,8 +89,8 @@ class BsdfFormulaTest : public BsdfTest {
         return directions;
     }
 
-    /// Close to total reflection 1 - F is a difference of nearly equal numbers; float32 has fewer digits
-    /// there.
+    /// Close to total reflection, 1 - F is a difference of nearly equal numbers, which has fewer digits in
+    /// float32.
     static double tolerance(const BsdfParams& p, const dvec3& wo, const dvec3& wi) {
         if (p.transmission == 0.0f || wi.z > 0.0) return 1e-4;
         const double eta = p.front ? double{p.ior} : 1.0 / double{p.ior};
@@ -98,7 +98,7 @@ class BsdfFormulaTest : public BsdfTest {
         return fresnel(std::abs(glm::dot(wo, h)), eta) > 0.8 ? 2e-3 : 1e-4;
     }
 
-    /// `specular` compares the specular part, otherwise the diffuse one.
+    /// `specular`: compares the specular part, otherwise the diffuse one.
     void compare(NamedMaterial material, bool specular, const Formula& formula) {
         const std::vector<vec3> directions = someDirections();
         double worst = 0.0;
@@ -153,7 +153,7 @@ TEST_F(BsdfFormulaTest, MetalWithMultipleScattering) {
     }
 }
 
-/// A coat over a diffuse base that gets what the coat's strongest channel lets through, in and out.
+/// A coat over a diffuse base that gets what the coat's strongest channel transmits, in and out.
 TEST_F(BsdfFormulaTest, PlasticWithSpecularColour) {
     const BsdfParams params{.baseColor = {0.8f, 0.4f, 0.1f},
                             .roughness = 0.4f,
@@ -217,7 +217,7 @@ TEST_F(BsdfFormulaTest, RefractingBoundary) {
     }
 }
 
-/// The table that the coat and the metal rest on, against quadrature of the formula.
+/// Compares the table used by the coat and the metal with quadrature of the formula.
 TEST_F(BsdfFormulaTest, AlbedoTable) {
     double worst = 0.0;
     for (const double roughness : {0.2, 0.45, 0.8, 1.0}) {

@@ -1,4 +1,4 @@
-// Sampling against density: chi-square tests, normalisation, and albedo by sampling against albedo by
+// Compares sampling with density: chi-square tests, normalisation, and albedo by sampling with albedo by
 // quadrature.
 #include <cmath>
 
@@ -103,7 +103,8 @@ class BsdfSamplingTest : public BsdfTest {
     }
 
   private:
-    /// What the density lacks to 1 is what sampling returns as invalid or as part of a smooth lobe.
+    /// The density's difference from 1 must equal the share of samples that are invalid or from a smooth
+    /// lobe.
     void checkNormalisation(double integral, double nowhere, Totals& totals) {
         const double lacking = 1.0 - integral;
         const double sigma = std::sqrt(std::max(lacking * integral, 1e-9) / sampleCount);
@@ -128,7 +129,7 @@ class BsdfSamplingTest : public BsdfTest {
             totals.smallestP = result.p;
             totals.smallest = describe(material);
         }
-        // 1e-3 over all of about eighty tests.
+        // 1e-3 in total, over about eighty tests.
         EXPECT_GT(result.p, 1e-3 / 80) << "chi-square " << result.statistic << " with "
                                        << result.degreesOfFreedom << " degrees of freedom; " << result.worst;
     }
@@ -150,8 +151,8 @@ TEST_F(BsdfSamplingTest, DirectionsFollowTheDensity) {
         totals.tests, totals.smallestP, totals.smallest, totals.worstNormalisation, totals.worstAlbedo);
 }
 
-/// A shading normal that differs from the true one: directions that would leave on the wrong side are
-/// invalid.
+/// With a shading normal that differs from the geometric one, directions that would leave on the wrong side
+/// are invalid.
 TEST_F(BsdfSamplingTest, TiltedShadingNormal) {
     Totals totals;
     for (NamedMaterial material : {NamedMaterial{"tilted plastic", plastic(0.4f)},
@@ -163,7 +164,7 @@ TEST_F(BsdfSamplingTest, TiltedShadingNormal) {
     }
 }
 
-/// The coat's own normal, with the base's upright and tilted another way.
+/// Tests the coat's own normal, with the base's normal upright or tilted differently.
 TEST_F(BsdfSamplingTest, TiltedClearcoatNormal) {
     Totals totals;
     for (const vec3& normal : {vec3(0, 0, 1), glm::normalize(vec3(-0.2f, 0.3f, 0.9f))}) {

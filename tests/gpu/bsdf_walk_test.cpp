@@ -1,4 +1,4 @@
-// The scattering function against a random walk on microfacets (microfacet_walk.h).
+// Compares the BSDF with a random walk on microfacets (microfacet_walk.h).
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -30,7 +30,7 @@ BsdfParams roughGlass(double roughness, double ior, bool front, double cosine) {
 
 class BsdfWalkTest : public BsdfTest {
   protected:
-    /// What the surface reflects (x) and transmits (y) of uniform light, by sampling.
+    /// Returns reflection (x) and transmission (y) of uniform light, by sampling.
     glm::dvec2 energy(const BsdfParams& params, uint32_t count) {
         glm::dvec2 sum(0.0);
         for (const SampledDirection& s : sample(params, count)) {
@@ -40,8 +40,8 @@ class BsdfWalkTest : public BsdfTest {
     }
 };
 
-/// A boundary between equal indices is none: light goes straight through, whatever the roughness. Just above,
-/// where facets begin to bend it, nothing is lost either.
+/// A boundary between equal indices has no effect: light goes straight through, whatever the roughness. Just
+/// above that, where facets begin to refract, no energy is lost either.
 TEST_F(BsdfWalkTest, EqualIndicesLetLightStraightThrough) {
     for (const float roughness : {0.0f, 0.1f, 0.5f, 1.0f}) {
         for (const double cosine : {1.0, 0.5, 0.01}) {
@@ -66,7 +66,7 @@ TEST_F(BsdfWalkTest, EqualIndicesLetLightStraightThrough) {
     }
 }
 
-/// Glass seen from one side at one angle, and what the walk reflects and transmits there.
+/// Glass seen from one side at one angle, and the walk's reflection and transmission there.
 struct GlassCase {
     double ior, roughness, cosine;
     bool front;
@@ -90,7 +90,7 @@ std::vector<GlassCase> walkThroughGlass() {
     return cases;
 }
 
-/// Reflection and transmission, each within 1 % of the light that arrives.
+/// Reflection and transmission each match within 1 % of the incident light.
 TEST_F(BsdfWalkTest, RoughGlassReflectsAndTransmitsAsTheWalkDoes) {
     glm::dvec2 worst(0.0);
     for (const GlassCase& c : walkThroughGlass()) {
@@ -106,7 +106,7 @@ TEST_F(BsdfWalkTest, RoughGlassReflectsAndTransmitsAsTheWalkDoes) {
     fmt::print("rough glass: reflection off by {:.4f}, transmission by {:.4f} at worst\n", worst.x, worst.y);
 }
 
-/// The table in the repository is what its generator writes: some of its entries, by other walks.
+/// The table in the repository matches its generator: compares some entries with other walks.
 TEST(DielectricShare, TableIsThatOfTheWalk) {
     const std::vector<vec2> disk = scene::halfDisk(1u << 12);
     for (uint32_t node = 5; node < scene::share::count; node += 131) {
@@ -123,10 +123,10 @@ TEST(DielectricShare, TableIsThatOfTheWalk) {
     }
 }
 
-/// A sphere of metal at roughness 1 seen from far away, mean radiance over rings of 10 degrees of the angle
-/// between normal and line of sight, weighted by the area of the picture. Lights: a distant one at the
-/// viewer, a distant one 60 degrees off, and the half of the sky behind the viewer. Each within 2 % of what
-/// the walk says.
+/// A sphere of metal at roughness 1 seen from far away: mean radiance over rings of 10 degrees of the angle
+/// between normal and view direction, weighted by the area in the picture. Lights: a distant one at the
+/// viewer, a distant one 60 degrees off, and the half of the sky behind the viewer. Each must match the walk
+/// within 2 %.
 class MetalSphereTest : public BsdfWalkTest {
   protected:
     static constexpr int anglesPerRing = 2, azimuths = 8;
@@ -149,7 +149,7 @@ class MetalSphereTest : public BsdfWalkTest {
         return rings;
     }
 
-    /// f cos for the four metals: three of them in one colour, the fourth in another.
+    /// Returns f cos for the four metals: three of them in one colour's channels, the fourth in another.
     std::vector<glm::dvec4> evaluateMetals(double cosine, const std::vector<vec3>& directions) {
         std::vector<glm::dvec4> values(directions.size());
         for (const auto& [colour, at] : {std::pair{vec3(1.0f, 0.95f, 0.6f), 0}, std::pair{vec3(0.25f), 3}}) {
@@ -178,8 +178,8 @@ class MetalSphereTest : public BsdfWalkTest {
         return sum;
     }
 
-    /// Directions to a distant light that is `offset` radians off the viewer, for points all around a ring;
-    /// those that it does not reach are left out, for both sides alike.
+    /// Returns directions to a distant light that is `offset` radians off the viewer, for points around a
+    /// ring. Unlit points are skipped on both sides of the comparison.
     static std::vector<dvec3> lightsAround(double cosine, double offset) {
         std::vector<dvec3> directions;
         const dvec3 v = directionAt(cosine), up(-v.z, 0.0, v.x), side(0, 1, 0);
@@ -249,7 +249,7 @@ TEST_F(MetalSphereTest, LitByHalfTheSky) {
             }));
 }
 
-/// The walk itself: white metal loses nothing, and one facet reflects what the formula says.
+/// Checks the walk itself: white metal loses no energy, and one facet reflects what the formula says.
 TEST(MicrofacetWalk, KeepsEnergyAndAgreesWithTheFormula) {
     constexpr std::array<double, 1> white{1.0};
     for (const double cosine : {0.1, 0.5, 0.9}) {
@@ -262,13 +262,13 @@ TEST(MicrofacetWalk, KeepsEnergyAndAgreesWithTheFormula) {
                 directionAt((i / columns + 0.5) / rows, (i % columns + 0.5) * 2.0 * pi64 / columns);
             once += reflected(wo, wi, 0.5, 1.0, 1.0) * 2.0 * pi64 / (rows * columns);
         }
-        // An index of refraction this high reflects all but nothing else.
+        // Such a high refractive index reflects almost everything.
         const DielectricEnergy mirror = dielectricEnergy(cosine, 0.5, 1e6, 20000, 2);
         EXPECT_NEAR(mirror.reflectedOnce, once, 0.015) << "cosine " << cosine;
     }
 }
 
-/// From wo to wi as from wi to wo, by two facets or more.
+/// Scattering by two facets or more is the same from wo to wi as from wi to wo.
 TEST(MicrofacetWalk, IsReciprocal) {
     constexpr std::array<double, 1> white{1.0};
     const dvec3 a = directionAt(0.3), b = directionAt(0.8, 1.0);

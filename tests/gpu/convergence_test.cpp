@@ -1,4 +1,4 @@
-// The error falls as one over the number of samples. Slow.
+// Tests that the error falls as one over the number of samples. Slow.
 #include <filesystem>
 
 #include "scene/builtin/builtin.h"
@@ -11,8 +11,8 @@ namespace {
 
 class ConvergenceTest : public RenderTest {
   protected:
-    /// Mean relative squared error per pixel and channel, without the noise of the reference: of a mean of n
-    /// samples and one of m, each with variance v, the squared difference is v (1/n + 1/m).
+    /// Returns the mean relative squared error per pixel and channel, without the reference's noise: for a
+    /// mean of n samples and one of m, each with variance v, the squared difference is v (1/n + 1/m).
     static double relativeError(const RenderedLayers& picture, const RenderedLayers& reference) {
         double sum = 0.0;
         for (size_t i = 0; i < picture.beauty.size(); ++i) {
@@ -24,8 +24,8 @@ class ConvergenceTest : public RenderTest {
         return sum / static_cast<double>(picture.beauty.size() / 4 * 3) * m / (n + m);
     }
 
-    /// Rare bright samples make one picture's error a matter of luck: short renders are repeated with other
-    /// seeds.
+    /// Rare bright samples make one picture's error a matter of chance, so short renders are repeated with
+    /// other seeds.
     static constexpr uint64_t samplesPerLevel = 512;
 
     void check(const scene::Scene& scene, uint32_t size, uint64_t referenceSamples) {

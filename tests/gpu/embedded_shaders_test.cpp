@@ -1,5 +1,5 @@
-// The tables beside embedded shaders, against what reflection says of the SPIR-V that they were made of; and
-// what became of that SPIR-V.
+// Compares the tables of embedded shaders with reflection of the SPIR-V that they were made from, and with
+// the embedded SPIR-V itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace limpid {
 namespace {
 
-// The SPIR-V specification: "Instructions", "Decoration", "Execution Mode".
+// From the SPIR-V specification: "Instructions", "Decoration", "Execution Mode".
 enum : uint32_t {
     opSource = 3,
     opName = 5,
@@ -30,7 +30,7 @@ enum : uint32_t {
     modeLocalSize = 17
 };
 
-/// What a module says of itself to Vulkan, names aside.
+/// A module's interface to Vulkan, without names.
 struct Module {
     std::multiset<uint32_t> ops;
     std::set<uint32_t> bindings, constantIds, sets;
@@ -84,7 +84,7 @@ TEST_P(EmbeddedShaders, AreStripped) {
     EXPECT_LT(code.words.size(), original.size());
 }
 
-/// The descriptor set's layout and the constants follow the table: the code must not ask for more.
+/// The descriptor set's layout and the constants follow the table, so the code must not use more.
 TEST_P(EmbeddedShaders, AskForNoMoreThanTheTableSays) {
     const Module embedded = scanned(code.words);
     std::set<uint32_t> bindings, constantIds;
@@ -102,7 +102,7 @@ TEST_P(EmbeddedShaders, AskForNoMoreThanTheTableSays) {
 INSTANTIATE_TEST_SUITE_P(All, EmbeddedShaders,
                          testing::ValuesIn(shaders::listed().begin(), shaders::listed().end()), titled);
 
-/// By hand, against the sources: tables and reflection might err together.
+/// Checked by hand against the sources, since tables and reflection might have the same error.
 TEST(EmbeddedShaderTables, SayWhatTheSourcesSay) {
     const auto named = [](std::string_view name) {
         return std::ranges::find(shaders::listed(), name,

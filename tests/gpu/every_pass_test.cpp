@@ -1,6 +1,6 @@
-// Every integrator with every denoiser, tracer and kind of memory, in pictures of a few pixels: not whether
-// the picture is right (other tests say that), but that every pass runs with the sanitizers and the
-// validation layer watching.
+// Runs every integrator with every denoiser, tracer and backing, in pictures of a few pixels. It does not
+// check the pictures (other tests do), but that every pass runs under the sanitizers and the validation
+// layer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string nameOf(const testing::TestParamInfo<Way>& info) {
            (info.param.filters == gpu::Backing::Buffer ? "_buffers" : "_images");
 }
 
-/// A tube with skin and morph targets, lit by the sky, and a lamp that a node moves.
+/// A tube with skin and morph targets, lit by the sky and a lamp that a node moves.
 scene::Scene movingScene() {
     scene::Scene scene = tubeScene();
     scene::chooseClip(scene, "");
@@ -57,7 +57,7 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
         return std::make_shared<denoise::KpcnNetwork>(device(), denoise::readKpcnWeights(file), precision);
     }
 
-    /// Renders frames, downloads and dumps all that there is of the last one.
+    /// Renders frames; downloads and dumps everything of the last one.
     void renderFrames(const RenderSettings& settings, uint32_t samples) {
         FrameRenderer renderer(device(), *gpuScene_, settings, samples);
         renderer.setFilterBacking(GetParam().filters);
@@ -81,7 +81,7 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
         EXPECT_FALSE(passes.empty());
         for (const std::string& pass : passes) {
             run_.insert(pass);
-            if (pass.starts_with("deform/")) continue;  // writes the scene's buffers, no image
+            if (pass.starts_with("deform/")) continue;  // writes the scene's buffers, but no image
             for (const auto& [name, picture] : renderer.dump(pass))
                 EXPECT_FALSE(picture.pixels.empty()) << name;
         }
@@ -95,7 +95,7 @@ class EveryPassTest : public GpuTest, public testing::WithParamInterface<Way> {
 
 TEST_P(EveryPassTest, Runs) {
     for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.integrator == Integrator::Direct) continue;  // the passes of paths
+        if (pipeline.integrator == Integrator::Direct) continue;  // uses the same passes as the path tracer
         SCOPED_TRACE(pipeline.title());
         RenderSettings settings;
         settings.pipeline = pipeline;

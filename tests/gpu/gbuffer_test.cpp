@@ -1,4 +1,4 @@
-// The G-buffer against the path tracer's layers, and its light against known answers.
+// Compares the G-buffer with the path tracer's layers, and its light with known answers.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -39,7 +39,8 @@ void addScreen(scene::Scene& scene) {
     addMesh(scene, builder.take(), lambertian(vec3(0.5f)));
 }
 
-/// The spheres below clear coats, the glass rough and absorbing; lamps that only next-event estimation finds.
+/// The spheres below clear coats, with rough, absorbing glass, and lamps that only next-event estimation
+/// finds.
 scene::Scene punctualSpheres() {
     scene::Scene scene = scene::cornellSpheresScene();
     for (scene::Material& material : scene.materials) {
@@ -54,7 +55,7 @@ scene::Scene punctualSpheres() {
     return scene;
 }
 
-/// Half transparent, seen through the back of a wall by an orthographic camera.
+/// The spheres half transparent, seen through the back of a wall by an orthographic camera.
 scene::Scene veiledSpheres() {
     scene::Scene scene = scene::cornellSpheresScene();
     for (scene::Material& material : scene.materials) {
@@ -67,7 +68,7 @@ scene::Scene veiledSpheres() {
     return scene;
 }
 
-/// The G-buffer does not look through mirrors.
+/// The G-buffer does not see through mirrors.
 const PathtraceSettings ownLayers{.throughMirrors = false};
 
 class GBufferTest : public PassTest {
@@ -77,7 +78,7 @@ class GBufferTest : public PassTest {
         PathtraceLayers traced;
     };
 
-    /// Both passes in one frame.
+    /// Runs both passes in one frame.
     Both lookBothWays(Stage& stage, const CameraLaunch& launch, const PathtraceSettings& settings = ownLayers,
                       const scene::SceneFrame* moved = nullptr) {
         stage.graph.beginFrame();
@@ -88,8 +89,8 @@ class GBufferTest : public PassTest {
         return both;
     }
 
-    /// On CPUs bit for bit, but for the sign of 0: the path tracer's sum over samples starts with +0. A GPU's
-    /// compiler may contract the same expression differently in two shaders.
+    /// On CPUs the values are equal bit for bit, except for the sign of 0: the path tracer's sum over samples
+    /// starts with +0. A GPU's compiler may contract the same expression differently in two shaders.
     size_t differentValues(Stage& stage, gpu::ImageHandle a, gpu::ImageHandle b) {
         const std::vector<float> x = stage.graph.downloadFloat(device(), a),
                                  y = stage.graph.downloadFloat(device(), b);
@@ -102,7 +103,7 @@ class GBufferTest : public PassTest {
     }
 
     void expectSameLayers(Stage& stage, const Both& both, const std::string& what) {
-        // Rays that graze an edge may then see another surface.
+        // Rays that graze an edge may then hit another surface.
         const size_t allowed = device().isCpu() ? 0 : size_t{extent.width} * extent.height / 1000;
         for (const LayerInfo& layer : frameLayers) {
             EXPECT_EQ(static_cast<bool>(both.seen[layer]), layer.ofFirstHit) << layer.name;
@@ -145,7 +146,7 @@ class GBufferTest : public PassTest {
         EXPECT_GT(moved, size_t{extent.width} * extent.height / 4) << "the test would prove little";
     }
 
-    /// Every pixel that sees the floor, under the one light of the scene.
+    /// Checks every pixel that sees the floor, lit by the scene's single light.
     size_t checkFloor(Stage& stage, const scene::Scene& scene, const CameraLaunch& launch,
                       const GBufferSettings& settings) {
         const GBufferImages images = look(stage, launch, settings);
@@ -188,14 +189,14 @@ TEST_P(GBufferTest, HasTheLayersOfThePathTracerWhereThingsMove) {
     checkMoving(tubeScene(), "orbit", 0.3);
 }
 
-/// Lamps of no size are found by next-event estimation alone: with the same random numbers the path tracer's
+/// Only next-event estimation finds lamps of zero size, so with the same random numbers the path tracer's
 /// single scattering is the same light.
 TEST_P(GBufferTest, LightOfPunctualLampsIsThePathTracers) {
     scene::Scene scene = punctualSpheres();
     PathtraceSettings settings;
     settings.maxDepth = 1;
     settings.maxTransmissionDepth = 0;
-    // From outside, and from within the glass sphere.
+    // From outside, and from inside the glass sphere.
     for (const bool within : {false, true}) {
         if (within) scene.cameras = {scene::lookAt({0.13f, 0.1f, 0.1f}, {0, 0.2f, 0}, {0, 1, 0}, 1.2f)};
         Stage stage(device(), scene, GetParam());
@@ -239,15 +240,15 @@ TEST_P(GBufferTest, AMirrorShowsNoLight) {
     scene.lights = {pointLight({0.3f, 1.5f, -0.2f}, 7.0f)};
     Stage stage(device(), scene, GetParam());
     const GBufferImages images = look(stage, centredLaunch(scene, extent));
-    // Nothing but what scatters several times between the facets of the smoothest entry of the GGX table.
+    // Only the multiple scattering between facets in the smoothest entry of the GGX table.
     for (const vec4& light : pixels(stage, images.light)) ASSERT_LT(light.x, 1e-9f);
     for (const vec4& albedo : pixels(stage, images.albedoSpecular)) ASSERT_GT(albedo.x, 0.5f);
 }
 
-/// Next-event estimation alone has the mean of multiple importance sampling.
+/// Next-event estimation alone has the same mean as multiple importance sampling.
 TEST_P(GBufferTest, MeanLightIsThePathTracersAtDepthOne) {
     for (scene::Scene scene : {scene::cornellScene(), scene::cornellSpheresScene()}) {
-        // A smooth lobe's light is not in this estimate.
+        // This estimate does not include a smooth lobe's light.
         for (scene::Material& material : scene.materials)
             material.roughness = std::max(material.roughness, 0.35f);
         constexpr gpu::Extent small{24, 24};
@@ -299,7 +300,7 @@ TEST_P(GBufferTest, MeanLightIsThePathTracersAtDepthOne) {
     }
 }
 
-/// Under a sky of 1 a floor shows its albedo.
+/// Under a sky of radiance 1, a floor shows its albedo.
 TEST_P(GBufferTest, MeanLightOfAFloorUnderAWhiteSky) {
     scene::Scene scene = viewedFloor();
     scene.environment = {16, 8, std::vector<vec3>(128, vec3(1.0f))};
@@ -320,8 +321,8 @@ TEST_P(GBufferTest, MeanLightOfAFloorUnderAWhiteSky) {
     EXPECT_LT(std::abs(mean - 0.6), 4.0 * sigma);
 }
 
-/// Positions lie on the primary ray, through the point that the random numbers say; triangles have the
-/// normals that they have.
+/// Positions lie on the primary ray through the point given by the random numbers, and normals are those of
+/// the triangles.
 TEST_P(GBufferTest, PositionsAreWhereTheRaysMeetTheFloor) {
     const scene::Scene scene = viewedFloor();
     Stage stage(device(), scene, GetParam());

@@ -1,4 +1,4 @@
-// Light sampling against densities that are known, or integrated numerically.
+// Compares light sampling with densities that are known or integrated numerically.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,7 +32,7 @@ struct Params {
     uint32_t count, seed;
 };
 
-/// An emitting triangle of the test, as the test sees it.
+/// An emissive triangle as the test represents it.
 struct Emitter {
     vec3 v[3];
     float radiance = 1.0f;
@@ -70,7 +70,7 @@ scene::Scene sceneOf(const std::vector<Emitter>& emitters) {
     return scene;
 }
 
-/// Dim, with a sun of a few texels that is 50,000 times as bright, and a black region.
+/// A dim environment with a sun of a few texels that is 50,000 times as bright, and a black region.
 scene::Environment sunnyEnvironment() {
     scene::Environment environment{48, 24, {}};
     for (uint32_t y = 0; y < 24; ++y) {
@@ -83,7 +83,7 @@ scene::Environment sunnyEnvironment() {
     return environment;
 }
 
-/// The triangle that the direction meets, with the barycentrics of vertices 1 and 2; -1 if none.
+/// The triangle hit by a direction, with the barycentrics of vertices 1 and 2; -1 if none.
 struct Met {
     int index = -1;
     double u = 0.0, v = 0.0, t = 0.0;
@@ -100,7 +100,7 @@ Met meet(const std::vector<Emitter>& emitters, const vec3& from, const vec3& dir
         const double determinant = glm::dot(e1, p), u = glm::dot(s, p) / determinant,
                      v = glm::dot(d, q) / determinant;
         const double t = glm::dot(e2, q) / determinant;
-        // A little beyond the edges, for points that rounding moves there.
+        // Accepts points slightly beyond the edges, where rounding may move them.
         if (u < -1e-3 || v < -1e-3 || u + v > 1.001 || !(t > 0.0) || t > nearest) continue;
         nearest = t;
         met = {static_cast<int>(i), u, v, t};
@@ -110,7 +110,7 @@ Met meet(const std::vector<Emitter>& emitters, const vec3& from, const vec3& dir
 
 class LightsTest : public GpuTest {
   protected:
-    /// At a point of a surface with this normal; without one, all directions are alike.
+    /// Samples lights at a point of a surface with this normal; without one, all directions are equal.
     std::vector<DrawnLight> draw(const scene::Scene& scene, const vec3& from, uint32_t count, uint32_t seed,
                                  const vec3& normal = vec3(0.0f)) {
         const scene::SceneData data = scene::buildSceneData(scene);
@@ -137,14 +137,15 @@ class LightsTest : public GpuTest {
         return run<vec4>(job, count);
     }
 
-    /// Three quarters by power, one quarter the same for each: every triangle here is a lamp of its own.
+    /// Three quarters by power, one quarter uniform: here every triangle is a lamp of its own.
     static double probabilityOf(const std::vector<Emitter>& emitters, const Emitter& chosen) {
         double power = 0.0;
         for (const Emitter& e : emitters) power += e.power();
         return 0.75 * chosen.power() / power + 0.25 / static_cast<double>(emitters.size());
     }
 
-    /// Triangles: uniform over each. `share` is the probability that a triangle is asked at all.
+    /// Checks that samples are uniform over each triangle. `share` is the probability of sampling a triangle
+    /// at all.
     void checkTriangles(const std::vector<Emitter>& emitters, const std::vector<DrawnLight>& drawn,
                         const vec3& from, double share) {
         constexpr size_t side = 8;
@@ -181,14 +182,14 @@ class LightsTest : public GpuTest {
         }
         const double n = static_cast<double>(drawn.size());
         const double hidden = std::max(share - visible, 0.0);
-        // A ray to a point on the very edge may miss it.
+        // A ray to a point exactly on an edge may miss the triangle.
         EXPECT_LE(different, n / 5000.0) << "densities of a hit that differ from the sampled ones";
         EXPECT_NEAR(none, n * hidden, 4.5 * std::sqrt(n * hidden) + 1e-6)
             << "samples of lights seen from behind";
         expectFit(observed, expected);
     }
 
-    /// An equal-area grid on the triangle: the warp of uniform sampling inverted.
+    /// Bins on an equal-area grid of the triangle: inverts the warp of uniform sampling.
     static size_t binOf(const Met& met, size_t side) {
         const double sum = std::clamp(met.u + met.v, 1e-9, 1.0);
         const auto clampIndex = [&](double x) {
@@ -215,7 +216,7 @@ class LightsTest : public GpuTest {
                    result.p);
     }
 
-    /// The environment in bins of half a texel, the density integrated over each.
+    /// Bins of half a texel of the environment, with the density integrated over each.
     void checkEnvironment(const scene::Scene& scene, const std::vector<DrawnLight>& drawn, double share) {
         const size_t columns = size_t{scene.environment.width} * 2,
                      rows = size_t{scene.environment.height} * 2;
@@ -249,7 +250,7 @@ class LightsTest : public GpuTest {
         expectFit(observed, expected);
     }
 
-    /// Sampled and looked-up densities agree, save where rounding moves a direction into the next texel.
+    /// Sampled and looked-up densities agree, except where rounding moves a direction into the next texel.
     static void checkEnvironmentPdf(const std::vector<DrawnLight>& drawn) {
         uint32_t count = 0, different = 0;
         for (const DrawnLight& light : drawn) {
@@ -281,8 +282,7 @@ TEST_F(LightsTest, EnvironmentWithASun) {
     checkEnvironmentPdf(drawn);
 }
 
-/// Directions find the place in the picture that environment.h says: pictures that hold their own
-/// coordinates.
+/// Directions map to the picture as environment.h describes. The pictures contain their own coordinates.
 TEST_F(LightsTest, EnvironmentLookUpIsExact) {
     scene::Scene scene = sceneOf({});
     scene.environment = {64, 32, {}};
@@ -304,18 +304,18 @@ TEST_F(LightsTest, EnvironmentLookUpIsExact) {
     for (size_t i = 0; i < directions.size(); ++i) {
         const dvec3 d = glm::normalize(dvec3(directions[i]));
         const double u = std::atan2(d.x, -d.z) / (2.0 * pi64) + 0.5, v = std::acos(d.y) / pi64;
-        // Half a texel at the border is constant, or wraps; near a pole u is ill-conditioned.
+        // Half a texel at the border is constant or wraps; near a pole u is ill-conditioned.
         if (u > 0.01 && u < 0.99 && std::abs(d.y) < 0.98)
             worstU = std::max(worstU, std::abs(double{values[i].x} - u));
         if (v > 0.02 && v < 0.98) worstV = std::max(worstV, std::abs(double{values[i].y} - v));
     }
     fmt::print("look-up is off by {:.2g} of the width, {:.2g} of the height\n", worstU, worstV);
-    // A twentieth of a texel of a picture of 4096 x 2048.
+    // A twentieth of a texel of a 4096 x 2048 picture.
     EXPECT_LT(worstU, 0.05 / 4096);
     EXPECT_LT(worstV, 0.05 / 2048);
 }
 
-/// What a sample brings is what a ray in its direction finds.
+/// A sample's radiance equals what a ray in its direction sees.
 TEST_F(LightsTest, EnvironmentRadianceIsTheSampledOne) {
     scene::Scene scene = sceneOf({});
     scene.environment = sunnyEnvironment();
@@ -339,8 +339,8 @@ TEST_F(LightsTest, MixtureOfEverything) {
     checkEnvironmentPdf(drawn);
 }
 
-/// An emitting triangle is asked as often as its power says (here at least 20 %, at most 65 %), a punctual
-/// light in three of five samples by what arrives from it, and in two like the others.
+/// Emissive triangles are sampled according to their power (here at least 20 %, at most 65 %). Punctual
+/// lights are sampled by contribution in three of five samples, and uniformly in two.
 TEST_F(LightsTest, PunctualLights) {
     scene::Scene scene = sceneOf(oneTriangle);
     scene::PunctualLight point, spot;
@@ -373,7 +373,8 @@ TEST_F(LightsTest, PunctualLights) {
     expectFit(observed, expected);
 }
 
-/// What a floor at the origin that faces up gets from a punctual light, by its own formula.
+/// Returns the irradiance from a punctual light on an upward-facing floor at the origin, by the test's own
+/// formula.
 double irradianceOf(const scene::PunctualLight& light) {
     using Kind = scene::PunctualLight::Kind;
     if (light.kind == Kind::Directional)
@@ -407,8 +408,8 @@ scene::PunctualLight spotLight(const vec3& position, const vec3& target, float i
     return light;
 }
 
-/// The estimate of the floor's irradiance that one sample gives: mean and relative variance; and how often
-/// each of the scene's lamps was chosen.
+/// The floor's irradiance estimated from single samples: mean and relative variance, and how often each lamp
+/// was chosen.
 struct FloorLight {
     double mean = 0.0, variance = 0.0;
     std::vector<double> frequencies;
@@ -441,7 +442,7 @@ FloorLight floorLight(const scene::Scene& scene, const std::vector<DrawnLight>& 
     return result;
 }
 
-/// One narrow spot lights the floor; brighter lamps shine elsewhere: beyond their range, out of their cone,
+/// One narrow spot lights the floor; brighter lamps do not reach it: out of range, outside their cone, or
 /// from below.
 TEST_F(LightsTest, ANarrowSpotAmongBrightLampsElsewhere) {
     scene::Scene scene = sceneOf({{{{5, 1, 5}, {5, 1, 6}, {6, 1, 5}}, 4000.0f, false}});
@@ -459,8 +460,8 @@ TEST_F(LightsTest, ANarrowSpotAmongBrightLampsElsewhere) {
     EXPECT_NEAR(found.mean / irradianceOf(scene.lights[0]), 1.0, 0.03);
 }
 
-/// No lamp is chosen with less than a tenth of its share of the light that arrives, and the estimate is
-/// right: for few lamps, as many as are all looked at, and more, of which some are drawn.
+/// No lamp is chosen with less than a tenth of its share of the incident light, and the estimate is correct:
+/// for few lamps, for the largest number that are all evaluated, and for more, of which candidates are drawn.
 TEST_F(LightsTest, LampsAreDrawnByWhatArrives) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);

@@ -1,4 +1,5 @@
-// Lights changed on the device against scenes that were built with them; and the preview, which needs none.
+// Compares lights changed on the device with scenes built with them; and tests the preview, which needs no
+// lights.
 #include "scene/model/live_lights.h"
 
 #include <gmock/gmock.h>
@@ -96,7 +97,7 @@ TEST_F(LiveLightsTest, AChangedSceneIsTheSceneBuiltSo) {
     }
 }
 
-/// A mean starts anew with the change; histories of denoisers go on.
+/// A mean restarts after the change; histories of denoisers continue.
 TEST_F(LiveLightsTest, TheMeanStartsAnew) {
     Scene scene = litScene();
     const scene::SceneData data = scene::buildSceneData(scene);
@@ -117,7 +118,7 @@ TEST_F(LiveLightsTest, TheMeanStartsAnew) {
     EXPECT_EQ(renderer.samplesInMean(), 2u);
 }
 
-/// While a clip plays, in the same frame as what the animator writes.
+/// While a clip plays, in the same frame as the animator's updates.
 TEST_F(LiveLightsTest, ChangesWhileThingsMove) {
     Scene scene = litScene();
     scene::chooseClip(scene, "");
@@ -147,7 +148,7 @@ TEST_F(LiveLightsTest, ChangesWhileThingsMove) {
     EXPECT_EQ(picture(other, same), relit);
 }
 
-/// A quarter turn of a picture of eight columns is the picture with its columns moved by two.
+/// A quarter turn of a picture with eight columns equals the picture with its columns shifted by two.
 TEST_F(LiveLightsTest, TheEnvironmentTurns) {
     Scene scene = floorScene(vec3(0.5f));
     scene.cameras = {scene::lookAt({0, 2, 5}, {0, 2.5f, 0}, {0, 1, 0}, 1.4f)};
@@ -196,7 +197,7 @@ TEST_F(LiveLightsTest, ThePreviewShowsColoursWithoutAnyLight) {
     EXPECT_NEAR(floor[middle], 0.5f, 0.005f);
     EXPECT_NEAR(floor[middle + 1], 0.25f, 0.005f);
     EXPECT_NEAR(floor[middle + 2], 0.125f, 0.005f);
-    // Past the floor's edge: the backdrop, which is not black.
+    // Beyond the floor's edge is the backdrop, which is not black.
     moment.camera = scene::cameraParams(scene::lookAt({0, 4, 0}, {0, 8, -1}, {0, 1, 0}, 0.2f), 24, 16);
     const std::vector<float> backdrop = picture(renderer, moment);
     EXPECT_GT(backdrop[middle], 0.05f);

@@ -1,5 +1,5 @@
-// Motion against a poser in double precision: where the surface point of each pixel was in the previous
-// frame, for rigid, skinned and morphed movement, each under a moving camera.
+// Compares motion with poses in double precision: the previous position of each pixel's surface point, for
+// rigid, skinned and morphed movement, each with a moving camera.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -112,7 +112,7 @@ class MotionTest : public TraceTest {
                 counts.wrongSky += !right;
                 continue;
             }
-            // The camera passes the backs of single-sided triangles; the ray here does not.
+            // The camera passes through back faces of single-sided triangles; the ray here does not.
             if (std::abs(layers.depth[4 * p] - hit.t) > 1e-3f * hit.t) continue;
             ++counts.hits;
             const dvec2 b(hit.barycentrics);
@@ -133,7 +133,7 @@ class MotionTest : public TraceTest {
             const double side = glm::dot(now.normal(hit.instance, hit.primitive, b), seen) < 0.0 ? -1.0 : 1.0;
             counts.wrongNormal +=
                 !(glm::length(side * before.normal(hit.instance, hit.primitive, b) - old) < 0.01 ||
-                  // Normals that turn from the viewer are tilted towards them.
+                  // Normals that face away from the viewer are tilted towards the viewer.
                   glm::length(side * now.normal(hit.instance, hit.primitive, b) - seen) > 0.002);
         }
         return counts;

@@ -1,4 +1,5 @@
-// The clear coat and textured specular in pictures: normal maps, textures, and light emitted below the coat.
+// Tests the clear coat and textured specular in pictures: normal maps, textures, and light emitted below the
+// coat.
 #include <numbers>
 
 #include "scene/model/environment.h"
@@ -13,7 +14,7 @@ double coatFresnel(double cosine) {
     return 0.04 + 0.96 * std::pow(1.0 - cosine, 5.0);
 }
 
-/// One texel.
+/// Adds a texture of one texel.
 scene::TextureRef addTexture(scene::Scene& scene, std::array<uint8_t, 4> rgba, bool srgb = false) {
     scene::Texture texture;
     texture.width = texture.height = 1;
@@ -54,8 +55,8 @@ class ClearcoatPictureTest : public RenderTest {
     }
 };
 
-/// Over black a smooth coat is a mirror that reflects its Fresnel term, by its own normal map and not by the
-/// base's.
+/// Over black, a smooth coat is a mirror that reflects its Fresnel term. It follows its own normal map, not
+/// the base's.
 TEST_F(ClearcoatPictureTest, FollowsItsOwnNormalMap) {
     for (const bool mapped : {false, true}) {
         scene::Scene scene;
@@ -86,7 +87,7 @@ TEST_F(ClearcoatPictureTest, FollowsItsOwnNormalMap) {
     }
 }
 
-/// Emission is below the coat: whichever way the light is found, it is dimmed by what the coat reflects.
+/// Emission is below the coat: however the light is found, it is reduced by the coat's reflection.
 TEST_F(ClearcoatPictureTest, DimsEmission) {
     const double x0 = -0.6, x1 = 0.8, z0 = -0.7, z1 = 0.5, height = 1.1;
     scene::Scene scene = floorScene(vec3(0.6f));
@@ -119,7 +120,7 @@ TEST_F(ClearcoatPictureTest, DimsEmission) {
     }
     fmt::print("floor below a coated light: {:.5f}, exactly {:.5f}\n", sum, expectedSum);
     EXPECT_NEAR(sum / expectedSum, 1.0, 5e-3);
-    // Seen directly, at the pixel's own angle.
+    // Seen directly, at each pixel's own angle.
     scene.cameras = {scene::lookAt({0.1f, -3, 0.3f}, {0, 1.1f, 0}, {0, 0, 1}, 0.05f)};
     scene.instances.erase(scene.instances.begin());
     const Rendered seen = render(scene, centred(8, 8, 0), 1);
@@ -129,8 +130,8 @@ TEST_F(ClearcoatPictureTest, DimsEmission) {
     }
 }
 
-/// Textures of one texel are factors: the same picture with the factors alone. Channels that must not matter
-/// hold other values.
+/// Textures of one texel act as factors: the picture equals that with the factors alone. Channels that must
+/// not matter have other values.
 TEST_F(ClearcoatPictureTest, TexturesAreFactors) {
     const auto decoded = [](double encoded) { return std::pow((encoded / 255.0 + 0.055) / 1.055, 2.4); };
     scene::Scene textured;
@@ -152,7 +153,7 @@ TEST_F(ClearcoatPictureTest, TexturesAreFactors) {
     material.specularColorTexture = addTexture(textured, {200, 100, 60, 40}, true);
     material.clearcoatTexture = addTexture(textured, {102, 33, 44, 55});
     material.clearcoatRoughnessTexture = addTexture(textured, {11, 204, 22, 33});
-    // A texture that changes nothing: both scenes then run the same code but for the textures in question.
+    // A texture without effect, so that both scenes run the same code except for the tested textures.
     factors.baseColorTexture = addTexture(plain, {255, 255, 255, 255});
     std::vector<Rendered> pictures;
     for (auto* pair : {&textured, &plain}) {
@@ -168,7 +169,7 @@ TEST_F(ClearcoatPictureTest, TexturesAreFactors) {
         const vec3 a = pictures[0].beauty(i), b = pictures[1].beauty(i);
         different += glm::any(glm::greaterThan(glm::abs(a - b), 1e-3f * b)) ? 1 : 0;
     }
-    // The same random numbers, but for one choice in a thousand that rounding turns.
+    // The same random numbers, but rounding changes about one decision in a thousand.
     EXPECT_LE(different, 12u);
     fmt::print("textures and factors: {} of 256 pixels differ\n", different);
 }

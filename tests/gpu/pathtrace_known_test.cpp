@@ -1,4 +1,4 @@
-// Pictures whose every pixel is known.
+// Tests pictures in which every pixel is known.
 #include <numbers>
 
 #include "scene/builtin/builtin.h"
@@ -34,8 +34,7 @@ class KnownAnswerTest : public RenderTest {
         EXPECT_EQ(picture.counters.rejected, 0u);
     }
 
-    /// Compares every pixel that sees the floor with `radiance` of the point there. `tolerance` is of one
-    /// pixel.
+    /// Compares every pixel that sees the floor with `radiance` of the point there. `tolerance` is per pixel.
     void checkFloor(const scene::Scene& scene, const RenderSettings& settings, uint64_t samples,
                     double tolerance, const std::function<double(const dvec3&)>& radiance,
                     const std::string& name) {
@@ -76,13 +75,13 @@ TEST_F(KnownAnswerTest, Furnace) {
     }
 }
 
-/// Emission, and light of one bounce, however many are allowed.
+/// Emission, and light of one bounce, however many bounces are allowed.
 TEST_F(KnownAnswerTest, FurnaceOfDirectLight) {
     Renderer renderer(device(), scene::furnaceScene(0.8f));
     for (const int depth : {0, 1, 8}) checkFurnace(renderer, 0.8f, depth, 3, Integrator::Direct);
 }
 
-/// A point light's, exactly; what the floor reflects onto the wall and back is missing.
+/// Exactly a point light's illumination, without the light that the floor reflects onto the wall and back.
 TEST_F(KnownAnswerTest, DirectLightHasNoSecondBounce) {
     scene::Scene scene = viewedFloor();
     scene::MeshBuilder wall("wall");
@@ -160,9 +159,9 @@ TEST_F(KnownAnswerTest, DirectionalLight) {
         scene, centred(8, 8, 1), 1, 5e-3, [&](const dvec3&) { return expected; }, "directional light");
 }
 
-/// Configuration factor from a surface element to a parallel rectangle: J. R. Howell, "A catalog of radiation
-/// heat transfer configuration factors", B-4, for a corner above the element; four of them make any
-/// rectangle.
+/// Returns the configuration factor from a surface element to a parallel rectangle: J. R. Howell, "A catalog
+/// of radiation heat transfer configuration factors", B-4, for a corner above the element; four of them make
+/// any rectangle.
 double cornerFactor(double a, double b, double c) {
     const double x = a / c, y = b / c, rx = std::sqrt(1.0 + x * x), ry = std::sqrt(1.0 + y * y);
     return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2.0 * pi64);
@@ -191,7 +190,7 @@ TEST_F(KnownAnswerTest, EmissiveQuadAboveTheFloor) {
         "emissive quad");
 }
 
-/// A convex body under a sky of 1 reflects its albedo everywhere.
+/// A convex body under a sky of radiance 1 shows its albedo everywhere.
 TEST_F(KnownAnswerTest, ConvexBodyUnderAConstantSky) {
     scene::Scene scene;
     scene::MeshBuilder builder("sphere");

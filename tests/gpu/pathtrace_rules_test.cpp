@@ -1,4 +1,4 @@
-// What must hold of any picture: repeatability, seeds, launches, layers, parameters, counters.
+// Tests properties of any picture: repeatability, seeds, launches, layers, parameters, counters.
 #include "scene/builtin/builtin.h"
 #include "tests/gpu/render_fixture.h"
 #include "tests/reference/statistics.h"
@@ -35,7 +35,7 @@ TEST_F(RulesTest, NoSampleIsRejectedWhereNothingIsNaN) {
     }
 }
 
-/// Samples per launch change the noise, not the mean.
+/// Samples per launch change the noise, but not the mean.
 TEST_F(RulesTest, SamplesPerLaunchKeepTheMean) {
     Renderer renderer(device(), scene::cornellScene());
     RenderSettings settings = small(24, 1);
@@ -88,7 +88,7 @@ TEST_F(RulesTest, LayersAddUpToTheBeauty) {
             }
         }
     }
-    // Two programs may round differently, and a path then take another turn.
+    // Two shaders may round differently, after which a path may diverge.
     EXPECT_LE(different, beauty.pixelCount() / 50) << "of " << beauty.pixelCount() << " pixels";
     fmt::print("layers: {} of {} pixels differ from the beauty by more than rounding\n", different,
                beauty.pixelCount());
@@ -122,7 +122,7 @@ TEST_F(RulesTest, JitterMovesTheRays) {
     std::vector<std::vector<float>> depths;
     for (const Jitter jitter : {Jitter::Off, Jitter::Frame, Jitter::Pixel}) {
         settings.jitter = jitter;
-        // The first frame goes through the centres in every mode.
+        // The first frame goes through the pixels' centres in every mode.
         const Rendered first = renderer(settings, 1);
         depths.push_back(renderer(settings, 4).layers.depth);
         if (jitter == Jitter::Off) continue;

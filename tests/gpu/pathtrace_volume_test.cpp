@@ -1,4 +1,4 @@
-// KHR_materials_volume: light in bodies that absorb it, by Beer's law.
+// Tests KHR_materials_volume: light in absorbing bodies, by Beer's law.
 #include <algorithm>
 #include <numbers>
 
@@ -9,9 +9,8 @@ namespace {
 
 constexpr double pi64 = std::numbers::pi;
 const vec3 absorption(0.3f, 1.0f, 2.5f);
-/// offsetRay() begins a ray 2^-17 of the largest coordinate (1 here) behind the surface, and that part of the
-/// way absorbs nothing: at most two such beginnings, times the strongest absorption, and float's own
-/// rounding.
+/// offsetRay() starts a ray 2^-17 of the largest coordinate (1 here) behind the surface, and that distance
+/// absorbs nothing: at most two such offsets, times the strongest absorption, plus float rounding.
 const double offsetTolerance = 2.0 * 0x1p-17 * 2.5 + 2e-6;
 
 scene::Material bodyMaterial(float ior, const vec3& sigma) {
@@ -34,7 +33,7 @@ scene::Material emitting(float radiance) {
     return material;
 }
 
-/// Along -Z from z = 5, the middle 0.2 of the scene.
+/// Looks along -Z from z = 5, at the middle 0.2 of the scene.
 scene::Camera parallelCamera() {
     scene::Camera camera = scene::lookAt({0.01f, 0.02f, 5}, {0.01f, 0.02f, 0}, {0, 1, 0}, 0.5f);
     camera.orthographic = true;
@@ -55,7 +54,7 @@ class VolumeTest : public RenderTest {
         return settings;
     }
 
-    /// Every pixel within `tolerance` of `expected`, relative.
+    /// Expects every pixel within `tolerance` of `expected`, relative.
     static void expectEverywhere(const Rendered& picture, const dvec3& expected, double tolerance,
                                  const char* name) {
         dvec3 mean(0.0);
@@ -78,7 +77,7 @@ TEST_F(VolumeTest, BodyOfIndexOne) {
     ASSERT_TRUE(scene::buildSceneData(scene).features.volume);
     expectEverywhere(render(scene, settings(4), 1), glm::exp(-1.3 * dvec3(absorption)), offsetTolerance,
                      "1.3 m at right angles");
-    // From aside: the way through the body is longer by the cosine.
+    // At an angle, the distance through the body is longer by the cosine.
     scene.cameras = {scene::lookAt({0.5f, 0.3f, 5}, {0, 0, 0.25f}, {0, 1, 0}, 0.05f)};
     const Rendered picture = render(scene, settings(4), 1);
     const CameraParams view = camera(scene, settings(4));
@@ -90,8 +89,8 @@ TEST_F(VolumeTest, BodyOfIndexOne) {
     }
 }
 
-/// At right angles both faces reflect R = ((n - 1) / (n + 1))^2, again and again: with a = exp(-sigma d) the
-/// slab shows R + (1 - R)^2 R a^2 / (1 - R^2 a^2) of the sky before it and (1 - R)^2 a / (1 - R^2 a^2) of the
+/// At right angles both faces reflect R = ((n - 1) / (n + 1))^2 repeatedly: with a = exp(-sigma d), the slab
+/// shows R + (1 - R)^2 R a^2 / (1 - R^2 a^2) of the sky in front of it and (1 - R)^2 a / (1 - R^2 a^2) of the
 /// sky behind it.
 TEST_F(VolumeTest, SlabOfGlass) {
     for (const float ior : {1.5f, 2.4f}) {
@@ -111,10 +110,10 @@ TEST_F(VolumeTest, SlabOfGlass) {
     }
 }
 
-/// A ray that passes the centre of a sphere of radius 1 at distance b crosses 2 sqrt(1 - b^2) of it; with an
-/// index n, 2 sqrt(1 - (b / n)^2), and again after each reflection inside, at the same angle. Each meeting
-/// reflects the same R: with a = exp(-sigma way), the ball shows R + (1 - R)^2 a / (1 - R a) of a uniform
-/// sky.
+/// A ray that passes the centre of a sphere of radius 1 at distance b travels 2 sqrt(1 - b^2) inside it; with
+/// an index n, 2 sqrt(1 - (b / n)^2), and again after each internal reflection, at the same angle. Each hit
+/// reflects the same R: with a = exp(-sigma distance), the ball shows R + (1 - R)^2 a / (1 - R a) of a
+/// uniform sky.
 class BallTest : public VolumeTest {
   protected:
     static dvec3 expectedOf(double b, double ior) {
@@ -126,7 +125,7 @@ class BallTest : public VolumeTest {
         return r + (1.0 - r) * (1.0 - r) * a / (1.0 - r * a);
     }
 
-    /// Distance from the axis of the ray through a pixel's centre.
+    /// Returns the distance from the axis of the ray through a pixel's centre.
     static double distanceOf(size_t i, double halfHeight) {
         const double x = 2.0 * (static_cast<double>(i % 16) + 0.5) / 16 - 1.0;
         const double y = 2.0 * (static_cast<double>(i / 16) + 0.5) / 16 - 1.0;
@@ -153,7 +152,7 @@ TEST_F(BallTest, OfIndexOne) {
     double worst = 0.0;
     for (size_t i = 0; i < 256; ++i) {
         const double b = distanceOf(i, double{halfHeight});
-        if (b > 0.95 && b < 1.01) continue;  // there the facets' edges show
+        if (b > 0.95 && b < 1.01) continue;  // the facets' edges are visible there
         const dvec3 expected = b < 1.0 ? expectedOf(b, 1.0) : dvec3(1.0);
         for (int c = 0; c < 3; ++c) {
             worst = std::max(worst, std::abs(picture.beauty(i)[c] / expected[c] - 1.0));
@@ -172,7 +171,7 @@ TEST_F(BallTest, OfGlass) {
         const double b = distanceOf(i, double{halfHeight});
         if (b > 0.95) continue;
         const dvec3 expected = expectedOf(b, 1.5);
-        // Of 2048 samples each one is between 0 and 1: their mean is within 5 / (2 sqrt(2048)).
+        // Each of 2048 samples is between 0 and 1, so their mean is within 5 / (2 sqrt(2048)).
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(picture.beauty(i)[c], expected[c], 0.055) << i << " at " << b;
         sum += dvec3(picture.beauty(i));
         expectedSum += expected;
@@ -190,13 +189,13 @@ TEST_F(VolumeTest, ThinWallsAbsorbNothing) {
     addWhiteSky(scene);
     scene.cameras = {parallelCamera()};
     EXPECT_FALSE(scene::buildSceneData(scene).features.volume);
-    // With another body beside it, so that the shader knows absorption.
+    // With another body beside it, so that the shader supports absorption.
     addBox(scene, {3, 3, 0}, {4, 4, 1}, bodyMaterial(1.0f, absorption));
     ASSERT_TRUE(scene::buildSceneData(scene).features.volume);
     expectEverywhere(render(scene, settings(20, 64), 1024), dvec3(1.0), 0.02, "thin walls");
 }
 
-/// What stands in a body is seen through the part of the body before it.
+/// An object inside a body is seen through the part of the body in front of it.
 TEST_F(VolumeTest, EmitterInABody) {
     scene::Scene scene;
     addBox(scene, {-1, -1, -1}, {1, 1, 1}, bodyMaterial(1.0f, absorption));
@@ -210,8 +209,8 @@ TEST_F(VolumeTest, EmitterInABody) {
                      offsetTolerance, "emitter in a body");
 }
 
-/// A clear body in an absorbing one, as a bubble in glass: its part of the way does not count, what is behind
-/// it does.
+/// A clear body in an absorbing one, like a bubble in glass: absorption excludes the distance inside the
+/// clear body, but includes that behind it.
 TEST_F(VolumeTest, BodyInABody) {
     scene::Scene scene;
     addBox(scene, {-1, -1, -1}, {1, 1, 1}, bodyMaterial(1.0f, absorption));
@@ -222,7 +221,7 @@ TEST_F(VolumeTest, BodyInABody) {
                      "bubble");
 }
 
-/// Both ways of finding a light within a body: the floor's light by quadrature.
+/// Finds a light inside a body in both ways; the floor's light is computed by quadrature.
 TEST_F(VolumeTest, LightAndFloorInABody) {
     constexpr float sigma = 0.4f, height = 1.1f, half = 0.3f;
     scene::Scene scene = floorScene(vec3(0.6f));
@@ -264,8 +263,8 @@ TEST_F(VolumeTest, LightAndFloorInABody) {
     EXPECT_NEAR(sum / expectedSum, 1.0, 5e-3);
 }
 
-/// Clear glass before a white sky is white up to its rim, with all settings at their defaults: there light is
-/// reflected inside many times before it leaves, more often than a path may bounce.
+/// Clear glass in front of a white sky is white up to its rim with default settings. At the rim, light is
+/// reflected internally more often than a path may bounce.
 TEST_F(VolumeTest, TheRimOfGlassIsWhite) {
     const auto columns = [&](bool thin, const RenderSettings& options) {
         scene::Scene scene;

@@ -1,4 +1,4 @@
-// The file that keeps what a driver has compiled.
+// Tests the file that stores the driver's compiled pipelines.
 #include "renderer/frame/pipeline_store.h"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Whole pipelines: what they must give, whatever the scene.
+// Tests properties that whole pipelines must have in any scene.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ RenderSettings settingsFor(const Pipeline& pipeline, uint32_t width, uint32_t he
 
 class PipelinesTest : public RenderTest {
   protected:
-    /// The camera stands still; every frame has noise of its own.
+    /// The camera stands still; every frame has independent noise.
     static Moment still(const Scene& scene, const RenderSettings& settings, uint64_t number) {
         Moment moment;
         moment.camera = camera(scene, settings);
@@ -41,7 +41,7 @@ class PipelinesTest : public RenderTest {
         return moment;
     }
 
-    /// The last picture of an orbit of some frames.
+    /// Returns the last picture of an orbit of several frames.
     std::vector<float> orbit(const Scene& scene, const RenderSettings& settings, uint64_t frames) {
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene gpuScene(device(), data);
@@ -111,7 +111,7 @@ TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
         expectEqual(layers.*layer, expected.*layer, 1e-6f);
 }
 
-/// What the denoiser is given adds up to what the integrator alone shows, with the guides of the first hit.
+/// The denoiser's input adds up to the integrator's picture, with the guides of the first hit.
 TEST_F(PipelinesTest, ADenoiserIsGivenTheAmbientOcclusionOfTheFrame) {
     Scene scene = floorScene(vec3(0.3f));
     scene::MeshBuilder wall("wall");
@@ -181,7 +181,7 @@ TEST_F(PipelinesTest, AmbientOcclusionAndDirectLightAreNearerToTheTruthDenoised)
     }
 }
 
-/// A denoiser's histories of ambient occlusion are of one radius; paths do not care.
+/// Histories of ambient occlusion belong to one radius; the path tracer does not use it.
 TEST_F(PipelinesTest, HistoriesStartAnewWhereTheIntegratorsParametersChange) {
     const Scene scene = prepared(scene::cornellScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
@@ -194,7 +194,7 @@ TEST_F(PipelinesTest, HistoriesStartAnewWhereTheIntegratorsParametersChange) {
     }
 }
 
-/// Of each pipeline, each in a frame of several samples: only the very first goes through the centre.
+/// For each pipeline, each with several samples per frame: only the very first goes through the centre.
 TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
@@ -223,9 +223,9 @@ TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     for (const Pipeline& pipeline : pipelines()) {
-        if (pipeline.usesNetwork()) continue;                      // traces as with other denoisers
-        if (pipeline.integrator == Integrator::Preview) continue;  // nothing random after the first hit
-        // No jitter: of what comes after the first hit.
+        if (pipeline.usesNetwork()) continue;                      // traces like other denoisers
+        if (pipeline.integrator == Integrator::Preview) continue;  // no random numbers after the first hit
+        // No jitter, so that only random numbers after the first hit matter.
         RenderSettings settings = settingsFor(pipeline, 24, 16);
         const auto picture = [&](bool tea) {
             settings.pathtrace.samplerTea = tea;
@@ -316,7 +316,7 @@ TEST_F(PipelinesTest, TheScaleOfTheSceneDoesNotMatter) {
     }
 }
 
-/// What automatic exposure is metered on: without layers too, and after every denoiser.
+/// The input of automatic exposure: available without layers too, and after every denoiser.
 TEST_F(PipelinesTest, EachTellsWhichPixelsSeeASurface) {
     Scene scene = floorScene(vec3(0.5f));
     scene.cameras = {scene::lookAt({0, 1, 0}, {0, 1, -1}, {0, 1, 0}, 1.0f)};

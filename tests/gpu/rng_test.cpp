@@ -1,4 +1,4 @@
-// The shaders' random numbers: the same bits as a C++ copy, and no gross unevenness.
+// Tests the shaders' random numbers: the same bits as a C++ copy, and no obvious non-uniformity.
 #include <bit>
 #include <cmath>
 
@@ -42,7 +42,7 @@ class RngTest : public GpuTest {
         }
     }
 
-    /// The numbers of all streams, stream after stream.
+    /// Returns the numbers of all streams, one stream after the other.
     std::vector<float> values(const Settings& settings, bool samplerTea) {
         const std::vector<uint32_t> all = words(settings, samplerTea);
         std::vector<float> result;
@@ -64,7 +64,7 @@ TEST_F(RngTest, HasTheBitsOfTheCopy) {
 }
 
 TEST(Tea, CopyHasKnownValues) {
-    // Worked out with a separate program (Python integers).
+    // Computed with a separate program (Python integers).
     EXPECT_EQ(tea(0, 0), 0x741c187du);
     EXPECT_EQ(tea(1, 2), 0x0ca5550fu);
 }
@@ -89,7 +89,7 @@ TEST_F(RngTest, IsEvenInOneAndTwoDimensions) {
     }
 }
 
-/// Neighbouring pixels and frames must not be alike: the n-th numbers of the streams are even and
+/// Neighbouring pixels and frames must be independent: the n-th numbers of all streams are uniform and
 /// uncorrelated too.
 TEST_F(RngTest, StreamsAreIndependent) {
     const std::vector<float> u = values({streams, 9, 0}, false);

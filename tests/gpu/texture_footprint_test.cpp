@@ -1,6 +1,6 @@
-// Footprints of rays must not change what a picture converges to: checkerboards seen directly and in glossy
-// reflections keep the contrast that they have without mip levels, and light of a textured emitter is that of
-// its texels.
+// Tests that ray footprints do not change what a picture converges to: checkerboards seen directly and in
+// glossy reflections keep the contrast they have without mip levels, and the light of a textured emitter is
+// that of its texels.
 #include <functional>
 
 #include "tests/gpu/render_fixture.h"
@@ -28,7 +28,7 @@ scene::TextureRef addTexture(scene::Scene& scene, uint32_t width, uint32_t heigh
     return ref;
 }
 
-/// Two by two fields of 16 by 16 texels, so that there are levels to lose the contrast in.
+/// Two by two squares of 16 by 16 texels, so that there are levels in which contrast could be lost.
 scene::Material unlitCheckerboard(scene::Scene& scene, MipFilter mip) {
     scene::Material material;
     material.unlit = true;  // no light, no noise
@@ -47,7 +47,7 @@ scene::Material emittingCheckerboard(scene::Scene& scene, MipFilter mip) {
     return material;
 }
 
-/// Light and dark along u, the same all along v.
+/// Light and dark stripes along u, constant along v.
 scene::Material stripes(scene::Scene& scene, MipFilter mip) {
     scene::Material material = unlitCheckerboard(scene, mip);
     material.baseColorTexture =
@@ -55,8 +55,8 @@ scene::Material stripes(scene::Scene& scene, MipFilter mip) {
     return material;
 }
 
-// Pictures have a column for each case, all two units of the world wide: a scene costs more to compile than
-// to render.
+// Pictures have a column for each case, each two world units wide, since compiling for a scene takes longer
+// than rendering it.
 constexpr uint32_t columnPixels = 40;
 constexpr float pixel = 2.0f / columnPixels;
 
@@ -64,8 +64,8 @@ float leftOf(size_t column, size_t columns) {
     return 2.0f * static_cast<float>(column) - static_cast<float>(columns);
 }
 
-/// A strip as wide as a column, from `low` to `high`, which are (y, z). The texture repeats every (period.x,
-/// period.y) along x and along the strip.
+/// Adds a strip as wide as a column, from `low` to `high`, which are (y, z). The texture repeats every
+/// (period.x, period.y) along x and along the strip.
 void addStrip(scene::Scene& scene, float left, const vec2& low, const vec2& high, const vec2& period,
               const scene::Material& material) {
     scene::MeshBuilder builder("strip");
@@ -78,7 +78,7 @@ void addStrip(scene::Scene& scene, float left, const vec2& low, const vec2& high
     addMesh(scene, std::move(mesh), material);
 }
 
-/// From `from` towards the origin, orthographic: two units of the world high.
+/// Looks from `from` towards the origin, orthographic, two world units high.
 scene::Camera cameraAt(const vec3& from, const vec3& up) {
     scene::Camera camera;
     camera.orthographic = true;
@@ -86,7 +86,8 @@ scene::Camera cameraAt(const vec3& from, const vec3& up) {
     return camera;
 }
 
-/// A metal floor that shows, at 45 degrees, boards which stand on it. The boards themselves are out of sight.
+/// A metal floor that reflects, at 45 degrees, boards that stand on it. The boards themselves are not
+/// visible.
 struct Reflection {
     float roughness, period;
 };
@@ -105,7 +106,8 @@ scene::Scene reflectedBoards(const std::vector<Reflection>& columns,
     return scene;
 }
 
-/// Strips that are tilted away by these angles; what is drawn on them has a period of eight pixels each way.
+/// Strips that are tilted away by these angles; their pattern has a period of eight pixels in both
+/// directions.
 constexpr float tilts[] = {0.0f, 60.0f, 80.0f};
 scene::Scene tiltedBoards(MipFilter mip) {
     scene::Scene scene;
@@ -120,7 +122,7 @@ scene::Scene tiltedBoards(MipFilter mip) {
     return scene;
 }
 
-/// Tilted by 80 degrees, stripes of four pixels along the view.
+/// Tilted by 80 degrees, with stripes of four pixels along the view.
 scene::Scene grazedStripes(MipFilter mip) {
     scene::Scene scene;
     const vec2 high(1.1f, -1.1f * std::tan(glm::radians(80.0f)));
@@ -135,7 +137,7 @@ double meanOf(const std::vector<double>& values) {
     return sum / static_cast<double>(values.size());
 }
 
-/// How much of `pattern` is in the picture.
+/// Returns the correlation of the picture with `pattern`.
 double contrastOf(const std::vector<double>& picture, const std::vector<double>& pattern) {
     const double a = meanOf(picture), b = meanOf(pattern);
     double product = 0.0, square = 0.0;
@@ -150,7 +152,7 @@ class TextureFootprintTest : public RenderTest {
   protected:
     using Columns = std::vector<std::vector<double>>;
 
-    /// Red of each column.
+    /// Returns the red channel of each column.
     Columns columnsOf(const scene::Scene& scene, size_t count, RenderSettings settings, uint64_t samples) {
         settings.extent = {columnPixels * static_cast<uint32_t>(count), columnPixels};
         const Rendered picture = render(scene, settings, samples);
@@ -180,8 +182,9 @@ TEST_F(TextureFootprintTest, CheckerboardSeenDirectlyKeepsItsContrast) {
     }
 }
 
-/// The first sample of a pixel has no other filter than the footprint. Where jitter averages later, that is
-/// short across the view; through the centres alone it is wide, so that frames for denoisers do not shimmer.
+/// The footprint is the only filter of a pixel's first sample. With jitter, which will average later, it is
+/// short across the view. With rays through the centres it is wide, so that frames for denoisers do not
+/// shimmer.
 TEST_F(TextureFootprintTest, GrazingViewIsBlurredAlongTheViewOnlyUnlessNothingElseFilters) {
     const auto keptOf = [&](const RenderSettings& settings) {
         const Columns with = columnsOf(grazedStripes(MipFilter::Linear), 1, settings, 1);
@@ -194,8 +197,8 @@ TEST_F(TextureFootprintTest, GrazingViewIsBlurredAlongTheViewOnlyUnlessNothingEl
     EXPECT_LT(wide, 0.5);
 }
 
-/// With the same random numbers both pictures have the same noise. Each board is as fine as the lobe, some
-/// alpha wide, lets through, and fields have four pixels at least.
+/// With the same random numbers, both pictures have the same noise. Each board's pattern is as fine as the
+/// lobe, some alpha wide, can show, with squares of at least four pixels.
 TEST_F(TextureFootprintTest, CheckerboardInGlossyReflectionsKeepsItsContrast) {
     std::vector<Reflection> glossy, smooth;
     for (const float roughness : {0.0f, 0.05f, 0.1f, 0.2f, 0.5f}) {
@@ -219,9 +222,9 @@ TEST_F(TextureFootprintTest, CheckerboardInGlossyReflectionsKeepsItsContrast) {
     }
 }
 
-/// Next-event estimation reads emission at points. What scattered rays find must be the same light: with the
-/// same random numbers, mip levels change nothing, even where footprints are widest. In a mirror there is one
-/// strategy only, and emission is filtered.
+/// Next-event estimation reads emission at points. Scattered rays must see the same light: with the same
+/// random numbers, mip levels change nothing, even with the widest footprints. A mirror uses only one
+/// strategy, so its emission is filtered.
 TEST_F(TextureFootprintTest, BothStrategiesSeeTheSameTexturedEmitter) {
     const std::vector<Reflection> boards{{0.0f, 8.0f * pixel}, {0.2f, 8.0f * pixel}, {0.6f, 8.0f * pixel}};
     const auto picture = [&](MipFilter mip) {

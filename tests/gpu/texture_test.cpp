@@ -1,5 +1,5 @@
-// Texture look-up against a plain C++ version in double precision, written from OpenGL ES 3.0,
-// section 3.8.10, to which glTF's samplers refer.
+// Compares texture look-up with a plain C++ version in double precision, written from OpenGL ES 3.0, section
+// 3.8.10, which glTF's samplers refer to.
 #include <cmath>
 #include <random>
 
@@ -18,7 +18,7 @@ using scene::Wrap;
 
 struct Query {
     vec2 uv;
-    float lod;  ///< of a texture of one texel, as sampleTexture() takes it
+    float lod;  ///< for a texture of one texel, as for sampleTexture()
     uint32_t ref;
 };
 
@@ -39,7 +39,7 @@ int64_t wrap(int64_t x, int64_t size, Wrap mode) {
     return m < size ? m : 2 * size - 1 - m;
 }
 
-/// One mip level as the device has it.
+/// One mip level as stored on the device.
 struct Level {
     int64_t width, height;
     const uint32_t* texels;
@@ -95,7 +95,7 @@ std::string describe(const Texture& t) {
                        static_cast<int>(s.mip));
 }
 
-/// Textures of noise with every combination of wrap modes and filters, in sizes that are no powers of two.
+/// Textures of noise with every combination of wrap modes and filters, in sizes that are not powers of two.
 std::vector<Texture> allTextures() {
     std::vector<Texture> textures;
     std::mt19937 random(7);
@@ -141,7 +141,7 @@ class TextureTest : public GpuTest {
         gpuScene_ = std::make_unique<scene::GpuScene>(device(), data_);
     }
 
-    /// The levels of texture i: one reference per material, in order.
+    /// Returns the levels of texture i: one reference per material, in order.
     std::vector<Level> levels(size_t i) const {
         const uvec4* ref = &data_.textureRefs[i * layout::TEXTURE_REF_TEXELS];
         const uint32_t* texels = &data_.texels[0][ref[0].w];
@@ -167,8 +167,8 @@ class TextureTest : public GpuTest {
         return run<vec4>(job, count);
     }
 
-    /// Where float32 cannot know on which side of an edge between two texels (or levels) a point lies, both
-    /// count.
+    /// If float32 cannot decide on which side of an edge between two texels (or levels) a point lies, either
+    /// result is accepted.
     bool matches(const Query& query, const vec4& found) const {
         const Texture& texture = scene_.textures[query.ref];
         const std::vector<Level> all = levels(query.ref);
@@ -181,7 +181,7 @@ class TextureTest : public GpuTest {
                 q.uv.y += static_cast<float>(shift / 3 - 1) * step * std::max(1.0f, std::abs(q.uv.y));
                 const dvec4 expected = reference(all, texture, q);
                 const dvec4 difference = glm::abs(expected - dvec4(found));
-                // A linear filter's weights move with the rounding of uv times the size.
+                // A linear filter's weights change with the rounding of uv times the size.
                 const double size = std::max(texture.width, texture.height);
                 const double rounding = 4e-7 * size * double{std::max(std::abs(q.uv.x), std::abs(q.uv.y))};
                 const double tolerance = 1e-3 + rounding;
@@ -206,7 +206,7 @@ class TextureTest : public GpuTest {
                                          q.uv.y, q.lod, found[i].x, found[i].y, found[i].z, found[i].w,
                                          expected.x, expected.y, expected.z, expected.w);
         }
-        // The same bits again.
+        // Repeating gives the same bits.
         const std::vector<vec4> again = look(queries);
         EXPECT_EQ(std::memcmp(found.data(), again.data(), found.size() * sizeof(vec4)), 0);
     }
@@ -233,7 +233,7 @@ TEST_F(TextureTest, EveryWrapFilterAndLevel) {
     check(queries);
 }
 
-/// Texel centres and exact repetitions, where a wrong rounding shows.
+/// Texel centres and exact repetitions, where incorrect rounding becomes visible.
 TEST_F(TextureTest, CentresAndWholePeriods) {
     std::vector<Query> queries;
     for (uint32_t i = 0; i < scene().textures.size(); ++i) {
@@ -266,7 +266,7 @@ TEST_F(TextureTest, FarCoordinates) {
         }
     }
     check(queries);
-    // Beyond any precision: some texel of the picture, no crash and no NaN.
+    // Beyond any precision: returns some texel of the picture, without a crash or NaN.
     for (Query& q : queries) q.uv = {1e30f, -3e12f};
     for (const vec4& value : look(queries)) {
         for (int k = 0; k < 4; ++k) ASSERT_TRUE(value[k] >= 0.0f && value[k] <= 1.0001f) << value[k];

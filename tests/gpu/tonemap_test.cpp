@@ -1,4 +1,4 @@
-// The tone-mapping pass against the one for files.
+// Compares the tone-mapping pass with the one for files.
 #include "image/tonemap.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// Traversal where the answer is known without a second tracer: closed bodies, and transparent materials.
+// Tests traversal where the answer is known without a second tracer: closed bodies, and transparent
+// materials.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -10,7 +11,7 @@ namespace {
 
 class WatertightTest : public TraceTest {
   protected:
-    /// Rays from inside towards points on edges and at vertices of every triangle.
+    /// Returns rays from inside towards points on edges and at vertices of every triangle.
     static std::vector<TestRay> raysAtEdges(const scene::Mesh& mesh, const mat4& transform, const vec3& lower,
                                             const vec3& upper, uint32_t count) {
         std::mt19937 random(17);
@@ -60,7 +61,7 @@ class WatertightTest : public TraceTest {
     }
 };
 
-/// The vertices of a pole, which the sine of pi spreads by 1e-7, become one: the mesh itself must be closed.
+/// Merges the vertices of each pole, which the sine of pi spreads by 1e-7, so that the mesh itself is closed.
 scene::Mesh closedSphere() {
     scene::MeshBuilder builder("sphere");
     builder.sphere(vec3(0.0f), 1.0f, 48, 24);
@@ -81,7 +82,7 @@ TEST_P(WatertightTest, Box) {
     check(builder.take(), vec3(-0.99f, -1.9f, -0.4f), vec3(0.99f, 0.9f, 2.9f), 100000, "box");
 }
 
-/// Many instances of one closed mesh: rays from inside the first, whose own space is turned and scaled.
+/// Many instances of one closed mesh: rays from inside the first one, whose own space is rotated and scaled.
 TEST_P(WatertightTest, InstancedSphere) {
     scene::Scene scene = plainScene();
     scene.meshes.push_back(closedSphere());
@@ -97,7 +98,7 @@ TEST_P(WatertightTest, InstancedSphere) {
 
 class AlphaTest : public TraceTest {
   protected:
-    /// Two squares one behind the other: the first of the tested material, then an opaque one.
+    /// Two squares behind each other: the first of the tested material, then an opaque one.
     static scene::Scene twoSquares(const scene::Material& front) {
         scene::Scene scene = plainScene();
         scene.materials.push_back(front);
@@ -121,8 +122,8 @@ class AlphaTest : public TraceTest {
         return rays;
     }
 
-    /// Of `count` rays, how many meet the first square; and how many any-hit rays that end before the second
-    /// do.
+    /// Returns how many of `count` rays hit the first square, and how many any-hit rays that end before the
+    /// second one do.
     std::pair<double, double> blocked(const scene::Scene& scene, uint32_t count) {
         std::vector<TestRay> rays = forwardRays(count);
         double closest = 0, any = 0;
@@ -162,7 +163,7 @@ TEST_P(AlphaTest, BlendPassesItsShare) {
     }
 }
 
-/// A texture's alpha decides texel by texel; vertex colours multiply it.
+/// A texture's alpha decides per texel; vertex colours multiply it.
 TEST_P(AlphaTest, MaskFromTextureAndVertexColours) {
     scene::Material material;
     material.alphaMode = scene::AlphaMode::Mask;
@@ -189,7 +190,7 @@ TEST_P(AlphaTest, MaskFromTextureAndVertexColours) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, AlphaTest, testing::ValuesIn(allTracers), nameOfTracer);
-// Only ours: whether a driver's tracer is watertight is for its tests to say (lavapipe 25's is not).
+// Only our tracer: whether a driver's is watertight is not tested here (lavapipe 25's is not).
 INSTANTIATE_TEST_SUITE_P(Tracers, WatertightTest, testing::ValuesIn(computeTracers), nameOfTracer);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Traversal against a tracer without a tree.
+// Compares traversal with a tracer that uses no tree.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -11,7 +11,8 @@ namespace {
 
 class TraceReferenceTest : public TraceTest {
   protected:
-    /// Rays from in and around the scene in all directions; axis-parallel ones among them, and short ones.
+    /// Returns rays from inside and around the scene in all directions, including axis-parallel and short
+    /// ones.
     static std::vector<TestRay> someRays(const BruteForce& brute, uint32_t count, uint32_t seed) {
         std::mt19937 random(seed);
         const vec3 center = 0.5f * (brute.lower() + brute.upper()),
@@ -20,7 +21,7 @@ class TraceReferenceTest : public TraceTest {
         for (uint32_t i = 0; i < count; ++i) {
             const vec3 origin = center + randomPoint(random, -1.3f * half, 1.3f * half);
             vec3 direction = randomDirection(random);
-            // Most aim at the scene, or few would hit it.
+            // Half of the rays aim at the scene, or few would hit it.
             if (i % 2 == 0) direction = glm::normalize(center + randomPoint(random, -half, half) - origin);
             if (i % 16 == 1) {
                 const auto axis = static_cast<int>(random() % 3);
@@ -48,7 +49,7 @@ class TraceReferenceTest : public TraceTest {
             const bool same = (hit.t >= 0.0f) == (expected.t >= 0.0) &&
                               (hit.any != 0) == (expected.t >= 0.0) && hit.instance == expected.instance &&
                               hit.primitive == expected.primitive;
-            // Besides the relative error, that of the subtraction of coordinates.
+            // The error of subtracting coordinates is added to the relative error.
             const double rounding = 1e-6 * double{glm::length(rays[i].origin)};
             const double error =
                 expected.t >= 0.0
@@ -71,7 +72,7 @@ class TraceReferenceTest : public TraceTest {
         fmt::print("{}: {} triangles, {} rays, {} hits, {} doubtful, {} wrong, t within {:.1g}\n", scene.name,
                    brute.triangleCount(), rays.size(), found, doubtful, wrong, worst);
         EXPECT_EQ(wrong, 0u);
-        // Rays parallel to an axis lie in the diagonals and edges of the built-in rooms.
+        // Rays parallel to an axis lie in diagonals and edges of the built-in rooms.
         EXPECT_LE(doubtful, rayCount / 50) << "the test would prove little";
         EXPECT_GT(found, rayCount / 40);
     }
@@ -92,7 +93,7 @@ TEST_P(TraceReferenceTest, TriangleSoups) {
         if (count >= 20) {
             compare(scene, 4096, 11);
         } else {
-            // Few triangles: aim at them only by chance; just demand agreement.
+            // With few triangles, rays hit by chance only, so only check agreement.
             const BruteForce brute(scene);
             const std::vector<TestRay> rays = someRays(brute, 2048, 5);
             const std::vector<TestHit> hits = trace(scene, rays);
@@ -113,8 +114,8 @@ TEST_P(TraceReferenceTest, FarFromTheOrigin) {
     compare(soupScene(20.0f, {10000.0f, -3000.0f, 5000.0f}, 2000, 4), 4096, 13);
 }
 
-/// From where a whole node is smaller than the rounding of coordinates, absent children must not be followed
-/// for ever.
+/// From a distance at which a node is smaller than the rounding of coordinates, missing children must not be
+/// followed for ever.
 TEST_P(TraceReferenceTest, TinyThingsFarAwayAndNothingAtAll) {
     scene::Scene scene = soupScene(1e-3f, vec3(0.0f), 5, 3);
     std::mt19937 random(4);
@@ -138,7 +139,7 @@ TEST_P(TraceReferenceTest, BuiltinScenes) {
     compare(scene::builtinScene("heavy"), 512, 22);
 }
 
-/// Copies of one mesh, enough for a tree over trees, moved in every way, beside a mesh that stays in the
+/// Copies of one mesh, enough for a two-level tree, transformed in all ways, beside a mesh that stays in the
 /// static tree.
 TEST_P(TraceReferenceTest, TwoLevels) {
     scene::Scene scene = plainScene();

@@ -1,4 +1,5 @@
-// The two tracers make the same picture: path by path with the same seed, in the mean with different ones.
+// Tests that both tracers give the same picture: path by path with the same seed, and in the mean with
+// different ones.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -31,14 +32,14 @@ class TracersTest : public RenderTest {
         return settings;
     }
 
-    /// Frame `frame` of a scene that moves, frame 0 of one that does not.
+    /// Renders frame `frame` of a moving scene, or frame 0 of a static one.
     RenderedLayers picture(const scene::Scene& scene, scene::Tracer tracer, const RenderSettings& settings,
                            uint64_t frame) {
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene gpuScene(device(), data, {tracer, {}});
         const Sequence sequence(scene, data, scene.cameras.at(0), {}, {.framesPerSecond = 10.0});
         ProgressiveStill still(device(), gpuScene, 1);
-        // The frame before as well: what it moved must be moved on.
+        // The previous frame is rendered too, since the next one continues its movement.
         for (uint64_t i = frame > 0 ? frame - 1 : 0; i <= frame; ++i) {
             still.update(sequence.moment(i, settings.extent), settings);
             still.launch();
@@ -72,7 +73,7 @@ class TracersTest : public RenderTest {
         std::vector<double> sum, sumOfSquares;
     };
 
-    /// Of red, over `batches` pictures of 4 samples with seeds of their own.
+    /// Returns the moments of red over `batches` pictures of 4 samples with different seeds.
     Moments moments(const scene::Scene& scene, scene::Tracer tracer, RenderSettings settings,
                     uint32_t firstSeed, uint32_t batches) {
         Renderer render(device(), scene, tracer);
@@ -130,7 +131,7 @@ class TracersTest : public RenderTest {
     }
 };
 
-/// The Cornell box with a veil (BLEND) and a sheet of cut-out squares (MASK) hanging in it.
+/// The Cornell box with a veil (BLEND) and a sheet with holes (MASK) hanging in it.
 scene::Scene veiledBox() {
     scene::Scene scene = scene::cornellScene();
     scene.name = "veiled box";
@@ -157,7 +158,7 @@ scene::Scene veiledBox() {
     return scene;
 }
 
-/// One large mesh in several places, one of them mirrored, above a floor of its own.
+/// One large mesh in several places, one of them mirrored, above a separate floor.
 scene::Scene crowdScene() {
     scene::Scene scene = plainScene();
     scene.name = "crowd";
@@ -182,7 +183,7 @@ TEST_F(TracersTest, SameSeedBuiltInScenes) {
     expectSamePaths(scene::heavyScene());
 }
 
-/// The spheres below clear coats, those of glass absorbing.
+/// The spheres below clear coats, with absorbing glass.
 TEST_F(TracersTest, SameSeedCoatsAndAbsorption) {
     scene::Scene scene = scene::cornellSpheresScene();
     scene.name = "coated spheres";

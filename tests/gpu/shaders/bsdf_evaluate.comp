@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The scattering function and the sampling density for given directions.
+// Evaluates the BSDF and the sampling density for given directions.
 #include "bsdf_test.glsl"
 
 struct Evaluated {

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Draws from the scattering function, perThread times in a row from one stream.
+// Samples the BSDF perThread times in a row from one stream.
 #include "bsdf_test.glsl"
 
 struct Sampled {

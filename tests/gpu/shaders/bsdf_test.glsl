@@ -1,4 +1,4 @@
-// A material and a viewer by parameters, for the shaders that test the scattering function.
+// A material and a viewer given by parameters, for shaders that test the BSDF.
 #include "shaders/material/bsdf.glsl"
 
 layout(local_size_x = 64) in;
@@ -21,7 +21,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 } params;
 
 Bsdf testBsdf() {
-    // What is not set below is the scene's default material.
+    // Values that are not set below come from the scene's default material.
     Surface s = loadSurface(0u, NONE, vec2(0.25), params.toViewer, RayCone(0.0, false, false));
     s.geometricNormal = params.geometricNormal;
     s.normal = params.normal;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Radiance and density of the environment in given directions.
+// Returns radiance and density of the environment in given directions.
 #include "lights_test.glsl"
 
 layout(set = 0, binding = 21, scalar) readonly buffer Directions {

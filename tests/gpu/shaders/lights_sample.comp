@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Draws lights; of what a ray in the drawn direction finds, the density with which it would have been drawn.
+// Samples lights. Also traces a ray in the sampled direction, and returns the density with which its hit
+// would have been sampled.
 #include "lights_test.glsl"
 
 struct DrawnLight {
@@ -9,7 +10,7 @@ struct DrawnLight {
     vec3 radiance;
     float pdf;
     uint delta;
-    float hitDistance, hitPdf;  // hitDistance is negative where nothing was hit
+    float hitDistance, hitPdf;  // hitDistance is negative for a miss
 };
 
 layout(set = 0, binding = 21, scalar) writeonly buffer Results {
@@ -20,7 +21,7 @@ void main() {
     const uint i = gl_GlobalInvocationID.x;
     if (i >= params.count) return;
     uint rng = startStream(i, 0u, params.seed);
-    // A normal of no length has no sides: all light counts, wherever it comes from.
+    // A zero normal has no sides: light from all directions counts.
     LightShares shares;
     const Receiver receiver =
         Receiver(params.from, params.normal, params.normal, dot(params.normal, params.normal) == 0.0, 0.0);

@@ -1,4 +1,4 @@
-// Light sampling from one point, for the shaders that test it.
+// Light sampling from one point, for shaders that test it.
 #include "shaders/trace/trace.glsl"
 #include "shaders/material/lights.glsl"
 

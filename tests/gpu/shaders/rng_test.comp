@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The seed of each thread's stream, then the first numbers of the stream.
+// Writes the seed of each thread's stream, then the first numbers of the stream.
 #include "shaders/common/rng.glsl"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Looks textures up.
+// Looks up textures.
 #include "shaders/material/texture.glsl"
 
 layout(local_size_x = 64) in;

@@ -7,7 +7,7 @@ struct TestRay {
     float tMax;
 };
 struct TestHit {
-    float t;  // negative: nothing
+    float t;  // negative: no hit
     vec2 barycentrics;
     uint instance, primitive, any;
 };
