@@ -8,7 +8,7 @@
 namespace limpid::test {
 namespace {
 
-/// A half holds it: NaNs, which only C itself can have, become 0.
+/// Limits a value to what a half can store: NaN, which only C itself can be, becomes 0.
 double storable(double value) {
     constexpr double largestHalf = 65504.0;
     return std::isnan(value) ? 0.0 : std::clamp(value, -largestHalf, largestHalf);

@@ -1,4 +1,4 @@
-// The oracle of the a-trous filter, by answers known without it.
+// Tests the oracle of the a-trous filter with answers known independently.
 #include "tests/oracle/double_atrous.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::vector<dvec4> randomLight(size_t count) {
     return light;
 }
 
-/// One row or column of the B3 spline with holes, over neighbours `stride` pixels apart.
+/// Applies one row or column of the B3 spline with holes, to neighbours `stride` pixels apart.
 dvec3 splineAt(const std::vector<dvec4>& light, size_t p, size_t stride) {
     constexpr double weights[5] = {0.0625, 0.25, 0.375, 0.25, 0.0625};
     dvec3 sum(0.0);
@@ -53,7 +53,7 @@ TEST(DoubleAtrous, FlatGeometryGivesTheSplineConvolution) {
     for (const bool plane : {false, true}) {
         const DoubleAtrousParams params{.sampleTarget = 0.0, .plane = plane};
         AtrousGeometry geometry = demodulate(frame, light, params).geometry;
-        // The plane is one of equal distances along `forward`; with `plane` off they are those from the eye.
+        // On the plane, distances along `forward` are equal; with `plane` off, distances are from the eye.
         if (plane) geometry.distance.assign(frame.pixelCount(), 2.0);
         for (uint32_t i = 0; i < 3; ++i) {
             const size_t step = size_t{1} << i;
@@ -76,7 +76,7 @@ TEST(DoubleAtrous, APlaneAtAGrazingAngleIsOnePlane) {
             SyntheticScene({.orthographic = orthographic, .scale = 30.0}).frame(0, width, height, 1);
         const std::vector<dvec4> light = randomLight(frame.pixelCount());
         const AtrousGeometry geometry = demodulate(frame, light, {}).geometry;
-        // A distance of 1e-4 from the plane, relative to that from the eye, would leave nothing of a weight.
+        // A distance of 1e-4 from the plane, relative to that from the eye, makes a weight vanish.
         const std::vector<dvec4> filtered = level(
             frame, light, geometry, 0, {.normalFactor = 0.1, .depthFactor = 1e-10, .sampleTarget = 0.0});
         std::vector<dvec4> rows = light;
@@ -92,21 +92,21 @@ TEST(DoubleAtrous, APlaneAtAGrazingAngleIsOnePlane) {
 }
 
 TEST(DoubleAtrous, WeightsByHand) {
-    // Three pixels in a row; the rays through them are (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).
+    // Three pixels in a row, with the rays (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).
     const HostFrame frame = frontalPlane(3, 1);
     const std::vector<dvec4> light{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
     AtrousGeometry geometry{{{0, 0, 1}, {0, 0, 1}, {0.6, 0, 0.8}}, {2.0, 2.0, 2.5}};
     DoubleAtrousParams params{.normalFactor = 0.5, .depthFactor = 0.1, .sampleTarget = 0.0};
-    // Seen from the middle: |n - n'|^2 = 0.36 + 0.04; the right point is (5/3, 0, -2.5), 0.5 off the plane.
+    // From the middle pixel: |n - n'|^2 = 0.36 + 0.04; the right point is (5/3, 0, -2.5), 0.5 off the plane.
     const double right = std::exp(-0.4 / 0.5) * std::exp(-0.25 * 0.25 / 0.1);
     dvec3 expected = dvec3(4, 6, 4 * right) / (10 + 4 * right);
     EXPECT_LT(largest(dvec3(level(frame, light, geometry, 0, params)[1]) - expected), 1e-6);
-    // Two pixels apart, seen from the left, whose distance is 2 |v|.
+    // From the left pixel, two pixels apart; its distance is 2 |v|.
     const double z2 = 4.0 * (1.0 + 4.0 / 9.0);
     const double far = std::exp(-0.4 / (4 * 0.5)) * std::exp(-0.25 / z2 / 0.1);
     expected = dvec3(6, 0, 4 * far) / (6 + 4 * far);
     EXPECT_LT(largest(dvec3(level(frame, light, geometry, 1, params)[0]) - expected), 1e-6);
-    params.sampleTarget = 8.0;  // the left pixel's one sample, and a step of two pixels: half as much again
+    params.sampleTarget = 8.0;  // the left pixel has one sample, at a step of two pixels: half as much again
     expected = dvec3(6 * 1.5, 0, 4 * far) / (6 * 1.5 + 4 * far);
     EXPECT_LT(largest(dvec3(level(frame, light, geometry, 1, params)[0]) - expected), 1e-6);
     params.sampleTarget = 0.0;

@@ -6,10 +6,10 @@
 namespace limpid::test {
 namespace {
 
-/// Pixels. Several times the error of s in float32, an ulp: 2^-16 below 256 pixels.
+/// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
 
-/// `operands`: the magnitude of what the value was computed from, for thresholds far smaller than that.
+/// `operands`: the magnitude of the values that were used, for thresholds much smaller than those.
 double marginOf(double threshold, double operands) {
     return 1e-4 * std::abs(threshold) + 1e-6 * operands;
 }
@@ -26,11 +26,11 @@ void Decision::near(double value, double threshold, double margin) {
     doubtful_ = doubtful_ || std::abs(value - threshold) < margin;
 }
 
-/// What a surface point must have looked like in the previous frame.
+/// The expected appearance of a surface point in the previous frame.
 struct Reprojector::Expected {
     dvec3 normal;
     double distance, id;
-    double tolerance, toleranceMargin;  ///< t, and how close to it float32 may err
+    double tolerance, toleranceMargin;  ///< t, and the margin for float32's error
 };
 
 Reprojector::Reprojector(const denoise::HostFrame& frame, const std::vector<PreviousSurface>& previous,
@@ -53,7 +53,7 @@ Reprojector::Expected Reprojector::expect(size_t p, const dvec3& motion) const {
         footprint = 1.5 * width;
         e.tolerance = e.distance * params_.depth + footprint * tangent;
     }
-    // Near c = 1 sqrt(1 - c^2) keeps half of float32's digits.
+    // Near c = 1, sqrt(1 - c^2) keeps half of float32's digits.
     e.toleranceMargin = marginOf(e.tolerance, std::abs(e.distance)) + 1e-3 * footprint;
     return e;
 }
@@ -67,7 +67,7 @@ bool Reprojector::inPicture(const dvec2& s, Decision& decision) const {
     return inside;
 }
 
-/// A test is only asked where those before it passed: where they did not, it would decide nothing.
+/// Each test is only evaluated if those before it passed; otherwise its result does not matter.
 bool Reprojector::agrees(const Expected& expected, const PreviousSurface& was, Decision& decision) const {
     return was.distance > 0.0 && was.hasHistory && (!params_.identity || was.id == expected.id) &&
            decision.above(glm::dot(expected.normal, was.normal), params_.normal,
@@ -83,9 +83,8 @@ void Reprojector::addTap(std::vector<Tap>& taps, const Expected& expected, const
     if (agrees(expected, previous_[at], decision)) taps.push_back({at, weight});
 }
 
-/// Where rounding moves s across the centre of a pixel, other taps come in, but with a weight next to 0: the
-/// mean is continuous there, and nothing is doubtful. Taps of weight 0, as where nothing moves, are not
-/// asked.
+/// If rounding moves s across the centre of a pixel, other taps are used, but with a weight close to 0: the
+/// mean is continuous there, so nothing is doubtful. Taps of weight 0, as without motion, are not tested.
 std::vector<Tap> Reprojector::bilinearTaps(const Expected& expected, const dvec2& s,
                                            Decision& decision) const {
     const dvec2 f = s - 0.5, first = glm::floor(f), fraction = f - first;
@@ -102,7 +101,8 @@ std::vector<Tap> Reprojector::bilinearTaps(const Expected& expected, const dvec2
 
 std::vector<Tap> Reprojector::searchedTaps(const Expected& expected, const dvec2& s,
                                            Decision& decision) const {
-    // Weights are equal here: whole pixels come and go where rounding moves s across a pixel's edge.
+    // Weights are equal here, so if rounding moves s across a pixel's edge, whole pixels enter or leave the
+    // mean.
     for (int axis = 0; axis < 2; ++axis) decision.near(s[axis], std::round(s[axis]), positionMargin);
     std::vector<Tap> taps;
     for (int j = -1; j <= 1; ++j) {

@@ -1,4 +1,4 @@
-// Step 4: tiles, and what they take out of histories.
+// Step 4: tiles, and how they shorten histories.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,23 +10,23 @@ namespace {
 
 constexpr double largestHalf = 65504.0;
 constexpr size_t tileEdge = 8;
-/// Frames in a history from which on it counts: two, but for rounding.
+/// Minimum number of frames of a history that counts: two, except for rounding.
 constexpr double minLength = 1.5;
-/// Of which a pixel takes notice.
+/// Smaller lags do not affect a pixel.
 constexpr double minLag = 0.1;
-/// Of float32, relative, of one operation and of a sum of 64 numbers.
+/// Relative rounding error of float32, for one operation and for a sum of 64 numbers.
 constexpr double rounding = 0x1p-24, sumRounding = 64 * rounding;
 
 size_t tilesAlong(uint32_t pixels) {
     return (pixels + tileEdge - 1) / tileEdge;
 }
 
-/// By how much sqrt(value) changes at most if the value changes by `error`.
+/// Bounds the change of sqrt(value) if the value changes by `error`.
 double rootError(double value, double error) {
     return std::sqrt(value + error) - std::sqrt(std::max(value - error, 0.0));
 }
 
-/// A number and what it may be off by.
+/// A number and the bound of its error.
 struct Bounded {
     double value = 0.0, error = 0.0;
     void add(double v, double e) {
@@ -47,8 +47,8 @@ struct TileSums {
             k * (errors.y + 2.0 * std::abs(m.x) * errors.x + errors.x * errors.x + 4.0 * rounding * m.y);
         const double most = params.antilagPixel * std::sqrt(v);
         const double differenceError = errors.z + errors.x + rounding * (std::abs(m.z) + std::abs(m.x));
-        // It is the median of the difference and both bounds: it moves no further than the one that moves
-        // most.
+        // The result is the median of the difference and both bounds, so it moves no further than the one
+        // that moves most.
         const double maxError = params.antilagPixel * rootError(v, vError);
         lag.add(glm::clamp(m.z - m.x, -most, most),
                 std::min(std::max(differenceError, maxError), 2.0 * (most + maxError)));
@@ -57,7 +57,7 @@ struct TileSums {
     }
 };
 
-/// Bilinear at s / 8 - 0.5 with coordinates clamped, where s is the pixel's centre.
+/// Interpolates bilinearly at s / 8 - 0.5 with clamped coordinates, where s is the pixel's centre.
 double lagAt(const denoise::HostFrame& frame, const std::vector<double>& tiles, size_t p) {
     const size_t columns = tilesAlong(frame.width), rows = tilesAlong(frame.height);
     const dvec2 centre(static_cast<double>(p % frame.width) + 0.5,
@@ -76,7 +76,7 @@ double lagAt(const denoise::HostFrame& frame, const std::vector<double>& tiles, 
     return lag;
 }
 
-/// How much further than in step 3 a mean moves towards the sample, and how that depends on step 3's N'.
+/// How much further than in step 3 a mean moves towards the sample, and the derivative by step 3's N'.
 struct Step {
     double share = 0.0, slope = 0.0;
 };
@@ -89,7 +89,7 @@ Step furtherShare(double alpha, double length, double shorter, double kept) {
     return {(has - had) / left, hasSlope / left + hadSlope * (1.0 - has) / (left * left)};
 }
 
-/// Moves one number towards `sample`.
+/// Moves a value towards `sample`.
 void move(double& mean, double sample, const Step& step, double lengthSlope, double& slope,
           double& operands) {
     slope = slope * (1.0 - step.share) + std::abs(sample - mean) * step.slope * lengthSlope;

@@ -1,4 +1,4 @@
-// The oracle of SVGF, by numbers that were computed by hand.
+// Tests the oracle of SVGF with numbers computed by hand.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,8 +15,8 @@ using denoise::HostFrame;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// The middle pixel of five by five goes back to s = (2.75, 3), hence to the taps (2, 2) and (2, 3) of weight
-/// 3/8 each and to (3, 2) and (3, 3) of 1/8. Its light is 2 in every component, its albedo 0.5: x is 4.
+/// The middle pixel of five by five reprojects to s = (2.75, 3): the taps (2, 2) and (2, 3) have weight 3/8
+/// each, and (3, 2) and (3, 3) have 1/8. Its light is 2 in every component, its albedo 0.5: x is 4.
 class SvgfByHand : public testing::Test {
   protected:
     SvgfByHand() {
@@ -30,7 +30,7 @@ class SvgfByHand : public testing::Test {
     static void set(std::vector<float>& layer, size_t at, const vec3& value) {
         for (int i = 0; i < 3; ++i) layer[at + static_cast<size_t>(i)] = value[i];
     }
-    /// With anti-lag.
+    /// Includes anti-lag.
     SvgfAccumulated accumulate() const {
         SvgfAccumulated result = svgfAccumulate(frame, SvgfSignal::Diffuse, before, params);
         svgfShorten(frame, SvgfSignal::Diffuse, tiles, params, result);
@@ -53,15 +53,15 @@ class SvgfByHand : public testing::Test {
 };
 
 TEST_F(SvgfByHand, Accumulation) {
-    // A third of the third frame; the fast mean's share is more.
+    // A third of the third frame; the fast mean uses a larger share.
     expect(dvec3(2, 8.0 / 3, 10.0 / 3), dvec4(2, 3 + 13.0 / 3, 3, 3));
-    before.moments[middle] = dvec4(3, 11, 6, 10);  // weight 3/8: 7/4, 6, 7/2, 5; the fifth is the longest
+    before.moments[middle] = dvec4(3, 11, 6, 10);  // weight 3/8: 7/4, 6, 7/2, 5; five frames is the maximum
     expect(dvec3(1.6, 2.4, 3.2), dvec4(1.75 + 0.45, 6 + 2, 3.5 + 0.25, 5));
-    params.alpha = 0.5;  // (0.2 is still the least)
+    params.alpha = 0.5;  // 0.2 is still the minimum
     expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 0.45, 6 + 2, 3.5 + 0.25, 5));
     params.alphaMoments = 0.5;  // at least four frames
     expect(dvec3(2.5, 3, 3.5), dvec4(1.75 + 1.125, 6 + 5, 3.5 + 0.25, 4));
-    const double sigma = accumulate().color[middle].w;  // of four frames: as of one
+    const double sigma = accumulate().color[middle].w;  // four frames count as one
     params.boost = false;
     EXPECT_DOUBLE_EQ(accumulate().color[middle].w, sigma);
 }
@@ -88,10 +88,10 @@ TEST_F(SvgfByHand, ATapNeedsALength) {
 }
 
 TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
-    tiles[0] = 0.75;  // of the two frames before this one a half is left
+    tiles[0] = 0.75;  // halves the two frames before this one
     const double a = 1 / 1.5;
     expect(dvec3(1 + 3 * a, 2 + 2 * a, 3 + a), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
-    params.alpha = 0.8;  // more than a
+    params.alpha = 0.8;  // larger than a
     expect(dvec3(1 + 3 * 0.8, 2 + 2 * 0.8, 3 + 0.8), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
     params.alpha = 1.0;
     expect(dvec3(4), dvec4(1 + 3 * a, 3 + 13 * a, 2 + 2 * a, 1.5));
@@ -101,7 +101,7 @@ TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
     frame.diffuse[4 * middle + 1] = 2.0f;
     tiles[0] = 1.0;
     expect(dvec3(4), dvec4(4, 16, 4, 1));
-    before.moments.assign(25, dvec4(1, 3, 2, 9));  // five frames are the longest: a share of 0.2 becomes 0.5
+    before.moments.assign(25, dvec4(1, 3, 2, 9));  // five frames is the maximum: a share of 0.2 becomes 0.5
     tiles[0] = 0.75;
     expect(dvec3(2.5, 3, 3.5), dvec4(2.5, 9.5, 3, 2));
 }
@@ -121,7 +121,7 @@ TEST_F(SvgfByHand, StableLightIsFollowed) {
     before.stable.assign(25, dvec4(4, 5, 6, nan));
     before.stable[12] = before.stable[17] = dvec4(8, 5, 6, nan);  // both of weight 3/8
     EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec4(7, 5, 6, 0.5)), 1e-6);
-    params.stabilisationAlpha = 0.1;  // of the third frame
+    params.stabilisationAlpha = 0.1;  // for the third frame
     EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6);
     tiles[0] = 1.0;
     EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6) << "anti-lag leaves it alone";
@@ -175,7 +175,8 @@ TEST_F(SvgfByHand, Signals) {
     EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Joint, light}}, false)[middle], dvec4(1.5, 2.5, 3.5, 1));
 }
 
-/// Old colors are the positions of their pixels, and no sample counts: what is found says where.
+/// Old colours are the positions of their pixels, and no sample counts, so the result tells where the history
+/// was found.
 class SvgfReflectionsByHand : public SvgfByHand {
   protected:
     SvgfReflectionsByHand() {
@@ -219,7 +220,7 @@ TEST_F(SvgfReflectionsByHand, ReplaceTheMotionOfSpecularLight) {
 
 TEST_F(SvgfReflectionsByHand, MeanOfNinePixels) {
     reflect(6, {-1, -1, 0});
-    reflect(18, {0.5f, 0.5f, 0}, 0.25f);  // weighs as much
+    reflect(18, {0.5f, 0.5f, 0}, 0.25f);  // equal weight
     for (const size_t other : {7, 8, 11, 13, 16, 17, 0, 10, 14, 24}) reflect(other, {1, 1, 0});
     frame.ids[2 * 7] = 3;
     for (size_t i = 0; i < 4; ++i)  // 8, 11, 16, 17
@@ -230,7 +231,7 @@ TEST_F(SvgfReflectionsByHand, MeanOfNinePixels) {
 }
 
 TEST_F(SvgfReflectionsByHand, MeanAtTheEdgesOfThePicture) {
-    for (const size_t other : {0, 4, 9, 14, 19, 23}) reflect(other, {0, 2, 0});  // 4, 9, 14: of other rows
+    for (const size_t other : {0, 4, 9, 14, 19, 23}) reflect(other, {0, 2, 0});  // 4, 9, 14: in other rows
     frame.ids[0] = 3;
     reflect(5, {1, 0, 0});
     expectAt({1.5, 1.5}, 5);
@@ -248,7 +249,7 @@ TEST_F(SvgfReflectionsByHand, WhereTheyLeadNowhereTheMotionLeads) {
     EXPECT_EQ(svgfAccumulate(frame, SvgfSignal::Specular, before, params).color[middle], dvec4(0));
     frame.motion[4 * middle + 3] = 1.0f;
     reflect(middle, {-1, -0.75f, 0});
-    before.moments[6].w = before.moments[11].w = 0.0;  // all the taps, but not all of the nine pixels
+    before.moments[6].w = before.moments[11].w = 0.0;  // disables all taps, but not all of the nine pixels
     expectAt({1.5, 9.5 / 7});
     params.search = false;
     expectAt(byMotion);
@@ -259,9 +260,9 @@ TEST_F(SvgfReflectionsByHand, WhereTheyLeadNowhereTheMotionLeads) {
 }
 
 TEST(SvgfTilesByHand, ChangeBeyondNoise) {
-    // Nine columns: the second tile is a column of pixels.
+    // With nine columns, the second tile is a single column of pixels.
     const HostFrame frame = frontalPlane(9, 8);
-    // One third frame three times as bright as those before it.
+    // One third frame that is three times as bright as the previous ones.
     std::vector<dvec4> moments(72, dvec4(1.4, 2.6, 2.0, 5));
     const DoubleSvgfParams params;
     EXPECT_NEAR(svgfSteadyShare(params), 0.125, 1e-12);  // (1/3 + 1/9 - 2/6) / (8/9)
@@ -269,7 +270,7 @@ TEST(SvgfTilesByHand, ChangeBeyondNoise) {
     SvgfTiles tiles = svgfTiles(frame, moments, params);
     ASSERT_EQ(tiles.tiles.size(), 2u);
     EXPECT_NEAR(tiles.tiles[0], lag, 1e-12);
-    // With fewer pixels the same deviation may be noise.
+    // With fewer pixels, the same deviation may be noise.
     const double thinLag = 2.0 * (8 * 0.6 - 3.0 * std::sqrt(8 * 0.125 * 0.64)) / (8 * 2.0);
     EXPECT_NEAR(tiles.tiles[1], thinLag, 1e-12);
     for (size_t p = 0; p < 72; ++p) moments[p] = p % 9 == 8 ? dvec4(1, 1, 9, 1.4) : dvec4(1, 2, 1.1, 2);
@@ -291,12 +292,12 @@ TEST(SvgfTilesByHand, APixelIsTakenAtItsWordAsFarAsItsNoiseReaches) {
     EXPECT_NEAR(svgfTiles(frame, moments, params).tiles[0], lag, 1e-12);
     moments.assign(64, dvec4(2.6, 7.4, 2.0, 5));  // darker: the same deviation
     EXPECT_NEAR(svgfTiles(frame, moments, params).tiles[0], lag * 2.0 / 2.6, 1e-12);
-    // A firefly of 100 among steady light, in its first frame: bound to less than a tile's noise.
+    // A firefly of 100 in its first frame, in steady light: limited to less than a tile's noise.
     moments.assign(64, dvec4(1, 1, 1, 5));
     moments[9] = dvec4(20.8, 2000.8, 50.5, 5);
     params.antilagNoise = 1.5;
     EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
-    params.antilagPixel = 1.499;  // less than 1.5: one pixel is never enough
+    params.antilagPixel = 1.499;  // less than 1.5, so that one pixel never suffices
     EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
     params.antilagPixel = 1e9;
     EXPECT_GT(svgfTiles(frame, moments, params).tiles[0], 0.1);
@@ -322,7 +323,7 @@ TEST(SvgfTilesByHand, ErrorsOfMomentsAreCarriedThrough) {
     EXPECT_TRUE(std::isinf(svgfTiles(frame, moments, params, errors).error[0])) << "may be too young";
 }
 
-/// A row of sixteen pixels and two tiles, whose middles are at 4 and 12.
+/// A row of sixteen pixels with two tiles, whose centres are at 4 and 12.
 TEST(SvgfTilesByHand, AreReadBilinearly) {
     const HostFrame frame = frontalPlane(16, 1);
     const std::vector<dvec4> zeros(16, dvec4(0));
@@ -335,10 +336,10 @@ TEST(SvgfTilesByHand, AreReadBilinearly) {
     }
 }
 
-/// Three pixels in a row; the rays through them are (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).
+/// Three pixels in a row, with the rays (-2/3, 0, -1), (0, 0, -1) and (2/3, 0, -1).
 class SvgfRow : public testing::Test {
   protected:
-    /// Of the right neighbour's weight relative to 1, seen from the middle; the left one sees nothing.
+    /// Checks the right neighbour's weight relative to 1, from the middle pixel; the left ray misses.
     void expectWeight(double weight) const {
         const dvec4 result = svgfLevel(frame, surfaces, color, 0, params)[1];
         const double centre = 36, right = 24 * weight, sum = centre + right;
@@ -391,7 +392,7 @@ TEST_F(SvgfRow, Distances) {
     surfaces.normal = {{0.6, 0, 0.8}, {0.6, 0, 0.8}, {0.6, 0, 0.8}};
     surfaces.distance[2] = 1.0;  // the slope is 0.6 (2/3) / 0.8 of the distance
     expectWeight(std::exp(-1.0 / (1.0 + 0.002)));
-    frame.camera.orthographic = 1;  // and the same in world units
+    frame.camera.orthographic = 1;  // same in world units
     expectWeight(std::exp(-1.0 / (0.5 + 0.002)));
 }
 

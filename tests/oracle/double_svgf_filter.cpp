@@ -1,4 +1,4 @@
-// Steps 5 and 6: what is done over a pixel's neighbours.
+// Steps 5 and 6: filters over a pixel's neighbours.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,13 +9,13 @@
 namespace limpid::test {
 namespace {
 
-constexpr double minCosine = 0.05;  // steeper surfaces have this one's slope
+constexpr double minCosine = 0.05;  // steeper surfaces use this slope
 constexpr double youngFrames = 4.0;
 constexpr double largestHalf = 65504.0;
-/// Sums of weights below this may be lost in float32.
+/// Smaller sums of weights may underflow in float32.
 constexpr double minWeights = 1e-30;
 
-/// The picture's pixels by their coordinates, and the weights that surfaces give them.
+/// Access to pixels by coordinates, and the weights of neighbours from their surfaces.
 class Neighbours {
   public:
     Neighbours(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const DoubleSvgfParams& params)
@@ -34,8 +34,8 @@ class Neighbours {
 
     bool sees(size_t p) const { return surfaces_.distance[p] > 0.0; }
 
-    /// Calls visit(q, i, j) for the pixels q = p + step (i, j), i and j from -radius to radius, that lie in
-    /// the picture and see something.
+    /// Calls visit(q, i, j) for the pixels q = p + step (i, j), with i and j from -radius to radius, that are
+    /// in the picture and have a hit.
     template <typename Visit>
     void around(size_t p, int64_t step, int radius, const Visit& visit) const {
         const auto x = static_cast<int64_t>(p) % width_, y = static_cast<int64_t>(p) / width_;
@@ -49,7 +49,7 @@ class Neighbours {
         }
     }
 
-    /// w_n w_z of a neighbour that lies `offset` pixels away.
+    /// Returns w_n w_z of a neighbour `offset` pixels away.
     double weight(size_t p, size_t q, const dvec2& offset) const {
         if (p == q) return 1.0;
         const dvec3 &n = surfaces_.normal[p], &other = surfaces_.normal[q];
@@ -110,7 +110,7 @@ class Level {
         return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
     }
 
-    /// g
+    /// Returns g.
     double guide(size_t p) const {
         if (level_ >= params_.blurLevels) return color_[p].w * color_[p].w;
         double sum = 0.0, weights = 0.0;
@@ -130,12 +130,12 @@ class Level {
     std::vector<double> luminances_;
 };
 
-/// sigma, and what float32 may make of its square.
+/// sigma, and the bound of float32's error of its square.
 struct Deviation {
     double sigma, error;
 };
 
-/// That of the light of those around p that have a history.
+/// Returns the deviation of the light of the neighbours of p that have a history.
 Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
     dvec2 sum(0.0);
     double weights = 0.0;
@@ -150,8 +150,8 @@ Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vec
     if (!found) return {0.0, 0.0};
     if (weights < minWeights) return {0.0, std::numeric_limits<double>::infinity()};
     const dvec2 mean = sum / weights;
-    // As many roundings as there are neighbours. Without the centre, whose weight is 1, the others may all be
-    // small, and then the rounding of their exponents counts too.
+    // One rounding per neighbour. Without the centre, whose weight is 1, all weights may be small, and then
+    // the rounding of their exponents matters too.
     const double rounding = 49 * 0x1p-24 + 2e-6 * std::max(-std::log(weights), 0.0);
     return {svgfDeviation(mean.x, mean.y), rounding * mean.y};
 }

@@ -1,4 +1,4 @@
-// Steps 1 to 3, 7 and 8: what is done pixel by pixel and over time.
+// Steps 1 to 3, 7 and 8: work per pixel and over time.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +13,7 @@ namespace limpid::test {
 namespace {
 
 constexpr double largestHalf = 65504.0;
-/// Frames that are averaged with equal weights at least.
+/// The minimum number of frames that are averaged with equal weights.
 constexpr double shortestHistory = 4.0;
 
 dvec3 signalOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p) {
@@ -21,7 +21,7 @@ dvec3 signalOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p) {
     return signal == SvgfSignal::Diffuse ? pixels.diffuse(p) : pixels.specular(p);
 }
 
-/// M.
+/// Returns M.
 dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, bool demodulate) {
     if (!demodulate) return dvec3(1.0);
     dvec3 a(0.0);
@@ -40,7 +40,7 @@ std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t
     return result;
 }
 
-/// A value, and by how much it changes at most where s is off by one pixel.
+/// A value, and the bound of its change if s is off by one pixel.
 struct Sloped {
     double value, slope;
 };
@@ -80,7 +80,7 @@ class Accumulator {
     Reprojector reprojector_;
 };
 
-/// The mean of r around p; nothing where no pixel has one.
+/// Returns the mean of r around p; none if no pixel has one.
 std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
     const DoubleFrame pixels(frame_);
     const size_t x = p % frame_.width, y = p / frame_.width;
@@ -98,9 +98,9 @@ std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
     return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// One decision for both lookups: where float32 may find something by r, it may not get to m, and the other
-/// way round. Its mean of r is off by some 1e-6 of r at most; in the picture that is less than s = p + 0.5 +
-/// r itself is rounded by, so the margins for s hold for both.
+/// One decision covers both look-ups: where float32 finds history by r, it may not need m, and vice versa.
+/// Its mean of r is off by at most 1e-6 of r; inside the picture that is less than the rounding of s = p +
+/// 0.5 + r, so the margins for s cover both.
 Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
     Decision decision;
     Reprojection found{2, {}};
@@ -153,7 +153,7 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
     pixel.momentsOperands.w = old.moments.mean.w;
 }
 
-/// h with b.
+/// Returns h with b.
 dvec4 Accumulator::stablePast(const Old& old, double frames) const {
     if (previous_.stable.empty()) return {0.0, 0.0, 0.0, 1.0};
     return {dvec3(old.stable.mean), std::max(params_.stabilisationAlpha, 1.0 / std::max(frames, 1.0))};

@@ -1,4 +1,4 @@
-// The oracle of SVGF, by what must hold of any right implementation.
+// Tests properties of the oracle of SVGF that any correct implementation has.
 #include "tests/oracle/double_svgf.h"
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ using denoise::HostFrame;
 
 constexpr SvgfSignal joint = SvgfSignal::Joint;
 
-/// Frames of one sequence, one after the other, with the first level fed back.
+/// Processes the frames of one sequence, feeding the first level back.
 class Sequence {
   public:
     explicit Sequence(const DoubleSvgfParams& params = {}, SvgfSignal signal = joint)
         : params_(params), signal_(signal) {}
 
-    /// Nothing is filtered.
+    /// Runs the temporal steps without the filter.
     SvgfAccumulated accumulate(const HostFrame& frame) {
         SvgfAccumulated result = svgfAccumulate(frame, signal_, history, params_);
         tiles = svgfTiles(frame, result.moments, params_).tiles;
@@ -46,7 +46,7 @@ class Sequence {
     SvgfSignal signal_;
 };
 
-/// A plane in light of mean `mean`, uniform from 0 to twice as much.
+/// A plane in light of mean `mean`, uniform from 0 to twice that.
 class NoisyPlane {
   public:
     explicit NoisyPlane(uint32_t columns = width, uint32_t rows = height)
@@ -54,7 +54,7 @@ class NoisyPlane {
 
     HostFrame frame(double mean) {
         HostFrame frame = plane_;
-        std::uniform_real_distribution<double> uniform(0.0, 2.0 * mean * 0.5);  // of an albedo of 0.5
+        std::uniform_real_distribution<double> uniform(0.0, 2.0 * mean * 0.5);  // for an albedo of 0.5
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             const auto light = static_cast<float>(uniform(generator_));
             for (size_t i = 0; i < 3; ++i) frame.diffuse[4 * p + i] = light;
@@ -141,8 +141,7 @@ TEST(DoubleSvgf, YoungPixelsHaveTheVarianceOfTheirNoise) {
     EXPECT_NEAR(sum / count, (1.0 / 3.0) * 48.0 / 49.0, 0.01);
 }
 
-/// The distance of the plane dot(n, X) = offset along a ray through a point of the screen in pixels from p's
-/// centre.
+/// Returns the distance to the plane dot(n, X) = offset along a ray `pixels` away from p's centre.
 double planeDistance(const HostFrame& frame, size_t p, const dvec3& n, double offset, const dvec2& pixels) {
     const CameraParams& camera = frame.camera;
     const dvec2 at =
@@ -199,7 +198,8 @@ TEST(DoubleSvgf, APlaneAtAGrazingAngleIsFilteredAlongIt) {
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             if (!allAround(p, 2, [&](size_t q) { return isFloor(frame, q); })) continue;
             ++compared;
-            // exp(-1) where z differs as the plane says: the mean has at most 0.6 of the deviation.
+            // The weight is exp(-1) where z differs as on the plane: the mean has at most 0.6 of the
+            // deviation.
             ASSERT_LT(filtered[p].w, 0.6) << p;
             ASSERT_GT(filtered[p].w, 70.0 / 256.0 - 1e-9) << "the spline's, with no weight less than 1";
         }
@@ -222,7 +222,7 @@ TEST(DoubleSvgf, TheScaleOfTheSceneDoesNotMatter) {
     }
 }
 
-/// Of both motions, which are off by `error` pixels.
+/// Moves both motions by `error` pixels.
 HostFrame displaced(HostFrame frame, float error) {
     for (auto* layer : {&frame.motion, &frame.reflectionMotion}) {
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
@@ -233,7 +233,7 @@ HostFrame displaced(HostFrame frame, float error) {
     return frame;
 }
 
-/// The second: with anti-lag.
+/// The second parameter enables anti-lag.
 class DoubleSvgfSignal : public testing::TestWithParam<std::tuple<SvgfSignal, bool>> {};
 
 TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
@@ -265,14 +265,14 @@ TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
                    exceeds(a.stablePast[p], b.stablePast[p], pixel.stablePastSlope);
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
-    // Where s passes a pixel's centre, taps that the slope does not know come in.
+    // If s passes a pixel's centre, other taps are used, which the slope does not include.
     EXPECT_LT(outside, compared / 500);
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, DoubleSvgfSignal,
                          testing::Combine(testing::Values(joint, SvgfSignal::Specular), testing::Bool()));
 
-/// Else the comparison with the shaders would not say much of either.
+/// Otherwise the comparison with the shaders would prove little.
 TEST(DoubleSvgf, SyntheticFramesLeadToReflectionsAndBack) {
     for (const SyntheticOptions& options :
          {SyntheticOptions{}, SyntheticOptions{.cameraMoves = true, .objectMoves = true},

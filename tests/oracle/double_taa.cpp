@@ -11,12 +11,12 @@ namespace limpid::test {
 namespace {
 
 constexpr double deviations = 1.25, minDistance = 1e-6;
-/// Pixels. Several times the error of s in float32, an ulp: 2^-16 below 256 pixels.
+/// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
-/// Of encoded values, which are below 1 in magnitude: several operations' worth.
+/// For encoded values, which are below 1 in magnitude: several operations' rounding.
 constexpr double encodedRounding = 1e-6, clipRounding = 3e-7;
 
-/// Of the encoded beauty over the 3x3 pixels around one.
+/// Statistics of the encoded beauty over the 3x3 pixels around one.
 struct Around {
     dvec3 mean{0.0}, deviation{0.0};
 };
@@ -26,7 +26,7 @@ std::array<double, 4> catmullRom(double t) {
             0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
 }
 
-/// Step 3. `error` is added to what the components may differ by.
+/// Step 3. `error` is added to the allowed difference of the components.
 dvec3 clip(const dvec3& h, const Around& around, double error) {
     const dvec3 most = glm::max(deviations * around.deviation, dvec3(minDistance)) + error;
     const dvec3 e = glm::abs(h - around.mean) / most;
@@ -63,7 +63,7 @@ class Antialiaser {
     int64_t width_, height_;
     double frames_;
     std::vector<dvec3> encoded_;  ///< E(B)
-    std::vector<dvec3> past_;     ///< E of the last frame's means; empty: nothing
+    std::vector<dvec3> past_;     ///< E of the last frame's means; empty: no history
     std::vector<double> counts_;  ///< N of each pixel
 };
 
@@ -79,7 +79,7 @@ Antialiaser::Antialiaser(const denoise::HostFrame& frame, const std::vector<floa
     }
 }
 
-/// In reading order.
+/// Returns the pixels in reading order.
 std::array<size_t, 9> Antialiaser::block(size_t p) const {
     const auto x = static_cast<int64_t>(p) % width_, y = static_cast<int64_t>(p) / width_;
     std::array<size_t, 9> pixels{};
@@ -100,7 +100,7 @@ Around Antialiaser::around(size_t p) const {
     return result;
 }
 
-/// Motion with a NaN or an infinity counts as missing.
+/// Motion with NaN or infinity counts as missing.
 std::optional<dvec3> Antialiaser::motion(size_t p) const {
     const std::optional<dvec3> m = frame_.motion(p);
     return m && isFiniteInFloat(*m) ? m : std::nullopt;
@@ -109,10 +109,10 @@ std::optional<dvec3> Antialiaser::motion(size_t p) const {
 bool Antialiaser::movesAlike(size_t p, size_t q) const {
     const std::optional<dvec3> a = motion(p), b = motion(q);
     if (!a || !b) return !a && !b;
-    return glm::distance(dvec2(*a), dvec2(*b)) < 0.1 * positionMargin;  // the slope knows as much
+    return glm::distance(dvec2(*a), dvec2(*b)) < 0.1 * positionMargin;  // covered by the slope
 }
 
-/// Distances that are equal in double are equal in float32; those that nearly are may become so.
+/// Distances that are equal in double are equal in float32; nearly equal ones may become equal.
 size_t Antialiaser::nearest(size_t p, Decision& decision) const {
     const std::array<size_t, 9> pixels = block(p);
     size_t nearest = p;
@@ -156,8 +156,8 @@ double Antialiaser::countAt(const dvec2& s, Decision& decision) const {
     return count;
 }
 
-/// Where rounding moves s across the centre of a pixel, other taps come in, but the cubic and its derivative
-/// are continuous there: nothing is doubtful.
+/// If rounding moves s across the centre of a pixel, other taps are used, but the cubic and its derivative
+/// are continuous there, so nothing is doubtful.
 dvec3 Antialiaser::pastAt(const dvec2& s) const {
     const dvec2 first = glm::floor(s - 0.5), fraction = s - 0.5 - first;
     const std::array<double, 4> across = catmullRom(fraction.x), down = catmullRom(fraction.y);
@@ -172,7 +172,7 @@ dvec3 Antialiaser::pastAt(const dvec2& s) const {
     return sum;
 }
 
-/// By trying: the clip and E^-1 bend what the cubic's derivative alone would say.
+/// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.
 void Antialiaser::addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const {
     const auto meanWith = [&](const dvec2& at, double error) {
         const dvec3 h = clip(pastAt(at), around, error);

@@ -1,4 +1,4 @@
-// The oracle of temporal anti-aliasing, by numbers that were computed by hand and by what must hold.
+// Tests the oracle of temporal anti-aliasing with numbers computed by hand, and its general properties.
 #include "tests/oracle/double_taa.h"
 
 #include <gtest/gtest.h>
@@ -16,10 +16,10 @@ using denoise::HostFrame;
 constexpr uint32_t side = 9;
 constexpr size_t middle = size_t{side} * 4 + 4;
 
-/// A plane of nine by nine pixels that does not move.
+/// A static plane of nine by nine pixels.
 class TaaByHand : public testing::Test {
   protected:
-    /// Of pixel p, by its column and row.
+    /// Returns a picture with colorOf(column, row).
     template <typename ColorOf>
     static std::vector<float> pictureOf(const ColorOf& colorOf) {
         std::vector<float> picture;
@@ -43,7 +43,7 @@ class TaaByHand : public testing::Test {
     void moveAll(const dvec2& by) {
         for (size_t p = 0; p < frame.pixelCount(); ++p) move(p, by);
     }
-    /// The next frame.
+    /// Computes the next frame.
     std::vector<TaaPixel> advance(const std::vector<float>& beauty) {
         const std::vector<TaaPixel> pixels = taa(frame, beauty, past, frames);
         past = {side, side, {}};
@@ -97,7 +97,8 @@ TEST_F(TaaByHand, TheFirstFrameIsTheBeauty) {
     expectBeauty();  // after a resize
 }
 
-/// A quarter and three quarters of the edge's pixel are light: the past is always in the clip's range.
+/// The edge's pixel is lit alternately at a quarter and three quarters; the history stays within the clip's
+/// range.
 TEST_F(TaaByHand, AnAlternatingEdgeConvergesToTheMean) {
     const dvec3 light = taaEncode({4, 2, 1});
     std::vector<TaaPixel> pixels;
@@ -113,7 +114,7 @@ TEST_F(TaaByHand, AnAlternatingEdgeConvergesToTheMean) {
     EXPECT_LT(glm::length(pixels[middle + 1].mean), 1e-12);
 }
 
-/// The pixel is encoded as 1/2, those around it as 1/4: u = 5/18, d^2 = 1/162.
+/// The pixel is encoded as 1/2, its neighbours as 1/4: u = 5/18, d^2 = 1/162.
 TEST_F(TaaByHand, TheClipPullsThePastBack) {
     const std::vector<float> beauty =
         pictureOf([](size_t x, size_t y) { return dvec3(x == 4 && y == 4 ? 1.0 : 1.0 / 3); });
@@ -129,11 +130,11 @@ TEST_F(TaaByHand, TheClipPullsThePastBack) {
     expectPast(u - 1.25 * d);
     past = pastOf(dvec3(0.5), 7);  // encoded as 1/3
     expectPast(1.0 / 3);
-    past = pastOf({1, 0, 0}, 7);  // grey may not become red
+    past = pastOf({1, 0, 0}, 7);  // grey must not become red
     expectPast(u + (0.25 / 1.2126 - u) * 1e-6 / (0.5 / 1.2126));
 }
 
-/// The beauty's pixels are encoded as nearly 1 and 0 in turns: nothing is clipped.
+/// The beauty's pixels are alternately encoded as nearly 1 and 0, so nothing is clipped.
 TEST_F(TaaByHand, TheCubicReproducesParabolas) {
     const std::vector<float> beauty =
         pictureOf([](size_t x, size_t y) { return dvec3((x + y) % 2 == 0 ? 1000.0 : 0.0); });
@@ -150,7 +151,7 @@ TEST_F(TaaByHand, TheCubicReproducesParabolas) {
     }
 }
 
-/// Nearest pixels are told by the number of frames where their motion leads to.
+/// The number of frames at the target of the motion tells which pixel was taken as nearest.
 TEST_F(TaaByHand, MotionIsThatOfTheNearest) {
     past = pastOf(dvec3(1), 0);
     for (size_t p = 0; p < past.mean.size(); ++p) past.mean[p].w = 1.0 + static_cast<double>(p % side);
@@ -159,12 +160,12 @@ TEST_F(TaaByHand, MotionIsThatOfTheNearest) {
     move(middle + side + 1, {2, 0});
     frame.depth[4 * (middle + side + 1)] = 1.5f;
     EXPECT_EQ(count(), 8.0);
-    move(middle - 1, {-2, 0});  // as near, but before it
+    move(middle - 1, {-2, 0});  // equally near, but earlier in order
     frame.depth[4 * (middle - 1)] = 1.5f;
     EXPECT_EQ(count(), 4.0);
     frame.depth[4 * middle] = 1.0f;
     EXPECT_EQ(count(), 6.0);
-    frame.depth[4 * (middle + 2)] = 0.5f;  // not around it
+    frame.depth[4 * (middle + 2)] = 0.5f;  // not one of its neighbours
     move(middle + 2, {3, 0});
     EXPECT_EQ(count(), 6.0);
     for (size_t p = 0; p < frame.pixelCount(); ++p) frame.depth[4 * p] = frame.depth[4 * p + 1] = 0.0f;
@@ -180,7 +181,7 @@ TEST_F(TaaByHand, WithoutMotionThePixelStartsAnew) {
     const auto expectRestart = [&](bool restarts) {
         const TaaPixel pixel = inTheMiddle(plain(dvec3(2)));
         EXPECT_EQ(pixel.frames, restarts ? 1.0 : 6.0);
-        EXPECT_LT(glm::distance(pixel.mean, dvec3(2)), 1e-4);  // the clip leaves no more
+        EXPECT_LT(glm::distance(pixel.mean, dvec3(2)), 1e-4);  // the clip leaves no smaller difference
     };
     expectRestart(false);
     for (const dvec2& by : {dvec2(-4.6, 0), dvec2(4.6, 0), dvec2(0, -4.6), dvec2(0, 4.6)}) {

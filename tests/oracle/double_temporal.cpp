@@ -8,7 +8,7 @@
 namespace limpid::test {
 namespace {
 
-/// A pixel's history before its new sample.
+/// A pixel's history before the new sample is added.
 struct Old {
     int failure;
     dvec4 colour{0.0}, slope{0.0};
@@ -74,7 +74,7 @@ void Tracker::track(size_t p, TemporalResult& result) const {
     pixel = {old.failure, !isFiniteInFloat(c), decision.doubtful(), old.slope};
     dvec4& colour = result.images.colour[p];
     if (pixel.rejected) {
-        colour = old.colour;  // zeros where nothing was found
+        colour = old.colour;  // zeros if no history was found
     } else {
         const bool grey = params_.greyRestart && old.failure >= (params_.greyMisses ? 1 : 2);
         const dvec4 before = grey ? dvec4(dvec3(params_.grey), 1.0) : old.colour;

@@ -1,4 +1,4 @@
-// The oracle of temporal accumulation, by numbers that were computed by hand.
+// Tests the oracle of temporal accumulation with numbers computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 
 using denoise::HostFrame;
 
-/// The middle pixel of five by five goes back to s = (2.75, 3), hence to the taps (2, 2) and (2, 3) of weight
-/// 3/8 each and to (3, 2) and (3, 3) of 1/8, and to z' = 2.5 - 0.5. Its surface slants: c = 0.8, tan = 3/4.
+/// The middle pixel of five by five reprojects to s = (2.75, 3): the taps (2, 2) and (2, 3) have weight 3/8
+/// each, and (3, 2) and (3, 3) have 1/8. z' = 2.5 - 0.5. Its surface is tilted: c = 0.8, tan = 3/4.
 class TemporalByHand : public testing::Test {
   protected:
     TemporalByHand() {
@@ -27,12 +27,13 @@ class TemporalByHand : public testing::Test {
         before.albedoId.assign(25, dvec4(0.8, 0.2, 0.02, 1));
     }
 
-    /// Of the middle pixel.
+    /// Sets a layer's value for the middle pixel.
     void set(std::vector<float>& layer, const vec3& value) {
         for (int i = 0; i < 3; ++i) layer[static_cast<size_t>(4 * 12 + i)] = value[i];
     }
     dvec4 track() const { return accumulateTemporally(frame, before, params).images.colour[12]; }
-    /// The new count if the tap (2, 2), alone of another count, passes the tests or not.
+    /// Returns whether the tap (2, 2) passes the tests. It alone has another count, so the new count shows
+    /// it.
     bool counts() {
         before.colour[12].w = 12.0;
         const double count = track().w;
@@ -48,7 +49,7 @@ class TemporalByHand : public testing::Test {
 TEST_F(TemporalByHand, WeightsAndAlbedo) {
     before.colour[12] = dvec4(3, 3, 3, 8);  // weight 3/8: the mean is 7/4, the count 5.5
     EXPECT_LT(glm::distance(track(), dvec4(dvec3(1.75 + 0.25 / 6.5), 6.5)), 1e-6);
-    before.albedoId[12] = dvec4(0.4, 0.8, 0.05, 1);  // the light was 1/2, 4 and 1 times as much
+    before.albedoId[12] = dvec4(0.4, 0.8, 0.05, 1);  // the light was 1/2, 4 and 1 times that
     const dvec3 old = dvec3(5.0 + 3.0 * dvec3(6.0, 0.75, 3.0)) / 8.0;
     EXPECT_LT(glm::distance(track(), dvec4(old + (2.0 - old) / 6.5, 6.5)), 1e-6);
     params.demodulate = false;
@@ -105,14 +106,13 @@ TEST_F(TemporalByHand, Doubt) {
     EXPECT_FALSE(doubtful());
     before.normalDepth[12].w = 2.0 + 2.0 * (0.02 + 1.5 * 0.1 * 0.75) * 1.00005;
     EXPECT_TRUE(doubtful());
-    before.albedoId[12].w = 7.0;  // another test decides
+    before.albedoId[12].w = 7.0;  // another test already decides
     EXPECT_FALSE(doubtful());
-    set(frame.motion,
-        {0.4999f, 0, -0.5f});  // next to the edge of a pixel, where bilinear weights are continuous
+    set(frame.motion, {0.4999f, 0, -0.5f});  // close to a pixel's edge, where bilinear weights are continuous
     EXPECT_FALSE(doubtful());
-    for (dvec4& texel : before.albedoId) texel.w = 7.0;  // and the search is not
+    for (dvec4& texel : before.albedoId) texel.w = 7.0;  // but the search is not continuous
     EXPECT_TRUE(doubtful());
-    set(frame.motion, {0, 2.4999f, -0.5f});  // next to the edge of the picture
+    set(frame.motion, {0, 2.4999f, -0.5f});  // close to the picture's edge
     params.search = false;
     EXPECT_TRUE(doubtful());
     set(frame.motion, {0, 2.4f, -0.5f});

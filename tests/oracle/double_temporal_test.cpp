@@ -1,4 +1,5 @@
-// The oracle of temporal accumulation on whole frames, by what must hold of any right implementation.
+// Tests properties of the oracle of temporal accumulation on whole frames that any correct implementation
+// has.
 #include "tests/oracle/double_temporal.h"
 
 #include <gtest/gtest.h>
@@ -103,7 +104,7 @@ TEST(DoubleTemporal, InvalidSamplesLeaveTheHistoryAlone) {
     HostFrame frame = scene.frame(3, width, height, 1);
     const size_t p = frame.pixelCount() - width / 2;  // the floor at the bottom
     frame.diffuse[4 * p] = std::numeric_limits<float>::quiet_NaN();
-    // Finite each, but their sum is not in float32.
+    // Both are finite, but their sum overflows in float32.
     frame.diffuse[4 * p + 5] = frame.specular[4 * p + 5] = std::numeric_limits<float>::max();
     const TemporalResult after = accumulateTemporally(frame, before.images, {.maxHistory = 2});
     for (const size_t q : {p, p + 1}) {
@@ -152,7 +153,7 @@ TEST(DoubleTemporal, SlopeAndDoubtCoverErrorsOfPosition) {
         outside += glm::any(glm::greaterThan(difference, bound));
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
-    // Where s passes a pixel's centre, taps that the slope does not know come in.
+    // If s passes a pixel's centre, other taps are used, which the slope does not include.
     EXPECT_LT(outside, compared / 500);
 }
 

@@ -8,15 +8,15 @@
 namespace limpid::test {
 namespace {
 
-/// Of what surfaces show, behind them.
+/// The depth of reflected objects behind their surfaces.
 constexpr double reflectionDepth = 2.0;
 
-/// Without noise.
+/// The noise-free components of a surface's light.
 struct Shading {
     dvec3 albedo{0.0}, diffuse{0.0}, specular{0.0}, emission{0.0}, albedoSpecular{0.0};
 };
 
-/// 1 and 0 in squares of `side`.
+/// A checkerboard of 1 and 0 with squares of `side`.
 double checker(double u, double v, double side) {
     return std::fmod(std::abs(std::floor(u / side) + std::floor(v / side)), 2.0);
 }
@@ -28,7 +28,7 @@ dvec3 albedoOf(uint32_t instance, const dvec3& p) {
         case SyntheticScene::Wall:
             return {0.6, 0.3, 0.25};
         case SyntheticScene::Sphere:
-            return dvec3(0.05);  // darker than what modulation() goes down to
+            return dvec3(0.05);  // darker than the lower limit in modulation()
         case SyntheticScene::Box:
             return glm::mix(dvec3(0.2, 0.5, 0.3), dvec3(0.7, 0.6, 0.2), checker(p.x + p.z, p.y, 0.2));
         default:
@@ -36,9 +36,9 @@ dvec3 albedoOf(uint32_t instance, const dvec3& p) {
     }
 }
 
-/// Of a point at rest: light comes along with what moves.
+/// Irradiance at a point at rest, so that light moves along with moving objects.
 dvec3 irradiance(const dvec3& p, const dvec3& n) {
-    // The edge of a shadow runs askew over the floor, half a unit wide.
+    // The edge of a shadow runs diagonally over the floor, half a unit wide.
     const double lit = glm::smoothstep(-0.25, 0.25, -p.x - 0.4 * p.z - 0.2 + 0.3 * std::sin(p.z));
     const dvec3 sun = dvec3(2.0, 1.8, 1.5) * (0.6 + 0.3 * n.y + 0.1 * n.x);
     return lit * sun + dvec3(0.2, 0.25, 0.35) * (1.0 + 0.3 * std::sin(0.7 * p.x) * std::cos(0.5 * p.z));
@@ -63,24 +63,24 @@ uint64_t mix64(uint64_t z) {
     return z ^ (z >> 31);
 }
 
-/// Uniform numbers in (0, 1), each a function of seed, frame and counter alone.
+/// Uniform numbers in (0, 1) that depend only on seed, frame and counter.
 class CounterNoise {
   public:
     CounterNoise(uint32_t seed, int frame)
         : key_(mix64((uint64_t{seed} << 32 | static_cast<uint32_t>(frame)) + 1)) {}
 
-    /// A factor of mean 1 and variance 2 e - 1: half of the paths find the light, and what they find is
-    /// log-normal, as products of many factors are.
+    /// Returns a factor of mean 1 and variance 2 e - 1: half of the paths find the light, with a log-normal
+    /// value, like a product of many factors.
     double factor(uint64_t pixel, uint64_t lobe) const {
         const uint64_t counter = (pixel * 2 + lobe) * 3;
         if (uniform(counter) < 0.5) return 0.0;
-        // Box and Muller.
+        // Box-Muller transform.
         const double angle = 6.283185307179586 * uniform(counter + 1);
         const double normal = std::sqrt(-2.0 * std::log(uniform(counter + 2))) * std::cos(angle);
         return 2.0 * std::exp(normal - 0.5);
     }
 
-    /// Uniform, and independent of the factors.
+    /// Returns a uniform number that is independent of the factors.
     double choice(uint64_t pixel) const { return uniform((uint64_t{1} << 40) + pixel); }
 
   private:
@@ -97,7 +97,7 @@ void append(std::vector<float>& layer, const dvec3& xyz, double w = 0.0) {
     layer.push_back(static_cast<float>(w));
 }
 
-/// Two moments of the scene.
+/// The scene at two times: that of the frame and that of the previous one.
 class Moments {
   public:
     Moments(const SyntheticOptions& options, int number, uint32_t width, uint32_t height)
@@ -117,7 +117,7 @@ class Moments {
     dvec3 previousNormal(const SyntheticHit& hit) const { return pose(hit, 1).rotation() * hit.normal; }
 
     void appendMotion(std::vector<float>& layer, const SyntheticHit& hit, const SyntheticRay& ray) const {
-        // The point is projected by both cameras, so that what does not move has a motion of exactly 0.
+        // Both cameras project the point, so that static points have a motion of exactly 0.
         const auto is =
             hit.any() ? view.project(pose(hit, 0).toWorld(hit.point)) : view.projectDirection(ray.direction);
         const auto was = hit.any() ? previousView.project(pose(hit, 1).toWorld(hit.point))
@@ -126,8 +126,8 @@ class Moments {
         append(layer, dvec3(was->pixel - is->pixel, options_.scale * (was->distance - is->distance)), 1.0);
     }
 
-    /// As if the hit's plane showed a point behind it that does not move: its pixel moves as the point does,
-    /// its distance as that of the plane in its pixel. `choice` in (0, 1) says what is wrong with it.
+    /// Appends the motion of a static point reflected behind the hit's plane: its pixel moves like the point,
+    /// its distance is that of the plane in its pixel. `choice` in (0, 1) selects deliberate errors.
     void appendReflectionMotion(std::vector<float>& layer, const SyntheticHit& hit, const SyntheticRay& ray,
                                 double choice) const {
         if (number_ == 0 || !reflects(hit) || choice < 0.4) return append(layer, dvec3(0.0));
@@ -150,7 +150,7 @@ class Moments {
     static bool reflects(const SyntheticHit& hit) {
         return hit.any() && hit.instance != SyntheticScene::Wall && hit.instance != SyntheticScene::Emitter;
     }
-    /// How far behind the hit's previous plane the previous camera saw a point.
+    /// Returns how far behind the hit's previous plane the previous camera saw a point.
     double depthBehindPlane(const dvec3& point, const SyntheticHit& hit) const {
         const dvec3 eye = dvec3(previousCamera.origin) / options_.scale;
         const dvec3 along =
@@ -158,8 +158,8 @@ class Moments {
         const dvec3 n = previousNormal(hit);
         return glm::dot(n, point - pose(hit, 1).toWorld(hit.point)) / glm::dot(n, along);
     }
-    /// Most are right, some of them of half a share. What is wrong in x stays outside the picture, and in z
-    /// too far away, in a mean of nine.
+    /// Most are correct, some with half a share. Wrong values in x stay outside the picture, and in z too far
+    /// away, even in a mean of nine.
     void appendFlawed(std::vector<float>& layer, dvec3 r, double choice) const {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         if (choice < 0.5) return append(layer, 0.5 * r, 0.5);

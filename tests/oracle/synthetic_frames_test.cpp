@@ -1,4 +1,4 @@
-// The synthetic frames, by what must hold of any right G-buffer.
+// Tests properties of the synthetic frames that any correct G-buffer has.
 #include <gtest/gtest.h>
 
 #include "tests/oracle/double_denoise_fixture.h"
@@ -20,11 +20,11 @@ TEST(SyntheticFrames, NoiseHasTheTruthAsItsMean) {
             expected += dvec3(truth[4 * p], truth[4 * p + 1], truth[4 * p + 2]) - pixels.emission(p);
         }
     }
-    // 8 x 14400 samples of standard deviation 2.1: 0.6 % of the mean is one sigma.
+    // 8 x 14400 samples of standard deviation 2.1: one sigma is 0.6 % of the mean.
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(sum[i] / expected[i], 1.0, 0.03);
 }
 
-/// Where the camera sees a point that lies `distance` away at a position in pixels.
+/// Returns the world position of a point at this pixel position and distance.
 dvec3 worldPoint(const HostFrame& frame, const dvec2& pixel, double distance) {
     const CameraParams& camera = frame.camera;
     const dvec2 screen(2.0 * pixel.x / frame.width - 1.0, 1.0 - 2.0 * pixel.y / frame.height);
@@ -65,7 +65,7 @@ TEST(SyntheticFrames, MotionLeadsBackToTheSameFaceOfTheBox) {
         const dvec2 s = centreOf(p) + dvec2(m);
         const size_t q = static_cast<size_t>(s.y) * width + static_cast<size_t>(s.x);
         const dvec3 normal = beforePixels.normal(q);
-        // Away from the edges, so that q shows the face that p shows.
+        // Away from edges, so that q shows the same face as p.
         if (!allAround(q, 2, [&](size_t i) {
                 return before.ids[2 * i] == SyntheticScene::Box && beforePixels.normal(i) == normal;
             }))

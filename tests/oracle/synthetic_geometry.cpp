@@ -13,11 +13,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Shape {
     dvec3 centre;  ///< at rest
-    dvec3 half;    ///< half extents of a box; all the radius of a sphere
+    dvec3 half;    ///< half extents of a box; the radius of a sphere in all components
     bool sphere;
 };
 
-/// By instance.
+/// Indexed by instance.
 const std::array<Shape, 5> shapes{{
     {{0.0, -0.5, -4.0}, {8.0, 0.5, 9.0}, false},
     {{0.0, 1.2, -12.5}, {5.0, 1.2, 0.5}, false},
@@ -26,7 +26,7 @@ const std::array<Shape, 5> shapes{{
     {{1.8, 2.0, -6.0}, {0.3, 0.3, 0.3}, true},
 }};
 
-/// Distance along the unit direction, infinity for none; origin relative to the centre.
+/// Returns the distance along the unit direction, or infinity; the origin is relative to the centre.
 double meetSphere(const dvec3& origin, const dvec3& direction, double radius) {
     const double b = glm::dot(origin, direction);
     const double root = b * b - glm::dot(origin, origin) + radius * radius;
@@ -34,7 +34,7 @@ double meetSphere(const dvec3& origin, const dvec3& direction, double radius) {
     return distance > 0.0 ? distance : infinity;
 }
 
-/// Slabs: the last of the three pairs of planes to be entered is the face that is hit.
+/// Slab test: the last of the three pairs of planes that the ray enters is the face that it hits.
 double meetBox(const dvec3& origin, const dvec3& direction, const dvec3& half, dvec3& normal) {
     const dvec3 a = (-half - origin) / direction, b = (half - origin) / direction;
     const dvec3 enter = glm::min(a, b), leave = glm::max(a, b);
@@ -81,7 +81,7 @@ CameraParams syntheticCamera(int number, bool moves, bool orthographic, double s
     const dvec3 eye(0.03 * time, orthographic ? 1.3 : 0.6, 1.0 - 0.02 * time);
     const dvec3 forward(std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch));
     const dvec3 right(std::cos(yaw), 0.0, std::sin(yaw));
-    // The tangent of half the angle of view, or half of what is seen, all of it from above the floor.
+    // The tangent of half the field of view, or half the visible height; the view stays above the floor.
     const double halfHeight = orthographic ? 1.1 * scale : 0.45;
     CameraParams camera{};
     camera.origin = vec3(scale * eye);
