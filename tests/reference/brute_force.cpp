@@ -27,7 +27,7 @@ BruteForce::BruteForce(const scene::Scene& scene)
 }
 
 BruteHit BruteForce::closest(const TestRay& ray) const {
-    // Barycentrics and distances within these of a decision are beyond float32.
+    // Within these margins of barycentrics and distances, float32 cannot decide.
     constexpr double edge = 1e-4, same = 1e-5;
     BruteHit best;
     double nearest = ray.tMax, second = std::numeric_limits<double>::max();

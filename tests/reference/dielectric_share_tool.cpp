@@ -1,6 +1,6 @@
 // Writes src/scene/device/tables/dielectric_share.inc from random walks on microfacets:
-//   build/release/tests/limpid_dielectric_share > src/scene/device/tables/dielectric_share.inc
-// Takes about two minutes of one core; the same numbers each time.
+// build/release/tests/limpid_dielectric_share > src/scene/device/tables/dielectric_share.inc Takes about two
+// minutes on one core, and always gives the same numbers.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

@@ -10,19 +10,21 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-/// Facets after which what is left is lost: of white metal at roughness 1 less than 1e-4 is.
+/// A walk ends after this many facets: white metal at roughness 1 then loses less than 1e-4.
 constexpr int maxOrder = 64;
 
 double uniform(std::mt19937_64& random) {
     return static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-/// Area of the facets seen from v, projected along v, of a surface of area 1; v may point below the surface.
+/// Returns the area of the facets visible from v, projected along v, for a surface of area 1; v may point
+/// below the surface.
 double projectedArea(const dvec3& v, double alpha) {
     return 0.5 * (v.z + std::sqrt(v.z * v.z + alpha * alpha * (v.x * v.x + v.y * v.y)));
 }
 
-/// Smith's Lambda, for directions below the surface too (Heitz et al., equation 9 and its supplement).
+/// Returns Smith's Lambda, also for directions below the surface (Heitz et al., equation 9 and its
+/// supplement).
 double lambda(const dvec3& v, double alpha) {
     return projectedArea(v, alpha) / v.z - 1.0;
 }
@@ -32,8 +34,8 @@ double distribution(const dvec3& m, double alpha) {
     return alpha * alpha / (std::numbers::pi * d * d);
 }
 
-/// E. Heitz, JCGT 2018: the projection of the upper hemisphere seen from v is a disc without an ellipse's
-/// half, which holds for v below the surface, too.
+/// E. Heitz, JCGT 2018: the projection of the upper hemisphere seen from v is a disc minus half an ellipse,
+/// which also holds for v below the surface.
 dvec3 visibleNormal(const dvec3& wo, double alpha, std::mt19937_64& random) {
     const dvec3 v = glm::normalize(dvec3(alpha * wo.x, alpha * wo.y, wo.z));
     const double length = std::hypot(v.x, v.y);
@@ -65,8 +67,8 @@ dvec3 refract(const dvec3& v, const dvec3& m, double eta) {
     return glm::normalize((cosine / eta - transmitted) * m - v / eta);
 }
 
-/// The share of the surface below the next facet on the way along w, from a point with the share c below it;
-/// above 1: none is met.
+/// Returns the height of the next facet along w, as the share of the surface below it, starting at the share
+/// c; above 1: the ray leaves the surface.
 double nextHeight(const dvec3& w, double c, double alpha, std::mt19937_64& random) {
     const double l = lambda(w, alpha);
     const double u = 1.0 - uniform(random);
@@ -74,7 +76,7 @@ double nextHeight(const dvec3& w, double c, double alpha, std::mt19937_64& rando
     return std::clamp(c / std::pow(u, 1.0 / l), 1e-300, 1.0);
 }
 
-/// The walk keeps off the horizon, where a ray stays at its height for ever.
+/// Keeps the walk off the horizon, where a ray would stay at its height for ever.
 dvec3 offHorizon(dvec3 w) {
     if (std::abs(w.z) < 1e-7) w.z = w.z < 0.0 ? -1e-7 : 1e-7;
     return w;
@@ -83,8 +85,7 @@ dvec3 offHorizon(dvec3 w) {
 }  // namespace
 
 WalkExit walkDielectric(const dvec3& wo, double alpha, double eta, std::mt19937_64& random) {
-    dvec3 w = offHorizon(
-        -wo);  // the way of travel, in the frame of the side that it is on: up is away from the facets
+    dvec3 w = offHorizon(-wo);  // direction of travel, in the frame of its side: up is away from the facets
     double c = 1.0, sideEta = eta, side = 1.0;
     for (int order = 0; order < maxOrder; ++order) {
         c = nextHeight(w, c, alpha, random);
@@ -95,7 +96,7 @@ WalkExit walkDielectric(const dvec3& wo, double alpha, double eta, std::mt19937_
             w = offHorizon(w + 2.0 * cosine * m);
             continue;
         }
-        // Through the facet: the same surface upside down.
+        // Passing through the facet flips the surface upside down.
         w = offHorizon(-refract(-w, m, sideEta));
         c = 1.0 - c;
         sideEta = 1.0 / sideEta;

@@ -11,7 +11,7 @@ constexpr size_t rootRows = 16, rootColumns = 32;
 constexpr size_t maxCells = 60000;
 constexpr double maxMass = 1.0 / 256.0;
 
-// Gauss-Legendre with four points on [0, 1].
+// Gauss-Legendre quadrature with four points on [0, 1].
 constexpr std::array<double, 4> nodes{0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
                                       0.9305681557970263};
 constexpr std::array<double, 4> weights{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
@@ -33,7 +33,7 @@ SphereQuadrature::SphereQuadrature(const Evaluate& evaluate, double tolerance) {
     integrate(0, evaluate);
     std::vector<size_t> open(cells_.size());
     for (size_t i = 0; i < open.size(); ++i) open[i] = i;
-    // All open cells at once: one call of the GPU a round.
+    // Evaluates all open cells together: one GPU call per round.
     while (!open.empty()) {
         const size_t first = cells_.size();
         for (const size_t index : open) {

@@ -8,7 +8,7 @@
 namespace limpid::test {
 namespace {
 
-/// Regularised lower incomplete gamma function by its series; for x < a + 1.
+/// Regularised lower incomplete gamma function by its series, for x < a + 1.
 double gammaSeries(double a, double x) {
     double term = 1.0 / a, sum = term;
     for (double n = a + 1.0; std::abs(term) > std::abs(sum) * 1e-15; n += 1.0) {
@@ -18,7 +18,7 @@ double gammaSeries(double a, double x) {
     return sum * std::exp(-x + a * std::log(x) - std::lgamma(a));
 }
 
-/// The upper one by its continued fraction (Lentz).
+/// The upper incomplete gamma function by its continued fraction (Lentz).
 double gammaFraction(double a, double x) {
     constexpr double tiny = std::numeric_limits<double>::min() / 1e-15;
     double b = x + 1.0 - a, c = 1.0 / tiny, d = 1.0 / b, h = d;
@@ -68,7 +68,7 @@ ChiSquare chiSquare(const std::vector<double>& observed, const std::vector<doubl
         e += expected[i];
         if (e >= least) add(i);
     }
-    // What is left is too little for a bin of its own; it is one nevertheless if much was found in it.
+    // The remainder is too small for its own bin, unless many observations fell there.
     if (e > 0.0 && o > 10.0 * least) add(expected.size());
     result.degreesOfFreedom = bins - 1;
     if (bins > 1) result.p = chiSquareTail(result.statistic, bins - 1);

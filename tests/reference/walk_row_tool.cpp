@@ -1,7 +1,8 @@
-// Says which of two renderers is right about a row of spheres of scripts/cycles (glass-rough, metal-white):
-// traces it with the random walk on microfacets (microfacet_walk.h) in double precision and prints, sphere by
-// sphere, the mean of the picture's square and by how much pictures of others differ:
-//   limpid_walk_row out/cycles/glass-rough/sky.exr glass out/cycles/glass-rough/mean.{limpid,cycles}.exr
+// Decides which of two renderers is right about a row of spheres of scripts/cycles (glass-rough,
+// metal-white): traces it with the random walk on microfacets (microfacet_walk.h) in double precision and
+// prints, per sphere, the mean of the picture's square and how much the renderers' pictures differ:
+//
+// limpid_walk_row out/cycles/glass-rough/sky.exr glass out/cycles/glass-rough/mean.{limpid,cycles}.exr
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -53,7 +54,7 @@ struct Material {
     std::array<double, spheres> roughness;
 };
 
-/// Where the ray o + t d meets the sphere around c next; negative: nowhere.
+/// Returns the distance at which the ray o + t d hits the sphere around c; negative: a miss.
 double distanceTo(const dvec3& c, const dvec3& o, const dvec3& d, bool inside) {
     const dvec3 q = o - c;
     const double b = glm::dot(q, d), discriminant = b * b - glm::dot(q, q) + radius * radius;
@@ -61,13 +62,14 @@ double distanceTo(const dvec3& c, const dvec3& o, const dvec3& d, bool inside) {
     return inside ? -b + std::sqrt(discriminant) : -b - std::sqrt(discriminant);
 }
 
-/// The direction after the facets of the sphere; `inside` changes when it is crossed.
+/// Returns the direction after scattering at the sphere's facets; `inside` changes if the ray crosses the
+/// boundary.
 dvec3 scatter(const dvec3& normal, const dvec3& d, double roughness, bool glass, bool& inside,
               std::mt19937_64& random) {
     const dvec3 helper = std::abs(normal.x) > 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
     const dvec3 t = glm::normalize(glm::cross(helper, normal)), b = glm::cross(normal, t);
     const dvec3 wo(-glm::dot(d, t), -glm::dot(d, b), std::max(-glm::dot(d, normal), 1e-9));
-    // Behind an index without end everything is reflected: white metal.
+    // An extremely high index reflects everything, which models white metal.
     const double eta = !glass ? 1e9 : inside ? 1.0 / index : index;
     const double alpha = std::max(roughness * roughness, 1e-4);
     const dvec3 out = test::walkDielectric(glm::normalize(wo), alpha, eta, random).direction;
@@ -75,7 +77,7 @@ dvec3 scatter(const dvec3& normal, const dvec3& d, double roughness, bool glass,
     return glm::normalize(out.x * t + out.y * b + out.z * normal);
 }
 
-/// Radiance along one path from o; spheres stand side by side on the X axis, one apart.
+/// Returns the radiance along one path from o; spheres stand side by side on the X axis, one unit apart.
 dvec3 trace(dvec3 o, const Material& material, const Sky& sky, std::mt19937_64& random) {
     dvec3 d(0, 0, -1);
     bool inside = false;
@@ -84,7 +86,7 @@ dvec3 trace(dvec3 o, const Material& material, const Sky& sky, std::mt19937_64& 
         int hit = -1;
         double nearest = 1e30;
         for (int i = 0; i < spheres; ++i) {
-            if ((i == last) != inside) continue;  // a sphere is not met again from outside: it is convex
+            if ((i == last) != inside) continue;  // a convex sphere cannot be hit twice in a row from outside
             const double distance = distanceTo(dvec3(i - 2.0, 0, 0), o, d, inside);
             if (distance > 1e-9 && distance < nearest) nearest = distance, hit = i;
         }

@@ -1,4 +1,4 @@
-// The window under real input events.
+// Tests the window with real input events.
 #include <gmock/gmock.h>
 
 #include "image/io/picture.h"
@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 class ViewEventsTest : public ViewTest {};
 
-/// A mean that was left for a denoiser begins anew.
+/// A mean that was left for a denoiser starts again.
 TEST_F(ViewEventsTest, AMeanOfBeforeIsNotTakenUp) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 5");
     const std::string start = viewer.settledPicture();
@@ -24,7 +24,7 @@ TEST_F(ViewEventsTest, AMeanOfBeforeIsNotTakenUp) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
-/// limpid info lists paramGroups().
+/// Tests all parameters of paramGroups(), which `limpid info` lists.
 TEST_F(ViewEventsTest, EveryParameterChangesAndGoesBack) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
     const std::string start = viewer.settledPicture();
@@ -94,7 +94,7 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
     change(viewer, "false color");
     viewer.xdotool("mousemove 430 850");
     viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
-    viewer.choose("denoiser", "none");  // which has no such pass
+    viewer.choose("denoiser", "none");  // this one has no such pass
     viewer.settledPicture();
     EXPECT_FALSE(viewer.controls().contains("image"));
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");

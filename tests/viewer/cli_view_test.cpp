@@ -1,4 +1,4 @@
-// The window, on a display without a screen (Xvfb).
+// Tests the window on a display without a screen (Xvfb).
 #include <gmock/gmock.h>
 
 #include "image/io/picture.h"
@@ -18,12 +18,12 @@ class CliViewTest : public CliTest {
             run("view builtin:none").output.find("was built without") != std::string::npos)
             GTEST_SKIP() << "NOT TESTED: Limpid was built without libglfw3-dev and libimgui-dev.";
     }
-    /// With a display; validated.
+    /// Runs `limpid view` on a display, with validation.
     static Result onDisplay(const std::string& arguments) {
         if (runProgram("command -v xvfb-run").code != 0)
             return {77, "NOT TESTED: xvfb-run is missing (Debian packages xvfb and xauth)"};
-        // Each process looks for a free display from a number of its own on: two that look at once may find
-        // the same.
+        // Each process searches for a free display from its own number on, since two that search at the same
+        // time may find the same one.
         const std::string first = std::to_string(1000 + ::getpid() % 20000);
         return runProgram("LIMPID_VALIDATION=1 xvfb-run -a -n " + first + " '" + LIMPID_PROGRAM + "' " +
                           arguments + " --settings none");
@@ -54,7 +54,7 @@ TEST_F(CliViewTest, ShowsWhatRenderRenders) {
                        render = image::readPicture(path("render.png")).linear;
     ASSERT_EQ(view.width, 160u);
     ASSERT_EQ(view.height, 120u);
-    EXPECT_GT(image::psnr(view, render), 30.0);  // its exposure was measured on the first frame
+    EXPECT_GT(image::psnr(view, render), 30.0);  // the exposure was measured on the first frame
 }
 
 TEST_F(CliViewTest, EveryIntegratorAndDenoiserIsShown) {

@@ -1,5 +1,4 @@
-// What the window offers besides pictures: comparisons, lights, shaders compiled anew, and getting over
-// faults.
+// Tests the window's tools: comparisons, lights, recompiled shaders, and recovery from errors.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -16,7 +15,7 @@ using testing::HasSubstr;
 
 class ViewToolsTest : public ViewTest {
   protected:
-    /// Limpid's shaders, to be changed.
+    /// Copies Limpid's shaders, so that tests can modify them.
     fs::path copiedShaders() const {
         const fs::path from = fs::path(LIMPID_SOURCE_DIR) / "src", to = folder_ / "src";
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(from)) {
@@ -28,7 +27,7 @@ class ViewToolsTest : public ViewTest {
         }
         return to;
     }
-    /// In the world; of the integrator gbuffer.
+    /// In world space, from the integrator gbuffer.
     static std::vector<double> positionUnderMouse(const DrivenViewer& viewer) {
         viewer.xdotool("key p");
         viewer.waitFor("values", [&] { return !viewer.fact("values").empty(); });
@@ -41,7 +40,7 @@ class ViewToolsTest : public ViewTest {
         for (double& p : position) numbers >> p;
         return position;
     }
-    /// A quadrangle, and cameras of which one has no name.
+    /// A quadrangle and several cameras, one of them without a name.
     static constexpr const char* camerasFile = R"({"asset": {"version": "2.0"}, "scene": 0,
         "scenes": [{"nodes": [0, 1, 2, 3]}],
         "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4], "name": "front"},
@@ -76,7 +75,7 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
     });
     viewer.waitFor("scores", [&] { return viewer.value("scores").starts_with("PSNR"); });
     EXPECT_GT(std::stod(viewer.value("scores").substr(5)), 15.0);
-    const std::string one = viewer.settledPicture();  // the screenshot is of the picture alone
+    const std::string one = viewer.settledPicture();  // the screenshot shows only the picture
 
     viewer.xdotool("mousemove 440 1600 sleep 0.2 key Tab");
     viewer.waitFor("the panel to go", [&] { return !viewer.controls().contains("integrator"); });
@@ -97,7 +96,7 @@ TEST_F(ViewToolsTest, ComparesWithAReference) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
-/// Two renderers share a scene whose parts move.
+/// Two renderers share a scene with moving parts.
 TEST_F(ViewToolsTest, FindsNoDifferenceToItself) {
     DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 3 --denoiser svgf");
     viewer.choose("compare with", "svgf");
@@ -113,7 +112,7 @@ TEST_F(ViewToolsTest, FindsNoDifferenceToItself) {
 }
 
 #ifdef LIMPID_WINDOW_PIXELS
-/// What X has of the window.
+/// The window's pixels as X shows them.
 class WindowPixels {
   public:
     WindowPixels(const DrivenViewer& viewer, const fs::path& file) {
@@ -126,7 +125,7 @@ class WindowPixels {
         stream.get();
         bytes_.assign(std::istreambuf_iterator<char>(stream), {});
     }
-    /// The largest difference of a channel, in steps of 1/255, to an encoded picture's pixel.
+    /// Returns the largest difference of a channel, in steps of 1/255, from a pixel of an encoded picture.
     int difference(uint32_t x, uint32_t y, const image::Image& picture, uint32_t px, uint32_t py) const {
         int most = 0;
         for (uint32_t c = 0; c < 3; ++c) {
@@ -171,9 +170,9 @@ TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
     viewer.click("magnifier");
     viewer.waitFor("the magnifier", [&] { return viewer.value("magnifier") == "on"; });
     hidePanel(true);
-    EXPECT_LE(worst(0, 290), 1) << "left of the divider";  // which is at 299
+    EXPECT_LE(worst(0, 290), 1) << "left of the divider";  // the divider is at 299
     EXPECT_GT(worst(310, 460), 30) << "right of it";
-    // Two squares of 210 pixels, tenfold, stand below the mouse and end at the window's edge.
+    // Two squares of 210 pixels, magnified ten times, are below the mouse and end at the window's edge.
     const WindowPixels shown(viewer, folder_ / "shown.ppm");
     EXPECT_LE(shown.difference(105, 929, picture, 200, 800), 1);
     EXPECT_LE(shown.difference(55, 879, picture, 195, 795), 1);
@@ -194,7 +193,7 @@ TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
     viewer.click("light.background of its own");
     viewer.waitFor("a background", [&] { return viewer.controls().contains("light.red"); });
     for (const char* name : {"red", "green", "blue"}) {
-        // The scene is loaded again for it, and controls move in the panel's first frames after that.
+        // This loads the scene again, and controls move in the panel's first frames after that.
         viewer.settledPicture();
         change(viewer, std::string("light.") + name);
         EXPECT_EQ(viewer.fact("fault"), "") << name;
@@ -205,7 +204,7 @@ TEST_F(ViewToolsTest, EverySliderCanBeMoved) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
-/// Of the scene's own: nothing is loaded for it, and what was there comes back to the bit.
+/// Editing the scene's own lights loads nothing, and undoing an edit restores the picture bit for bit.
 TEST_F(ViewToolsTest, LightsChangeWithoutLoadingTheScene) {
     DrivenViewer viewer(folder_, "builtin:cornell-moving --max-spp 4");
     const std::string start = viewer.settledPicture();
@@ -228,7 +227,7 @@ TEST_F(ViewToolsTest, LightsChangeWithoutLoadingTheScene) {
     EXPECT_EQ(viewer.settledPicture(), start);
     EXPECT_EQ(viewer.fact("scenes"), "1");
 
-    // While the clip plays, with histories that go on.
+    // While the clip plays, histories continue.
     viewer.choose("denoiser", "svgf");
     viewer.click("playing");
     viewer.waitFor("frames", [&] { return viewer.number("frames") > 10; });
@@ -284,7 +283,7 @@ TEST_F(ViewToolsTest, LightsComeAndGo) {
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
 }
 
-/// The camera as numbers and by name; the preview; numbers that are typed into sliders.
+/// Tests the camera as numbers and by name, the preview, and numbers typed into sliders.
 TEST_F(ViewToolsTest, CamerasNumbersAndThePreview) {
     put("cameras.gltf", camerasFile);
     DrivenViewer viewer(folder_, "cameras.gltf --max-spp 3 --background 1,1,1");
@@ -393,7 +392,7 @@ TEST_F(ViewToolsTest, LooksAtWhatIsClickedTwice) {
     const std::vector<double> clicked = positionUnderMouse(viewer);
     viewer.xdotool("click 1 sleep 0.05 click 1 sleep 0.3");
     viewer.settledPicture();
-    viewer.xdotool("mousemove 230 850 sleep 0.3");  // the middle
+    viewer.xdotool("mousemove 230 850 sleep 0.3");  // middle of the window
     const std::vector<double> middle = positionUnderMouse(viewer);
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(middle[i], clicked[i], 0.02) << i;
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");
@@ -433,8 +432,7 @@ void dropOn(const DrivenViewer& viewer, const std::string& file) {
 }
 #endif
 
-/// A scene that is named on the command line may read from the folder above its own; one that is dropped may
-/// not.
+/// A scene named on the command line may read from the parent of its folder; a dropped one may not.
 TEST_F(ViewToolsTest, WhatIsDroppedSeesItsOwnFolderOnly) {
 #ifdef LIMPID_DROP_FILES
     constexpr std::array<float, 9> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};

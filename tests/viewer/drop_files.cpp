@@ -50,7 +50,7 @@ class Source {
         XFlush(display_);
     }
 
-    /// The target asks for the files' names in between.
+    /// In between, the target requests the files' names.
     bool serveUntil(const char* type) {
         const auto end = Clock::now() + std::chrono::seconds(60);
         while (Clock::now() < end) {

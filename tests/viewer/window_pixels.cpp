@@ -1,4 +1,5 @@
-// What a window of X11 shows, as a PPM on standard output: window_pixels WINDOW. For tests of the viewer.
+// Writes the pixels that X11 shows in a window as a PPM to standard output: window_pixels WINDOW. For tests
+// of the viewer.
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
@@ -10,7 +11,7 @@
 
 namespace {
 
-/// Of a channel of eight bits.
+/// Extracts an 8-bit channel.
 unsigned char channel(unsigned long pixel, unsigned long mask) {
     return static_cast<unsigned char>((pixel & mask) >> std::countr_zero(mask));
 }
