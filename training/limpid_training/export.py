@@ -21,7 +21,7 @@ def export(run, output):
     weights = {name: weight.half() for name, weight in state["net"].items()}
     unseen = sorted(set(range(features.INPUT_CHANNELS)) - set(features.INPUTS[options["inputs"]]))
     for side in features.SIDES:
-        weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # what the network did not see means nothing to it
+        weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs that the network did not see get zero weights
     metadata = {
         "limpid.network": "kpcn",
         "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing")}),

@@ -32,8 +32,8 @@ def frame(rows, columns, generator):
     near = ((x - columns / 2) ** 2 + (y - rows / 2) ** 2 < (rows / 4) ** 2)[None, None]
     nothing = (x + y < rows / 3)[None, None]
     albedo = torch.where(near, 0.1 + 0.8 * (x % 7) / 7, 0.5 - 0.4 * (y % 5) / 5).expand(1, 3, -1, -1).clone()
-    # In bands beside each other: 56 and 64 degrees from the first one's normal, on both sides of what kernels take in; its opposite;
-    # and lengths that are not 1.
+    # Side by side in bands: normals 56 and 64 degrees from the first one, just inside and outside the
+    # kernel's limit; the opposite normal; and lengths that are not 1.
     normal = torch.tensor([1.0, 0.0, 0.0])[:, None, None]
     for band, (degrees, length) in enumerate([(53, 0.4), (109, 1.0), (117, 2.0), (233, 1.0)]):
         turned = torch.tensor([0.0, math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])[:, None, None]
@@ -55,7 +55,7 @@ def small_network():
             if name.endswith("bias"):
                 parameter.uniform_(-0.2, 0.2)
             if "output.weight" in name:
-                parameter.mul_(8.0)  # kernels that are not flat
+                parameter.mul_(8.0)  # makes the kernels less flat
     return net
 
 

@@ -75,7 +75,7 @@ def apply_kernel(logits, light, faces, facing=FACING):
         cosine = (row_of_taps(around, top) * faces.unsqueeze(3)).sum(dim=1, keepdim=True)
         return taps.masked_fill(cosine + row_of_taps(outside, top) < facing, -torch.inf)
 
-    # Row by row of the kernel: all of it at once would take width^2 pictures of memory.
+    # One kernel row at a time, since all at once would take the memory of width^2 pictures.
     with torch.no_grad():
         largest = torch.stack([exponents(top).amax(dim=3) for top in range(width)]).amax(dim=0)
     total = torch.zeros_like(light)

@@ -118,7 +118,7 @@ class Trainer:
         }
         self.scaler = torch.cuda.amp.GradScaler(enabled=self.half)
         self.batches_done = dict.fromkeys(self.rates, 0)
-        batches = len(self.learnt) // self.workers.count * options.patches / options.batch  # in an epoch
+        batches = len(self.learnt) // self.workers.count * options.patches / options.batch  # per epoch
         lengths = {"both": options.tuning_epochs}
         self.warm_up = {name: max(options.warm_up * lengths.get(name, options.epochs) * batches, 1.0) for name in self.rates}
         self.epoch, self.seconds, self.losses, self.times = 0, 0.0, {}, []
@@ -139,7 +139,8 @@ class Trainer:
                 result, target = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"]), batch["target"]
             else:
                 result, target = parts[side][0], batch[side + ".target"]
-            # As relative errors: else a few bright patches would decide alone. Specular light is a logarithm already.
+            # Use relative errors, or a few bright patches would dominate. Specular light is already
+            # logarithmic.
             if self.options.loss == "logarithmic" and side != "specular":
                 result, target = (result.float() + 0.1).log(), (target.clamp(min=0.0) + 0.1).log()
             decay = sum(logits.square().mean() for _, logits in parts.values())
@@ -174,7 +175,7 @@ class Trainer:
         generator = torch.Generator().manual_seed(self.options.seed * 1000003 + self.epoch)
         order = torch.randperm(len(self.learnt), generator=generator).tolist()
         share = order[self.workers.number :: self.workers.count]
-        share = share[: len(order) // self.workers.count]  # workers wait for each other after every batch
+        share = share[: len(order) // self.workers.count]  # all workers wait for each other after every batch
         generator.manual_seed(generator.initial_seed() + 7919 * self.workers.number)
         size = self.options.batch
         for begin in range(0, len(share), size):
@@ -195,7 +196,7 @@ class Trainer:
         for batch in self.batches():
             for side in sides:
                 loss = self.step(side, batch)
-                finite = torch.isfinite(loss)  # halves overflow now and then; the scaler skips such a step
+                finite = torch.isfinite(loss)  # halves overflow occasionally; the scaler skips such a step
                 sums[side] += torch.where(finite, loss, torch.zeros_like(loss))
                 counts[side] += finite
             batches += 1

@@ -37,7 +37,7 @@ class FeaturesTest(unittest.TestCase):
         self.assertEqual(across[:, 0].abs().sum() + down[0].abs().sum(), 0)
 
     def test_variance_is_transformed_as_the_light_is(self):
-        # Of many samples around one grey pixel: the variance of their transforms.
+        # With many samples around one grey pixel: the variance of their transforms.
         samples = 2.0 + 0.05 * torch.randn(200000)
         albedo = torch.full((1, 3, 1, 1), 0.3)
         frame = {"albedo": albedo}
@@ -65,7 +65,7 @@ class FeaturesTest(unittest.TestCase):
         for name in ("albedo", "normal", "depth"):
             frame[name + ".variance"] = torch.ones_like(frame[name + ".variance"])
         for side in features.SIDES:
-            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # one sample saw it all
+            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # as if a single sample had found all the light
             self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
             self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 
@@ -128,7 +128,7 @@ class KernelTest(unittest.TestCase):
 
     def test_weights_beyond_any_exponent(self):
         logits = torch.full((1, 9, 3, 3), -1000.0)
-        logits[:, 0] = 1000.0  # up and to the left: outside of the first row and column
+        logits[:, 0] = 1000.0  # up and to the left: outside the picture for the first row and column
         light = torch.arange(9.0).reshape(1, 1, 3, 3)
         result = apply_kernel(logits, light, one_wall(light))[0, 0]
         self.assertTrue(torch.equal(result[1:, 1:], light[0, 0, :2, :2]))
