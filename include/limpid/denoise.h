@@ -1,4 +1,4 @@
-/* Limpid's denoisers for C: noisy frames in, clean frames out.
+/* Limpid's denoisers for C: they turn noisy frames into clean ones.
  *
  *     limpid_device* device;
  *     limpid_device_create(NULL, &device);                       // any Vulkan device, CPUs included
@@ -12,16 +12,17 @@
  *     ...
  *     limpid_denoise_host(denoiser, &frame);
  *
- * A program with a Vulkan device of its own records into its own command buffers: denoise_vulkan.h. C++ programs have
- * denoise.hpp.
+ * Programs with a Vulkan device of their own can record into their own command buffers: see denoise_vulkan.h. C++
+ * programs can use denoise.hpp.
  *
- * Rules for all of it:
- * - Structs begin with `size`, which is sizeof of the struct as the caller was compiled. Zero is the default of every
- *   other member, so that `limpid_denoiser_desc desc = {sizeof desc};` is complete. Later versions append members.
- * - Functions return a limpid_result and throw nothing. limpid_last_error() says more of the calling thread's last
+ * General rules:
+ * - Structs begin with `size`, which is the sizeof of the struct in the caller's version of this header. Zero is the
+ *   default of every other member, so `limpid_denoiser_desc desc = {sizeof desc};` is complete. Later versions append
+ *   members.
+ * - Functions return a limpid_result and throw no exceptions. limpid_last_error() describes the calling thread's last
  *   failure.
- * - Strings are UTF-8. Memory that is passed in is read during the call only.
- * - One thread at a time may use a denoiser; several denoisers, on one device too, may be used by several threads.
+ * - Strings are UTF-8. Memory that is passed in is only read during the call.
+ * - Only one thread at a time may use a denoiser. Several threads may use several denoisers, even on one device.
  * - Nothing is logged or printed, and no environment variable is read.
  * - Pixels: row 0 is the top row; pixel centres are at +0.5. Radiance is linear.
  */
@@ -41,24 +42,24 @@
 extern "C" {
 #endif
 
-/* The version of this header; limpid_version() is the library's. Minor versions only add. */
+/* The version of this header; limpid_version() returns the library's. Minor versions only add features. */
 #define LIMPID_VERSION_MAJOR 0
 #define LIMPID_VERSION_MINOR 2
 #define LIMPID_VERSION_PATCH 0
 
-/* 10000 major + 100 minor + patch. */
+/* Returns 10000 major + 100 minor + patch. */
 LIMPID_API uint32_t limpid_version(void);
 
 typedef enum limpid_result {
     LIMPID_OK = 0,
     LIMPID_ERROR_INVALID_ARGUMENT = 1, /* a null pointer, a wrong size, an unknown name, a missing input */
-    LIMPID_ERROR_UNSUPPORTED = 2,      /* the device lacks something */
-    LIMPID_ERROR_OUT_OF_MEMORY = 3,    /* of the device or the host */
-    LIMPID_ERROR_DEVICE_LOST = 4,      /* destroy everything that was made on the device */
+    LIMPID_ERROR_UNSUPPORTED = 2,      /* the device lacks a required feature */
+    LIMPID_ERROR_OUT_OF_MEMORY = 3,    /* on the device or the host */
+    LIMPID_ERROR_DEVICE_LOST = 4,      /* destroy everything that was created on the device */
     LIMPID_ERROR_FAILED = 5            /* anything else */
 } limpid_result;
 
-/* Of the calling thread's last failure; "" if there was none. Valid until its next call. */
+/* Describes the calling thread's last failure; "" if there was none. Valid until the thread's next call. */
 LIMPID_API const char* limpid_last_error(void);
 
 /* ---------------------------------------------------------------- devices */
@@ -72,33 +73,33 @@ typedef enum limpid_message_level {
     LIMPID_MESSAGE_ERROR = 3
 } limpid_message_level;
 
-/* May come from any thread that calls the library, and from the Vulkan driver's. */
+/* May be called from any thread that calls the library, and from the Vulkan driver's threads. */
 typedef void (*limpid_message_callback)(void* user, limpid_message_level level, const char* message);
 
 typedef struct limpid_device_desc {
     size_t size;
-    /* NULL or "": the best device (discrete before integrated before CPU); "cpu": a software device; a number: that
-     * device; anything else: the first device whose name contains it, ignoring case. */
+    /* NULL or "": the best device (discrete before integrated before CPU); "cpu": a software device; a number: the
+     * device with that index; anything else: the first device whose name contains it, ignoring case. */
     const char* select;
-    /* Not 0: Vulkan's validation layer checks every call, and its messages go to `message`. Slow. */
+    /* Not 0: Vulkan's validation layer checks every call and reports to `message`. Slow. */
     int32_t validation;
     limpid_message_callback message;
     void* message_user;
 } limpid_device_desc;
 
-/* Opens a Vulkan device. `desc` may be NULL. LIMPID_ERROR_UNSUPPORTED if no device fits; the message lists what there
- * is. */
+/* Opens a Vulkan device. `desc` may be NULL. Returns LIMPID_ERROR_UNSUPPORTED if no device is suitable; the message
+ * lists the available ones. */
 LIMPID_API limpid_result limpid_device_create(const limpid_device_desc* desc, limpid_device** device);
-/* After all denoisers that were made on it. NULL is ignored. */
+/* Destroy all denoisers on the device first. NULL is ignored. */
 LIMPID_API void limpid_device_destroy(limpid_device* device);
-/* As its driver calls it. Valid as long as the device. */
+/* Returns the name that the driver reports. Valid as long as the device. */
 LIMPID_API const char* limpid_device_name(const limpid_device* device);
 
-/* What the driver has compiled so far, to be stored and given back in the next run of the program: then nothing is
- * compiled again. With `data` NULL, `size` is set to the number of bytes; otherwise up to `size` bytes are written,
- * and `size` is set to how many. */
+/* Returns the driver's compiled pipelines. Store them and load them in the next run of the program, so that nothing is
+ * compiled again. With `data` NULL, sets `size` to the number of bytes; otherwise writes up to `size` bytes and sets
+ * `size` to the number written. */
 LIMPID_API limpid_result limpid_device_pipeline_cache(const limpid_device* device, void* data, size_t* size);
-/* Before the first denoiser is made. Data of another device or driver, or damaged ones, are ignored. */
+/* Call it before the first denoiser is created. Ignores data that is damaged, or from another device or driver. */
 LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device, const void* data, size_t size);
 
 /* -------------------------------------------------------------- denoisers */
@@ -111,28 +112,28 @@ typedef enum limpid_method {
     LIMPID_METHOD_TEMPORAL = 2 /* temporal accumulation alone: each pixel's mean follows its surface */
 } limpid_method;
 
-/* Images of a frame, by what they hold. Which a method needs, and what it costs to leave one out, is in
- * docs/embedding.md. */
+/* The images of a frame, by content. docs/embedding.md lists which ones a method needs, and the effect of leaving one
+ * out. */
 typedef enum limpid_input {
-    LIMPID_INPUT_RADIANCE = 0,        /* rgb: light that is scattered towards the eye; with two signals diffuse light.
-                                         Needed. */
-    LIMPID_INPUT_SPECULAR = 1,        /* rgb: specular light. Needed with two signals. */
-    LIMPID_INPUT_EMISSION = 2,        /* rgb: what the camera sees directly (emitters, sky): not filtered */
-    LIMPID_INPUT_ALBEDO = 3,          /* rgb: diffuse albedo, 0 to 1, textures in it */
-    LIMPID_INPUT_ALBEDO_SPECULAR = 4, /* rgb: pre-integrated reflectance of the specular lobe, 0 to 1 */
-    LIMPID_INPUT_NORMAL = 5,          /* limpid_normal_encoding, limpid_space. Needed. */
-    LIMPID_INPUT_DEPTH = 6,           /* limpid_depth. Needed. */
-    LIMPID_INPUT_MOTION = 7,          /* limpid_motion_unit and so on. Without it, only the camera moves. */
-    LIMPID_INPUT_PREVIOUS_NORMAL = 8, /* as the normal: of the same surface point in the previous frame */
-    LIMPID_INPUT_REFLECTION_MOTION = 9, /* as the motion: of what a flat mirror shows */
+    LIMPID_INPUT_RADIANCE = 0,          /* rgb: light scattered towards the eye; with two signals diffuse light.
+                                           Required. */
+    LIMPID_INPUT_SPECULAR = 1,          /* rgb: specular light. Required with two signals. */
+    LIMPID_INPUT_EMISSION = 2,          /* rgb: directly visible emitters and sky; not filtered */
+    LIMPID_INPUT_ALBEDO = 3,            /* rgb: diffuse albedo including textures, 0 to 1 */
+    LIMPID_INPUT_ALBEDO_SPECULAR = 4,   /* rgb: pre-integrated reflectance of the specular lobe, 0 to 1 */
+    LIMPID_INPUT_NORMAL = 5,            /* limpid_normal_encoding, limpid_space. Required. */
+    LIMPID_INPUT_DEPTH = 6,             /* limpid_depth. Required. */
+    LIMPID_INPUT_MOTION = 7,            /* limpid_motion_unit etc. If missing, only the camera moves. */
+    LIMPID_INPUT_PREVIOUS_NORMAL = 8,   /* like NORMAL, for the same surface point in the previous frame */
+    LIMPID_INPUT_REFLECTION_MOTION = 9, /* like MOTION, for the reflection in a flat mirror */
     LIMPID_INPUT_ID = 10,               /* r: a number for each object (Vulkan: unsigned integers) */
     LIMPID_INPUT_MAX = 32               /* room for more */
 } limpid_input;
 
 typedef enum limpid_output {
-    LIMPID_OUTPUT_COLOR = 0,    /* rgb: the clean picture, emission and albedo in it; a: 1 */
-    LIMPID_OUTPUT_RADIANCE = 1, /* rgb: what LIMPID_INPUT_RADIANCE has become. SVGF only. */
-    LIMPID_OUTPUT_SPECULAR = 2, /* rgb: what LIMPID_INPUT_SPECULAR has become. SVGF with two signals only. */
+    LIMPID_OUTPUT_COLOR = 0,    /* rgb: the denoised picture including emission and albedo; a: 1 */
+    LIMPID_OUTPUT_RADIANCE = 1, /* rgb: the denoised LIMPID_INPUT_RADIANCE. SVGF only. */
+    LIMPID_OUTPUT_SPECULAR = 2, /* rgb: the denoised LIMPID_INPUT_SPECULAR. SVGF with two signals only. */
     LIMPID_OUTPUT_MAX = 8       /* room for more */
 } limpid_output;
 
@@ -145,21 +146,21 @@ typedef enum limpid_normal_encoding {
 
 typedef enum limpid_space {
     LIMPID_SPACE_WORLD = 0,
-    LIMPID_SPACE_VIEW = 1 /* of the frame's view matrix */
+    LIMPID_SPACE_VIEW = 1 /* that of the frame's view matrix */
 } limpid_space;
 
-/* Where nothing is seen: 0 or below, not finite, or `far_depth` and beyond. */
+/* Values that mean a miss: 0 or below, not finite, or `far_depth` and beyond. */
 typedef enum limpid_depth {
     LIMPID_DEPTH_DISTANCE = 0, /* along the pixel's ray, from the eye, world units */
     LIMPID_DEPTH_LINEAR = 1,   /* along the view axis, from the eye, world units; the sign is ignored */
-    LIMPID_DEPTH_DEVICE = 2 /* of the depth buffer; the projection matrix says how (reversed, infinite). Where nothing
-                               is seen it has its far value: 0 if reversed, else 1. */
+    LIMPID_DEPTH_DEVICE = 2 /* depth-buffer values; the projection matrix defines them (reversed, infinite). A miss has
+                               the far value: 0 if reversed, else 1. */
 } limpid_depth;
 
 typedef enum limpid_motion_unit {
     LIMPID_MOTION_PIXELS = 0,
-    LIMPID_MOTION_UV = 1, /* 1: the width or height of the picture; v points down */
-    LIMPID_MOTION_NDC = 2 /* 2: the width or height; y as clip space has it (limpid_clip_y) */
+    LIMPID_MOTION_UV = 1, /* 1 is the width or height of the picture; v points down */
+    LIMPID_MOTION_NDC = 2 /* 2 is the width or height; y as in clip space (limpid_clip_y) */
 } limpid_motion_unit;
 
 typedef enum limpid_motion_direction {
@@ -168,8 +169,9 @@ typedef enum limpid_motion_direction {
 } limpid_motion_direction;
 
 typedef enum limpid_motion_depth {
-    LIMPID_MOTION_2D = 0,      /* xy only: what moves in depth is taken to stand still in the world */
-    LIMPID_MOTION_DISTANCE = 1 /* z: the change of distance from the eye, world units, in the direction of xy */
+    LIMPID_MOTION_2D = 0, /* xy only: the change of depth is computed as if objects stood still */
+    LIMPID_MOTION_DISTANCE =
+        1 /* z: the change of distance from the eye, world units, with the sign convention of xy */
 } limpid_motion_depth;
 
 typedef enum limpid_clip_y {
@@ -181,50 +183,50 @@ typedef struct limpid_denoiser_desc {
     size_t size;
     limpid_method method;
     uint32_t width, height; /* pixels of all images */
-    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse, SPECULAR specular light; twice the time.
-     */
+    /* 0 or 1: RADIANCE is all light that is filtered. 2: RADIANCE is diffuse and SPECULAR specular light; takes twice
+     * the time. */
     uint32_t signals;
-    /* Not 0: radiance comes without albedo in it, and leaves without. Then the albedo inputs are not needed, and COLOR
-     * is the sum of the signals and emission. */
+    /* Not 0: radiance is already divided by albedo, and so are the outputs. The albedo inputs are then not needed, and
+     * COLOR is the sum of the signals and emission. */
     int32_t demodulated;
     limpid_normal_encoding normal_encoding;
     limpid_space normal_space;
     limpid_depth depth;
-    float far_depth; /* of LIMPID_DEPTH_DISTANCE and LINEAR; 0: 1e9 */
+    float far_depth; /* for LIMPID_DEPTH_DISTANCE and LINEAR; 0: 1e9 */
     limpid_motion_unit motion_unit;
     limpid_motion_direction motion_direction;
     limpid_motion_depth motion_depth;
     limpid_clip_y clip_y;
-    /* Of frames recorded and not yet done on the device, with denoise_vulkan.h: 1 to 8; 0: 2. */
+    /* With denoise_vulkan.h: the number of recorded frames not yet finished on the device, 1 to 8; 0: 2. */
     uint32_t frames_in_flight;
-    /* Not 0: limpid_denoiser_timings() tells something. */
+    /* Not 0: enables limpid_denoiser_timings(). */
     int32_t timings;
-    /* Before the names of images and passes in debuggers; NULL: "limpid/". */
+    /* Prefix of image and pass names in debuggers; NULL: "limpid/". */
     const char* name;
 } limpid_denoiser_desc;
 
-/* Column-major, as GLSL has them: element [4 * column + row]. Without jitter. */
+/* Matrices are column-major as in GLSL, element [4 * column + row], and do not include jitter. */
 typedef struct limpid_camera {
     float view[16];       /* from world to view space */
     float projection[16]; /* from view to clip space; depth 0 to 1. Perspective or orthographic. */
     float previous_view[16], previous_projection[16]; /* of the previous frame */
-    float jitter[2]; /* where in their pixels the rays go, from the centres, pixels: -0.5 to 0.5 */
+    float jitter[2]; /* offset of the rays from the pixels' centres, pixels: -0.5 to 0.5 */
 } limpid_camera;
 
-/* Makes a denoiser, and its pipelines if `device` has none yet, on several threads. Its images are made when the first
- * frame needs them; limpid_denoiser_memory() tells how large they are. */
+/* Creates a denoiser, and compiles its pipelines on several threads if `device` does not have them yet. Its images are
+ * created for the first frame; limpid_denoiser_memory() returns their size. */
 LIMPID_API limpid_result limpid_denoiser_create(limpid_device* device, const limpid_denoiser_desc* desc,
                                                 limpid_denoiser** denoiser);
-/* NULL is ignored. What it has recorded must be done on the device. */
+/* NULL is ignored. Everything it has recorded must be finished on the device. */
 LIMPID_API void limpid_denoiser_destroy(limpid_denoiser* denoiser);
 
-/* Device memory that a denoiser of this kind allocates for its images, in bytes: needs no device. `for_gpu` 0: on
- * CPUs. RADIANCE and SPECULAR as outputs take 16 bytes a pixel each on top, where they are wanted. */
+/* Returns the device memory in bytes that such a denoiser allocates for its images; needs no device. `for_gpu` 0: on
+ * CPUs. Each of the outputs RADIANCE and SPECULAR, if requested, takes another 16 bytes per pixel. */
 LIMPID_API limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t for_gpu, uint64_t* bytes);
 
-/* The frames that follow are of another size. History starts anew. */
+/* Changes the size of the frames that follow. History restarts. */
 LIMPID_API limpid_result limpid_denoiser_resize(limpid_denoiser* denoiser, uint32_t width, uint32_t height);
-/* A cut: the next frame starts without history. */
+/* Marks a cut: the next frame starts without history. */
 LIMPID_API limpid_result limpid_denoiser_reset(limpid_denoiser* denoiser);
 
 /* ------------------------------------------------------------- parameters */
@@ -240,14 +242,15 @@ typedef struct limpid_parameter {
     limpid_parameter_type type;
     double default_value, minimum, maximum;
     const char* unit; /* "" if it has none */
-    const char* help; /* one line: what it is, and what more of it does */
+    const char* help; /* one line: what it does, and the effect of a larger value */
 } limpid_parameter;
 
-/* Those that a method heeds, from 0 on. LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings live for ever. */
+/* Returns the parameters of a method by index, from 0 on; LIMPID_ERROR_INVALID_ARGUMENT beyond the last. Strings are
+ * valid for ever. */
 LIMPID_API limpid_result limpid_method_parameter(limpid_method method, uint32_t index, limpid_parameter* parameter);
 
-/* Takes effect with the next frame. Bools are 0 and 1. LIMPID_ERROR_INVALID_ARGUMENT if there is no such parameter or
- * the value is outside its range. */
+/* Takes effect in the next frame. Bools are 0 and 1. Returns LIMPID_ERROR_INVALID_ARGUMENT if there is no such
+ * parameter or the value is outside its range. */
 LIMPID_API limpid_result limpid_denoiser_set(limpid_denoiser* denoiser, const char* name, double value);
 LIMPID_API limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, const char* name, double* value);
 
@@ -255,14 +258,14 @@ LIMPID_API limpid_result limpid_denoiser_get(const limpid_denoiser* denoiser, co
 
 /* Floats in host memory. */
 typedef struct limpid_host_image {
-    const float* data;   /* NULL: there is no such image */
-    uint32_t components; /* of a pixel that are there: 1 to 4 */
+    const float* data;   /* NULL: the image is missing */
+    uint32_t components; /* per pixel in memory: 1 to 4 */
     size_t pixel_stride; /* in bytes, from pixel to pixel; 0: components * 4 */
     size_t row_stride;   /* in bytes, from row to row; 0: width * pixel stride */
 } limpid_host_image;
 
 typedef struct limpid_host_output {
-    float* data;         /* NULL: not wanted */
+    float* data;         /* NULL: not requested */
     uint32_t components; /* 3 or 4 */
     size_t pixel_stride, row_stride;
 } limpid_host_output;
@@ -275,7 +278,7 @@ typedef struct limpid_host_frame {
     int32_t reset; /* not 0: a cut; history starts with this frame */
 } limpid_host_frame;
 
-/* Denoises one frame and waits for it. Frames come in their order. Not on devices of denoise_vulkan.h. */
+/* Denoises one frame and waits for it. Call it for frames in order. Not available on devices of denoise_vulkan.h. */
 LIMPID_API limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const limpid_host_frame* frame);
 
 typedef struct limpid_timing {
@@ -283,8 +286,8 @@ typedef struct limpid_timing {
     double milliseconds;
 } limpid_timing;
 
-/* Time of each pass on the device, of the latest frame that is known to be done. With `timings` NULL, `count` is set
- * to the number of passes; otherwise up to `count` are written, and `count` is set to how many. */
+/* Returns the device time of each pass of the latest frame known to be finished. With `timings` NULL, sets `count` to
+ * the number of passes; otherwise writes up to `count` of them and sets `count` to the number written. */
 LIMPID_API limpid_result limpid_denoiser_timings(limpid_denoiser* denoiser, limpid_timing* timings, uint32_t* count);
 
 #ifdef __cplusplus

@@ -1,6 +1,5 @@
-// Limpid's denoisers for C++17: the C interface of denoise.h with objects that clean up after themselves,
-// exceptions in place of result codes, and structs that begin with their defaults. All of it is inline: what
-// is linked is C.
+// Limpid's denoisers for C++17: wraps the C interface of denoise.h in objects with destructors, exceptions
+// instead of result codes, and structs with default values. Everything is inline: only C symbols are linked.
 //
 //     limpid::Device device;
 //     limpid::DenoiserDesc desc(1280, 720);
@@ -10,7 +9,7 @@
 //     ...
 //     denoiser.denoise(frame);
 //
-// Members, units, ranges and rules are those of denoise.h. For Vulkan programs: denoise_vulkan.hpp.
+// See denoise.h for members, units, ranges and rules. For Vulkan programs: denoise_vulkan.hpp.
 #ifndef LIMPID_DENOISE_HPP
 #define LIMPID_DENOISE_HPP
 
@@ -27,7 +26,7 @@
 namespace limpid {
 inline namespace v0 {
 
-/// What went wrong: result() says of which kind, what() says more.
+/// A failure: result() is its kind, what() describes it.
 class Error : public std::runtime_error {
   public:
     Error(limpid_result result, const char* message) : std::runtime_error(message), result_(result) {}
@@ -42,7 +41,7 @@ inline void check(limpid_result result) {
     if (result != LIMPID_OK) throw Error(result, limpid_last_error());
 }
 
-/// A struct of the C interface with its size and its defaults set.
+/// A struct of the C interface with its size set and default values.
 template <typename T>
 struct Sized : T {
     Sized() noexcept : T{} { this->size = sizeof(T); }
@@ -60,7 +59,7 @@ struct DenoiserDesc : Sized<limpid_denoiser_desc> {
     }
 };
 
-/// A Vulkan device of Limpid's own, or one of the caller's (adopt() in denoise_vulkan.hpp). Outlives its
+/// A Vulkan device that Limpid owns, or the caller's (adopt() in denoise_vulkan.hpp). Must outlive its
 /// denoisers.
 class Device {
   public:
@@ -70,14 +69,14 @@ class Device {
         check(limpid_device_create(&desc, &made));
         handle_.reset(made);
     }
-    /// Takes what a function of the C interface has made.
+    /// Takes ownership of a handle created by the C interface.
     explicit Device(limpid_device* owned) noexcept : handle_(owned) {}
 
     limpid_device* get() const noexcept { return handle_.get(); }
     std::string name() const { return limpid_device_name(get()); }
 
-    /// What the driver has compiled so far: store it, and load it in the next run before the first denoiser
-    /// is made.
+    /// Returns the driver's compiled pipelines. Store them, and load them in the next run before the first
+    /// denoiser is created.
     std::vector<std::byte> pipelineCache() const {
         size_t size = 0;
         check(limpid_device_pipeline_cache(get(), nullptr, &size));
@@ -111,10 +110,10 @@ class Denoiser {
     void denoise(const limpid_host_frame& frame) { check(limpid_denoise_host(get(), &frame)); }
 
     void resize(uint32_t width, uint32_t height) { check(limpid_denoiser_resize(get(), width, height)); }
-    /// A cut: the next frame starts without history.
+    /// Marks a cut: the next frame starts without history.
     void reset() { check(limpid_denoiser_reset(get())); }
 
-    /// A parameter of the method, by name: "svgf.alpha".
+    /// Sets or returns a parameter of the method by name, such as "svgf.alpha".
     void set(const std::string& name, double value) {
         check(limpid_denoiser_set(get(), name.c_str(), value));
     }
@@ -124,8 +123,8 @@ class Denoiser {
         return value;
     }
 
-    /// Of each pass, on the device; empty unless the description asked for timings. The names are valid until
-    /// the next call.
+    /// Returns the device time of each pass; empty unless the description enabled timings. The names are valid
+    /// until the next call.
     std::vector<limpid_timing> timings() {
         uint32_t count = 0;
         check(limpid_denoiser_timings(get(), nullptr, &count));
@@ -142,7 +141,7 @@ class Denoiser {
     std::unique_ptr<limpid_denoiser, Destroy> handle_;
 };
 
-/// The parameters that a method heeds.
+/// Returns the parameters of a method.
 inline std::vector<limpid_parameter> parameters(limpid_method method) {
     std::vector<limpid_parameter> all;
     limpid_parameter parameter{};
@@ -152,7 +151,7 @@ inline std::vector<limpid_parameter> parameters(limpid_method method) {
     return all;
 }
 
-/// Device memory that a denoiser allocates for its images, in bytes. Needs no device.
+/// Returns the device memory in bytes that a denoiser allocates for its images. Needs no device.
 inline uint64_t deviceMemory(const limpid_denoiser_desc& desc, bool forGpu = true) {
     uint64_t bytes = 0;
     check(limpid_denoiser_memory(&desc, forGpu ? 1 : 0, &bytes));

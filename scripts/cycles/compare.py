@@ -17,7 +17,7 @@ import scenes  # noqa: E402
 import sheet  # noqa: E402
 import stage  # noqa: E402
 
-SEEDS = (0x1F123BB5, 0x6C078965)  # differ in many bits, since Cycles mixes its seed weakly: seeds 1 and 2 share their noise
+SEEDS = (0x1F123BB5, 0x6C078965)  # many bits differ: Cycles mixes its seed weakly, and 1 and 2 share their noise
 
 
 def arguments():

@@ -8,14 +8,14 @@ as "diffuse.variance" (1 channel) and so on."""
 
 import torch
 
-#: Keeps dark albedo from amplifying what little light it reflects.
+#: Prevents dark albedo from amplifying the little light it reflects.
 EPSILON = 0.00316
 
 #: radiance, albedo, normal: 3 + 2 x 3 + 1 each; depth: 1 + 2 + 1.
 INPUT_CHANNELS = 34
 
-#: Which of those channels a network sees. "gradients": light, its gradients and its variance, and of albedo, normal and
-#: depth the gradients alone.
+#: The channels that a network sees. "gradients": light, its gradients and its variance, and only the gradients of
+#: albedo, normal and depth.
 INPUTS = {"all": range(INPUT_CHANNELS), "gradients": (*range(10), *range(13, 19), *range(23, 29), 31, 32)}
 
 SIDES = ("diffuse", "specular")

@@ -49,9 +49,9 @@ class KernelPredictor(nn.Module):
         return convolve(self.output, x)[:, : self.outputs]
 
 
-#: Least cosine between a pixel's normal and those of what its kernel takes in (KpcnWeights::facing).
+#: Minimum cosine between a pixel's normal and those of the pixels in its kernel (KpcnWeights::facing).
 FACING = 0.5
-#: No condition: kernels as in the paper.
+#: No limit: kernels as in the paper.
 ANY_FACING = -2.0
 
 

@@ -65,7 +65,7 @@ class FeaturesTest(unittest.TestCase):
         for name in ("albedo", "normal", "depth"):
             frame[name + ".variance"] = torch.ones_like(frame[name + ".variance"])
         for side in features.SIDES:
-            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # as if a single sample had found all the light
+            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # a single sample found all
             self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
             self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 

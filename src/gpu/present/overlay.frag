@@ -1,5 +1,5 @@
 #version 460
-// The texture lies in a buffer and is interpolated here: one small texture does not need a sampler.
+// The texture is stored in a buffer and interpolated here, since one small texture does not need a sampler.
 layout(push_constant) uniform Push {
     vec2 perPixel;
     uvec2 texture;

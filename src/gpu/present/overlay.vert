@@ -1,5 +1,5 @@
 #version 460
-// Triangles over a picture: positions in pixels.
+// Triangles on top of a picture; positions are in pixels.
 layout(push_constant) uniform Push {
     vec2 perPixel;  // 2 / extent
     uvec2 texture;  // extent

@@ -2,9 +2,9 @@
 //
 // Seed: 16 rounds of the Tiny Encryption Algorithm; F. Zafar, M. Olano, A. Curtis, "GPU random numbers via the Tiny
 // Encryption Algorithm", HPG 2010. Streams: `tea` continues with the low 24 bits of Numerical Recipes' linear
-// congruential generator (as in many Vulkan tutorials; its low bits are poor, it is kept for comparison); `pcg` with the
-// RXS-M-XS output of M. E. O'Neill, "PCG: a family of simple fast space-efficient statistically good algorithms for
-// random number generation", 2014. C++ copy for tests: tests/reference/rng_copy.h.
+// congruential generator (as in many Vulkan tutorials; its low bits are poor, it is kept for comparison); `pcg` with
+// the RXS-M-XS output of M. E. O'Neill, "PCG: a family of simple fast space-efficient statistically good algorithms
+// for random number generation", 2014. C++ copy for tests: tests/reference/rng_copy.h.
 #ifndef LIMPID_RNG_GLSL
 #define LIMPID_RNG_GLSL
 

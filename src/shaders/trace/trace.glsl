@@ -25,11 +25,12 @@ bool isHit(Hit hit) {
     return hit.t < INFINITE_DISTANCE;
 }
 
-// Each has:
+// Each implementation has:
 //
-//     /// The nearest hit with t in (0, ray.tMax). `rng` decides on partly transparent (BLEND) surfaces; it is not used up.
+//     /// Returns the nearest hit with t in (0, ray.tMax). `rng` decides on partly transparent (BLEND) surfaces; its
+//     /// state does not change.
 //     Hit traceClosest(Ray ray, uint rootNode, uint rng);
-//     /// Whether anything lies between the origin and ray.tMax.
+//     /// Returns true if there is a hit between the origin and ray.tMax.
 //     bool traceAny(Ray ray, uint rootNode, uint rng);
 #ifdef LIMPID_TRACE_HARDWARE
 #include "shaders/trace/trace_hardware.glsl"
