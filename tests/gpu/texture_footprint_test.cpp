@@ -137,7 +137,7 @@ double meanOf(const std::vector<double>& values) {
     return sum / static_cast<double>(values.size());
 }
 
-/// Returns the correlation of the picture with `pattern`.
+/// Returns the amplitude of `pattern` in the picture, by least squares.
 double contrastOf(const std::vector<double>& picture, const std::vector<double>& pattern) {
     const double a = meanOf(picture), b = meanOf(pattern);
     double product = 0.0, square = 0.0;

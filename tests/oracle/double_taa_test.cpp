@@ -97,8 +97,8 @@ TEST_F(TaaByHand, TheFirstFrameIsTheBeauty) {
     expectBeauty();  // after a resize
 }
 
-/// The edge's pixel is lit alternately at a quarter and three quarters; the history stays within the clip's
-/// range.
+/// The light covers a quarter and three quarters of the edge's pixel in turn; the history is always within
+/// the clip's range.
 TEST_F(TaaByHand, AnAlternatingEdgeConvergesToTheMean) {
     const dvec3 light = taaEncode({4, 2, 1});
     std::vector<TaaPixel> pixels;

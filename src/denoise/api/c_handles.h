@@ -17,7 +17,7 @@ struct limpid_device {
 struct limpid_denoiser {
     limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& desc);
 
-    /// Returns true if a history reset was requested, for this frame or earlier, and clears the request.
+    /// Resets the histories if `reset` is set. Returns true if the next frame starts without history.
     bool startsAnew(bool reset);
     /// Call it when a frame has really been recorded.
     void finish() { hasPrevious = true; }

@@ -12,7 +12,7 @@ namespace limpid::scene {
 /// no ceiling; with diffuse, glossy, metallic, mirror and glass surfaces, some textured. The fronts of the
 /// walls face inside. The camera stands in the room, outside of all objects. The same seed gives the same
 /// scene everywhere. Textures of the denoiser lab's scenes only appear in other colours, and the test picture
-/// never appears, so that these scenes can judge trained networks.
+/// never appears.
 Scene randomRoom(uint32_t seed);
 
 }  // namespace limpid::scene

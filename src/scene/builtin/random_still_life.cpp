@@ -109,7 +109,7 @@ class RandomStillLife : RandomScene {
         return material;
     }
 
-    /// Adds a large object, or a small one in the background.
+    /// Adds an object of a random kind, size and position.
     void addThing() {
         const float size = size_ * random_.next(0.4f, 1.0f);
         vec3 center = offset(reach_ - 0.5f * size);
