@@ -1,6 +1,8 @@
 // Writes src/scene/device/tables/dielectric_share.inc from random walks on microfacets:
-// build/release/tests/limpid_dielectric_share > src/scene/device/tables/dielectric_share.inc Takes about two
-// minutes on one core, and always gives the same numbers.
+//
+//     build/release/tests/limpid_dielectric_share > src/scene/device/tables/dielectric_share.inc
+//
+// Takes about two minutes on one core, and always gives the same numbers.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

@@ -2,7 +2,7 @@
 // metal-white): traces it with the random walk on microfacets (microfacet_walk.h) in double precision and
 // prints, per sphere, the mean of the picture's square and how much the renderers' pictures differ:
 //
-// limpid_walk_row out/cycles/glass-rough/sky.exr glass out/cycles/glass-rough/mean.{limpid,cycles}.exr
+//   limpid_walk_row out/cycles/glass-rough/sky.exr glass out/cycles/glass-rough/mean.{limpid,cycles}.exr
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 

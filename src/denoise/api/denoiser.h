@@ -1,11 +1,11 @@
 // Lists every denoiser by name. To run one inside any renderer:
 //
-// denoise::DenoiserSettings settings;            // or from --set and --preset
-// graph.beginFrame();
-// denoise::DenoiserInput input = ...;            // your images, or denoise::upload(graph, hostFrame)
-// const auto& method = *denoise::findDenoiser("atrous");
-// const gpu::ImageHandle beauty = method.record(graph, input, settings, {}).beauty;
-// graph.execute(device);
+//     denoise::DenoiserSettings settings;            // or from --set and --preset
+//     graph.beginFrame();
+//     denoise::DenoiserInput input = ...;            // your images, or denoise::upload(graph, hostFrame)
+//     const auto& method = *denoise::findDenoiser("atrous");
+//     const gpu::ImageHandle beauty = method.record(graph, input, settings, {}).beauty;
+//     graph.execute(device);
 //
 // One FrameGraph holds the histories of one sequence. Frames must come in order; at a cut, mark all motion
 // invalid or call graph.resetHistories().

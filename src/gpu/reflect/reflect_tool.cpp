@@ -1,7 +1,7 @@
 // limpid_reflect: converts a shader's SPIR-V to C++ (limpid_shaders(), cmake/LimpidTargets.cmake).
 //
-// limpid_reflect NAME NAMED.spv EMBEDDED.spv OUT.inc    NAMED: output of glslc -g; it is reflected
-// limpid_reflect --words EMBEDDED.spv OUT.inc           the words only
+//     limpid_reflect NAME NAMED.spv EMBEDDED.spv OUT.inc    NAMED: output of glslc -g; it is reflected
+//     limpid_reflect --words EMBEDDED.spv OUT.inc           the words only
 //
 // EMBEDDED is NAMED after optimising and stripping. Fails with exit code 1 and a message if a file cannot be
 // read or written, or the shader uses features that Limpid does not support.

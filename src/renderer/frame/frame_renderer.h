@@ -46,7 +46,7 @@ class FrameRenderer {
     /// All zero without temporal accumulation.
     denoise::DisocclusionCounts disocclusionCounts();
     std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
-    /// The same for the denoiser's passes only; empty if the pipeline has no denoiser.
+    /// Like passTimes(), but only for the denoiser's passes; empty if the pipeline has no denoiser.
     std::vector<gpu::PassTime> denoisingTimes();
     /// Device memory of the images that the denoiser's passes wrote in the last frame, including histories.
     uint64_t denoisingBytes() const;

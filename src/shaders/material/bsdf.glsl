@@ -1,6 +1,6 @@
 // The material's BSDF: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
 //
-// f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
+//   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
 // metal: GGX reflection plus multiple scattering between the facets (multipleReflection). plastic: GGX
 // reflection over a diffuse base that gets exactly the energy that the coat transmits, in and out. glass:

@@ -1,7 +1,7 @@
 // KHR_materials_clearcoat: a layer of GGX facets of a dielectric of index 1.5, with a normal of its own, over
 // the rest of the material.
 //
-// f = weight * coat + (1 - weight * E(wo)) * material,   E: the coat's reflection of uniform light
+//     f = weight * coat + (1 - weight * E(wo)) * material,   E: the coat's reflection of uniform light
 //
 // The extension leaves the layering operator open and suggests the Fresnel term at the viewer's cosine for E.
 // That is E for a smooth coat; for a rough one, E also includes the facets' angles and masking, so that a
