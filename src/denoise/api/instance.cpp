@@ -58,8 +58,7 @@ void checkMethod(const limpid_method& method) {
 const std::vector<InstanceParameter>& parametersOf(limpid_method method) {
     static const std::vector<std::vector<InstanceParameter>> all = [] {
         std::vector<std::vector<InstanceParameter>> lists;
-        for (size_t i = 0; i < methods().size(); ++i)
-            lists.push_back(listOf(static_cast<limpid_method>(i)));
+        for (size_t i = 0; i < methods().size(); ++i) lists.push_back(listOf(static_cast<limpid_method>(i)));
         return lists;
     }();
     checkMethod(method);

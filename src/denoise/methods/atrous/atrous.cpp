@@ -28,7 +28,7 @@ struct Demodulated {
 };
 
 Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
-                  const AtrousSettings& settings) {
+                       const AtrousSettings& settings) {
     const Extent extent = graph.extent(input.albedo);
     const Demodulated signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
