@@ -95,9 +95,10 @@ typedef struct limpid_vulkan_frame {
 LIMPID_API limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                        const limpid_vulkan_frame* frame);
 
-/* Records all passes for a few pixels of the frame's inputs, for drivers that compile at the first dispatch (Mesa's
- * lavapipe), so that the first frame is not slower than later ones. Optional. Outputs are not written, and no history
- * is kept. */
+/* Records all passes for a few pixels of the frame's inputs, and clears the denoiser's images if no frame has used
+ * them yet. For drivers that compile at the first dispatch and give memory when it is first written (Mesa's lavapipe),
+ * so that the first frame is not slower than later ones. Optional. Outputs are not written, and history stays as it
+ * is. */
 LIMPID_API limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands,
                                         const limpid_vulkan_frame* frame);
 

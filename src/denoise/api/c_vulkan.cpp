@@ -230,6 +230,11 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
         recordOutputs(*graph, few, frame, outputs, false);
         graph->record(*d.device, commands);
         d.warmUps.push_back(std::move(graph));
+        // Memory is given when it is first written, which takes a CPU longer than a frame.
+        const IngestParams params = ingestParams(d.desc, frame.camera, true);
+        recordDryFrame(d.graph, d.desc, d.settings, gpu::filterBacking(*d.device),
+                       params.camera.orthographic != 0, wantsSignals(frame));
+        d.graph.clearImages(*d.device, commands);
     });
 }
 

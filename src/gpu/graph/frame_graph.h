@@ -237,6 +237,9 @@ class FrameGraph {
     /// The caller must ensure that the frame recorded `framesInFlight` calls ago is finished. Throws Error if
     /// a pass runs on the CPU.
     void record(Device& device, VkCommandBuffer_T* commands);
+    /// Creates the images of the recorded frame that no frame has used yet, and records their clearing, so
+    /// that the first frame does not wait for memory. Executes no pass; imported images are not touched.
+    void clearImages(Device& device, VkCommandBuffer_T* commands);
     /// Compiles the missing pipelines of all recorded passes, on several threads. Executes nothing.
     void prepare(Device& device);
     /// Returns the device memory of the images that this frame needs. Histories count as pairs, imported

@@ -179,22 +179,48 @@ void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer c
 /// Shaders may read an invalid history's previous image before they check the flag, so clear it to zero.
 void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer commands) {
     bool any = false;
-    const VkClearColorValue zero{};
-    const VkImageSubresourceRange range = wholeImage();
     for (size_t i = 0; i < frame.images.size(); ++i) {
         if (!frame.images[i].clear) continue;
-        const Image& image = frameImages_[i].pooled->image;
-        if (image.buffer)
-            context_->vk().CmdFillBuffer(commands, image.buffer->buffer.get(), 0, VK_WHOLE_SIZE, 0);
-        else
-            context_->vk().CmdClearColorImage(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1,
-                                              &range);
+        clearImage(frameImages_[i].pooled->image, commands);
         any = true;
     }
     if (!any) return;
     memoryBarrier(*context_, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+}
+
+void FrameExecutor::clearImage(const Image& image, VkCommandBuffer commands) const {
+    const VkClearColorValue zero{};
+    const VkImageSubresourceRange range = wholeImage();
+    if (image.buffer)
+        context_->vk().CmdFillBuffer(commands, image.buffer->buffer.get(), 0, VK_WHOLE_SIZE, 0);
+    else
+        context_->vk().CmdClearColorImage(commands, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1,
+                                          &range);
+}
+
+void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) {
+    std::vector<ImagePool::Entry*> fresh;
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (const RecordedImage& recorded : frame.images) {
+        if (recorded.role == RecordedImage::Role::Foreign) continue;
+        ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
+        if (entry.initialised) continue;
+        entry.initialised = true;
+        fresh.push_back(&entry);
+        if (entry.image.buffer) continue;
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry.image.image.get()));
+        barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        barrier.dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+        barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    }
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = static_cast<uint32_t>(barriers.size());
+    dependency.pImageMemoryBarriers = barriers.data();
+    if (!barriers.empty()) context_->vk().CmdPipelineBarrier2(commands, &dependency);
+    for (const ImagePool::Entry* entry : fresh) clearImage(entry->image, commands);
 }
 
 void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {

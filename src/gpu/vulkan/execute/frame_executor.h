@@ -26,6 +26,8 @@ class FrameExecutor {
     const Context& context() const { return *context_; }
     void execute(const RecordedFrame& frame);
     void record(const RecordedFrame& frame, VkCommandBuffer commands);
+    /// Creates the frame's images that no frame has used yet, and records their clearing. Executes no pass.
+    void clear(const RecordedFrame& frame, VkCommandBuffer commands);
     /// Returns the device image behind an image of an executed frame.
     const Image& image(const RecordedImage& recorded) const;
     std::vector<PassTime> passTimes();
@@ -50,6 +52,7 @@ class FrameExecutor {
     void finish();
     void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
+    void clearImage(const Image& image, VkCommandBuffer commands) const;
     void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot);

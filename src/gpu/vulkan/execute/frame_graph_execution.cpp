@@ -86,6 +86,10 @@ void FrameGraph::record(Device& device, VkCommandBuffer commands) {
     impl_->frame.executed = true;
 }
 
+void FrameGraph::clearImages(Device& device, VkCommandBuffer commands) {
+    impl_->readyToRun(device).clear(impl_->frame, commands);
+}
+
 void FrameGraph::prepare(Device& device) {
     device.impl().pipelines->prepare(impl_->frame.dispatches);
 }
