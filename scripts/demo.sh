@@ -9,7 +9,8 @@ scripts/build.sh release -DLIMPID_TESTS=OFF
 
 mkdir -p out
 build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 320 --height 180 \
-    --frames 24 --first 20 --reference-spp 256 --out out --report out/quality.html | tee out/quality.txt
+    --frames 24 --first 20 --reference-spp 256 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
+    --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench quality --scene builtin:cornell-spheres --width 240 --height 136 --first 0 --frames 1 --spp 32 \
     --reference-spp 512 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
