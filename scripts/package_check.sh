@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # package_check.sh [CHROOT]: whether the packages in build/packages (scripts/package.sh) do in a bare Debian 12 what
 # the documentation says. As root. CHROOT: a folder with a bare system; without it, or if it is empty, debootstrap
-# makes one. Without it the folder is temporary and removed at the end. MIRROR: of Debian's archive.
+# makes one. Without it the folder is temporary and removed at the end. MIRROR: another mirror than debootstrap's own.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ "$(id -u)" -eq 0 ] || { echo "package_check.sh: run as root" >&2; exit 1; }
@@ -17,7 +17,7 @@ if [ -z "$root" ]; then
 fi
 if [ ! -e "$root/etc/debian_version" ]; then
     scripts/install.sh debootstrap
-    debootstrap --variant=minbase bookworm "$root" "${MIRROR:-http://deb.debian.org/debian}"
+    debootstrap --variant=minbase bookworm "$root" ${MIRROR:+"$MIRROR"}
 fi
 mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
