@@ -11,7 +11,7 @@ sed -n 's/.*\(NOT TESTED.*\|NOT VALIDATED.*\|SKIPPED: .*\)/\1/p' build/release/T
 
 echo "== the hardware tracer, on a software driver that has ray-tracing pipelines"
 if icd=$(scripts/lavapipe25.sh); then
-    LIMPID_TEST_CASES='*/hardware*:TracersTest*' VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -LE python
+    LIMPID_TEST_CASES='*/hardware*:TracersTest*' VK_ICD_FILENAMES=$icd ctest --preset release --parallel "$(nproc)" -LE 'python|embed'
 else
     echo "NOTE: NOT TESTED here: the hardware tracer."
 fi
