@@ -86,9 +86,9 @@ std::vector<DeviceInfo> enumerateDevices();
 class Device {
   public:
     explicit Device(const DeviceOptions& options = {});
-    /// Uses the caller's device, which must outlive this one. Frames are recorded into the caller's command
-    /// buffers (FrameGraph::record()); execute() and copies to and from the host throw Error. Throws Error
-    /// naming missing features of the device.
+    /// Uses the device of the caller, which must outlive this one. FrameGraph::record() writes frames into
+    /// command buffers of the caller; execute(), uploads and downloads throw Error, since they would submit.
+    /// Throws Error naming missing features of the device.
     explicit Device(const AdoptedDevice& adopted);
     ~Device();
     Device(const Device&) = delete;

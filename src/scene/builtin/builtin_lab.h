@@ -17,7 +17,7 @@ Scene labLightScene();
 /// The same room with two lights. From labChangeTime on, the warm one, an instance "key", is hidden behind
 /// the ceiling.
 Scene labSwitchScene();
-/// A grille moves to and fro at 1.5 m/s in front of a textured wall and floor, so that parts of them are
+/// A grille moves back and forth at 1.5 m/s in front of a textured wall and floor, so that parts of them are
 /// disoccluded all the time.
 Scene labDisocclusionScene();
 
