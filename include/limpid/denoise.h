@@ -107,9 +107,10 @@ LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device
 typedef struct limpid_denoiser limpid_denoiser;
 
 typedef enum limpid_method {
-    LIMPID_METHOD_SVGF = 0,    /* spatiotemporal variance-guided filtering: the best of the three */
-    LIMPID_METHOD_ATROUS = 1,  /* temporal accumulation, then the edge-avoiding a-trous filter */
-    LIMPID_METHOD_TEMPORAL = 2 /* temporal accumulation alone: each pixel's mean follows its surface */
+    LIMPID_METHOD_SVGF = 0,     /* spatiotemporal variance-guided filtering: the best of them */
+    LIMPID_METHOD_ATROUS = 1,   /* temporal accumulation, then the edge-avoiding a-trous filter */
+    LIMPID_METHOD_TEMPORAL = 2, /* temporal accumulation alone: each pixel's mean follows its surface */
+    LIMPID_METHOD_BILATERAL = 3 /* a joint bilateral filter of one frame, without history: the simplest method */
 } limpid_method;
 
 /* The images of a frame, by content. docs/embedding.md lists which ones a method needs, and the effect of leaving one

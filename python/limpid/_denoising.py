@@ -105,7 +105,8 @@ class Denoiser:
 
     width, height: of all images, pixels, 1 to 32768.
     method: "svgf" (spatiotemporal variance-guided filtering: the best), "atrous" (temporal accumulation, then the
-        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone).
+        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone),
+        "bilateral" (a joint bilateral filter of one frame, without history: the simplest).
     device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
     signals: 1: radiance is all light that is filtered; 2: radiance is diffuse, specular is specular light.
     demodulated: radiance comes without albedo in it, and leaves without.

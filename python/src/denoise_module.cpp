@@ -230,7 +230,8 @@ void addTables(py::module_& m) {
     addNames(m, "METHODS",
              {{"svgf", LIMPID_METHOD_SVGF},
               {"atrous", LIMPID_METHOD_ATROUS},
-              {"temporal", LIMPID_METHOD_TEMPORAL}});
+              {"temporal", LIMPID_METHOD_TEMPORAL},
+              {"bilateral", LIMPID_METHOD_BILATERAL}});
     addNames(m, "NORMAL_ENCODINGS",
              {{"signed", LIMPID_NORMAL_SIGNED},
               {"unorm", LIMPID_NORMAL_UNORM},

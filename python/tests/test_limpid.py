@@ -199,7 +199,7 @@ class ShapeTest(unittest.TestCase):
 
 class ParameterTest(unittest.TestCase):
     def test_every_parameter_has_its_default_and_can_be_set(self):
-        for method in ("svgf", "atrous", "temporal"):
+        for method in ("svgf", "atrous", "temporal", "bilateral"):
             denoiser = limpid.Denoiser(8, 8, method, device=device())
             self.assertEqual(denoiser.parameters(), limpid.parameters(method))
             self.assertGreater(len(denoiser.parameters()), 3)
@@ -231,7 +231,7 @@ class ParameterTest(unittest.TestCase):
 
 class DenoiseTest(unittest.TestCase):
     def test_sequence_comes_closer_to_the_truth(self):
-        for method in ("svgf", "atrous", "temporal"):
+        for method in ("svgf", "atrous", "temporal", "bilateral"):
             with self.subTest(method):
                 self.assertGreater(Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, method, device=device())), 6.0)
 

@@ -161,11 +161,12 @@ const Variant oneSignal{"--denoiser svgf --set svgf.separate=off", LIMPID_METHOD
                     2,
                     {{"svgf.alpha", 0.3}, {"taa.frames", 8}}},
     atrous{"--denoiser atrous", LIMPID_METHOD_ATROUS, 1, {}},
-    temporal{"--denoiser temporal", LIMPID_METHOD_TEMPORAL, 1, {}};
+    temporal{"--denoiser temporal", LIMPID_METHOD_TEMPORAL, 1, {}},
+    bilateral{"--denoiser bilateral", LIMPID_METHOD_BILATERAL, 1, {}};
 
 TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
     roundCameras();
-    for (const Variant& variant : {oneSignal, twoSignals, otherParameters, atrous, temporal}) {
+    for (const Variant& variant : {oneSignal, twoSignals, otherParameters, atrous, temporal, bilateral}) {
         const Difference difference = differenceOf(variant);
         EXPECT_EQ(difference.values, 0u) << variant.options << ": at most " << difference.largest;
     }

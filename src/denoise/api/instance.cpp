@@ -16,7 +16,9 @@ namespace {
 constexpr std::array methodNames{LIMPID_METHODS(LIMPID_NAME)};
 #undef LIMPID_NAME
 static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_METHOD_ATROUS] == "atrous" &&
-              methodNames[LIMPID_METHOD_TEMPORAL] == "temporal");
+              methodNames[LIMPID_METHOD_TEMPORAL] == "temporal" &&
+              methodNames[LIMPID_METHOD_BILATERAL] == "bilateral" &&
+              methodNames.size() == LIMPID_METHOD_BILATERAL + 1);
 
 /// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>
