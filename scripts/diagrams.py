@@ -75,7 +75,7 @@ def frame():
     s.line((400, 408), (384, 408), dashed=True)
     s.arrow((400, 330), (384, 330), (384, 446), (808, 446), (808, 92), (773, 92), dashed=True)
     s.text(696, 438, "read by the next frame", 11)
-    s.box(824, 226, 136, 44, "pass", "modulate", "× albedo, + emission")
+    s.box(824, 226, 136, 44, "pass", "compose", "× albedo, + emission")
     s.box(824, 302, 136, 44, "result", "clean frame")
     s.arrow((772, 332), (790, 332), (790, 248), (823, 248))
     s.arrow((892, 270), (892, 301))

@@ -48,13 +48,13 @@ struct Stages {
 /// A pass belongs to the stage whose name it begins with. A stage without a pass ("tiles" on GPUs) takes no
 /// time.
 constexpr std::array<std::pair<const char*, const char*>, 8> stageNames{{{"path tracing", "pathtrace"},
-                                                                         {"surfaces", "svgf/surfaces"},
+                                                                         {"surfaces", "surfaces"},
                                                                          {"reprojection", "svgf/reproject"},
                                                                          {"tiles", "svgf/tiles"},
                                                                          {"anti-lag", "svgf/antilag"},
                                                                          {"variance", "svgf/variance"},
                                                                          {"a-trous levels", "svgf/level"},
-                                                                         {"modulation", "svgf/modulate"}}};
+                                                                         {"composition", "svgf/compose"}}};
 
 Stages stagesOf(const std::map<std::string, PassCost>& costs) {
     Stages stages;

@@ -218,7 +218,7 @@ TEST_F(CliDenoiseTest, TimesOfEveryPassAndFailureCasesAreReported) {
                               "--denoiser atrous --frames 3 --json --dump temporal/accumulate");
     ASSERT_EQ(result.code, 0) << result.output;
     const auto json = nlohmann::json::parse(result.output.substr(result.output.find('{')));
-    for (const char* pass : {"pathtrace", "temporal/accumulate", "atrous/level 5", "atrous/modulate"})
+    for (const char* pass : {"pathtrace", "temporal/accumulate", "atrous/level 5", "atrous/compose"})
         EXPECT_GT(json["median_ms"][pass].get<double>(), 0.0) << pass;
     EXPECT_GT(json["disocclusion"]["nothing_hit"].get<int>(), 0);
     EXPECT_EQ(json["disocclusion"]["rejected"], 0);

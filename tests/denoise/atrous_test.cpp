@@ -12,7 +12,7 @@ struct Case {
     bool plane = true;
     float normalFactor = 0.003f, depthFactor = 1e-4f, sampleTarget = 32.0f;
     uint32_t columns = 131, rows = 77;
-    bool demodulate = true;
+    float minAlbedo = 0.1f;
     float colorFactor = 0.0f;
 };
 
@@ -69,7 +69,8 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
                        .depthFactor = c.depthFactor,
                        .sampleTarget = c.sampleTarget,
                        .plane = c.plane,
-                       .demodulate = c.demodulate,
+                       .demodulate = c.minAlbedo > 0.0f,
+                       .minAlbedo = std::max(c.minAlbedo, 0.001f),
                        .colorFactor = c.colorFactor};
     denoise(*denoise::findDenoiser("atrous"), frame, settings);
     const DoubleAtrousParams params{.levels = 5,
@@ -77,7 +78,7 @@ TEST_P(AtrousPassTest, EveryPassAgreesWithTheFormulasInDouble) {
                                     .depthFactor = double{c.depthFactor},
                                     .sampleTarget = double{c.sampleTarget},
                                     .plane = c.plane,
-                                    .demodulate = c.demodulate,
+                                    .minAlbedo = double{c.minAlbedo},
                                     .colorFactor = double{c.colorFactor}};
     AtrousGeometry geometry;
     std::vector<dvec4> light = demodulated(frame, params, geometry);
@@ -99,9 +100,10 @@ INSTANTIATE_TEST_SUITE_P(
                         Case{"Orthographic", {.orthographic = true}}, Case{"Scaled", {.scale = 1024}},
                         Case{"Course", {}, false, 0.003f, 0.007f, 0.0f},
                         Case{"OrthographicCourse", {.orthographic = true}, false, 0.003f, 0.007f},
-                        Case{.name = "Modulated", .options = {}, .demodulate = false},
+                        Case{.name = "Modulated", .options = {}, .minAlbedo = 0.0f},
+                        Case{.name = "DarkAlbedo", .options = {}, .minAlbedo = 0.02f},
                         Case{.name = "Color", .options = {.cameraMoves = true}, .colorFactor = 0.5f},
-                        Case{"ColorModulated", {}, true, 10.0f, 1.0f, 0.0f, 131, 77, false, 20.0f},
+                        Case{"ColorModulated", {}, true, 10.0f, 1.0f, 0.0f, 131, 77, 0.0f, 20.0f},
                         Case{"Tiny", {}, true, 0.003f, 1e-4f, 32.0f, 3, 2},
                         Case{"Thin", {}, true, 0.003f, 1e-4f, 32.0f, 1, 40}),
         testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
@@ -124,7 +126,7 @@ TEST_F(AtrousTest, LevelsAreAsManyAsAskedForAndNoneLeavesThePicture) {
     }
     settings.atrous.levels = 7;
     denoise(*denoise::findDenoiser("atrous"), frame, settings);
-    EXPECT_EQ(graph_.passes().size(), 9u) << "demodulate, seven levels, modulate";
+    EXPECT_EQ(graph_.passes().size(), 9u) << "demodulate, seven levels, compose";
 }
 
 }  // namespace

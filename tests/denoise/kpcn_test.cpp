@@ -456,9 +456,9 @@ TEST_F(KpcnTest, MemoryIsWhatTheTileSays) {
     method().record(graph, input, settings, networks_);
     // A tile of 64x64 (60x50 rounded up), 10 pixels of the kernel around it and 16 at its end: 7 slabs of 32
     // bytes, twice, light of 16 and faces of 4. For the picture: distances, two sides, three levels of each
-    // (the fourth would be too wide), beauty; and the largest of 38x25, 5x4 and 1.
+    // (the fourth would be too wide), scattered light, beauty; and the largest of 38x25, 5x4 and 1.
     const uint64_t buffers = uint64_t{64 + 20 + 16} * (64 + 20 + 16) * (2 * 7 * 32 + 16 + 4);
-    const uint64_t images = uint64_t{300} * 200 * (4 + 9 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
+    const uint64_t images = uint64_t{300} * 200 * (4 + 10 * 16) + (38 * 25 + 5 * 4 + 1) * 4;
     EXPECT_EQ(graph.bytesOfImagesWrittenFrom(first), buffers + images);
 }
 

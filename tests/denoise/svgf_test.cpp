@@ -16,7 +16,7 @@ namespace {
 using denoise::SvgfSettings;
 
 DoubleSvgfParams inDouble(const SvgfSettings& s) {
-    return {.demodulate = s.demodulate,
+    return {.minAlbedo = s.demodulate ? double{s.minAlbedo} : 0.0,
             .alpha = double{s.alpha},
             .alphaMoments = double{s.alphaMoments},
             .alphaFast = double{s.alphaFast},
@@ -163,9 +163,9 @@ HostFrame SvgfPassTest::frameOf(int number) {
 }
 
 SvgfSurfaces SvgfPassTest::surfaces(const HostFrame& frame) {
-    const std::string pass = "svgf/surfaces";
-    const SvgfSurfaces is = decodeSurfaces(graph_.downloadUint(device(), written(pass, "surfaces")),
-                                           graph_.downloadUint(device(), written(pass, "ids")));
+    const std::string pass = "surfaces";
+    const SvgfSurfaces is = decodeSurfaces(graph_.downloadUint(device(), written(pass, "normal_distance")),
+                                           graph_.downloadUint(device(), written(pass, "instances")));
     const SvgfSurfaces expected = svgfSurfaces(frame);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double z = expected.distance[p];
@@ -311,7 +311,8 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         filtered.push_back({signal.signal, colors.back()});
     }
     const std::vector<dvec4> beauty = download(output_.beauty);
-    const std::vector<dvec4> expected = svgfModulate(frame, filtered, settings_.demodulate);
+    const std::vector<dvec4> expected =
+        svgfModulate(frame, filtered, settings_.demodulate ? double{settings_.minAlbedo} : 0.0);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         ASSERT_TRUE(isNear(beauty[p], expected[p], dvec4(0.0), dvec4(0.0), floatRounding, 4))
             << "modulate, pixel " << p << ": " << textOf(beauty[p]) << " and " << textOf(expected[p]);
@@ -360,6 +361,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
             Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
             Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
+            Case{"DarkAlbedo", moving, {.minAlbedo = 0.02f}},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
             Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},
             Case{"Slow", moving, {.alpha = 0.05f, .alphaMoments = 0.1f, .alphaFast = 0.3f, .levels = 1}},
@@ -447,7 +449,8 @@ TEST_F(SvgfVarianceTest, TheDeviationIsThatOfTheNoise) {
             for (size_t s = 0; s < signals.size(); ++s) {
                 Ensemble& e = ensembles[s];
                 for (size_t p = 0; p < frame.pixelCount(); ++p) {
-                    const double l = luminance(svgfSample(frame, signals[s].signal, p, true).x);
+                    const double l =
+                        luminance(svgfSample(frame, signals[s].signal, p, double{settings.svgf.minAlbedo}).x);
                     e.sum[p] += l;
                     e.squares[p] += l * l;
                 }
@@ -485,7 +488,7 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         EXPECT_EQ(bytes, separate ? 232.125 : 136.0625);
         // With one signal, the same image is bound to both.
         const auto modulate =
-            std::ranges::find(graph_.passes(), std::string("svgf/modulate"), &gpu::RecordedPass::name);
+            std::ranges::find(graph_.passes(), std::string("svgf/compose"), &gpu::RecordedPass::name);
         ASSERT_NE(modulate, graph_.passes().end());
         EXPECT_EQ(modulate->imageBytes, uint64_t{columns} * rows * (separate ? 2 * 8 + 4 * 16 : 8 + 4 * 16));
     }

@@ -106,7 +106,7 @@ Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>
     const bool alongForward = params.plane && frame.camera.orthographic == 0;
     Demodulated out;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const dvec3 light = dvec3(mean[p]) / (params.demodulate ? modulation(pixels.albedo(p)) : dvec3(1.0));
+        const dvec3 light = dvec3(mean[p]) / modulation(pixels.albedo(p), params.minAlbedo);
         out.light.emplace_back(storable(light.x), storable(light.y), storable(light.z), mean[p].w);
         out.geometry.normal.push_back(pixels.normal(p));
         const double z = pixels.distance(p);
@@ -130,7 +130,7 @@ std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<d
     const DoubleFrame pixels(frame);
     std::vector<dvec4> result;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
-        const dvec3 albedo = params.demodulate ? modulation(pixels.albedo(p)) : dvec3(1.0);
+        const dvec3 albedo = modulation(pixels.albedo(p), params.minAlbedo);
         const dvec3 scattered = pixels.hit(p) ? dvec3(light[p]) * albedo : pixels.scattered(p);
         result.emplace_back(scattered + pixels.emission(p), 1.0);
     }

@@ -15,7 +15,7 @@ struct DoubleAtrousParams {
     double depthFactor = 1e-4;
     double sampleTarget = 32.0;  ///< 0: no limit
     bool plane = true;
-    bool demodulate = true;
+    double minAlbedo = 0.1;    ///< 0: light is filtered with its albedo
     double colorFactor = 0.0;  ///< 0: differences of light are ignored
 };
 

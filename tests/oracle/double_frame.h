@@ -42,9 +42,10 @@ class DoubleFrame {
     const denoise::HostFrame& frame_;
 };
 
-/// Returns the divisor of light before it is resampled or filtered: max(a, 0.1).
-inline dvec3 modulation(const dvec3& albedo) {
-    return glm::max(albedo, dvec3(0.1));
+/// Returns the divisor of light before it is resampled or filtered: max(a, min_albedo); 1 with a `minAlbedo`
+/// of 0.
+inline dvec3 modulation(const dvec3& albedo, double minAlbedo) {
+    return minAlbedo > 0.0 ? glm::max(albedo, dvec3(minAlbedo)) : dvec3(1.0);
 }
 
 /// Checks with the range of the shaders: a sum that overflows in float32 is infinite there.

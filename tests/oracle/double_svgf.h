@@ -11,7 +11,7 @@
 namespace limpid::test {
 
 struct DoubleSvgfParams {
-    bool demodulate = true;
+    double minAlbedo = 0.1;  ///< 0: light is filtered with its albedo
     double alpha = 0.2, alphaMoments = 0.2, alphaFast = 0.5;
     double normalTest = 0.95, depthTest = 0.02;
     bool relative = true, search = true;
@@ -70,7 +70,7 @@ struct SvgfSample {
     dvec3 x{0.0};
     bool rejected = false;
 };
-SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, bool demodulate);
+SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, double minAlbedo);
 
 inline double luminance(const dvec3& color) {
     return glm::dot(color, dvec3(0.2126, 0.7152, 0.0722));
@@ -128,6 +128,6 @@ struct SvgfFiltered {
     std::vector<dvec4> color;
 };
 std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vector<SvgfFiltered>& signals,
-                                bool demodulate);
+                                double minAlbedo);
 
 }  // namespace limpid::test

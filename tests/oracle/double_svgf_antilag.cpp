@@ -151,7 +151,7 @@ void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::
                  const DoubleSvgfParams& params, SvgfAccumulated& accumulated) {
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double lag = lagAt(frame, tiles, p);
-        const SvgfSample sample = svgfSample(frame, signal, p, params.demodulate);
+        const SvgfSample sample = svgfSample(frame, signal, p, params.minAlbedo);
         accumulated.pixels[p].doubtful |= std::abs(lag - minLag) < 1e-6;
         if (lag < minLag || sample.rejected || accumulated.moments[p].w <= 1.0) continue;
         shorten(p, lag, sample.x, params, accumulated);

@@ -146,13 +146,13 @@ TEST_F(SvgfByHand, StableLightIsAMeanWithWhatWas) {
 TEST_F(SvgfByHand, Signals) {
     set(frame.specular, 4 * middle, {1, 1, 1});
     frame.albedo[4 * middle] = 0.05f;
-    const auto x = [&](SvgfSignal signal, bool demodulate = true) {
-        return svgfSample(frame, signal, middle, demodulate).x;
+    const auto x = [&](SvgfSignal signal, double minAlbedo = 0.1) {
+        return svgfSample(frame, signal, middle, minAlbedo).x;
     };
     EXPECT_LT(glm::distance(x(SvgfSignal::Diffuse), dvec3(20, 4, 4)), 1e-6);
     EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(10)), 1e-6) << "no albedo is known";
     EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(30, 6, 6)), 1e-6);
-    EXPECT_EQ(x(SvgfSignal::Joint, false), dvec3(3));
+    EXPECT_EQ(x(SvgfSignal::Joint, 0.0), dvec3(3));
     frame.albedoSpecular.assign(100, 0.25f);
     EXPECT_LT(glm::distance(x(SvgfSignal::Specular), dvec3(4)), 1e-6);
     EXPECT_LT(glm::distance(x(SvgfSignal::Joint), dvec3(10, 4, 4)), 1e-6);
@@ -161,16 +161,16 @@ TEST_F(SvgfByHand, Signals) {
     frame.albedo[4 * middle + 1] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(x(SvgfSignal::Diffuse).z, 1.0) << "an albedo with a NaN is none";
     frame.albedo[4 * middle + 1] = 1e9f;
-    EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Diffuse, std::vector<dvec4>(25, dvec4(1))}}, true)[middle].y,
+    EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Diffuse, std::vector<dvec4>(25, dvec4(1))}}, 0.1)[middle].y,
               65504.0);
     frame.albedo[4 * middle + 1] = 1.0f;
     frame.specular[4 * middle] = std::numeric_limits<float>::infinity();
-    EXPECT_FALSE(svgfSample(frame, SvgfSignal::Diffuse, middle, true).rejected);
-    EXPECT_TRUE(svgfSample(frame, SvgfSignal::Joint, middle, true).rejected);
+    EXPECT_FALSE(svgfSample(frame, SvgfSignal::Diffuse, middle, 0.1).rejected);
+    EXPECT_TRUE(svgfSample(frame, SvgfSignal::Joint, middle, 0.1).rejected);
     const std::vector<dvec4> light(25, dvec4(1, 2, 3, 9));
     frame.emission.assign(100, 0.5f);
     const std::vector<dvec4> sum =
-        svgfModulate(frame, {{SvgfSignal::Diffuse, light}, {SvgfSignal::Specular, light}}, true);
+        svgfModulate(frame, {{SvgfSignal::Diffuse, light}, {SvgfSignal::Specular, light}}, 0.1);
     EXPECT_LT(glm::distance(sum[middle], dvec4(0.5 + 0.1 + 0.25, 0.5 + 2 + 0.5, 0.5 + 1.5 + 0.75, 1)), 1e-6);
     EXPECT_EQ(svgfModulate(frame, {{SvgfSignal::Joint, light}}, false)[middle], dvec4(1.5, 2.5, 3.5, 1));
 }

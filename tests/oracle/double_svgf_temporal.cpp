@@ -22,13 +22,12 @@ dvec3 signalOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p) {
 }
 
 /// Returns M.
-dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, bool demodulate) {
-    if (!demodulate) return dvec3(1.0);
+dvec3 modulationOf(const DoubleFrame& pixels, SvgfSignal signal, size_t p, double minAlbedo) {
     dvec3 a(0.0);
     if (signal != SvgfSignal::Specular) a += pixels.albedo(p);
     if (signal != SvgfSignal::Diffuse) a += pixels.albedoSpecular(p);
     if (!isFiniteInFloat(a)) return dvec3(1.0);
-    return glm::min(modulation(a), dvec3(largestHalf));
+    return glm::min(modulation(a, minAlbedo), dvec3(largestHalf));
 }
 
 std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t count) {
@@ -160,7 +159,7 @@ dvec4 Accumulator::stablePast(const Old& old, double frames) const {
 }
 
 void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
-    const SvgfSample sample = svgfSample(frame_, signal_, p, params_.demodulate);
+    const SvgfSample sample = svgfSample(frame_, signal_, p, params_.minAlbedo);
     SvgfPixel& pixel = result.pixels[p];
     dvec4 &color = result.color[p], &moments = result.moments[p];
     const Old old = find(p, pixel);
@@ -206,11 +205,11 @@ SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vecto
     return {std::move(geometry.normal), std::move(geometry.distance), {ids.begin(), ids.end()}};
 }
 
-SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, bool demodulate) {
+SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, double minAlbedo) {
     const DoubleFrame pixels(frame);
     const dvec3 c = signalOf(pixels, signal, p);
     if (!isFiniteInFloat(c)) return {dvec3(0.0), true};
-    const dvec3 x = c / modulationOf(pixels, signal, p, demodulate);
+    const dvec3 x = c / modulationOf(pixels, signal, p, minAlbedo);
     return {glm::clamp(x, -largestHalf, largestHalf), false};
 }
 
@@ -243,13 +242,13 @@ dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& 
 }
 
 std::vector<dvec4> svgfModulate(const denoise::HostFrame& frame, const std::vector<SvgfFiltered>& signals,
-                                bool demodulate) {
+                                double minAlbedo) {
     const DoubleFrame pixels(frame);
     std::vector<dvec4> result;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         dvec3 sum = pixels.emission(p);
         for (const SvgfFiltered& filtered : signals)
-            sum += dvec3(filtered.color[p]) * modulationOf(pixels, filtered.signal, p, demodulate);
+            sum += dvec3(filtered.color[p]) * modulationOf(pixels, filtered.signal, p, minAlbedo);
         result.emplace_back(sum, 1.0);
     }
     return result;

@@ -53,11 +53,11 @@ std::vector<PreviousSurface> Tracker::surfacesOf(const TemporalImages& images) {
 
 Old Tracker::find(size_t p, Decision& decision) const {
     const Reprojection found = reprojector_.find(p, decision);
-    const dvec3 now = modulation(frame_.albedo(p));
+    const dvec3 now = modulation(frame_.albedo(p), params_.minAlbedo);
     const Resampled old = resample(found, [&](size_t q) {
         const dvec4& value = previous_.colour[q];
-        if (!params_.demodulate) return value;
-        return dvec4(dvec3(value) * now / modulation(dvec3(previous_.albedoId[q])), value.w);
+        return dvec4(dvec3(value) * now / modulation(dvec3(previous_.albedoId[q]), params_.minAlbedo),
+                     value.w);
     });
     return {found.failure, old.mean, old.slope};
 }

@@ -13,7 +13,7 @@ struct DoubleTemporalParams {
     double depth = 0.02;      ///< relative to the distance; with `relative` off in world units
     bool relative = true;     ///< off: absolute differences of distances
     bool search = true;       ///< search the nine surrounding pixels if no bilinear tap counts
-    bool demodulate = true;   ///< resample light without albedo, so that textures stay sharp
+    double minAlbedo = 0.1;   ///< 0: light is resampled with its albedo
     uint32_t maxHistory = 0;  ///< 0: no limit
     bool greyRestart = false;
     double grey = 0.5;

@@ -52,7 +52,7 @@ TEST_F(TemporalByHand, WeightsAndAlbedo) {
     before.albedoId[12] = dvec4(0.4, 0.8, 0.05, 1);  // the light was 1/2, 4 and 1 times that
     const dvec3 old = dvec3(5.0 + 3.0 * dvec3(6.0, 0.75, 3.0)) / 8.0;
     EXPECT_LT(glm::distance(track(), dvec4(old + (2.0 - old) / 6.5, 6.5)), 1e-6);
-    params.demodulate = false;
+    params.minAlbedo = 0.0;
     EXPECT_LT(glm::distance(track(), dvec4(dvec3(1.75 + 0.25 / 6.5), 6.5)), 1e-6);
 }
 

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "denoise/kpcn/kpcn_params.h"
-#include "kpcn_compose.comp.h"
-#include "kpcn_compose_buffers.comp.h"
+#include "denoise/stages/atrous/levels.h"
+#include "denoise/stages/compose/compose.h"
 #include "kpcn_distances.comp.h"
 #include "kpcn_features.comp.h"
 #include "kpcn_features_float.comp.h"
@@ -21,6 +21,8 @@
 #include "kpcn_largest.comp.h"
 #include "kpcn_level.comp.h"
 #include "kpcn_level_buffers.comp.h"
+#include "kpcn_limit.comp.h"
+#include "kpcn_limit_buffers.comp.h"
 
 namespace limpid::denoise {
 namespace {
@@ -43,7 +45,7 @@ constexpr uint32_t texelsOfSlab = 4;  // of a pixel
 /// neighbours: odd and even pixels would be filtered apart.
 constexpr uint32_t levelSteps[] = {1, 2, 8, 32, 128, 512};
 
-uint32_t levelStep(int left) {
+uint32_t stepOf(int left) {
     return levelSteps[left - 1];
 }
 
@@ -143,7 +145,8 @@ class Recorder {
             }
             clean[side] = levels(side, clean[side]);
         }
-        return compose(clean);
+        return compose(graph_, "kpcn/compose",
+                       {.light = limit(clean), .albedo = input_.albedo, .emission = input_.emission});
     }
 
   private:
@@ -243,7 +246,7 @@ class Recorder {
     int levelCount() const {
         const uint32_t widest = std::max(1u, std::min(picture_.width, picture_.height) / 10);
         int count = settings_.levels;
-        while (count > 0 && levelStep(count) > widest) --count;
+        while (count > 0 && stepOf(count) > widest) --count;
         return count;
     }
 
@@ -255,9 +258,9 @@ class Recorder {
                 std::string("kpcn/") + sideNames[side] + " level " + std::to_string(i + 1);
             const ImageHandle next = graph_.transient(name, Format::RGBA32Float, picture_,
                                                       onHost() ? Backing::Buffer : Backing::Image);
+            const int step = static_cast<int>(stepOf(count - i));
             const KpcnLevelParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
-                                         static_cast<int>(levelStep(count - i)), settings_.phiColor,
-                                         static_cast<uint32_t>(side)};
+                                         step, settings_.phiColor, static_cast<uint32_t>(side)};
             graph_.dispatch({.pass = name,
                              .shader = onHost() ? shaders::kpcn_level_buffers_comp : shaders::kpcn_level_comp,
                              .bindings = {{"clean", clean},
@@ -267,7 +270,7 @@ class Recorder {
                                           {"albedo", input_.albedo}},
                              .params = gpu::paramsOf(params),
                              .constants = {},
-                             .extent = picture_});
+                             .extent = levelInvocations(picture_, step, {1, 1})});
             clean = next;
         }
         return clean;
@@ -331,25 +334,24 @@ class Recorder {
                          .extent = invocations(where, shaders_.width)});
     }
 
-    ImageHandle compose(const std::array<ImageHandle, 2>& clean) {
-        const ImageHandle beauty = graph_.transient("kpcn/beauty", Format::RGBA32Float, picture_);
-        // Few samples say little about their error: a light that all of them missed has none.
-        const KpcnComposeParams params{
-            static_cast<int>(picture_.width), static_cast<int>(picture_.height), ofMean(),
-            input_.samples >= minSamplesForErrors ? settings_.standardErrors : 0.0f};
-        graph_.dispatch({.pass = "kpcn/compose",
-                         .shader = onHost() ? shaders::kpcn_compose_buffers_comp : shaders::kpcn_compose_comp,
+    ImageHandle limit(const std::array<ImageHandle, 2>& clean) {
+        const ImageHandle scattered = graph_.transient("kpcn/scattered", Format::RGBA32Float, picture_);
+        // Few samples say little about their error: it is 0 for a light that all of them missed.
+        const KpcnLimitParams params{static_cast<int>(picture_.width), static_cast<int>(picture_.height),
+                                     ofMean(),
+                                     input_.samples >= minSamplesForErrors ? settings_.standardErrors : 0.0f};
+        graph_.dispatch({.pass = "kpcn/limit",
+                         .shader = onHost() ? shaders::kpcn_limit_buffers_comp : shaders::kpcn_limit_comp,
                          .bindings = {{"diffuse", clean[0]},
                                       {"specular", clean[1]},
                                       {"albedo", input_.albedo},
-                                      {"emission", input_.emission},
-                                      {"beauty", beauty},
                                       {"noisyDiffuse", input_.diffuse},
-                                      {"noisySpecular", input_.specular}},
+                                      {"noisySpecular", input_.specular},
+                                      {"scattered", scattered}},
                          .params = gpu::paramsOf(params),
                          .constants = {},
                          .extent = picture_});
-        return beauty;
+        return scattered;
     }
 
     FrameGraph& graph_;

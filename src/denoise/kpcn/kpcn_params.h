@@ -59,7 +59,7 @@ struct KpcnLevelParams {
     uint specular;   // which side
 };
 
-struct KpcnComposeParams {
+struct KpcnLimitParams {
     int width, height;
     float ofMean;          // as in KpcnFeaturesParams
     float standardErrors;  // maximum deviation of clean from noisy luminance; 0: no limit

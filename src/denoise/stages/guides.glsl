@@ -1,14 +1,12 @@
-// What denoisers read of a frame (docs/denoising.md, "What a frame gives"), made harmless: other renderers' files may
-// hold NaN and infinity.
+// How denoisers read a frame's images (docs/denoising.md, "What a frame gives"): other renderers' files may contain NaN
+// and infinity, which are replaced here.
 #ifndef LIMPID_GUIDES_GLSL
 #define LIMPID_GUIDES_GLSL
 
 #include "shaders/common/camera.h"
 #include "shaders/common/sampling.glsl"
 
-/// Albedo below this is not divided by: dark texels would amplify what little light they scatter.
-const float MIN_ALBEDO = 0.1;
-/// None is above 1; far above it modulation would overflow.
+/// Real albedos are at most 1. Much larger values would overflow.
 const float MAX_ALBEDO = 65504.0;
 
 vec3 finiteOr(vec3 value, vec3 otherwise) {
@@ -27,16 +25,19 @@ vec3 unitNormal(vec4 normal) {
     return length2 > 0.0 ? n * inversesqrt(length2) : vec3(0.0);
 }
 
-vec3 modulation(vec4 albedo) {
-    return clamp(finiteOr(albedo.rgb, vec3(1.0)), vec3(MIN_ALBEDO), vec3(MAX_ALBEDO));
+/// What light is divided by before filtering, and multiplied by afterwards. Albedos below `minAlbedo` count as that:
+/// dividing by less would amplify the noise of dark texels. 0: light is not demodulated.
+vec3 modulation(vec4 albedo, float minAlbedo) {
+    if (minAlbedo == 0.0) return vec3(1.0);
+    return clamp(finiteOr(albedo.rgb, vec3(1.0)), vec3(minAlbedo), vec3(MAX_ALBEDO));
 }
 
-/// Where in [-1, 1]^2, y up, the centre of a pixel is.
+/// The centre of a pixel in [-1, 1]^2, y up.
 vec2 pixelOnScreen(vec2 pixel, vec2 size) {
     return (pixel + 0.5) / size * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
 }
 
-/// The ray through it; its length along `forward` is 1.
+/// The ray through that point; its component along `forward` is 1.
 vec3 viewVector(CameraParams camera, vec2 onScreen) {
     if (camera.orthographic != 0u) return camera.forward;
     return camera.forward + onScreen.x * camera.right + onScreen.y * camera.up;

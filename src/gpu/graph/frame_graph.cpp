@@ -217,6 +217,10 @@ Format FrameGraph::format(ImageHandle image) const {
     return impl_->frame.images[impl_->indexOf(image)].key.format;
 }
 
+Backing FrameGraph::backing(ImageHandle image) const {
+    return impl_->frame.images[impl_->indexOf(image)].key.backing;
+}
+
 const std::string& FrameGraph::name(ImageHandle image) const {
     return impl_->frame.images[impl_->indexOf(image)].name;
 }

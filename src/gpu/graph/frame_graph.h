@@ -191,6 +191,7 @@ class FrameGraph {
 
     Extent extent(ImageHandle image) const;
     Format format(ImageHandle image) const;
+    Backing backing(ImageHandle image) const;
     const std::string& name(ImageHandle image) const;
 
     /// Records a pass. Throws Error naming pass and variable if a binding is missing, extra, of the wrong

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Both sides back to radiance, each as near to its noisy light as that is sure; and what the camera sees directly.
+// Scattered radiance from the two filtered sides. Where a filtered luminance is further from the noisy one than its standard
+// error explains, it is moved towards the noisy one: docs/kpcn.md.
 #include "denoise/stages/guides.glsl"
 #include "denoise/kpcn/kpcn_params.h"
 #include "shaders/common/filter_image.glsl"
@@ -8,7 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    KpcnComposeParams params;
+    KpcnLimitParams params;
 };
 #ifdef KPCN_BUFFERS
 layout(set = 0, binding = 1, scalar) readonly buffer diffuseTexels { vec4 texels[]; } diffuse;
@@ -20,17 +21,16 @@ layout(set = 0, binding = 2, rgba32f) uniform readonly image2D specular;
 #define LOAD(clean, at) imageLoad(clean, at)
 #endif
 layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D emission;
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D beauty;
-layout(set = 0, binding = 6, rgba32f) uniform readonly image2D noisyDiffuse;
-layout(set = 0, binding = 7, rgba32f) uniform readonly image2D noisySpecular;
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D noisyDiffuse;
+layout(set = 0, binding = 5, rgba32f) uniform readonly image2D noisySpecular;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D scattered;
 
 struct Side {
     vec3 clean, noisy;
-    float moved;  // share of the way from clean to noisy that is to go; negative: clean is the darker one
+    float moved;  // share of the way from clean to noisy that it is moved; negative: clean is darker than noisy
 };
 
-/// Until their luminances are no further apart than so many of the noisy one's standard errors.
+/// Moves it until the luminances differ by at most `standardErrors` of the noisy one's standard error.
 Side sideOf(vec3 clean, vec4 texel) {
     const vec3 noisy = clamp(finiteOr(texel.rgb, vec3(0.0)), 0.0, MAX_HALF);
     if (params.standardErrors == 0.0 || !isFinite(vec3(texel.a))) return Side(clean, noisy, 0.0);
@@ -49,7 +49,7 @@ Sides sidesOf(ivec2 at) {
                  sideOf(exp(LOAD(specular, at).rgb) - 1.0, imageLoad(noisySpecular, at)));
 }
 
-/// No further than one of the pixels around, whose extreme moves these are.
+/// Moves a pixel no further than some neighbour: `low` and `high` are the extremes of their moves. A firefly is alone.
 vec3 within(Side own, float low, float high) {
     return mix(own.clean, own.noisy, abs(clamp(own.moved, min(low, 0.0), max(high, 0.0))));
 }
@@ -69,6 +69,5 @@ void main() {
             high = max(high, moved);
         }
     }
-    const vec3 scattered = within(own.diffuse, low.x, high.x) + within(own.specular, low.y, high.y);
-    imageStore(beauty, at, vec4(scattered + finiteOr(imageLoad(emission, at).rgb, vec3(0.0)), 1.0));
+    imageStore(scattered, at, vec4(within(own.diffuse, low.x, high.x) + within(own.specular, low.y, high.y), 1.0));
 }

@@ -9,10 +9,10 @@
 #include "atrous_demodulate_buffers.comp.h"
 #include "atrous_level.comp.h"
 #include "atrous_level_buffers.comp.h"
-#include "atrous_modulate.comp.h"
-#include "atrous_modulate_buffers.comp.h"
 #include "denoise/methods/atrous/atrous_params.h"
 #include "denoise/methods/methods.h"
+#include "denoise/stages/atrous/levels.h"
+#include "denoise/stages/compose/compose.h"
 
 namespace limpid::denoise {
 namespace {
@@ -27,6 +27,10 @@ struct Demodulated {
     ImageHandle geometry;  ///< two words: octahedral normal, depth
 };
 
+float minAlbedo(const AtrousSettings& settings) {
+    return settings.demodulate ? settings.minAlbedo : 0.0f;
+}
+
 Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                        const AtrousSettings& settings) {
     const Extent extent = graph.extent(input.albedo);
@@ -34,7 +38,7 @@ Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const Atro
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
     const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u,
-                                        settings.demodulate ? 1u : 0u};
+                                        minAlbedo(settings)};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch(
         {.pass = "atrous/demodulate",
@@ -52,18 +56,12 @@ Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const Atro
     return signal;
 }
 
-/// Along one axis. An invocation filters `block` pixels that lie a step apart.
-uint32_t invocations(uint32_t pixels, int step, uint32_t block) {
-    const uint32_t span = block * static_cast<uint32_t>(step);
-    return (pixels + span - 1) / span * static_cast<uint32_t>(step);
-}
-
 ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Demodulated& signal, int number,
                   const AtrousSettings& settings) {
     const Extent extent = graph.extent(signal.light);
     const std::string name = "atrous/level " + std::to_string(number);
     const ImageHandle filtered = graph.transient(name, gpu::Format::RGBA16Float, extent, input.filters);
-    const int step = 1 << (number - 1);
+    const int step = levelStep(number);
     constexpr float log2e = std::numbers::log2e_v<float>;  // the shader takes powers of 2
     AtrousLevelParams params{};
     params.camera = input.camera;
@@ -80,7 +78,7 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Demodulat
     // Finite, so that equal light weighs 1 however small the tolerance.
     if (color) params.colorScale = std::min(samplesGathered * log2e / settings.colorFactor, 1e30f);
     const bool buffers = input.filters == Backing::Buffer;
-    const Extent block = buffers ? Extent{2, 2} : Extent{4, 2};  // as in the shaders
+    const Extent block = buffers ? Extent{2, 2} : Extent{4, 2};  // as in the shader
     graph.dispatch(
         {.pass = name,
          .shader = buffers ? shaders::atrous_level_buffers_comp : shaders::atrous_level_comp,
@@ -89,27 +87,8 @@ ImageHandle level(FrameGraph& graph, const DenoiserInput& input, const Demodulat
          .constants = {{"PLANE", settings.plane ? 1u : 0u},
                        {"ORTHOGRAPHIC", input.camera.orthographic},
                        {"COLOR", color ? 1u : 0u}},
-         .extent = {invocations(extent.width, step, block.width),
-                    invocations(extent.height, step, block.height)}});
+         .extent = levelInvocations(extent, step, block)});
     return filtered;
-}
-
-ImageHandle modulate(FrameGraph& graph, const DenoiserInput& input, ImageHandle signal,
-                     const AtrousSettings& settings) {
-    const Extent extent = graph.extent(signal);
-    const ImageHandle beauty = graph.transient("atrous/beauty", gpu::Format::RGBA32Float, extent);
-    const AtrousModulateParams params{extent.width, extent.height, settings.demodulate ? 1u : 0u};
-    const bool buffers = input.filters == Backing::Buffer;
-    graph.dispatch({.pass = "atrous/modulate",
-                    .shader = buffers ? shaders::atrous_modulate_buffers_comp : shaders::atrous_modulate_comp,
-                    .bindings = {{"signal", signal},
-                                 {"albedo", input.albedo},
-                                 {"emission", input.emission},
-                                 {"beauty", beauty}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = extent});
-    return beauty;
 }
 
 }  // namespace
@@ -135,6 +114,10 @@ const ParamTable<AtrousSettings>& atrous::params() {
             "plane", &S::plane,
             "Weigh neighbours by their distance from the pixel's plane instead of their difference in depth");
         t.add("demodulate", &S::demodulate, "Filter light without albedo; keeps textures sharp");
+        t.add("min_albedo", &S::minAlbedo, 1e-3, 1.0, "",
+              "Minimum albedo that `demodulate` divides by; lower keeps the colours of dark surfaces apart, "
+              "higher limits their noise")
+            .slider(1e-3, 1, SliderScale::Logarithmic);
         t.add("color_factor", &S::colorFactor, 0.0, 1e9, "(cd/m^2)^2",
               "Tolerated squared difference of light at level 1, a quarter at each further level (Dammertz "
               "2010); lower keeps shadows and noise; 0 ignores light");
@@ -148,7 +131,11 @@ ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const At
     Demodulated signal = demodulate(graph, input, light, settings);
     for (int number = 1; number <= settings.levels; ++number)
         signal.light = level(graph, input, signal, number, settings);
-    return modulate(graph, input, signal.light, settings);
+    return compose(graph, "atrous/compose",
+                   {.light = signal.light,
+                    .albedo = input.albedo,
+                    .emission = input.emission,
+                    .minAlbedo = minAlbedo(settings)});
 }
 
 DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input,

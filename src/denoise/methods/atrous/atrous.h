@@ -15,6 +15,7 @@ struct AtrousSettings {
     float sampleTarget = 32.0f;
     bool plane = true;
     bool demodulate = true;
+    float minAlbedo = 0.1f;
     float colorFactor = 0.0f;
     bool operator==(const AtrousSettings&) const = default;
 };
@@ -26,7 +27,7 @@ struct AtrousLight {
 };
 
 /// The filtered beauty, rgba32f, alpha 1: `light` filtered, plus the frame's emission. Passes:
-/// "atrous/demodulate", "atrous/level 1" and so on, "atrous/modulate".
+/// "atrous/demodulate", "atrous/level 1" and so on, "atrous/compose".
 gpu::ImageHandle filterAtrous(gpu::FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                               const AtrousSettings& settings);
 

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool SUM_OF_TWO = false;  // light is lightA + lightB, of one frame; else lightA, a mean
+layout(constant_id = 0) const bool SUM_OF_TWO = false;  // one frame's light in two images; else a mean over frames in lightA
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     AtrousDemodulateParams params;
@@ -17,7 +17,7 @@ layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
 layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(set = 0, binding = 4, rgba32f) uniform readonly image2D normal;
 layout(set = 0, binding = 5, rgba32f) uniform readonly image2D depth;
-WRITE_HALF4(6, signal);    // light / max(albedo, 0.1); frames in the mean
+WRITE_HALF4(6, signal);    // light / max(albedo, min_albedo) | frames in the mean
 WRITE_UINT2(7, geometry);  // octahedral normal | depth
 
 void main() {
@@ -26,8 +26,7 @@ void main() {
     const ivec2 at = ivec2(pixel);
     vec4 light = imageLoad(lightA, at);
     if (SUM_OF_TWO) light = vec4(light.rgb + imageLoad(lightB, at).rgb, 1.0);
-    vec3 demodulated = finiteOr(light.rgb, vec3(0.0));
-    if (params.demodulate != 0u) demodulated /= modulation(imageLoad(albedo, at));
+    const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) / modulation(imageLoad(albedo, at), params.minAlbedo);
     const float z = hitDistance(imageLoad(depth, at));
     float d = z;
     if (params.plane != 0u) {

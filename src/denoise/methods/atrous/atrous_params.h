@@ -13,13 +13,7 @@ struct AtrousDemodulateParams {
     uint width;
     uint height;
     uint plane;       // depth is measured along `forward`, not along the ray
-    uint demodulate;  // 0: light is filtered with its albedo
-};
-
-struct AtrousModulateParams {
-    uint width;
-    uint height;
-    uint demodulate;
+    float minAlbedo;  // 0: light is filtered with its albedo
 };
 
 struct AtrousLevelParams {

@@ -38,7 +38,7 @@ vec3 pointAt(ivec2 at, float distance) {
 
 Tap tapAt(ivec2 at) {
     const float distance = hitDistance(imageLoad(depth, at));
-    const vec3 light = lightAt(at) / modulation(imageLoad(albedo, at));
+    const vec3 light = lightAt(at) / modulation(imageLoad(albedo, at), params.minAlbedo);
     const bool counts = distance > 0.0 && isFinite(light);
     return Tap(light, unitNormal(imageLoad(normal, at)), pointAt(at, distance), counts);
 }
@@ -69,8 +69,8 @@ vec3 filtered(ivec2 pixel) {
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
-    // Behind every surface there is nothing to filter.
+    // Where no surface is seen, there is nothing to filter.
     const bool seen = hitDistance(imageLoad(depth, pixel)) > 0.0;
-    const vec3 light = seen ? filtered(pixel) * modulation(imageLoad(albedo, pixel)) : finiteOr(lightAt(pixel), vec3(0.0));
+    const vec3 light = seen ? filtered(pixel) * modulation(imageLoad(albedo, pixel), params.minAlbedo) : finiteOr(lightAt(pixel), vec3(0.0));
     imageStore(beauty, pixel, vec4(light + finiteOr(imageLoad(emission, pixel).rgb, vec3(0.0)), 1.0));
 }

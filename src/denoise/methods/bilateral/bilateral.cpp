@@ -19,6 +19,7 @@ gpu::ImageHandle filterBilateral(gpu::FrameGraph& graph, const DenoiserInput& in
                                  .radius = settings.radius,
                                  .spatial = 0.5f / (sigma * sigma),
                                  .normalPower = settings.normalPower,
+                                 .minAlbedo = settings.minAlbedo,
                                  .plane = settings.plane};
     graph.dispatch({.pass = "bilateral",
                     .shader = shaders::bilateral_comp,
@@ -43,6 +44,10 @@ const ParamTable<BilateralSettings>& bilateral::params() {
               "Pixels that the filter reaches; higher is smoother and slower, by the square");
         t.add("normal_power", &S::normalPower, 0.0, 1024.0, "",
               "Exponent of the cosine between normals; higher keeps edges, lower smooths across them");
+        t.add("min_albedo", &S::minAlbedo, 1e-3, 1.0, "",
+              "Minimum albedo that light is divided by; lower keeps the colours of dark surfaces apart, "
+              "higher limits their noise")
+            .slider(1e-3, 1, SliderScale::Logarithmic);
         t.add("plane", &S::plane, 1e-6, 1e6, "of the distance",
               "Tolerated distance from the pixel's plane; lower keeps steps, higher smooths across them")
             .slider(1e-4, 1, SliderScale::Logarithmic);

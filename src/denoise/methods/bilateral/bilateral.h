@@ -4,9 +4,9 @@
 //     exp(-|p - q|^2 / (2 sigma^2)) * max(n_p . n_q, 0)^normal_power * exp(-d / (plane * z))
 //
 // with sigma = radius / 2, the normals n, q's distance d from the plane through p's surface point, and the
-// distance z of that point from the eye. Light is divided by the albedo while it is filtered. C. Tomasi and
-// R. Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998; G. Petschnigg et al., "Digital
-// Photography with Flash and No-Flash Image Pairs", SIGGRAPH 2004.
+// distance z of that point from the eye. Light is divided by max(albedo, min_albedo) while it is filtered. C.
+// Tomasi and R. Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998; G. Petschnigg et al.,
+// "Digital Photography with Flash and No-Flash Image Pairs", SIGGRAPH 2004.
 #pragma once
 
 #include "denoise/methods/method.h"
@@ -17,6 +17,7 @@ namespace limpid::denoise {
 struct BilateralSettings {
     int radius = 6;
     float normalPower = 32.0f;
+    float minAlbedo = 0.1f;
     float plane = 0.01f;
     bool operator==(const BilateralSettings&) const = default;
 };

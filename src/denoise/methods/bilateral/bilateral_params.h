@@ -15,6 +15,7 @@ struct BilateralParams {
     int radius;         // pixels
     float spatial;      // 1 / (2 sigma^2), per squared pixel
     float normalPower;  // exponent of the cosine between normals
+    float minAlbedo;    // albedos below this count as this
     float plane;        // tolerated distance from the pixel's plane, relative to the distance from the eye
 };
 

@@ -32,10 +32,10 @@ dvec3 filteredAt(const HostFrame& frame, const denoise::BilateralSettings& s, si
         const double weight = std::exp(-(x * x + y * y) / (2.0 * sigma * sigma)) *
                               std::pow(std::max(glm::dot(n, pixels.normal(q)), 0.0), s.normalPower) *
                               std::exp(-deviation / (s.plane * pixels.distance(p)));
-        sum += weight * pixels.scattered(q) / glm::max(pixels.albedo(q), 0.1);
+        sum += weight * pixels.scattered(q) / glm::max(pixels.albedo(q), double{s.minAlbedo});
         weights += weight;
     }
-    return sum / weights * glm::max(pixels.albedo(p), 0.1) + pixels.emission(p);
+    return sum / weights * glm::max(pixels.albedo(p), double{s.minAlbedo}) + pixels.emission(p);
 }
 
 TEST_F(BilateralTest, IsTheFormula) {

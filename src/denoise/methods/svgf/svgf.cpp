@@ -5,16 +5,15 @@
 
 #include "denoise/methods/methods.h"
 #include "denoise/methods/svgf/svgf_params.h"
+#include "denoise/stages/atrous/levels.h"
+#include "denoise/stages/compose/compose.h"
+#include "denoise/stages/surfaces/surfaces.h"
 #include "svgf_antilag.comp.h"
 #include "svgf_antilag_buffers.comp.h"
 #include "svgf_level.comp.h"
 #include "svgf_level_buffers.comp.h"
-#include "svgf_modulate.comp.h"
-#include "svgf_modulate_buffers.comp.h"
 #include "svgf_reproject.comp.h"
 #include "svgf_reproject_buffers.comp.h"
-#include "svgf_surfaces.comp.h"
-#include "svgf_surfaces_buffers.comp.h"
 #include "svgf_tiles.comp.h"
 #include "svgf_variance.comp.h"
 #include "svgf_variance_buffers.comp.h"
@@ -39,11 +38,6 @@ struct Signal {
     bool isSum = false, reflects = false;
 };
 
-struct Surfaces {
-    History surfaces;  ///< two words: octahedral normal, distance (0: nothing seen)
-    History instances;
-};
-
 struct Accumulated {
     ImageHandle color;       ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
     ImageHandle moments;     ///< rgba32f: first, second, fast first, frames
@@ -65,7 +59,7 @@ class Svgf {
     /// Each pass for all signals before the next pass: those of one kind do not wait for each other, and the
     /// device starts one while the other runs out.
     SvgfImages record(bool signalsToo) {
-        const Surfaces surfaces = recordSurfaces();
+        const Surfaces surfaces = recordSurfaces(graph_, input_);
         const std::vector<Signal> all = signals();
         std::vector<Accumulated> accumulated;
         std::vector<ImageHandle> filtered;
@@ -84,8 +78,12 @@ class Svgf {
         }
         SvgfImages images{.beauty = beautyOf(filtered)};
         if (!signalsToo) return images;
-        images.diffuse = lightOf("diffuse", filtered.front(), !settings_.separate);
-        if (settings_.separate) images.specular = lightOf("specular", filtered.back(), false);
+        if (settings_.separate) {
+            images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo);
+            images.specular = radianceOf("specular", filtered.back(), input_.albedoSpecular);
+        } else {
+            images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo, input_.albedoSpecular);
+        }
         return images;
     }
 
@@ -102,22 +100,7 @@ class Svgf {
         return buffers_ ? buffers : images;
     }
 
-    Surfaces recordSurfaces() {
-        const Surfaces result{graph_.history("svgf/surfaces", Format::RG32Uint, extent_, input_.filters),
-                              graph_.history("svgf/ids", Format::R32Uint, extent_)};
-        const SvgfSizeParams params{extent_.width, extent_.height};
-        graph_.dispatch({.pass = "svgf/surfaces",
-                         .shader = choose(shaders::svgf_surfaces_comp, shaders::svgf_surfaces_buffers_comp),
-                         .bindings = {{"normal", input_.normal},
-                                      {"depth", input_.depth},
-                                      {"ids", input_.ids},
-                                      {"surfaces", result.surfaces.current},
-                                      {"instances", result.instances.current}},
-                         .params = gpu::paramsOf(params),
-                         .constants = {},
-                         .extent = extent_});
-        return result;
-    }
+    float minAlbedo() const { return settings_.demodulate ? settings_.minAlbedo : 0.0f; }
 
     /// Of the filter's levels; 0: none.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
@@ -141,11 +124,12 @@ class Svgf {
         params.camera = input_.camera;
         params.width = extent_.width;
         params.height = extent_.height;
-        params.normalTest = settings_.normalTest;
-        params.depthTest = settings_.depthTest;
-        params.relative = settings_.relative;
-        params.search = settings_.search;
-        params.demodulate = settings_.demodulate;
+        params.tests = {.normal = settings_.normalTest,
+                        .depth = settings_.depthTest,
+                        .relative = settings_.relative,
+                        .search = settings_.search,
+                        .identity = 1};
+        params.minAlbedo = minAlbedo();
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
@@ -227,7 +211,7 @@ class Svgf {
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
         const SvgfAntilagParams params{.width = extent_.width,
                                        .height = extent_.height,
-                                       .demodulate = settings_.demodulate,
+                                       .minAlbedo = minAlbedo(),
                                        .alpha = settings_.alpha,
                                        .alphaMoments = settings_.alphaMoments,
                                        .alphaFast = settings_.alphaFast};
@@ -282,12 +266,6 @@ class Svgf {
                          .extent = extent_});
     }
 
-    /// Of a level: one for SVGF_COLUMN pixels of a column.
-    Extent invocations(int step) const {
-        const auto span = static_cast<uint32_t>(SVGF_COLUMN * step);
-        return {extent_.width, (extent_.height + span - 1) / span * static_cast<uint32_t>(step)};
-    }
-
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
@@ -296,7 +274,7 @@ class Svgf {
             mixed                 ? accumulated.stable
             : number == fedBack() ? accumulated.feedback.current
                                   : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
-        const int step = 1 << (number - 1);
+        const int step = levelStep(number);
         const SvgfFilterParams params = filterParams(step);
         std::vector<gpu::ConstantValue> constants = filterConstants();
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
@@ -311,38 +289,27 @@ class Svgf {
                                       {"stablePast", mixed ? accumulated.stablePast : before}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
-                         .extent = invocations(step)});
+                         .extent = levelInvocations(extent_, step, {1, SVGF_COLUMN})});
         return filtered;
     }
 
     ImageHandle beautyOf(const std::vector<ImageHandle>& filtered) {
-        return modulate("beauty", filtered.front(), filtered.back(),
-                        {{"TWO_SIGNALS", settings_.separate ? 1u : 0u}});
+        return compose(graph_, "svgf/compose",
+                       {.light = filtered.front(),
+                        .albedo = input_.albedo,
+                        .second = settings_.separate ? filtered.back() : ImageHandle{},
+                        .secondAlbedo = input_.albedoSpecular,
+                        .emission = input_.emission,
+                        .minAlbedo = minAlbedo()});
     }
 
-    /// One signal, with its albedo and without what is seen directly.
-    ImageHandle lightOf(const char* name, ImageHandle signal, bool allLight) {
-        return modulate(name, signal, signal,
-                        {{"TWO_SIGNALS", 0u}, {"ALL_LIGHT", allLight ? 1u : 0u}, {"EMISSION", 0u}});
-    }
-
-    ImageHandle modulate(const std::string& name, ImageHandle signal, ImageHandle otherSignal,
-                         const std::vector<gpu::ConstantValue>& constants) {
-        const ImageHandle result = graph_.transient("svgf/" + name, Format::RGBA32Float, extent_);
-        const SvgfModulateParams params{extent_.width, extent_.height, settings_.demodulate ? 1u : 0u};
-        const bool specular = name == "specular";
-        graph_.dispatch({.pass = name == "beauty" ? "svgf/modulate" : "svgf/modulate " + name,
-                         .shader = choose(shaders::svgf_modulate_comp, shaders::svgf_modulate_buffers_comp),
-                         .bindings = {{"signalA", signal},
-                                      {"signalB", otherSignal},
-                                      {"albedoA", specular ? input_.albedoSpecular : input_.albedo},
-                                      {"albedoB", input_.albedoSpecular},
-                                      {"emission", input_.emission},
-                                      {"beauty", result}},
-                         .params = gpu::paramsOf(params),
-                         .constants = constants,
-                         .extent = extent_});
-        return result;
+    /// The radiance of one signal, without emission. `otherAlbedo`: empty, or its light was reflected by
+    /// both.
+    ImageHandle radianceOf(const std::string& name, ImageHandle light, ImageHandle albedo,
+                           ImageHandle otherAlbedo = {}) {
+        return compose(
+            graph_, "svgf/compose " + name,
+            {.light = light, .albedo = albedo, .secondAlbedo = otherAlbedo, .minAlbedo = minAlbedo()});
     }
 
     FrameGraph& graph_;
@@ -361,6 +328,10 @@ const ParamTable<SvgfSettings>& svgf::params() {
         t.add("separate", &S::separate,
               "Filter diffuse and specular light separately; off: their sum, in half the time");
         t.add("demodulate", &S::demodulate, "Filter light without albedo; keeps textures sharp");
+        t.add("min_albedo", &S::minAlbedo, 1e-3, 1.0, "",
+              "Minimum albedo that `demodulate` divides by; lower keeps the colours of dark surfaces apart, "
+              "higher limits their noise")
+            .slider(1e-3, 1, SliderScale::Logarithmic);
         t.add("alpha", &S::alpha, 1e-4, 1.0, "",
               "Minimum weight of a new frame in the running mean; lower is smoother, higher follows changes "
               "faster");

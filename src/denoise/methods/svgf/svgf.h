@@ -11,6 +11,7 @@ namespace limpid::denoise {
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
+    float minAlbedo = 0.1f;
     float alpha = 0.1f;
     float alphaMoments = 0.1f;
     float alphaFast = 0.5f;
@@ -37,10 +38,10 @@ struct SvgfSettings {
 };
 
 /// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
-/// for "joint", or for "diffuse" and "specular". Passes: "svgf/surfaces", "svgf/reproject SIGNAL",
+/// for "joint", or for "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL",
 /// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work) and "svgf/antilag
 /// SIGNAL" (neither without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL" and so on,
-/// "svgf/modulate". Histories: "svgf/surfaces", "svgf/ids", and for each signal "svgf/SIGNAL color",
+/// "svgf/compose". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
 /// "svgf/SIGNAL moments" and, unless it is fed back, "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 

@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_SVGF_PARAMS_H
 #define LIMPID_DENOISE_SVGF_PARAMS_H
 
+#include "denoise/stages/reproject/reproject_params.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -26,11 +27,6 @@ LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angle
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;      // minimum tolerance, relative to the distance
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
-struct SvgfSizeParams {
-    uint width;
-    uint height;
-};
-
 /// How tiles interpret the moments.
 struct SvgfLagParams {
     float steadyShare;  // variance of (fast mean - slow mean) / variance of the samples
@@ -43,11 +39,8 @@ struct SvgfReprojectParams {
     CameraParams camera;
     uint width;
     uint height;
-    float normalTest;  // cosine
-    float depthTest;
-    uint relative;  // 0: depthTest is in world units
-    uint search;
-    uint demodulate;
+    ReprojectTests tests;
+    float minAlbedo;  // 0: light is not demodulated
     float alpha;
     float alphaMoments;
     float alphaFast;
@@ -65,7 +58,7 @@ struct SvgfTilesParams {
 struct SvgfAntilagParams {
     uint width;
     uint height;
-    uint demodulate;
+    float minAlbedo;
     float alpha;
     float alphaMoments;
     float alphaFast;
@@ -80,12 +73,6 @@ struct SvgfFilterParams {
     float normalScale;         // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;          // log2(e) / phi_depth
     float stabilisationNoise;  // tolerated difference from the stabilised history
-};
-
-struct SvgfModulateParams {
-    uint width;
-    uint height;
-    uint demodulate;
 };
 
 #ifndef __cplusplus

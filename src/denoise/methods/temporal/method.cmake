@@ -1,2 +1,3 @@
 set(SOURCES temporal.cpp)
-set(SHADERS temporal_accumulate.comp)
+set(SHADERS temporal_accumulate.comp temporal_show.comp)
+set(BUFFER_VARIANTS temporal_accumulate.comp)

@@ -4,7 +4,10 @@
 
 #include "denoise/methods/methods.h"
 #include "denoise/stages/compose/compose.h"
+#include "denoise/stages/surfaces/surfaces.h"
 #include "temporal_accumulate.comp.h"
+#include "temporal_accumulate_buffers.comp.h"
+#include "temporal_show.comp.h"
 
 namespace limpid::denoise {
 namespace {
@@ -14,17 +17,31 @@ TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const 
     params.camera = camera;
     params.width = extent.width;
     params.height = extent.height;
-    params.normalThreshold = settings.normal;
-    params.depthThreshold = settings.depth;
-    params.relative = settings.relative;
-    params.search = settings.search;
-    params.demodulate = settings.demodulate;
+    params.tests = {.normal = settings.normal,
+                    .depth = settings.depth,
+                    .relative = settings.relative,
+                    .search = settings.search,
+                    .identity = settings.identity};
+    params.minAlbedo = settings.demodulate ? settings.minAlbedo : 0.0f;
     params.greyRestart = settings.greyRestart;
     params.greyMisses = settings.greyMisses;
     params.grey = settings.grey;
-    params.identity = settings.identity;
     params.maxHistory = settings.maxHistory > 0.0f ? settings.maxHistory : std::numeric_limits<float>::max();
     return params;
+}
+
+gpu::ImageHandle showDisocclusion(gpu::FrameGraph& graph, gpu::ImageHandle beauty,
+                                  gpu::ImageHandle disocclusion) {
+    const gpu::Extent extent = graph.extent(beauty);
+    const gpu::ImageHandle shown = graph.transient("temporal/shown", gpu::Format::RGBA32Float, extent);
+    const TemporalShowParams params{extent.width, extent.height};
+    graph.dispatch({.pass = "temporal/show",
+                    .shader = shaders::temporal_show_comp,
+                    .bindings = {{"beauty", beauty}, {"disocclusion", disocclusion}, {"shown", shown}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
+    return shown;
 }
 
 }  // namespace
@@ -47,6 +64,10 @@ const ParamTable<TemporalSettings>& temporal::params() {
               "Search the 3x3 neighbouring pixels if all four bilinear taps are rejected");
         t.add("demodulate", &S::demodulate,
               "Divide by the albedo before resampling and multiply afterwards; keeps textures sharp");
+        t.add("min_albedo", &S::minAlbedo, 1e-3, 1.0, "",
+              "Minimum albedo that `demodulate` divides by; lower keeps the colours of dark surfaces apart, "
+              "higher limits their noise")
+            .slider(1e-3, 1, SliderScale::Logarithmic);
         t.add("max_history", &S::maxHistory, 0.0, 1e6, "frames",
               "Maximum number of frames that the history counts for; higher is smoother, lower follows "
               "changing light faster; 0 is no limit")
@@ -71,31 +92,32 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
     using gpu::Format;
     const gpu::Extent extent = graph.extent(input.diffuse);
     const gpu::History color = graph.history("temporal/color", Format::RGBA32Float, extent);
-    const gpu::History normalDepth = graph.history("temporal/normal_depth", Format::RGBA32Float, extent);
-    const gpu::History albedoId = graph.history("temporal/albedo_id", Format::RGBA32Float, extent);
+    const gpu::History albedo = graph.history("temporal/albedo", Format::RGBA32Float, extent);
+    const Surfaces surfaces = recordSurfaces(graph, input);
+    const bool buffers = input.filters == gpu::Backing::Buffer;
     const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
     const TemporalParams params = makeParams(extent, input.camera, settings);
-    graph.dispatch({.pass = "temporal/accumulate",
-                    .shader = shaders::temporal_accumulate_comp,
-                    .bindings = {{"diffuse", input.diffuse},
-                                 {"specular", input.specular},
-                                 {"albedo", input.albedo},
-                                 {"normal", input.normal},
-                                 {"depth", input.depth},
-                                 {"motion", input.motion},
-                                 {"previousNormal", input.previousNormal},
-                                 {"ids", input.ids},
-                                 {"colorBefore", color.previous},
-                                 {"normalDepthBefore", normalDepth.previous},
-                                 {"albedoIdBefore", albedoId.previous},
-                                 {"color", color.current},
-                                 {"normalDepth", normalDepth.current},
-                                 {"albedoId", albedoId.current},
-                                 {"disocclusion", disocclusion}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = extent});
-    return {color.current, normalDepth.current, albedoId.current, disocclusion};
+    graph.dispatch(
+        {.pass = "temporal/accumulate",
+         .shader = buffers ? shaders::temporal_accumulate_buffers_comp : shaders::temporal_accumulate_comp,
+         .bindings = {{"diffuse", input.diffuse},
+                      {"specular", input.specular},
+                      {"albedo", input.albedo},
+                      {"surfaces", surfaces.surfaces.current},
+                      {"instances", surfaces.instances.current},
+                      {"motion", input.motion},
+                      {"previousNormal", input.previousNormal},
+                      {"surfacesBefore", surfaces.surfaces.previous},
+                      {"instancesBefore", surfaces.instances.previous},
+                      {"colorBefore", color.previous},
+                      {"albedoBefore", albedo.previous},
+                      {"color", color.current},
+                      {"albedoNow", albedo.current},
+                      {"disocclusion", disocclusion}},
+         .params = gpu::paramsOf(params),
+         .constants = {},
+         .extent = extent});
+    return {color.current, disocclusion};
 }
 
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
@@ -112,11 +134,13 @@ DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
 
 DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
                                const TemporalImages& accumulated, const FilterSettings& settings) {
-    const bool showDisocclusion = settings.temporal.showDisocclusion;
     const gpu::ImageHandle beauty =
-        compose(graph, accumulated.color, input.emission, accumulated.disocclusion, showDisocclusion);
-    return {showDisocclusion ? beauty : antialias(graph, input, beauty, settings.taa),
-            accumulated.disocclusion};
+        compose(graph, "temporal/compose",
+                {.light = accumulated.color, .albedo = input.albedo, .emission = input.emission});
+    const gpu::ImageHandle picture = settings.temporal.showDisocclusion
+                                         ? showDisocclusion(graph, beauty, accumulated.disocclusion)
+                                         : antialias(graph, input, beauty, settings.taa);
+    return {picture, accumulated.disocclusion};
 }
 
 DenoiserOutput temporal::record(gpu::FrameGraph& graph, const DenoiserInput& input,

@@ -16,6 +16,7 @@ struct TemporalSettings {
     bool relative = true;
     bool search = true;
     bool demodulate = true;
+    float minAlbedo = 0.1f;
     float maxHistory = 8.0f;
     bool greyRestart = false;
     float grey = 0.5f;
@@ -27,14 +28,12 @@ struct TemporalSettings {
 
 struct TemporalImages {
     gpu::ImageHandle color;         ///< rgba32f: mean of diffuse + specular, cd/m^2; number of frames in it
-    gpu::ImageHandle normalDepth;   ///< rgba32f: world normal, distance from the eye (0: nothing seen)
-    gpu::ImageHandle albedoId;      ///< rgba32f: albedo, instance number + 1
     gpu::ImageHandle disocclusion;  ///< r32ui: DISOCCLUSION_* and SAMPLE_REJECTED of temporal_params.h
 };
 
-/// One frame. The three images besides `disocclusion` are histories of the graph ("temporal/color",
-/// "temporal/normal_depth", "temporal/albedo_id"): the pass reads their contents of the previous frame.
-/// They need no clearing when the camera moves.
+/// One frame. Passes: "surfaces", "temporal/accumulate". `color` is a history of the graph, and so are
+/// "temporal/albedo" and the surfaces: the pass reads those of the previous frame. They need no clearing when
+/// the camera moves.
 TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
                                     const TemporalSettings& settings);
 
@@ -46,7 +45,7 @@ struct DisocclusionCounts {
 /// Counts the pixels of the downloaded image `disocclusion`.
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion);
 
-/// The beauty of what was accumulated, or why pixels have no history if the settings ask for that.
+/// The picture of the accumulated light; with `show_disocclusion`, the causes of missing history in colours.
 DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
                                const TemporalImages& accumulated, const FilterSettings& settings);
 

@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_TEMPORAL_PARAMS_H
 #define LIMPID_DENOISE_TEMPORAL_PARAMS_H
 
+#include "denoise/stages/reproject/reproject_params.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -20,19 +21,21 @@ LIMPID_CONST uint DISOCCLUSION_NO_VALID_TAP = 3u;
 LIMPID_CONST uint DISOCCLUSION_MASK = 3u;
 LIMPID_CONST uint SAMPLE_REJECTED = 4u;
 
+/// Of the debug view that shows the causes of disocclusion.
+struct TemporalShowParams {
+    uint width;
+    uint height;
+};
+
 struct TemporalParams {
     CameraParams camera;
     uint width;
     uint height;
-    float normalThreshold;  // cosine
-    float depthThreshold;
-    uint relative;  // 0: depthThreshold is in world units
-    uint search;
-    uint demodulate;
+    ReprojectTests tests;
+    float minAlbedo;  // 0: means are resampled without demodulation
     uint greyRestart;
     uint greyMisses;
     float grey;        // cd/m^2
-    uint identity;     // 0: instances are not compared
     float maxHistory;  // frames; infinite: no limit
 };
 

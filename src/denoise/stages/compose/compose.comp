@@ -1,30 +1,42 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The picture from scattered light and what the camera sees directly.
+// The picture: filtered light times its albedo, plus emission. docs/denoising.md, SVGF, step 8.
+// LIMPID_COMPOSE_FLOAT: the light is in float images; otherwise in halves (shaders/common/filter_image.glsl).
 #include "denoise/stages/compose/compose_params.h"
 #include "denoise/stages/guides.glsl"
-#include "denoise/methods/temporal/temporal_params.h"
+#include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint ALBEDOS = 1u;           // 1: the first light's albedo; 2: both albedos reflect it
+layout(constant_id = 1) const bool SECOND = false;         // there is a second light, with the second albedo
+layout(constant_id = 2) const bool EMISSION = true;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     ComposeParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D scattered;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D emission;
-layout(set = 0, binding = 3, r32ui) uniform readonly uimage2D disocclusion;
-layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D beauty;
-
-vec3 colorOf(uint failure, vec3 tracked) {
-    const vec3 colors[4] = vec3[4](tracked, vec3(0.0, 0.0, 1.0), vec3(1.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0));
-    return colors[failure & DISOCCLUSION_MASK];
-}
+#ifdef LIMPID_COMPOSE_FLOAT
+layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
+layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
+#define LOAD_LIGHT(name, at) imageLoad(name, at).rgb
+#else
+READ_HALF4(1, lightA);
+READ_HALF4(2, lightB);
+#define LOAD_LIGHT(name, at) LOAD_HALF4(name, at).rgb
+#endif
+layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedoA;
+layout(set = 0, binding = 4, rgba32f) uniform readonly image2D albedoB;
+layout(set = 0, binding = 5, rgba32f) uniform readonly image2D emission;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D beauty;
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    const vec3 light = imageLoad(scattered, at).rgb + finiteOr(imageLoad(emission, at).rgb, vec3(0.0));
-    const uint failure = imageLoad(disocclusion, at).x;
-    imageStore(beauty, at, vec4(params.showDisocclusion != 0u ? colorOf(failure, vec3(luminance(light))) : light, 1.0));
+    vec4 albedo = imageLoad(albedoA, at);
+    if (ALBEDOS == 2u) albedo += imageLoad(albedoB, at);
+    vec3 light = LOAD_LIGHT(lightA, at) * modulation(albedo, params.minAlbedo);
+    if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(imageLoad(albedoB, at), params.minAlbedo);
+    if (EMISSION) light += finiteOr(imageLoad(emission, at).rgb, vec3(0.0));
+    imageStore(beauty, at, vec4(light, 1.0));
 }

@@ -1,23 +1,39 @@
 #include "denoise/stages/compose/compose.h"
 
 #include "compose.comp.h"
+#include "compose_buffers.comp.h"
+#include "compose_float.comp.h"
 #include "denoise/stages/compose/compose_params.h"
 
 namespace limpid::denoise {
+namespace {
 
-gpu::ImageHandle compose(gpu::FrameGraph& graph, gpu::ImageHandle scattered, gpu::ImageHandle emission,
-                         gpu::ImageHandle disocclusion, bool showDisocclusion) {
-    const gpu::Extent extent = graph.extent(scattered);
-    const gpu::ImageHandle beauty = graph.transient("compose/beauty", gpu::Format::RGBA32Float, extent);
-    const ComposeParams params{extent.width, extent.height, showDisocclusion ? 1u : 0u};
-    graph.dispatch({.pass = "compose",
-                    .shader = shaders::compose_comp,
-                    .bindings = {{"scattered", scattered},
-                                 {"emission", emission},
-                                 {"disocclusion", disocclusion},
+const gpu::ShaderCode& shaderFor(const gpu::FrameGraph& graph, gpu::ImageHandle light) {
+    if (graph.format(light) == gpu::Format::RGBA32Float) return shaders::compose_float_comp;
+    return graph.backing(light) == gpu::Backing::Buffer ? shaders::compose_buffers_comp
+                                                        : shaders::compose_comp;
+}
+
+}  // namespace
+
+gpu::ImageHandle compose(gpu::FrameGraph& graph, const std::string& pass, const ComposeInput& input) {
+    const gpu::Extent extent = graph.extent(input.light);
+    const gpu::ImageHandle beauty = graph.transient(pass, gpu::Format::RGBA32Float, extent);
+    const auto orAny = [&](gpu::ImageHandle image, gpu::ImageHandle other) { return image ? image : other; };
+    const ComposeParams params{extent.width, extent.height, input.minAlbedo};
+    const bool both = input.secondAlbedo && !input.second;
+    graph.dispatch({.pass = pass,
+                    .shader = shaderFor(graph, input.light),
+                    .bindings = {{"lightA", input.light},
+                                 {"lightB", orAny(input.second, input.light)},
+                                 {"albedoA", input.albedo},
+                                 {"albedoB", orAny(input.secondAlbedo, input.albedo)},
+                                 {"emission", orAny(input.emission, input.albedo)},
                                  {"beauty", beauty}},
                     .params = gpu::paramsOf(params),
-                    .constants = {},
+                    .constants = {{"ALBEDOS", both ? 2u : 1u},
+                                  {"SECOND", input.second ? 1u : 0u},
+                                  {"EMISSION", input.emission ? 1u : 0u}},
                     .extent = extent});
     return beauty;
 }

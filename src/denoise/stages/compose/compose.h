@@ -1,13 +1,23 @@
-// The last step of methods that do not separate the albedo: scattered light plus emission.
+// The compose stage, the last step of every method: filtered light times its albedo, plus emission.
 #pragma once
+
+#include <string>
 
 #include "gpu/graph/frame_graph.h"
 
 namespace limpid::denoise {
 
-/// Beauty, rgba32f, alpha 1. `scattered` and `emission` are rgba32f; `disocclusion` is
-/// TemporalImages::disocclusion; with `showDisocclusion` its causes are shown as colours instead of light.
-gpu::ImageHandle compose(gpu::FrameGraph& graph, gpu::ImageHandle scattered, gpu::ImageHandle emission,
-                         gpu::ImageHandle disocclusion, bool showDisocclusion);
+/// Light images are halves as in filter_image.glsl (Format::RGBA16Float), or RGBA32Float images. Other images
+/// are RGBA32Float.
+struct ComposeInput {
+    gpu::ImageHandle light, albedo;
+    gpu::ImageHandle second,
+        secondAlbedo;           ///< `second` empty: `light` was reflected by the sum of both albedos
+    gpu::ImageHandle emission;  ///< empty: none is added
+    float minAlbedo = 0.0f;     ///< 0: light contains its albedo; the albedo images are not read
+};
+
+/// Returns radiance, rgba32f, alpha 1. Pass `pass`.
+gpu::ImageHandle compose(gpu::FrameGraph& graph, const std::string& pass, const ComposeInput& input);
 
 }  // namespace limpid::denoise

@@ -10,7 +10,7 @@ namespace limpid::denoise {
 struct ComposeParams {
     uint width;
     uint height;
-    uint showDisocclusion;  // show colours instead of light where there is no history
+    float minAlbedo;  // as light was demodulated; 0: it was not
 };
 
 #ifdef __cplusplus

@@ -1,15 +1,14 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// What later passes, and the next frame, ask of a pixel's surface.
+// Packs what later passes, and the next frame, ask of a pixel's surface. docs/denoising.md, SVGF, step 1.
 #include "denoise/stages/guides.glsl"
-#include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    SvgfSizeParams params;
-};
+    uint width, height;
+} params;
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D normal;
 layout(set = 0, binding = 2, rgba32f) uniform readonly image2D depth;
 layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D ids;

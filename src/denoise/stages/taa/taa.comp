@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 // Temporal anti-aliasing. docs/denoising.md.
-#include "denoise/stages/reprojection.glsl"
+#include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/taa/taa_params.h"
 #include "shaders/common/filter_image.glsl"
 

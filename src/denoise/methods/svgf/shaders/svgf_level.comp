@@ -1,15 +1,14 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// One level of the variance-guided a-trous filter. docs/denoising.md, SVGF, step 6; and of the
-// last one, step 7.
+// One level of the variance-guided a-trous filter: docs/denoising.md, SVGF, step 6. The last level also stabilises: step 7.
 #extension GL_EXT_control_flow_attributes : require
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
 layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
-layout(constant_id = 5) const bool STABILISE = false;  // a mean with the stable light of before
-layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1
+layout(constant_id = 5) const bool STABILISE = false;  // the result is a mean with the stabilised light
+layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1: pixels of a block are neighbours
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -17,25 +16,28 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_UINT2(1, surfaces);
 READ_HALF4(2, signal);
 WRITE_HALF4(3, filtered);
-READ_HALF4(4, stablePast);  // light | weight of this frame's beside it
+READ_HALF4(4, stablePast);  // stabilised light | weight of this frame in its mean
 
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
 
-const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
+#include "denoise/stages/atrous/kernel.glsl"
+
+const ivec2 BLOCK = ivec2(1, SVGF_COLUMN);
+const int REACH = WIDE ? 2 : 1;
 const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
 const float LOG2_E = 1.44269504;
 
-// Of the pixels that an invocation filters and those next to them; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
+// Deviations of the block's pixels and of those next to them; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
 float deviationsAround[3 * (SVGF_COLUMN + 2)];
 
 struct Tap {
-    vec4 light;  // and deviation; negative: nothing is seen
+    vec4 light;  // and its deviation; negative: nothing is seen
     float luminance;
     Surface surface;
     bool counts;
 };
 
-// Opposite taps of the 5x5 have the same number, from 1 on: PAIRS of them.
+// Opposite taps of the 5x5 form a pair, numbered from 1 to PAIRS.
 const int PAIRS = 12;
 
 int pairOf(ivec2 from) {
@@ -46,28 +48,24 @@ ivec2 tapOf(int pair) {
     return ivec2((pair + 2) % 5 - 2, (pair + 2) / 5);
 }
 
-bool reaches(ivec2 from) {
-    return max(abs(from.x), abs(from.y)) <= (WIDE ? 2 : 1);
-}
-
 struct Centre {
     SurfaceCentre surface;
-    float perDepth[PAIRS + 1];  // of pairs
+    float perDepth[PAIRS + 1];  // by pair
     float luminance, luminanceScale;
-    vec4 sum;  // of weighted light; of weights
-    float squares;
+    vec4 sum;       // of weighted light, and of the weights
+    float squares;  // sum of squared weighted deviations
     bool seen;
     vec4 stablePast;
 };
 
-/// Of differences of luminance, for an exponent of 2.
+/// Scales a difference of luminance to an exponent of 2.
 float luminanceScaleOf(float luminance, float deviation) {
     return LOG2_E / (params.phiColor * deviation + SVGF_LUMINANCE_FLOOR * abs(luminance) + 1e-6);
 }
 
-/// Of a tap `from` the centre.
+/// The weight of a tap by its offset.
 float kernel(ivec2 from) {
-    return WIDE ? B3[abs(from.x)] * B3[abs(from.y)] : TENT[abs(from.x)] * TENT[abs(from.y)];
+    return WIDE ? splineWeight(from) : TENT[abs(from.x)] * TENT[abs(from.y)];
 }
 
 ivec2 nearestInside(ivec2 at) {
@@ -80,7 +78,7 @@ Tap loadTap(ivec2 at) {
     return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
 }
 
-/// Negative where nothing is seen, and outside.
+/// Negative where nothing is seen, and outside of the picture.
 float deviationAt(ivec2 at) {
     const ivec2 inside = nearestInside(at);
     const float deviation = LOAD_HALF4_ALPHA(signal, inside);
@@ -92,12 +90,12 @@ void loadDeviationsAround(ivec2 first) {
         deviationsAround[i] = deviationAt(first - 1 + ivec2(i % 3, i / 3));
 }
 
-/// `number`: in the column.
+/// `at` is the pixel with this number in the block.
 float deviationNextTo(ivec2 at, int number, ivec2 from) {
     return SIDE_BY_SIDE ? deviationsAround[(number + 1 + from.y) * 3 + 1 + from.x] : deviationAt(at + from);
 }
 
-/// A pixel's own variance is as noisy as its light: that of the 3x3 around it.
+/// The root of the mean variance of the 3x3 pixels: a single pixel's variance is as noisy as its light.
 float blurredDeviation(ivec2 at, int number, float own) {
     if (!BLUR_VARIANCE) return own;
     vec2 sum = 4.0 * vec2(own * own, 1.0);
@@ -117,7 +115,8 @@ Centre begin(ivec2 at, int number) {
     Centre centre;
     centre.surface = centreOf(tap.surface, at);
     [[unroll]] for (int pair = 1; pair <= PAIRS; ++pair) {
-        if (reaches(tapOf(pair))) centre.perDepth[pair] = perDepthOf(centre.surface, tapOf(pair));
+        const ivec2 from = tapOf(pair);
+        if (max(abs(from.x), abs(from.y)) <= REACH) centre.perDepth[pair] = perDepthOf(centre.surface, from);
     }
     centre.seen = tap.counts;
     centre.luminance = tap.luminance;
@@ -139,7 +138,7 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     centre.squares += deviation * deviation;
 }
 
-/// Stabilised light: a mean over frames, as far as the filter's own noise explains that they differ.
+/// Stabilised light: a mean over frames, as far as the noise that the filter left explains their difference.
 vec3 mixedWithPast(vec4 now, vec4 past) {
     const float l = luminance(now.rgb), change = abs(luminance(past.rgb) - l);
     const float noise = params.stabilisationNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
@@ -153,35 +152,17 @@ void store(ivec2 at, Centre centre) {
     STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
 }
 
-// An invocation filters SVGF_COLUMN pixels that lie a step apart and share taps: of the 3 x 9 of three pixels 15 are different
-// (WIDE: of 75, 35).
+bool isFiltered(Centre centre) {
+    return centre.seen;
+}
+
+#include "denoise/stages/atrous/level.glsl"
+
 void main() {
-    const ivec2 invocation = ivec2(gl_GlobalInvocationID.xy);
-    const int power = findMSB(params.step);  // steps are powers of 2, and shifts cheaper than divisions
-    const int row = (invocation.y >> power) * (SVGF_COLUMN << power) + (invocation.y & (params.step - 1));
-    const ivec2 first = ivec2(invocation.x, row);
-    if (first.x >= int(params.width) || first.y >= int(params.height)) return;
+    const ivec2 first = firstOfBlock(ivec2(gl_GlobalInvocationID.xy));
+    if (!inPicture(first)) return;
     if (BLUR_VARIANCE && SIDE_BY_SIDE) loadDeviationsAround(first);
-    Centre centres[SVGF_COLUMN];
-    bool anySeen = false;
-    [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number) {
-        centres[number] = begin(first + ivec2(0, params.step * number), number);
-        anySeen = anySeen || centres[number].seen;
-    }
-    if (anySeen) {
-        [[unroll]] for (int j = -2; j < SVGF_COLUMN + 2; ++j) {
-            [[unroll]] for (int i = -2; i <= 2; ++i) {
-                if (!WIDE && (abs(i) > 1 || j < -1 || j > SVGF_COLUMN)) continue;
-                const Tap tap = loadTap(first + params.step * ivec2(i, j));
-                [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number) {
-                    const ivec2 from = ivec2(i, j - number);
-                    if (reaches(from) && from != ivec2(0)) addTo(centres[number], tap, from);
-                }
-            }
-        }
-    }
-    [[unroll]] for (int number = 0; number < SVGF_COLUMN; ++number)
-        store(first + ivec2(0, params.step * number), centres[number]);
+    filterBlock(first);
 }
 
 #ifdef LIMPID_FILTER_BUFFERS

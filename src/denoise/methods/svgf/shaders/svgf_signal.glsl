@@ -1,6 +1,6 @@
-// What reprojection and anti-lag both need of one signal: this frame's light, and what follows from the moments. Declare
-// `params` before, with width, height and demodulate; bindings 1 to 4 and constants 0 and 2 are taken.
-// docs/denoising.md, SVGF, steps 3 and 4.
+// This frame's light of one signal, and the deviation that follows from its moments. Used by reprojection and anti-lag.
+// The including shader declares `params` beforehand, with width, height and minAlbedo; bindings 1 to 4 and constants 0 and
+// 2 are used here. docs/denoising.md, SVGF, steps 3 and 4.
 #include "denoise/stages/guides.glsl"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
@@ -23,11 +23,11 @@ vec3 lightAt(ivec2 at) {
 vec3 demodulated(vec3 light, ivec2 at) {
     vec4 albedo = imageLoad(albedoA, at);
     if (SUM_OF_TWO) albedo += imageLoad(albedoB, at);
-    const vec3 x = finiteOr(light, vec3(0.0)) / (params.demodulate != 0u ? modulation(albedo) : vec3(1.0));
+    const vec3 x = finiteOr(light, vec3(0.0)) / modulation(albedo, params.minAlbedo);
     return clamp(x, -MAX_HALF, MAX_HALF);
 }
 
-/// What stands beside the color.
+/// The fourth component of `color`: the expected deviation of the luminance, or SVGF_STILL_YOUNG.
 float deviationOf(vec4 moments) {
     if (moments.w < SVGF_YOUNG) return SVGF_STILL_YOUNG;
     return min(svgfBoost(BOOST, moments.w) * sqrt(max(moments.y - moments.x * moments.x, 0.0)), MAX_HALF);

@@ -1,0 +1,27 @@
+#include "denoise/stages/surfaces/surfaces.h"
+
+#include "surfaces.comp.h"
+#include "surfaces_buffers.comp.h"
+
+namespace limpid::denoise {
+
+Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input) {
+    const gpu::Extent extent = graph.extent(input.depth);
+    const Surfaces result{
+        graph.history("surfaces/normal_distance", gpu::Format::RG32Uint, extent, input.filters),
+        graph.history("surfaces/instances", gpu::Format::R32Uint, extent)};
+    const bool buffers = input.filters == gpu::Backing::Buffer;
+    graph.dispatch({.pass = "surfaces",
+                    .shader = buffers ? shaders::surfaces_buffers_comp : shaders::surfaces_comp,
+                    .bindings = {{"normal", input.normal},
+                                 {"depth", input.depth},
+                                 {"ids", input.ids},
+                                 {"surfaces", result.surfaces.current},
+                                 {"instances", result.instances.current}},
+                    .params = gpu::paramsOf(extent),
+                    .constants = {},
+                    .extent = extent});
+    return result;
+}
+
+}  // namespace limpid::denoise
