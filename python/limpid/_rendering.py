@@ -74,7 +74,8 @@ def render(scene, width, height, spp=64, **options):
     denoiser, color is their sum. albedo, albedo_specular: (h, w, 3). normal, previous_normal: (h, w, 3), world space,
     0 where nothing is seen. depth: (h, w), distance from the eye, world units, 1e10 where nothing is seen.
     motion, reflection_motion: (h, w, 3): x and y in pixels and z in world units, previous minus now, 1e10 where there
-    is none. id: (h, w) uint32: number of the object plus one; 0: nothing. diffuse_variance and so on, of specular,
+    is none. roughness: (h, w). hit_distance: (h, w), world units, of reflected rays: 1e9: the sky, 0: unknown.
+    id: (h, w) uint32: number of the object plus one; 0: nothing. diffuse_variance and so on, of specular,
     albedo, normal and depth: (h, w), variance of the mean, 0 for one sample. view, projection: (4, 4) float64, of
     the camera.
     They go into Denoiser.denoise() as they are, with motion_depth="distance".
@@ -82,17 +83,18 @@ def render(scene, width, height, spp=64, **options):
     return _Renderer(scene, width, height, spp, default_jitter="pixel", **options).render(0)
 
 
-def render_sequence(scene, width, height, frames, spp=1, *, fps=30.0, animation=None, camera_path=None, **options):
+def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, animation=None, camera_path=None,
+                    **options):
     """Path-traces the frames of a moving scene: a generator of what render() returns.
 
-    frames: how many. fps: frames per second. animation: a clip of the scene, by name or number, or "all"; default:
+    frames: how many. first: the first of them that is rendered. fps: frames per second. animation: a clip of the scene, by name or number, or "all"; default:
     the first, if there is one; "none": at rest. camera_path: "orbit", "dolly", "shake", or a JSON file
     (docs/animation.md).
     options: those of render(). Frames of denoisers build on each other.
     """
     renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
                          camera_path=camera_path, **options)
-    return (renderer.render(frame) for frame in range(frames))
+    return (renderer.render(frame) for frame in range(first, frames))
 
 
 def builtin_scenes():
@@ -123,6 +125,8 @@ class _Renderer:
 
     def render(self, frame):
         layers, camera = self._handle.render(frame)
+        if "hit_distance" in layers:  # 1e10 in files means unknown, but a ray into the sky for denoise()
+            layers["hit_distance"][layers["hit_distance"] >= 1e10] = 0.0
         layers["view"], layers["projection"] = _camera.matrices_of(camera)
         return layers
 

@@ -84,6 +84,8 @@ constexpr Layer colors[] = {{"color", "", "RGB"},
                             {"depth", "depth", "Z"},
                             {"motion", "motion", "XYZ"},
                             {"reflection_motion", "reflectionMotion", "XYZ"},
+                            {"roughness", "roughness", "R"},
+                            {"hit_distance", "hitDistance", "D"},
                             {"id", "id", "I"}};
 constexpr const char* varianceOf[] = {"diffuse", "specular", "albedo", "normal", "depth"};
 

@@ -206,6 +206,30 @@ TEST_F(MirrorTest, ReflectionsMoveAsWhatTheMirrorShows) {
     EXPECT_GT(seen, 1000u);
 }
 
+TEST_F(MirrorTest, ReflectedRaysAreAsLongAsWhatTheMirrorShowsIsFarBehindIt) {
+    const scene::Scene scene = mirrorScene(0.0f);
+    const RenderedLayers through = layersOf(scene, true), own = layersOf(scene, false);
+    size_t seen = 0;
+    for (size_t p = 0; p < size_t{extent.width} * extent.height; ++p) {
+        if (own.ids[2 * p] != mirror) continue;
+        ++seen;
+        EXPECT_EQ(own.roughness[4 * p], 0.0f);
+        ASSERT_EQ(own.hitDistance[4 * p + 1], 1.0f);
+        if (through.depth[4 * p + 1] == 0.0f) {
+            EXPECT_EQ(own.hitDistance[4 * p], 1e9f) << "the sky";
+        } else {
+            EXPECT_NEAR(own.depth[4 * p] + own.hitDistance[4 * p], through.depth[4 * p], 1e-3f);
+        }
+        if (HasFailure()) FAIL() << "pixel " << p % extent.width << ", " << p / extent.width;
+    }
+    EXPECT_GT(seen, 1000u);
+    const RenderedLayers rough = layersOf(mirrorScene(0.3f), false);
+    for (size_t p = 0; p < size_t{extent.width} * extent.height; ++p) {
+        if (rough.ids[2 * p] != mirror) continue;
+        EXPECT_NEAR(rough.roughness[4 * p], 0.3f, 1e-4f);
+    }
+}
+
 /// The picture of lab-mirror and its reflection, in frames of one sample with a moving camera.
 class MirroredPictureTest : public SequenceTest {
   protected:

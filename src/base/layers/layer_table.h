@@ -108,6 +108,12 @@ inline constexpr float noValue = 1e10f;
     LAYER(reflectionMotion,                                                                                       \
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid,                                      \
           .help = "likewise, of what flat smooth surfaces reflect; 1e10: unknown")                                \
+    LAYER(roughness,                                                                                              \
+          .suffixes = "R", .ofFirstHit = true,                                                                    \
+          .help = "roughness of the specular lobe; 0 where nothing is hit")                                       \
+    LAYER(hitDistance,                                                                                            \
+          .suffixes = "D", .stored = Stored::Float, .mean = Mean::OfValid,                                        \
+          .help = "length of reflected rays to what they hit, world units; 1e9: nothing; 1e10: unknown")          \
     LAYER(ids,                                                                                                    \
           .name = "id", .suffixes = "I", .stored = Stored::Uint, .mean = Mean::FirstSample, .ofFirstHit = true,   \
           .need = Need::Advised, .without = "objects that touch share their history",                             \

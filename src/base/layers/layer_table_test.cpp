@@ -83,9 +83,10 @@ TEST(LayerTable, HelpNamesTheLayersWithVariance) {
 TEST(LayerTable, NamesInFilesStay) {
     std::vector<std::string_view> names;
     for (const LayerInfo& layer : layerTable) names.push_back(layer.name);
-    EXPECT_THAT(names, testing::IsSupersetOf({"beauty", "diffuse", "specular", "emission", "albedo",
-                                              "albedoSpecular", "normal", "prevNormal", "depth", "motion",
-                                              "reflectionMotion", "id", "variance", "samples"}));
+    EXPECT_THAT(
+        names, testing::IsSupersetOf({"beauty", "diffuse", "specular", "emission", "albedo", "albedoSpecular",
+                                      "normal", "prevNormal", "depth", "motion", "reflectionMotion",
+                                      "roughness", "hitDistance", "id", "variance", "samples"}));
 }
 
 TEST(LayerSet, HasAMemberForEachLayer) {

@@ -102,7 +102,8 @@ void ambientOcclusionSignal(gpu::FrameGraph& graph, gpu::ImageHandle openness, g
                                  {"emission", into.emission},
                                  {"albedo", into.albedo},
                                  {"albedoSpecular", into.albedoSpecular},
-                                 {"reflectionMotion", into.reflectionMotion}},
+                                 {"reflectionMotion", into.reflectionMotion},
+                                 {"hitDistance", into.hitDistance}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
                     .extent = extent});

@@ -47,7 +47,7 @@ struct AmbientOcclusionSignal {
     gpu::ImageHandle diffuse;   ///< the unoccluded share; 0 where the camera ray misses
     gpu::ImageHandle albedo;    ///< 1; 0 where the camera ray misses
     gpu::ImageHandle emission;  ///< 1 where the camera ray misses, else 0
-    gpu::ImageHandle specular, albedoSpecular, reflectionMotion;  ///< 0
+    gpu::ImageHandle specular, albedoSpecular, reflectionMotion, hitDistance;  ///< 0
 };
 /// `openness`: result of ambientOcclusion(). `depth`: from its G-buffer.
 void ambientOcclusionSignal(gpu::FrameGraph& graph, gpu::ImageHandle openness, gpu::ImageHandle depth,

@@ -17,6 +17,7 @@ layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D emission;
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D albedo;
 layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D albedoSpecular;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D reflectionMotion;
+layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D hitDistance;
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -30,4 +31,5 @@ void main() {
     imageStore(specular, at, vec4(0.0));
     imageStore(albedoSpecular, at, vec4(0.0));
     imageStore(reflectionMotion, at, vec4(0.0));
+    imageStore(hitDistance, at, vec4(0.0));
 }

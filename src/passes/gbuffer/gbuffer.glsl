@@ -25,6 +25,7 @@ layout(set = 0, binding = 29, rgba32f) uniform writeonly image2D position;      
                                                                                    // miss
 layout(set = 0, binding = 30, rgba32f) uniform writeonly image2D geometricNormal;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D ids;              // instance | material
+layout(set = 0, binding = 34, rgba32f) uniform writeonly image2D roughness;
 layout(set = 0, binding = 32, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 33, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
 
@@ -120,6 +121,7 @@ void tracePixel(uvec2 pixel) {
     imageStore(previousNormal, at, vec4(first.previous.normal, 0.0));
     imageStore(position, at, first.hit ? vec4(first.position, seen.magnitude) : vec4(0.0));
     imageStore(geometricNormal, at, vec4(seen.geometricNormal, 0.0));
+    imageStore(roughness, at, vec4(first.roughness, 0.0, 0.0, 0.0));
     imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(seen.rays, rejected ? 1u : 0u, 0u, 0u));
 }

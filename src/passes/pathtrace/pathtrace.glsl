@@ -128,9 +128,11 @@ struct FirstSight {
     float traveled;
     Mirror mirror;     // the camera ray's hit, once it has been scattered
     float reflection;  // reflectionShare() if the scattered ray follows a reflection
+    bool reflects;     // the ray scattered at the primary vertex is reflected specularly
 };
 
 void missed(inout FirstSight sight, Path path, uint depth) {
+    if (SPLIT_LOBES && depth == path.primary + 1u && sight.reflects) sight.hit.hitDistance = vec2(HIT_NOTHING, 1.0);
     if (depth != 1u) return;
     const FirstHit sky = noHit(path.ray.direction);
     if (path.primary == 1u) sight.hit = shownBy(sight.mirror, sky, path.throughput);
@@ -140,6 +142,7 @@ void missed(inout FirstSight sight, Path path, uint depth) {
 }
 
 void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
+    if (SPLIT_LOBES && depth == path.primary + 1u && sight.reflects) sight.hit.hitDistance = vec2(hit.t, 1.0);
     if (depth == path.primary) {
         PreviousPoint previous = PreviousPoint(surface.position, surface.normal);
         if (SPLIT_LOBES) previous = previousPoint(hit, surface, params.scene);
@@ -155,12 +158,14 @@ void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf,
     }
 }
 
-/// Records the scattering of the camera ray.
-void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bsdf) {
+/// Records the scattering at the primary vertex, or at a mirror before it.
+void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bsdf, uint depth) {
+    sight.reflects = luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0;
+    if (depth > 0u) return;
     sight.mirror = Mirror(surface.position, surface.normal, sight.hit.previous);
     if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
         path.primary = 1u;
-    } else if (luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0) {
+    } else if (sight.reflects) {
         sight.reflection = reflectionShare(surface);
     }
 }
@@ -185,6 +190,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
     FirstSight sight;
     sight.hit = noHit(ray.direction);
     sight.traveled = sight.reflection = 0.0;
+    sight.reflects = false;
     uint culled = 0u;
     for (uint depth = 0u; depth <= params.maxDepth + path.passages; ++depth) {
         ++path.rays;
@@ -215,7 +221,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         if (depth == params.maxDepth + path.passages || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
-        if (SPLIT_LOBES && depth == 0u) scattered(sight, path, surface, bsdf);
+        if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, surface, bsdf, depth);
         if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     }
     first = sight.hit;

@@ -17,6 +17,8 @@ layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum
                                                                           // number of samples
 layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
 layout(set = 0, binding = 33, rgba32f) uniform writeonly image2D reflectionMotion;  // likewise
+layout(set = 0, binding = 34, rgba32f) uniform writeonly image2D roughness;
+layout(set = 0, binding = 35, rgba32f) uniform writeonly image2D hitDistance;  // sum over valid samples | their number
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
 layout(set = 0, binding = 30, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
@@ -46,6 +48,8 @@ void tracePixel(uvec2 pixel) {
     vec4 albedoMoments = vec4(0.0), albedoSpecularMoments = vec4(0.0), normalMoments = vec4(0.0);
     vec4 depthMoments = vec4(0.0), motionSum = vec4(0.0), reflectionMotionSum = vec4(0.0);
     vec3 previousNormalSum = vec3(0.0);
+    vec2 hitDistanceSum = vec2(0.0);
+    float roughnessSum = 0.0;
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
@@ -65,6 +69,8 @@ void tracePixel(uvec2 pixel) {
         motionSum += motionOf(first, params.view);
         reflectionMotionSum += first.reflectionMotion;
         previousNormalSum += first.previous.normal;
+        hitDistanceSum += first.hitDistance;
+        roughnessSum += first.roughness;
         if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     }
     const vec4 perSample = vec4(1.0, 1.0, 1.0, 1.0 / float(params.samples));
@@ -78,5 +84,7 @@ void tracePixel(uvec2 pixel) {
     imageStore(motion, at, motionSum / float(params.samples));
     imageStore(reflectionMotion, at, reflectionMotionSum / float(params.samples));
     imageStore(previousNormal, at, vec4(previousNormalSum / float(params.samples), 0.0));
+    imageStore(roughness, at, vec4(roughnessSum / float(params.samples), 0.0, 0.0, 0.0));
+    imageStore(hitDistance, at, vec4(hitDistanceSum / float(params.samples), 0.0, 0.0));
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));
 }

@@ -109,6 +109,7 @@ GBufferImages withGuides(GBufferImages images, const PathtraceLayers& layers) {
     images.depth = layers.depth;
     images.motion = layers.motion;
     images.previousNormal = layers.previousNormal;
+    images.roughness = layers.roughness;
     images.ids = layers.ids;
     images.counters = layers.counters;
     return images;
@@ -135,7 +136,8 @@ Launch occlusionLaunch(FrameGraph& graph, const scene::GpuScene& scene, const Re
                                 .emission = into.emission,
                                 .specular = into.specular,
                                 .albedoSpecular = into.albedoSpecular,
-                                .reflectionMotion = into.reflectionMotion});
+                                .reflectionMotion = into.reflectionMotion,
+                                .hitDistance = into.hitDistance});
     };
 }
 

@@ -83,7 +83,7 @@ void addVariance(const LayeredImage& file, const LayerInfo& layer, std::vector<f
 
 /// True if a layer with a share of samples has a value here.
 bool isValue(const LayerInfo& layer, const float* components) {
-    if (layer.mean == Mean::OfHits) return components[0] > 0.0f && components[0] < farAway;
+    if (layer.suffixes.size() == 1) return components[0] > 0.0f && components[0] < farAway;
     return image::validMotion(components[0], components[1]) && std::isfinite(components[2]);
 }
 

@@ -9,6 +9,8 @@
 /// The maximum number of back faces of single-sided surfaces that a camera ray passes through.
 const uint MAX_CULLED = 64u;
 
+const float HIT_NOTHING = 1e9;
+
 struct FirstHit {
     bool hit;
     vec3 position;  // for a miss: the direction
@@ -17,16 +19,19 @@ struct FirstHit {
     uvec2 ids;                // instance, material
     PreviousPoint previous;  // the same point in the previous frame
     vec4 reflectionMotion;   // see shaders/common/reflection.glsl; 0: unknown
+    float roughness;
+    vec2 hitDistance;  // of the reflected ray, HIT_NOTHING for the sky; 1 if it is known
 };
 
 FirstHit noHit(vec3 direction) {
     return FirstHit(false, direction, vec3(0.0), vec3(0.0), vec3(0.0), 0.0, uvec2(NONE),
-                    PreviousPoint(direction, vec3(0.0)), vec4(0.0));
+                    PreviousPoint(direction, vec3(0.0)), vec4(0.0), 0.0, vec2(0.0));
 }
 
 FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth, PreviousPoint previous) {
     return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
-                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous, vec4(0.0));
+                    specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous, vec4(0.0),
+                    surface.roughness, vec2(0.0));
 }
 
 /// In glTF, the back of a single-sided material is invisible to the camera but still blocks light. Returns
