@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What leaving an input out costs: time of all passes, and the error of the pictures (docs/embedding.md).
+"""Measures what leaving an input out costs: time of all passes, and the error of the pictures (docs/embedding.md).
 
 Renders sequences with one sample per pixel and their references, denoises them with and without each input through
 the library's C interface (Python module limpid), and prints a Markdown table of differences to all inputs.
 
-    PYTHONPATH=build/release/python bench/inputs.py [--device NAME] [--width W --height H] [--frames N] [--spp N]
+    PYTHONPATH=build/release/python bench/inputs.py [--device NAME] [--width W --height H] [--frames N] [--spp N] [--scene NAME]
 """
 import argparse
 
@@ -14,7 +14,11 @@ import limpid
 
 SEQUENCES = (("builtin:lab-textures", "dolly"), ("builtin:cornell-moving", "shake"), ("builtin:lab-mirror", "orbit"),
              ("builtin:lab-disocclusion", "shake"))
-OPTIONAL = ("albedo", "albedo_specular", "emission", "motion", "previous_normal", "reflection_motion", "id")
+OPTIONAL = ("albedo", "albedo_specular", "emission", "motion", "previous_normal", "reflection_motion", "roughness",
+            "hit_distance", "id")
+# What is left out; with hit distances, the motion of reflections is computed if it is missing.
+CASES = ((), ("albedo",), ("albedo_specular",), ("emission",), ("motion",), ("previous_normal",), ("reflection_motion",),
+         ("reflection_motion", "hit_distance"), ("id",))
 COMPARED = 2  # the last frames of a sequence
 
 
@@ -30,9 +34,10 @@ def denoised(frames, method, signals, without, device):
     pictures, times = [], []
     for frame in frames:
         given = inputs_of(frame)
-        given.pop(without, None)
+        for name in without:
+            given.pop(name, None)
         light = {"radiance": frame["diffuse"], "specular": frame["specular"]}
-        if without == "emission":  # a renderer that does not part it has it in its radiance
+        if "emission" in without:  # a renderer that does not separate it has it in its radiance
             light["radiance"] = frame["diffuse"] + frame["emission"]
         if signals == 1:
             light = {"radiance": light["radiance"] + frame["specular"]}
@@ -49,36 +54,41 @@ def scores(pictures, references):
 def measure(options):
     rows = {}
     for scene, path in SEQUENCES:
+        if options.scene and options.scene not in scene:
+            continue
         size = (scene, options.width, options.height)
         shared = {"camera_path": path, "device": options.device}
         noisy = list(limpid.render_sequence(*size, frames=options.frames, spp=1, **shared))
         references = [frame["color"] for frame in limpid.render_sequence(
-            *size, frames=options.frames, spp=options.spp, jitter="off", seed=1, **shared)][-COMPARED:]
+            *size, frames=options.frames, first=options.frames - COMPARED, spp=options.spp, jitter="off", seed=1,
+            **shared)]
         for method, signals in (("svgf", 1), ("svgf", 2), ("atrous", 1)):
-            for without in ("", *OPTIONAL):
+            for without in CASES:
                 pictures, time = denoised(noisy, method, signals, without, options.device)
                 result = scores(pictures, references)
                 rows[scene, method, signals, without] = (result["psnr"], result["flip"], time)
-                print(scene, method, signals, without or "all", *("%.4f" % v for v in rows[
+                print(scene, method, signals, "+".join(without) or "all", *("%.4f" % v for v in rows[
                     scene, method, signals, without]), flush=True)
     return rows
 
 
 def print_table(rows):
-    print("| without | method | " + " | ".join(scene.removeprefix("builtin:") for scene, _ in SEQUENCES) + " |")
-    print("|---|---|" + "---|" * len(SEQUENCES))
-    for without in OPTIONAL:
+    scenes = list(dict.fromkeys(scene for scene, *_ in rows))
+    print("| without | method | " + " | ".join(scene.removeprefix("builtin:") for scene in scenes) + " |")
+    print("|---|---|" + "---|" * len(scenes))
+    for without in CASES[1:]:
         for method, signals in (("svgf", 1), ("svgf", 2), ("atrous", 1)):
             cells = []
-            for scene, _ in SEQUENCES:
-                full, less = rows[scene, method, signals, ""], rows[scene, method, signals, without]
+            for scene in scenes:
+                full, less = rows[scene, method, signals, ()], rows[scene, method, signals, without]
                 cells.append("%+.2f dB, %+.4f, %+.3f ms" % tuple(b - a for a, b in zip(full, less)))
-            print(f"| {without} | {method}, {signals} | " + " | ".join(cells) + " |")
+            print(f"| {', '.join(without)} | {method}, {signals} | " + " | ".join(cells) + " |")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device")
+    parser.add_argument("--scene", default="", help="only sequences whose name contains this")
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--height", type=int, default=360)
     parser.add_argument("--frames", type=int, default=32)

@@ -128,7 +128,13 @@ typedef enum limpid_input {
     LIMPID_INPUT_PREVIOUS_NORMAL = 8,   /* like NORMAL, for the same surface point in the previous frame */
     LIMPID_INPUT_REFLECTION_MOTION = 9, /* like MOTION, for the reflection in a flat mirror */
     LIMPID_INPUT_ID = 10,               /* r: a number for each object (Vulkan: unsigned integers) */
-    LIMPID_INPUT_MAX = 32               /* room for more */
+    /* r: roughness of the specular lobe, 0 to 1: the square root of the microfacet distribution's alpha */
+    LIMPID_INPUT_ROUGHNESS = 11,
+    /* r: length of the ray that found the specular light, from the surface to its first hit, world units. 1e9 or more:
+     * it hit nothing; 0, negative or NaN: unknown. Needs ROUGHNESS. If REFLECTION_MOTION is missing, the motion of
+     * reflections is computed from it. */
+    LIMPID_INPUT_HIT_DISTANCE = 12,
+    LIMPID_INPUT_MAX = 32 /* room for more */
 } limpid_input;
 
 typedef enum limpid_output {

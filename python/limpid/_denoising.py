@@ -10,7 +10,7 @@ from limpid import _arrays, _camera, _denoise
 # The accepted component counts of images that may have more components than are read.
 _COMPONENTS = {
     "radiance": (3, 4), "specular": (3, 4), "emission": (3, 4), "albedo": (3, 4), "albedo_specular": (3, 4),
-    "depth": (1,),
+    "depth": (1,), "roughness": (1,), "hit_distance": (1,),
 }
 # The library's floats have 32 bits: print 0.2, not 0.20000000298.
 _TYPES = {"bool": bool, "int": int, "float": lambda value: float(str(np.float32(value)))}
@@ -188,8 +188,9 @@ class Denoiser:
         return self._device
 
     def denoise(self, radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None,
-                motion=None, previous_normal=None, reflection_motion=None, id=None, view=None, projection=None,
-                previous_view=None, previous_projection=None, jitter=(0.0, 0.0), reset=False, outputs="color"):
+                motion=None, previous_normal=None, reflection_motion=None, roughness=None, hit_distance=None, id=None,
+                view=None, projection=None, previous_view=None, previous_projection=None, jitter=(0.0, 0.0),
+                reset=False, outputs="color"):
         """Denoises the next frame of the sequence and returns the clean picture, (height, width, 3) float32.
 
         All images are arrays of (height, width, components), float16, float32 or float64; row 0 is the top. float32
@@ -204,7 +205,11 @@ class Denoiser:
         albedo_specular: (h, w, 3), pre-integrated reflectance of the specular lobe, 0 to 1.
         motion: (h, w, 2 or 3), as the denoiser was told. Without it only the camera moves.
         previous_normal: as normal: of the same surface point in the previous frame.
-        reflection_motion: as motion: of what a flat mirror shows.
+        reflection_motion: like motion, for the reflection that the surface shows.
+        roughness: (h, w), of the specular lobe, 0 to 1.
+        hit_distance: (h, w), length of the ray that found the specular light, from the surface to its first hit, world
+            units; 1e9 or more: it hit nothing; 0: unknown. Needs roughness. Without reflection_motion, the motion of
+            reflections is computed from it.
         id: (h, w), integers from 0 to 2^24: a number for each object.
         view, projection: (4, 4), from world to view and from view to clip space (depth 0 to 1), without jitter; points
             are columns, as look_at() and perspective() make them. Without view the camera stands at the origin and
@@ -219,11 +224,14 @@ class Denoiser:
         """
         images = {"radiance": radiance, "specular": specular, "emission": emission, "albedo": albedo,
                   "albedo_specular": albedo_specular, "normal": normal, "depth": depth, "motion": motion,
-                  "previous_normal": previous_normal, "reflection_motion": reflection_motion}
+                  "previous_normal": previous_normal, "reflection_motion": reflection_motion,
+                  "roughness": roughness, "hit_distance": hit_distance}
         if self._signals == 2 and specular is None:
             raise ValueError("specular: is needed with two signals")
         if self._signals == 1 and specular is not None:
             raise ValueError("specular: is for denoisers of two signals; add it to radiance")
+        if hit_distance is not None and roughness is None:
+            raise ValueError("roughness: is needed with hit_distance")
         names = (outputs,) if isinstance(outputs, str) else tuple(outputs)
         numbers = [_arrays.choose("outputs", name, _denoise.OUTPUTS) for name in names]
         matrices, now = self._matrices(view, projection, previous_view, previous_projection)

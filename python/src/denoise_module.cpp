@@ -259,7 +259,9 @@ void addTables(py::module_& m) {
               {"motion", LIMPID_INPUT_MOTION},
               {"previous_normal", LIMPID_INPUT_PREVIOUS_NORMAL},
               {"reflection_motion", LIMPID_INPUT_REFLECTION_MOTION},
-              {"id", LIMPID_INPUT_ID}});
+              {"id", LIMPID_INPUT_ID},
+              {"roughness", LIMPID_INPUT_ROUGHNESS},
+              {"hit_distance", LIMPID_INPUT_HIT_DISTANCE}});
     addNames(m, "OUTPUTS",
              {{"color", LIMPID_OUTPUT_COLOR},
               {"radiance", LIMPID_OUTPUT_RADIANCE},

@@ -34,7 +34,9 @@ gpu::ImageHandle& imageOf(IngestImages& images, size_t input) {
                                                        &IngestImages::motion,
                                                        &IngestImages::previousNormal,
                                                        &IngestImages::reflectionMotion,
-                                                       &IngestImages::id};
+                                                       &IngestImages::id,
+                                                       &IngestImages::roughness,
+                                                       &IngestImages::hitDistance};
     if (input >= std::size(members)) throw UsageError(formatText("there is no input {}", input));
     return images.*members[input];
 }
@@ -47,6 +49,7 @@ void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images)
     require(images.normal, LIMPID_INPUT_NORMAL);
     require(images.depth, LIMPID_INPUT_DEPTH);
     if (desc.signals == 2) require(images.specular, LIMPID_INPUT_SPECULAR);
+    if (images.hitDistance) require(images.roughness, LIMPID_INPUT_ROUGHNESS);
 }
 
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
@@ -55,12 +58,14 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();
     IngestImages images;
-    for (size_t input = 0; input <= LIMPID_INPUT_ID; ++input) {
+    for (size_t input = 0; input <= LIMPID_INPUT_HIT_DISTANCE; ++input) {
         const bool unsignedInput = input == LIMPID_INPUT_ID;
         imageOf(images, input) =
             graph.import(formatText("input/{}", inputName(input)),
                          unsignedInput ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent, nowhere);
     }
+    // The two dry frames together contain every pass: the motion of reflections is either given or computed.
+    if (orthographic) images.reflectionMotion = {};
     limpid_camera camera{};
     for (auto* view : {&camera.view, &camera.previous_view}) std::ranges::copy(identity, *view);
     for (auto* projection : {&camera.projection, &camera.previous_projection})

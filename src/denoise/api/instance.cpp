@@ -153,9 +153,10 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
 }
 
 const char* inputName(size_t input) {
-    constexpr std::array<const char*, 11> names{
-        "radiance", "specular",        "emission",          "albedo", "albedo_specular", "normal", "depth",
-        "motion",   "previous_normal", "reflection_motion", "id"};
+    constexpr std::array<const char*, 13> names{
+        "radiance", "specular",  "emission",    "albedo",          "albedo_specular",
+        "normal",   "depth",     "motion",      "previous_normal", "reflection_motion",
+        "id",       "roughness", "hit_distance"};
     return names.at(input);
 }
 

@@ -4,19 +4,13 @@
 #define LIMPID_REFLECTION_GLSL
 
 #include "shaders/common/mirror.glsl"
+#include "shaders/common/reflection_share.glsl"
 
-/// On rougher surfaces, reflected light is assumed to move with the surface.
-const float MAX_REFLECTING_ROUGHNESS = 0.3;
 /// Minimum cosine between shading and geometric normal: on rounder surfaces, reflections are elsewhere.
 const float FLAT = 0.9999;
 
-/// The depth of the reflected image behind the surface, as a share of a perfect mirror's: the lobe's dominant
-/// direction leans from the mirrored direction towards the normal by the same share (S. Lagarde and C. de
-/// Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.9).
 float reflectionShare(Surface surface) {
-    if (surface.roughness >= MAX_REFLECTING_ROUGHNESS || abs(dot(surface.normal, surface.geometricNormal)) < FLAT) return 0.0;
-    const float smoothness = 1.0 - surface.roughness;
-    return smoothness * (sqrt(smoothness) + surface.roughness);
+    return abs(dot(surface.normal, surface.geometricNormal)) < FLAT ? 0.0 : reflectionShare(surface.roughness);
 }
 
 /// `seen` is the reflected ray's hit. Returns the previous pixel at which the reflector showed the same point

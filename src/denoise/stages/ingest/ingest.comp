@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Another renderer's frame, in whatever encoding it has, as the denoisers read it (docs/denoising.md, "What a frame
-// gives"). Inputs that the caller does not have are bound to another one and not looked at.
+// Converts another renderer's frame from its encodings to what the denoisers read (docs/denoising.md, "What a frame gives").
+// Inputs that the caller does not have are bound to another one and not read.
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
 
@@ -33,6 +33,8 @@ layout(set = 0, binding = 19, rgba32f) uniform writeonly image2D reflectionMotio
 layout(set = 0, binding = 20, rgba32f) uniform writeonly image2D previousNormal;
 layout(set = 0, binding = 21, rg32ui) uniform writeonly uimage2D ids;
 
+#include "denoise/stages/ingest/still.glsl"
+
 bool has(uint what) {
     return (params.present & what) != 0u;
 }
@@ -58,7 +60,7 @@ vec3 worldNormal(vec4 texel) {
     return n;
 }
 
-/// Along the ray; 0 where nothing is seen. `v`: the ray, whose part along the view axis is 1.
+/// The distance along the ray; 0 where nothing is seen. `v` is the ray; its component along the view axis is 1.
 float distanceOf(float z, vec3 v) {
     if (params.depthKind == DEPTH_DEVICE) {
         if (params.reversed != 0u ? !(z > 0.0) : !(z < 1.0)) return 0.0;
@@ -71,26 +73,6 @@ float distanceOf(float z, vec3 v) {
     const bool alongRay = params.depthKind == DEPTH_DISTANCE || params.camera.orthographic != 0u;
     const float distance = alongRay ? z : z * length(v);
     return isinf(distance) ? 0.0 : distance;
-}
-
-vec3 positionOf(float distance, vec3 v, vec2 onScreen) {
-    const CameraParams c = params.camera;
-    if (c.orthographic != 0u) return c.origin + onScreen.x * c.right + onScreen.y * c.up + distance * c.forward;
-    return c.origin + v * (distance / length(v));
-}
-
-float previousDistance(vec3 position) {
-    const vec3 toPoint = position - params.previousCamera.origin;
-    return params.previousCamera.orthographic != 0u ? dot(toPoint, params.previousCamera.forward) : length(toPoint);
-}
-
-/// Of a point that stands still, or of a direction (w 0: the sky), in pixels; 0 if it was behind the previous eye.
-vec4 motionOfStill(vec4 point, vec2 pixel) {
-    const float w = dot(params.previousClipW, point);
-    if (!(w > 0.0)) return vec4(0.0);
-    const vec2 before = vec2(dot(params.previousClipX, point), dot(params.previousClipY, point)) / w;
-    const vec2 pixelBefore = (0.5 * before + 0.5) * vec2(params.width, params.height);
-    return vec4(pixelBefore - pixel - 0.5, 0.0, 1.0);
 }
 
 vec4 motionOf(ivec2 at, vec4 point, float distance) {

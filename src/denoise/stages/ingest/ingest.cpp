@@ -2,6 +2,7 @@
 
 #include "ingest.comp.h"
 #include "ingest_ids.comp.h"
+#include "ingest_reflection.comp.h"
 
 namespace limpid::denoise {
 
@@ -65,6 +66,19 @@ DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestP
                     .params = gpu::paramsOf(params),
                     .constants = {},
                     .extent = extent});
+    if (images.hitDistance && !images.reflectionMotion) {
+        graph.dispatch({.pass = "ingest/reflection",
+                        .shader = shaders::ingest_reflection_comp,
+                        .bindings = {{"roughnessIn", images.roughness},
+                                     {"hitDistanceIn", images.hitDistance},
+                                     {"normal", input.normal},
+                                     {"depth", input.depth},
+                                     {"motion", input.motion},
+                                     {"reflectionMotion", input.reflectionMotion}},
+                        .params = gpu::paramsOf(params),
+                        .constants = {},
+                        .extent = extent});
+    }
     if (images.id) {
         graph.dispatch({.pass = "ingest/ids",
                         .shader = shaders::ingest_ids_comp,

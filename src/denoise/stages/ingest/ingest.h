@@ -13,11 +13,13 @@ namespace limpid::denoise {
 struct IngestImages {
     gpu::ImageHandle radiance, specular, emission, albedo, albedoSpecular;
     gpu::ImageHandle normal, depth, motion, previousNormal, reflectionMotion;
-    gpu::ImageHandle id;  ///< unsigned integers
+    gpu::ImageHandle roughness, hitDistance;  ///< both or none
+    gpu::ImageHandle id;                      ///< unsigned integers
 };
 
-/// Passes: "ingest", and "ingest/ids" if there are any. `params.present` is ignored; it is
-/// derived from the images. Radiance, normal and depth are required.
+/// Passes: "ingest"; "ingest/reflection" if there are hit distances but no motion of reflections;
+/// "ingest/ids" if there are ids. `params.present` is ignored; it is derived from the images. Radiance,
+/// normal and depth are required.
 DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestParams params);
 
 }  // namespace limpid::denoise
