@@ -1,1 +1,1 @@
-"""Trains the networks that Limpid denoises with."""
+"""Trains the kernel-predicting networks of Limpid's denoiser `kpcn`. docs/kpcn.md explains how to use this package."""

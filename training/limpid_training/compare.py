@@ -1,8 +1,9 @@
-"""Draws runs on the same data beside each other: losses by epoch, and validation by seconds of training:
+"""Plots training runs on the same data: losses per epoch, and validation error over seconds of training.
 
     python3 -m limpid_training.compare RUN RUN ... -o comparison.svg
 
-Names are those of the runs' folders. Prints how long each run took to what the others reached at their end."""
+Each run is labelled with the name of its folder. For each pair of runs, also prints how long one took to reach the
+final validation error of the other."""
 
 import argparse
 import json
@@ -17,12 +18,12 @@ def read(run):
 
 
 def first_below(values, least):
-    """The number, from 1, of the first of `values` that is at most `least`; None if none is."""
+    """Returns the position, counted from 1, of the first value that is at most `least`; None if there is none."""
     return next((i + 1 for i, value in enumerate(values) if value <= least), None)
 
 
 def plots(runs):
-    """`runs`: names to what losses.json holds."""
+    """Returns the plots for pictures.write_plots(). `runs` maps names to the content of losses.json."""
     losses = {
         f"{name}, {side}": (range(1, len(run["losses"][side]) + 1), run["losses"][side])
         for name, run in runs.items()
@@ -34,7 +35,7 @@ def plots(runs):
 
 
 def table(runs):
-    """Lines: for each pair, after how many epochs and seconds one run is as good as the other is at its end."""
+    """Yields one line per pair of runs: the epoch and time at which one reaches the other's final validation error."""
     for name, run in runs.items():
         for other, reached in runs.items():
             if name == other:
@@ -47,8 +48,8 @@ def table(runs):
 
 def main():
     parser = argparse.ArgumentParser(prog="limpid_training.compare", description=__doc__.split("\n")[0])
-    parser.add_argument("runs", nargs="+", help="folders of runs")
-    parser.add_argument("-o", "--output", required=True, help="SVG file")
+    parser.add_argument("runs", nargs="+", help="output folders of limpid_training.train")
+    parser.add_argument("-o", "--output", required=True, help="SVG file to write")
     chosen = parser.parse_args()
     runs = {os.path.basename(os.path.normpath(run)): read(run) for run in chosen.runs}
     pictures.write_plots(chosen.output, plots(runs))

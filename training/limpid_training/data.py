@@ -1,4 +1,4 @@
-"""What `limpid dataset` made: its examples, and patches of them. docs/kpcn.md, "Data"."""
+"""Reads the training data that `limpid dataset` renders, and cuts patches from it. Format: docs/kpcn.md, "Data"."""
 
 import json
 import os
@@ -12,8 +12,10 @@ LAYERS = ("diffuse", "specular", "albedo", "normal", "depth")
 
 
 class Dataset:
-    """Examples as dicts of (1, channels, rows, columns): the layers and their variances, the targets "reference.diffuse" and
-    "reference.specular". What has been read is kept on the device, as halves."""
+    """The examples of a data set. Each is a dict of tensors (1, channels, rows, columns): the layers, their variances
+    ("diffuse.variance" and so on), and the targets "reference.diffuse" and "reference.specular".
+
+    Files are read on first use. Their tensors then stay on the device, in half precision."""
 
     def __init__(self, folder, samples, device="cpu"):
         with open(os.path.join(folder, "manifest.json")) as stream:
@@ -48,8 +50,11 @@ class Dataset:
 
 
 def importance(frame):
-    """(rows, columns): where a network has most to learn. The spread of the light relative to its mean, and that of the normals, over 11x11 pixels:
-    noise, shadows, edges (Bako et al. 2017, section 6)."""
+    """Returns a sampling weight per pixel, (rows, columns), by which patches() chooses the centres of patches.
+
+    The weight is large where the network has most to learn: at noise, shadows and edges. It is the relative standard
+    deviation of the luminance plus the standard deviation of the normals, both over 11x11 pixels (Bako et al. 2017,
+    section 6)."""
 
     def mean(image):
         return functional.avg_pool2d(image, 11, stride=1, padding=5, count_include_pad=False)
@@ -62,8 +67,11 @@ def importance(frame):
 
 
 def varied(frame, generator):
-    """The frame mirrored, turned, its colors exchanged, its light made brighter or darker: another scene that is as true. (Only the
-    variances of luminance would be slightly others with exchanged colors.)"""
+    """Data augmentation: mirrors and transposes the frame, permutes its color channels and scales its light, at
+    random.
+
+    The result is still a valid frame. Only the variances are slightly off: they are of the luminance, which changes
+    when color channels are permuted."""
     draws = torch.rand(4, generator=generator).tolist()
     flips = [dim for dim, draw in ((2, draws[0]), (3, draws[1])) if draw < 0.5]
     colors = torch.randperm(3, generator=generator).tolist()
@@ -84,8 +92,8 @@ def varied(frame, generator):
 
 
 def patches(frame, size, count, generator):
-    """`count` patches of `size` x `size` pixels (less where the picture is smaller) of features.prepare(frame), drawn by
-    importance."""
+    """Yields `count` random patches of features.prepare(frame), with centres drawn by importance(). They have `size` x
+    `size` pixels, or fewer if the picture is smaller."""
     prepared = features.prepare(frame)
     rows, columns = frame["depth"].shape[2:]
     height, width = min(size, rows), min(size, columns)
@@ -97,7 +105,7 @@ def patches(frame, size, count, generator):
 
 
 def batch_of(items):
-    """One dict of stacked patches."""
+    """Stacks patches along the batch dimension."""
     return {name: torch.cat([item[name] for item in items]) for name in items[0]}
 
 

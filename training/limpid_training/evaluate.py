@@ -1,8 +1,9 @@
-"""How good a run's network is on a dataset, example by example:
+"""Measures the error of a trained network on each example of a data set.
 
     python3 -m limpid_training.evaluate RUN DATA
 
-relMSE (docs/metrics.md) of the light without emission, of the noisy and of the denoised picture, and their ratio."""
+Prints the relMSE (docs/metrics.md) of the noisy and of the denoised picture, and their ratio. Pictures are diffuse
+plus specular light, without emission."""
 
 import argparse
 import os
@@ -19,7 +20,8 @@ def rel_mse(image, reference):
 
 @torch.no_grad()
 def evaluate(run, folder, device="cpu"):
-    """(scene, noisy, denoised) of every example of the dataset."""
+    """Yields (scene, relMSE of the noisy picture, relMSE of the denoised picture) for every example of the data
+    set."""
     state = torch.load(os.path.join(run, "checkpoint.pt"), map_location=device)
     options = state["options"]
     net = network_of(options).to(device)
@@ -34,8 +36,8 @@ def evaluate(run, folder, device="cpu"):
 
 def main():
     parser = argparse.ArgumentParser(prog="limpid_training.evaluate", description=__doc__.split("\n")[0])
-    parser.add_argument("run", help="folder of the run")
-    parser.add_argument("data", help="folder that `limpid dataset` made, with other scenes than the run's")
+    parser.add_argument("run", help="output folder of limpid_training.train")
+    parser.add_argument("data", help="output folder of `limpid dataset`; its scenes should not be those of the run")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen = parser.parse_args()
     ratios = []

@@ -1,8 +1,9 @@
-"""Writes the weights of a run as the file that Limpid denoises with:
+"""Exports the weights of a training run to the file format that Limpid's denoiser reads.
 
     python3 -m limpid_training.export RUN -o kpcn.safetensors
 
-Halves, named as the network's layers ("diffuse.hidden.0.weight"), with the network's shape and the training's parameters as metadata."""
+Tensors are in half precision and named after the network's layers ("diffuse.hidden.0.weight"). The metadata hold the
+network's shape and the parameters of the training."""
 
 import argparse
 import json
@@ -21,7 +22,7 @@ def export(run, output):
     weights = {name: weight.half() for name, weight in state["net"].items()}
     unseen = sorted(set(range(features.INPUT_CHANNELS)) - set(features.INPUTS[options["inputs"]]))
     for side in features.SIDES:
-        weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs that the network did not see get zero weights
+        weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs not used in training
     metadata = {
         "limpid.network": "kpcn",
         "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing")}),
@@ -39,7 +40,7 @@ def export(run, output):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="limpid_training.export", description=__doc__.split("\n")[0])
-    parser.add_argument("run", help="folder of the run")
-    parser.add_argument("-o", "--output", required=True, help="file")
+    parser.add_argument("run", help="output folder of limpid_training.train")
+    parser.add_argument("-o", "--output", required=True, help="safetensors file to write")
     chosen = parser.parse_args()
     export(chosen.run, chosen.output)

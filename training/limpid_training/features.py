@@ -1,28 +1,31 @@
-"""What the networks see of a frame, and how their light is transformed: Bako et al., "Kernel-Predicting Convolutional
-Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. src/denoise/kpcn does the same. One thing is not the paper's: the
-network sees the logarithm of diffuse light too (and averages the light itself). What it sees is bounded then, so that halves hold it.
+"""Computes the networks' input from a frame, and the transform of light between radiance and network space: Bako et
+al., "Kernel-Predicting Convolutional Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. The
+shader src/denoise/kpcn/shaders/kpcn_features.comp does the same.
 
-A frame is a dict of float32 tensors (batch, channels, rows, columns): diffuse, specular, albedo, normal (3 channels) and depth
-(1; 0: nothing is seen), and of each the variance of the mean, of its luminance or of its only or all components,
-as "diffuse.variance" (1 channel) and so on."""
+One thing differs from the paper: the network's input is the logarithm of diffuse light, too, so that it is bounded and
+fits in half precision. The kernels still average diffuse light itself.
+
+A frame is a dict of float32 tensors (batch, channels, rows, columns): "diffuse", "specular", "albedo" and "normal" (3
+channels), and "depth" (1 channel, 0 where the ray hit nothing). Each comes with the variance of its mean in one
+channel, "diffuse.variance" and so on: of the luminance for colors, the mean over the components for normals."""
 
 import torch
 
-#: Prevents dark albedo from amplifying the little light it reflects.
+#: Added to albedo before light is divided by it, so that dark albedo does not amplify noise.
 EPSILON = 0.00316
 
-#: radiance, albedo, normal: 3 + 2 x 3 + 1 each; depth: 1 + 2 + 1.
+#: Radiance, albedo and normal have 10 channels each: 3, their gradients 2 x 3, variance 1. Depth has 4: 1 + 2 + 1.
 INPUT_CHANNELS = 34
 
-#: The channels that a network sees. "gradients": light, its gradients and its variance, and only the gradients of
-#: albedo, normal and depth.
+#: Which of the 34 channels a network uses. "gradients": light with its gradients and variance, but only the gradients
+#: of albedo, normal and depth.
 INPUTS = {"all": range(INPUT_CHANNELS), "gradients": (*range(10), *range(13, 19), *range(23, 29), 31, 32)}
 
 SIDES = ("diffuse", "specular")
 
 
 def gradients(image):
-    """Differences from the pixel to the left and from the one above; 0 in the first column and row."""
+    """Returns the differences to the left neighbour, then those to the upper one; 0 in the first column and row."""
     across = torch.zeros_like(image)
     down = torch.zeros_like(image)
     across[..., :, 1:] = image[..., :, 1:] - image[..., :, :-1]
@@ -36,22 +39,23 @@ def luminance(color):
 
 
 def to_network(side, light, albedo):
-    """Diffuse light without its albedo; specular light as a logarithm."""
+    """Transforms light to network space: diffuse light is divided by albedo, specular light becomes log(1 + x)."""
     return light / (albedo + EPSILON) if side == "diffuse" else torch.log1p(light.clamp(min=0.0))
 
 
 def from_network(side, light, albedo):
-    """The inverse."""
+    """Transforms light from network space back to radiance: the inverse of to_network()."""
     return light * (albedo + EPSILON) if side == "diffuse" else torch.expm1(light)
 
 
 def recombined(sides, albedo):
-    """The picture without emission, from both sides as the network has them."""
+    """Returns the picture without emission. `sides` maps "diffuse" and "specular" to their light in network space."""
     return sum(from_network(side, light, albedo) for side, light in sides.items())
 
 
 def seen(side, frame):
-    """The light as the network sees it, and its variance to first order: the variance times the squared slope."""
+    """Returns the light as the network's input has it, and the variance of that: to first order, the light's variance
+    times the squared derivative of the transform."""
     light, variance = frame[side].clamp(min=0.0), frame[side + ".variance"]
     if side == "diffuse":
         light = light / (frame["albedo"] + EPSILON)
@@ -60,21 +64,23 @@ def seen(side, frame):
 
 
 def faces(normal):
-    """Normals of length 1, and 1 where there is none: 4 channels. The dot product of two is the cosine between the normals, 1 if
-    neither has one, and 0 if one of them has."""
+    """Returns 4 channels: the unit normal, and a flag that is 1 where there is no normal.
+
+    The dot product of two such vectors is the cosine between the normals, 1 if neither pixel has a normal, and 0 if
+    only one has."""
     length = normal.square().sum(dim=1, keepdim=True).sqrt()
     unit = torch.where(length > 0, normal / length.clamp(min=1e-30), torch.zeros_like(normal))
     return torch.cat([unit, (length == 0).to(normal.dtype)], dim=1)
 
 
 def depth_scale(frame):
-    """One over the frame's largest distance; 1 if nothing is seen."""
+    """Returns 1 / the frame's largest distance; 1 if no ray hit anything."""
     largest = frame["depth"].amax(dim=(1, 2, 3), keepdim=True)
     return torch.where(largest > 0, 1.0 / largest.clamp(min=1e-30), torch.ones_like(largest))
 
 
 def inputs(side, frame):
-    """The 34 channels for `side`, "diffuse" or "specular"."""
+    """Returns the 34 input channels for `side`, "diffuse" or "specular"."""
     scale = depth_scale(frame)
     parts = []
     for image, variance in (
@@ -88,9 +94,11 @@ def inputs(side, frame):
 
 
 def prepare(frame):
-    """What the network takes: of each side "SIDE.input" and "SIDE.light"; "albedo"; "faces". Where the frame has "reference.SIDE",
-    also "SIDE.target", the same transform of it, and "target", the picture without emission. Of a whole frame: patches are
-    cut afterwards, or their gradients would end at their edges."""
+    """Returns what Kpcn needs: for each side "SIDE.input" and "SIDE.light" (the light that its kernels average), and
+    "albedo" and "faces" for both. If the frame has "reference.SIDE", also "SIDE.target", the reference in network
+    space, and "target", the reference picture without emission.
+
+    Call this with whole frames and cut patches from the result: at the edges of a patch, gradients would be 0."""
     prepared = {"albedo": frame["albedo"], "faces": faces(frame["normal"])}
     for side in SIDES:
         prepared[side + ".input"] = inputs(side, frame)

@@ -1,10 +1,11 @@
-"""Writes what the C++ tests hold their inference against:
+"""Writes the expected results with which the C++ tests compare their inference.
 
     python3 -m limpid_training.fixture ../tests/data
 
-kpcn_small.safetensors: a small network with random weights. kpcn_cases.safetensors: frames ("CASE/LAYER" as in a dataset, in single
-precision), and what the networks make of them: "CASE/clean", light without emission, and of each side "CASE/SIDE.clean"
-and its standard error "CASE/SIDE.deviation"."""
+kpcn_small.safetensors is a small network with random weights. kpcn_cases.safetensors holds frames ("CASE/LAYER", as in
+a data set but in single precision) and what the networks compute from them: "CASE/clean" (the denoised picture without
+emission), "CASE/SIDE.clean" (denoised light of each side, in network space) and its standard error,
+"CASE/SIDE.deviation"."""
 
 import argparse
 import json
@@ -23,7 +24,7 @@ SMALL = {"hidden": 2, "channels": 20, "width": 7}
 
 
 def frame(rows, columns, generator):
-    """Surfaces in front of each other, under noisy light; with pixels that see nothing."""
+    """Returns a synthetic frame: a disc in front of a background, with noisy light and some pixels without a hit."""
 
     def random(channels):
         return torch.rand(1, channels, rows, columns, generator=generator)
@@ -32,8 +33,9 @@ def frame(rows, columns, generator):
     near = ((x - columns / 2) ** 2 + (y - rows / 2) ** 2 < (rows / 4) ** 2)[None, None]
     nothing = (x + y < rows / 3)[None, None]
     albedo = torch.where(near, 0.1 + 0.8 * (x % 7) / 7, 0.5 - 0.4 * (y % 5) / 5).expand(1, 3, -1, -1).clone()
-    # Side by side in bands: normals 56 and 64 degrees from the first one, just inside and outside the
-    # kernel's limit; the opposite normal; and lengths that are not 1.
+    # The disc has vertical bands. The normals of the second and third are 56 and 64 degrees from the first band's:
+    # just inside and just outside the limit of 60 degrees (network.FACING). The fourth has the opposite normal. Some
+    # lengths differ from 1, since the normal of an edge pixel is a mean.
     normal = torch.tensor([1.0, 0.0, 0.0])[:, None, None]
     for band, (degrees, length) in enumerate([(53, 0.4), (109, 1.0), (117, 2.0), (233, 1.0)]):
         turned = torch.tensor([0.0, math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])[:, None, None]
@@ -67,7 +69,8 @@ def load(path):
 
 
 def deviation(logits, variance, normal, facing):
-    """Of the mean that apply_kernel() makes of light with this `variance`, whose pixels' noise is independent: all at once."""
+    """Returns the standard error of the means that apply_kernel() computes, for light with this `variance` whose noise
+    is independent from pixel to pixel. Written independently of apply_kernel(), with all taps at once."""
     width = round(logits.shape[1] ** 0.5)
     rows, columns = variance.shape[2:]
 
@@ -84,14 +87,14 @@ def deviation(logits, variance, normal, facing):
 
 
 def variances(layers):
-    """Of each side's light as features.to_network() has it, to first order."""
+    """Returns the variance of each side's light in network space (features.to_network()), to first order."""
     diffuse = layers["diffuse.variance"] / (features.luminance(layers["albedo"]) + features.EPSILON) ** 2
     return {"diffuse": diffuse, "specular": features.seen("specular", layers)[1]}
 
 
 @torch.no_grad()
 def cases(networks):
-    """Tensors by the names in kpcn_cases.safetensors. In double precision."""
+    """Returns the tensors of kpcn_cases.safetensors by name. They are computed in double precision."""
     generator = torch.Generator().manual_seed(7)
     result = {}
     for name, (rows, columns) in CASES.items():
@@ -110,7 +113,7 @@ def cases(networks):
 
 
 def networks(data, weights):
-    """"anywhere" is "small" with kernels that take in whatever lies around."""
+    """Returns the network of each case. "anywhere" is "small" without the condition on normals."""
     small = os.path.join(data, "kpcn_small.safetensors")
     result = {"small": load(small), "shipped": load(weights), "anywhere": load(small)}
     result["anywhere"].facing = ANY_FACING
@@ -122,7 +125,7 @@ SHIPPED = os.path.join(os.path.dirname(__file__), "..", "..", "weights", "kpcn.s
 
 def main():
     parser = argparse.ArgumentParser(prog="limpid_training.fixture", description=__doc__.split("\n")[0])
-    parser.add_argument("output", help="folder")
+    parser.add_argument("output", help="folder to write to")
     folder = parser.parse_args().output
     small = os.path.join(folder, "kpcn_small.safetensors")
     metadata = {"limpid.network": "kpcn", "limpid.shape": json.dumps(SMALL)}

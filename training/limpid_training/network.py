@@ -1,4 +1,5 @@
-"""The kernel-predicting network: Bako et al. 2017 (see features.py). src/denoise/kpcn has the same layers by the same names."""
+"""The kernel-predicting network of Bako et al. 2017 (reference in features.py). The weights that src/denoise/kpcn
+reads have the same layer names."""
 
 import torch
 from torch import nn
@@ -8,7 +9,8 @@ from . import features
 
 
 def convolve(layer, x):
-    """The layer; in half precision with as many channels of zeros as tensor cores want, which all that follows keeps."""
+    """Applies a convolution. In half precision, pads inputs and outputs with zero channels to a multiple of 8, which
+    tensor cores need to be fast. The result keeps the additional channels."""
     if not torch.is_autocast_enabled():
         return layer(x)
     inputs = x.shape[1] + -x.shape[1] % 8
@@ -19,10 +21,11 @@ def convolve(layer, x):
 
 
 class KernelPredictor(nn.Module):
-    """From (batch, 34, rows, columns) to the weights of a kernel for each pixel (batch, width^2, rows, columns), not
-    yet normalised; or, if `direct`, to colours (batch, 3, rows, columns). `hidden` convolutions of `channels` channels
-    with ReLU, and one more; all of 5x5 taps, with zeros around the picture. `inputs`: a key of features.INPUTS; the other
-    channels are taken as 0."""
+    """Predicts a kernel for each pixel: maps (batch, 34, rows, columns) to logits (batch, width^2, rows, columns),
+    whose softmax is the kernel's weights. If `direct`, predicts colours (batch, 3, rows, columns) instead.
+
+    There are `hidden` convolutions to `channels` channels with ReLU, and one more without. All have 5x5 taps and zero
+    padding. `inputs` is a key of features.INPUTS; channels that it does not name are replaced by 0."""
 
     def __init__(self, hidden=8, channels=100, width=21, direct=False, inputs="all"):
         super().__init__()
@@ -51,14 +54,17 @@ class KernelPredictor(nn.Module):
 
 #: Minimum cosine between a pixel's normal and those of the pixels in its kernel (KpcnWeights::facing).
 FACING = 0.5
-#: No limit: kernels as in the paper.
+#: No condition on normals, as in the paper.
 ANY_FACING = -2.0
 
 
 def apply_kernel(logits, light, faces, facing=FACING):
-    """The mean of the pixels around each, by the softmax of `logits` (batch, width^2, rows, columns; rows of the kernel from
-    the top) over those that lie in the picture and whose normal's cosine with the pixel's own is at least `facing`. `light`:
-    (batch, channels, rows, columns), `faces`: likewise, from features.faces()."""
+    """Averages the width x width pixels around each pixel, weighted by the softmax of `logits` (batch, width^2, rows,
+    columns; taps row by row from the top left).
+
+    The softmax covers only taps that lie in the picture and whose normal has a cosine of at least `facing` with the
+    centre pixel's. `light` has the shape (batch, channels, rows, columns), and so has `faces`, which comes from
+    features.faces()."""
     width = round(logits.shape[1] ** 0.5)
     radius = width // 2
     rows, columns = light.shape[2:]
@@ -67,7 +73,7 @@ def apply_kernel(logits, light, faces, facing=FACING):
     outside = functional.pad(torch.zeros_like(light[:, :1]), [radius] * 4, value=-8.0)  # below any cosine
 
     def row_of_taps(image, top):
-        """(batch, channels, rows, taps, columns), without a copy."""
+        """Returns a view (batch, channels, rows, taps, columns) of the pixels under kernel row `top`."""
         return image[:, :, top : top + rows].unfold(3, columns, 1)
 
     def exponents(top):
@@ -75,7 +81,7 @@ def apply_kernel(logits, light, faces, facing=FACING):
         cosine = (row_of_taps(around, top) * faces.unsqueeze(3)).sum(dim=1, keepdim=True)
         return taps.masked_fill(cosine + row_of_taps(outside, top) < facing, -torch.inf)
 
-    # One kernel row at a time, since all at once would take the memory of width^2 pictures.
+    # One kernel row at a time: all at once would need the memory of width^2 pictures.
     with torch.no_grad():
         largest = torch.stack([exponents(top).amax(dim=3) for top in range(width)]).amax(dim=0)
     total = torch.zeros_like(light)
@@ -88,8 +94,8 @@ def apply_kernel(logits, light, faces, facing=FACING):
 
 
 class Kpcn(nn.Module):
-    """Both sides, and the denoised picture without emission. `direct`: the network predicts colours instead of kernels,
-    for comparison only; Limpid cannot denoise with that."""
+    """The networks of both sides; computes the denoised picture without emission. If `direct`, the networks predict
+    colours instead of kernels. This is only for comparison: Limpid's denoiser cannot use such a network."""
 
     def __init__(self, hidden=8, channels=100, width=21, facing=FACING, inputs="all", direct=False):
         super().__init__()
@@ -98,11 +104,12 @@ class Kpcn(nn.Module):
         self.specular = KernelPredictor(hidden, channels, width, direct, inputs)
 
     def side(self, side, prepared):
-        """Denoised light of one side, as to_network() has it: what each is trained by alone. `prepared`: features.prepare()."""
+        """Returns the denoised light of one side in network space (features.to_network()). `prepared` comes from
+        features.prepare()."""
         return self.side_and_logits(side, prepared)[0]
 
     def side_and_logits(self, side, prepared):
-        """And the kernels' weights before their softmax; zeros where there are no kernels."""
+        """Returns side(), and the logits of the kernels; zeros if the network predicts colours."""
         result = getattr(self, side)(prepared[side + ".input"]).float()
         if self.direct:
             return result, torch.zeros_like(result)
@@ -113,5 +120,5 @@ class Kpcn(nn.Module):
 
 
 def network_of(options):
-    """The network that a run's options describe."""
+    """Creates the network that a training run's options describe."""
     return Kpcn(**{name: options[name] for name in ("hidden", "channels", "width", "facing", "inputs", "direct")})

@@ -1,4 +1,4 @@
-"""Pictures for people, without further libraries: PNG files, and curves as SVG."""
+"""Writes PNG files and SVG plots, without further libraries."""
 
 import math
 import struct
@@ -8,14 +8,14 @@ import torch
 
 
 def shown(light):
-    """(3, rows, columns) of radiance as a screen shows it: exposed by its own median, clamped, sRGB."""
+    """Tone-maps radiance (3, rows, columns) for display: scales the median to 0.18, clamps, encodes as sRGB."""
     positive = light[light > 0]
     x = (light * (0.18 / positive.median()) if positive.numel() else light).clamp(0, 1)
     return torch.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
 def write_png(path, image):
-    """(3, rows, columns), 0 to 1."""
+    """Writes an image (3, rows, columns) with values from 0 to 1."""
     texels = (image.clamp(0, 1) * 255 + 0.5).to(torch.uint8).permute(1, 2, 0).contiguous()
     rows, columns = texels.shape[:2]
 
@@ -32,13 +32,14 @@ COLORS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
 
 
 def ticks(low, high):
-    """1, 2 and 5 times powers of ten from `low` to `high`."""
+    """Returns the axis ticks from `low` to `high`: 1, 2 and 5 times powers of ten."""
     powers = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 1)
     return [m * 10.0**e for e in powers for m in (1, 2, 5) if low <= m * 10.0**e <= high]
 
 
 def panel(left, width, height, title, across, curves):
-    """The elements of one plot: `curves` are names to (xs, ys), ys above 0 on a logarithmic axis."""
+    """Returns the SVG elements of one plot. `curves` maps names to (xs, ys). The y axis is logarithmic; points with y
+    <= 0 are left out. `across` is the label of the x axis."""
     points = [(x, y) for xs, ys in curves.values() for x, y in zip(xs, ys) if y > 0]
     if not points:
         return []
@@ -69,8 +70,8 @@ def panel(left, width, height, title, across, curves):
 
 
 def write_plots(path, plots, width=460, height=340):
-    """SVG with `plots` beside each other: (title, label of the x axis, {name: (xs, ys)}) each. On white, so that it can be read
-    on dark pages, too."""
+    """Writes an SVG file with `plots` side by side. Each plot is (title, label of the x axis, {name: (xs, ys)}). The
+    background is white, so that the plots are readable on dark pages, too."""
     whole = width * len(plots)
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {whole} {height}" font-family="sans-serif" font-size="12">']
     parts.append(f'<rect width="{whole}" height="{height}" fill="white"/>')
@@ -81,8 +82,9 @@ def write_plots(path, plots, width=460, height=340):
 
 
 def write_curves(path, curves, phases=()):
-    """`curves`: names to lists of numbers above 0, one an epoch. Those named in `phases` come after the longest of the others
-    but "validation", which covers all epochs."""
+    """Plots losses over epochs. `curves` maps names to lists of positive numbers, one per epoch. Curves named in
+    `phases` belong to a later phase of the training: they begin after the longest of the other curves, not counting
+    "validation", which covers all epochs."""
     first = max((len(y) for name, y in curves.items() if name not in phases and name != "validation"), default=0)
 
     def epochs(name, ys):

@@ -1,5 +1,5 @@
-"""Named tensors in files, as src/neural/tensor_file.h reads and writes them: the format safetensors
-(https://github.com/huggingface/safetensors, "Format"), with the CRC-32 of all elements as metadata "crc32"."""
+"""Reads and writes named tensors in the safetensors format (https://github.com/huggingface/safetensors, "Format"),
+with the CRC-32 of all elements as metadata "crc32". src/neural/tensor_file.h does the same in C++."""
 
 import json
 import os
@@ -19,7 +19,8 @@ def _bytes_of(tensor):
 
 
 def write(path, tensors, metadata=None):
-    """Writes `tensors` (names to tensors of float16 or float32), so that an earlier file survives a failure."""
+    """Writes `tensors`, a dict of float16 or float32 tensors. An existing file is replaced only when the new one is
+    complete."""
     header, place, checksum, blocks = {}, 0, 0, []
     for name in sorted(tensors):
         block = _bytes_of(tensors[name])
@@ -52,7 +53,7 @@ def write(path, tensors, metadata=None):
 
 
 def read(path):
-    """The tensors by name, and the metadata. ValueError if the file is damaged."""
+    """Returns the tensors by name, and the metadata. Raises ValueError if the file is damaged."""
     with open(path, "rb") as stream:
         content = stream.read()
     if len(content) < 8:

@@ -1,9 +1,14 @@
-"""Trains the network on what `limpid dataset` made:
+"""Trains a kernel-predicting network on data that `limpid dataset` rendered.
 
-    python3 -m limpid_training.train DATA -o RUN            (or torchrun --nproc_per_node 4 -m limpid_training.train ...)
+    python3 -m limpid_training.train DATA -o RUN
+    torchrun --nproc_per_node 4 -m limpid_training.train DATA -o RUN     # on four GPUs
 
-Each side is trained by itself, by the mean absolute difference of its transformed light; then both together, by that of the picture. RUN holds
-checkpoint.pt (--resume goes on from it), losses.json and losses.svg, and validation.png: noisy, denoised, reference."""
+The networks for diffuse and specular light are trained separately first, on the mean absolute error of their light in
+network space (features.to_network()). Then both are tuned together, on that of the picture. docs/kpcn.md, "Training",
+has the details.
+
+RUN receives checkpoint.pt (from which --resume continues), losses.json, losses.svg, and validation.png, which shows
+one held-out example: noisy, denoised, reference."""
 
 import argparse
 import contextlib
@@ -28,40 +33,50 @@ PRESETS = {
 
 def parse(arguments=None):
     parser = argparse.ArgumentParser(prog="limpid_training.train", description=__doc__.split("\n")[0])
-    parser.add_argument("data", help="folder that `limpid dataset` made")
-    parser.add_argument("-o", "--output", required=True, help="folder of the run")
-    parser.add_argument("--preset", choices=sorted(PRESETS), help="a named set of the options below")
-    parser.add_argument("--samples", type=int, default=32, help="per pixel, of the noisy pictures")
-    parser.add_argument("--epochs", type=int, default=30, help="of each side by itself")
-    parser.add_argument("--tuning-epochs", type=int, default=5, help="of both together")
-    parser.add_argument("--patches", type=int, default=16, help="of each example in an epoch")
-    parser.add_argument("--patch", type=int, default=128, help="pixels along its edge")
-    parser.add_argument("--vary", action="store_true", help="mirror, turn and recolor the examples in every epoch anew")
-    parser.add_argument("--batch", type=int, default=16, help="patches")
-    parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate")
-    parser.add_argument("--rate-specular", type=float, default=1e-4)
-    parser.add_argument("--rate-tuning", type=float, default=5e-5)
+    parser.add_argument("data", help="output folder of `limpid dataset`")
+    parser.add_argument("-o", "--output", required=True, help="folder for the checkpoint and the plots")
+    parser.add_argument("--preset", choices=sorted(PRESETS),
+                        help="a named set of defaults for the options below; options that you name override it")
+    parser.add_argument("--samples", type=int, default=32, help="samples per pixel of the noisy pictures")
+    parser.add_argument("--epochs", type=int, default=30,
+                        help="epochs of the first phase, in which the sides are trained separately")
+    parser.add_argument("--tuning-epochs", type=int, default=5,
+                        help="epochs of the second phase, in which both sides are tuned together")
+    parser.add_argument("--patches", type=int, default=16, help="patches per example and epoch")
+    parser.add_argument("--patch", type=int, default=128, help="edge length of a patch in pixels")
+    parser.add_argument("--vary", action="store_true",
+                        help="data augmentation: mirror, turn, recolor and brighten the examples at random")
+    parser.add_argument("--batch", type=int, default=16, help="patches per batch and GPU")
+    parser.add_argument("--rate-diffuse", type=float, default=1e-4, help="learning rate of the diffuse network")
+    parser.add_argument("--rate-specular", type=float, default=1e-4, help="learning rate of the specular network")
+    parser.add_argument("--rate-tuning", type=float, default=5e-5, help="learning rate of the second phase")
     parser.add_argument("--logit-decay", type=float, default=1e-5,
-                        help="weight of the mean square of what goes into the softmax: keeps kernels from collapsing to single pixels, "
-                        "where no gradient is left")
+                        help="weight of a penalty on the mean squared logit; it keeps kernels from collapsing to "
+                        "single pixels, where the softmax has no gradient")
     parser.add_argument("--warm-up", type=float, default=0.04,
-                        help="share of each phase over which its rate grows to its full size")
-    parser.add_argument("--final-rate", type=float, default=0.05, help="of the rates, at the end; half a cosine leads there")
+                        help="fraction of each phase over which the learning rate rises from 0 to its full value")
+    parser.add_argument("--final-rate", type=float, default=0.05,
+                        help="learning rate at the end of a phase, as a fraction of its full value; it falls along "
+                        "half a cosine")
     parser.add_argument("--loss", choices=("logarithmic", "absolute"), default="logarithmic",
-                        help="mean absolute difference of log(x + 0.1), or as in the paper, of x")
-    parser.add_argument("--hidden", type=int, default=8, help="convolutions before the last")
-    parser.add_argument("--channels", type=int, default=100)
-    parser.add_argument("--width", type=int, default=21, help="pixels of a kernel")
+                        help="mean absolute error of log(x + 0.1), or as in the paper, of x (x: diffuse light or the "
+                        "picture; specular light is logarithmic already)")
+    parser.add_argument("--hidden", type=int, default=8, help="number of hidden convolutions")
+    parser.add_argument("--channels", type=int, default=100, help="channels of the hidden convolutions")
+    parser.add_argument("--width", type=int, default=21, help="edge length of the kernels in pixels; odd")
     parser.add_argument("--inputs", choices=sorted(features.INPUTS), default="all",
-                        help="channels that the network sees: all 34, or of albedo, normal and depth the gradients alone")
+                        help="input channels to use: all 34, or only the gradients of albedo, normal and depth")
     parser.add_argument("--facing", type=float, default=FACING,
-                        help="least cosine between a pixel's normal and those of what its kernel takes in; -2: no condition")
+                        help="minimum cosine between a pixel's normal and those of the pixels in its kernel; "
+                        "-2: no condition")
     parser.add_argument("--direct", action="store_true",
                         help="predict colours instead of kernels, to compare the two; such a network cannot be exported")
-    parser.add_argument("--validation", type=float, default=0.1, help="share of the examples that are not learnt from")
+    parser.add_argument("--validation", type=float, default=0.1,
+                        help="fraction of the examples that is held out for validation")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--time-limit", type=float, default=0, help="seconds after which no epoch begins; 0: none")
-    parser.add_argument("--resume", action="store_true", help="go on from the run's checkpoint")
+    parser.add_argument("--time-limit", type=float, default=0,
+                        help="do not begin another epoch after this many seconds; 0: no limit")
+    parser.add_argument("--resume", action="store_true", help="continue from the checkpoint in the output folder")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     chosen, _ = parser.parse_known_args(arguments)
     if chosen.preset:
@@ -70,13 +85,14 @@ def parse(arguments=None):
 
 
 def split(count, held_out):
-    """Numbers of the examples to learn from, and of those that are held out: evenly spread, for kinds of scenes follow each other."""
+    """Returns the indices of the training examples and of the held-out ones. Held-out examples are evenly spread,
+    because scenes of one kind are stored next to each other."""
     validated = [i for i in range(count) if (i + 1) * held_out // count > i * held_out // count]
     return sorted(set(range(count)) - set(validated)), validated
 
 
 class Workers:
-    """The processes that torchrun started, or this one alone."""
+    """The processes of a distributed training that torchrun started, or this process alone."""
 
     def __init__(self, device):
         self.count = int(os.environ.get("WORLD_SIZE", "1"))
@@ -132,15 +148,16 @@ class Trainer:
         return self.options.epochs + self.options.tuning_epochs
 
     def loss(self, side, batch):
-        """What is reported, and what is added to it for the gradient."""
+        """Returns the loss, which is reported, and the penalty on logits, which is added for the gradient only.
+        `side`: "diffuse", "specular" or "both"."""
         with torch.autocast("cuda", dtype=torch.float16) if self.half else contextlib.nullcontext():
             parts = {name: self.net.side_and_logits(name, batch) for name in (features.SIDES if side == "both" else (side,))}
             if side == "both":
                 result, target = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"]), batch["target"]
             else:
                 result, target = parts[side][0], batch[side + ".target"]
-            # Use relative errors, or a few bright patches would dominate. Specular light is already
-            # logarithmic.
+            # Logarithms make errors relative; otherwise a few bright patches would dominate. Specular light is a
+            # logarithm already.
             if self.options.loss == "logarithmic" and side != "specular":
                 result, target = (result.float() + 0.1).log(), (target.clamp(min=0.0) + 0.1).log()
             decay = sum(logits.square().mean() for _, logits in parts.values())
@@ -160,7 +177,8 @@ class Trainer:
         return loss.detach()
 
     def set_rates(self):
-        """Half a cosine over the epochs of each phase; what is left of the warm-up is step()'s."""
+        """Sets the learning rates of this epoch. They fall along half a cosine over each phase. step() applies the
+        warm-up on top of that."""
         self.rate_now = {}
         phases = ((0, self.options.epochs, features.SIDES), (self.options.epochs, self.options.tuning_epochs, ("both",)))
         for begin, length, names in phases:
@@ -170,12 +188,12 @@ class Trainer:
                 self.rate_now[name] = self.rates[name] * share
 
     def batches(self):
-        """Of one epoch, for this worker: patches of a few examples at a time, shuffled. The same for the same seed, epoch and number of
-        workers."""
+        """Yields this worker's batches of one epoch. Each batch mixes patches of several examples. The batches depend
+        only on the seed, the epoch, and the number of workers."""
         generator = torch.Generator().manual_seed(self.options.seed * 1000003 + self.epoch)
         order = torch.randperm(len(self.learnt), generator=generator).tolist()
         share = order[self.workers.number :: self.workers.count]
-        share = share[: len(order) // self.workers.count]  # all workers wait for each other after every batch
+        share = share[: len(order) // self.workers.count]  # equal: workers wait for each other in every batch
         generator.manual_seed(generator.initial_seed() + 7919 * self.workers.number)
         size = self.options.batch
         for begin in range(0, len(share), size):
@@ -196,7 +214,7 @@ class Trainer:
         for batch in self.batches():
             for side in sides:
                 loss = self.step(side, batch)
-                finite = torch.isfinite(loss)  # halves overflow occasionally; the scaler skips such a step
+                finite = torch.isfinite(loss)  # half precision overflows at times; the scaler then skips the step
                 sums[side] += torch.where(finite, loss, torch.zeros_like(loss))
                 counts[side] += finite
             batches += 1
@@ -208,7 +226,8 @@ class Trainer:
 
     @torch.no_grad()
     def validate(self):
-        """relMSE over that of the noisy picture, on average over the examples that are not learnt from; keeps the last one for show()."""
+        """Appends the validation error: the relMSE of the denoised picture divided by that of the noisy one, averaged
+        over the held-out examples. Keeps the last example for validation.png."""
         total = 0.0
         for index in self.validated:
             frame = self.examples[index]

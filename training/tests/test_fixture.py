@@ -9,7 +9,7 @@ DATA = os.path.join(os.path.dirname(__file__), "..", "..", "tests", "data")
 
 
 class FixtureTest(unittest.TestCase):
-    """What the C++ tests compare with is what PyTorch computes."""
+    """The stored results with which the C++ tests compare are those that this code computes."""
 
     def test_the_files_are_what_this_code_makes(self):
         stored, _ = tensor_file.read(os.path.join(DATA, "kpcn_cases.safetensors"))

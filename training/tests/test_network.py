@@ -37,7 +37,7 @@ class FeaturesTest(unittest.TestCase):
         self.assertEqual(across[:, 0].abs().sum() + down[0].abs().sum(), 0)
 
     def test_variance_is_transformed_as_the_light_is(self):
-        # With many samples around one grey pixel: the variance of their transforms.
+        # Compares with the variance of many transformed samples of one grey pixel.
         samples = 2.0 + 0.05 * torch.randn(200000)
         albedo = torch.full((1, 3, 1, 1), 0.3)
         frame = {"albedo": albedo}
@@ -65,7 +65,7 @@ class FeaturesTest(unittest.TestCase):
         for name in ("albedo", "normal", "depth"):
             frame[name + ".variance"] = torch.ones_like(frame[name + ".variance"])
         for side in features.SIDES:
-            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # a single sample found all
+            frame[side + ".variance"] = frame[side].mean(dim=1, keepdim=True) ** 2  # one sample has all the light
             self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
             self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 
@@ -85,13 +85,13 @@ class FeaturesTest(unittest.TestCase):
 
 
 def alike_normals(a, b):
-    """As docs/kpcn.md has it."""
+    """The condition on normals as docs/kpcn.md states it."""
     lengths = math.hypot(*a) * math.hypot(*b)
     return sum(p * q for p, q in zip(a, b)) >= 0.5 * lengths if lengths > 0 else math.hypot(*a) == math.hypot(*b)
 
 
 def one_wall(light):
-    """Everything faces the same way."""
+    """Returns features.faces() of a picture whose normals are all equal."""
     return features.faces(torch.ones_like(light[:, :1]).expand(-1, 3, -1, -1))
 
 
@@ -128,7 +128,7 @@ class KernelTest(unittest.TestCase):
 
     def test_weights_beyond_any_exponent(self):
         logits = torch.full((1, 9, 3, 3), -1000.0)
-        logits[:, 0] = 1000.0  # up and to the left: outside the picture for the first row and column
+        logits[:, 0] = 1000.0  # the upper left tap: outside the picture for the first row and column
         light = torch.arange(9.0).reshape(1, 1, 3, 3)
         result = apply_kernel(logits, light, one_wall(light))[0, 0]
         self.assertTrue(torch.equal(result[1:, 1:], light[0, 0, :2, :2]))

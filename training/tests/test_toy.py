@@ -11,7 +11,7 @@ PROGRAM = os.environ.get("LIMPID_PROGRAM")
 
 @unittest.skipUnless(PROGRAM, "LIMPID_PROGRAM does not name the program `limpid`")
 class ToyTest(unittest.TestCase):
-    """From data to a denoised frame, as docs/kpcn.md tells newcomers, only smaller."""
+    """Runs docs/kpcn.md, "Try it on a CPU", at a smaller size: from the training data to a denoised frame."""
 
     def limpid(self, *arguments):
         result = subprocess.run([PROGRAM, *arguments, "--device", "cpu"], cwd=self.folder, capture_output=True, text=True)

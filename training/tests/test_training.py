@@ -15,7 +15,7 @@ LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
 
 
 def make_dataset(folder, examples=6, rows=24, columns=20, samples=4):
-    """As `limpid dataset` makes one: smooth light under a checker of albedo, with noise."""
+    """Writes a data set in the format of `limpid dataset`: smooth light on a checkerboard albedo, with noise."""
     generator = torch.Generator().manual_seed(5)
     files = []
     for number in range(examples // 2):
@@ -139,7 +139,8 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual((options.epochs, options.rate_diffuse, options.batch), (10, 1e-5, 8))
 
     def test_kernels_against_colours(self):
-        """The comparison's pieces: a network of colours learns, is drawn beside one of kernels, and is not exported."""
+        """A network that predicts colours can be trained and plotted beside one that predicts kernels, but not
+        exported."""
         runs = {}
         for name, extra in (("kernels", ()), ("colours", ("--direct",))):
             self.train(name, "--epochs", "2", "--tuning-epochs", "0", "--loss", "absolute", *extra)
@@ -154,7 +155,7 @@ class TrainingTest(unittest.TestCase):
             export.export(os.path.join(self.folder, "colours"), os.path.join(self.folder, "w.safetensors"))
 
     def test_two_workers(self):
-        """As torchrun starts them (that of Debian's PyTorch does not run with Debian's Python)."""
+        """Starts two workers like torchrun. (Debian's torchrun does not work with Debian's Python.)"""
         command = [sys.executable, "-m", "limpid_training.train"]
         command += self.options("run", "--epochs", "2", "--tuning-epochs", "1")
         with socket.socket() as free:
