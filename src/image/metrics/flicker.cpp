@@ -15,7 +15,7 @@ namespace {
 
 constexpr float depthTolerance = 0.1f;         // of the expected distance
 constexpr float normalTolerance = 0.7071068f;  // cosine of 45 degrees
-constexpr float minShare = 0.01f;              // under this, what is left of the four pixels says nothing
+constexpr float minShare = 0.01f;              // exclude pixels whose remaining weight is smaller
 
 size_t clampedIndex(int64_t x, int64_t y, uint32_t width, uint32_t height) {
     x = std::clamp<int64_t>(x, 0, int64_t{width} - 1);
@@ -23,14 +23,14 @@ size_t clampedIndex(int64_t x, int64_t y, uint32_t width, uint32_t height) {
     return static_cast<size_t>(y) * width + static_cast<size_t>(x);
 }
 
-/// The pixels that a source's shares belong to; beyond the border stands the border's pixel.
+/// Returns the indices of the pixels that a source's weights belong to, clamped to the border.
 std::array<size_t, 4> pixelsOf(const Reprojection::Source& s, uint32_t width, uint32_t height) {
     const int64_t x = s.x, y = s.y;
     return {clampedIndex(x, y, width, height), clampedIndex(x + 1, y, width, height),
             clampedIndex(x, y + 1, width, height), clampedIndex(x + 1, y + 1, width, height)};
 }
 
-/// Bilinear shares around a place (pixels; pixel centres at + 0.5); all 0 outside the picture.
+/// Returns the bilinear weights for a position in pixels (centres at + 0.5); all 0 outside the picture.
 Reprojection::Source bilinear(double placeX, double placeY, uint32_t width, uint32_t height) {
     Reprojection::Source source;
     if (!(placeX >= 0.0 && placeX < width && placeY >= 0.0 && placeY < height)) return source;
@@ -49,12 +49,12 @@ bool sameDepth(float expected, float found) {
 
 bool sameNormal(vec3 a, vec3 b) {
     const float lengths = glm::length(a) * glm::length(b);
-    // Normals of length 0 are misses: one alone is another surface.
+    // A normal of length 0 is a miss. Two misses are alike; a miss and a hit are not.
     if (lengths == 0.0f) return a == b;
     return glm::dot(a, b) >= normalTolerance * lengths;
 }
 
-/// Whether a pixel of the frame before shows the surface that one of this frame shows.
+/// Tests whether a pixel of the previous frame shows the same surface as a pixel of this frame.
 class SurfaceTest {
   public:
     SurfaceTest(const Geometry& now, const Geometry& before)
@@ -81,7 +81,7 @@ class SurfaceTest {
     bool depth_, normal_;
 };
 
-/// Takes the shares from pixels that show another surface and spreads them over the others.
+/// Sets the weights of pixels that show another surface to 0, and scales the others to a sum of 1.
 void keepSameSurface(Reprojection::Source& source, const std::array<size_t, 4>& previous, size_t pixel,
                      const SurfaceTest& test) {
     float sum = 0.0f;

@@ -23,7 +23,7 @@ Image noise(uint32_t width, uint32_t height, unsigned seed, float mean, float si
     return image;
 }
 
-/// The part of `world` whose upper left corner is at (x, y).
+/// Returns the part of `world` whose upper left corner is at (x, y).
 Image view(const Image& world, uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
     Image image(width, height, world.components);
     for (uint32_t j = 0; j < height; ++j) {
@@ -61,7 +61,8 @@ TEST(Flicker, OfAlternatingNoiseIsTwiceItsAmplitude) {
 }
 
 TEST(Flicker, OfIndependentGaussianNoise) {
-    // The difference of two is Gaussian of sigma * sqrt(2), whose mean absolute value is 2 sigma / sqrt(pi).
+    // The difference of two pixels is Gaussian with sigma * sqrt(2), so its mean absolute value is
+    // 2 sigma / sqrt(pi).
     const double sigma = 0.05, want = 2.0 * sigma / std::sqrt(std::numbers::pi);
     const Image reference(200, 200, 3, 0.5f);
     const auto found = flicker(noise(200, 200, 1, 0.5f, 0.05f), noise(200, 200, 2, 0.5f, 0.05f), reference,
@@ -72,7 +73,7 @@ TEST(Flicker, OfIndependentGaussianNoise) {
 
 TEST(Flicker, APictureThatMovesWithItsMotionHasNone) {
     const Image world = noise(60, 50, 3, 0.5f, 0.2f);
-    // The window moves 3 to the right and 2 up, so what it shows was 3 further right and 2 further up before.
+    // The window moves 3 to the right and 2 up, so its content was 3 further right and 2 further up before.
     const Image before = view(world, 10, 10, 40, 30), now = view(world, 13, 8, 40, 30);
     const Reprojection r = reproject(moving(40, 30, 3.0f, -2.0f), {});
     EXPECT_EQ(r.used, 37u * 28u) << "what came into view is excluded";
@@ -84,8 +85,8 @@ TEST(Flicker, APictureThatMovesWithItsMotionHasNone) {
 }
 
 TEST(Flicker, BetweenPixelsIsBilinear) {
-    // A ramp along x and y moves by a fraction: bilinear is exact, but in the first half pixel, where the
-    // border repeats and the value is short of the ramp's by a quarter of a step.
+    // A ramp along x and y moves by a fraction of a pixel. Bilinear interpolation is exact, except in the
+    // first half pixel, where the border is repeated and the value is off by a quarter of a step.
     const uint32_t width = 32, height = 16;
     Image before(width, height, 3), now = before;
     for (uint32_t y = 0; y < height; ++y) {
@@ -152,8 +153,8 @@ TEST(Flicker, PixelsWithoutAPlaceBeforeDoNotCount) {
               std::nullopt);
 }
 
-/// A row on which a wall at distance 10 shows but where a box at distance 4 stands: pixels `box` to `box`
-/// + 2. The box comes from `boxMotion` pixels to the right and from 1 further away; the wall rests.
+/// Returns a row of pixels: a box at distance 4 from `box` to `box` + 2, elsewhere a wall at distance 10. In
+/// the previous frame the box was `boxMotion` pixels further right and 1 further away. The wall is static.
 Geometry boxBeforeWall(uint32_t box, float boxMotion) {
     Geometry g = moving(10, 1, 0.0f, 0.0f);
     g.distanceChange = Image(10, 1, 1, 0.0f);

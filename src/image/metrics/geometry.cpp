@@ -20,7 +20,7 @@ std::optional<Image> layerIfThere(const LayeredImage& layers, const std::string&
 }  // namespace
 
 bool validMotion(float x, float y) {
-    // NaN fails both.
+    // Comparisons with NaN are false.
     return std::abs(x) < 1e6f && std::abs(y) < 1e6f;
 }
 

@@ -1,4 +1,4 @@
-// The layers that say what surface each pixel of a frame shows, and where that surface was one frame before.
+// The geometry layers of a frame: the surface that each pixel shows, and its motion since the previous frame.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,23 @@
 
 namespace limpid::image {
 
-/// How an EXR file says that a pixel has no place in the previous frame (the first frame, a scene cut, a
-/// point behind the previous eye): this value in motion.X and motion.Y. See validMotion.
+/// The value of motion.X and motion.Y in EXR files for a pixel without a position in the previous frame: in
+/// the first frame, after a scene cut, or for points behind the previous camera. See validMotion().
 inline constexpr float invalidMotion = noValue;
 
-/// Whether motion (pixels) is one: finite, and under a million pixels in each direction. What is not is a
-/// mark, invalidMotion or another renderer's.
+/// Returns whether a motion vector (pixels) is valid: finite, and below a million pixels in each direction.
+/// Larger values mark missing motion: invalidMotion, or what other renderers write instead.
 bool validMotion(float x, float y);
 
-/// Each layer is there or not. All are of the frame's size.
+/// All layers are optional. They have the frame's size.
 struct Geometry {
-    std::optional<Image> motion;          ///< motion.X Y: previous pixel position minus this one, pixels
-    std::optional<Image> distanceChange;  ///< motion.Z: previous distance minus this one
+    std::optional<Image> motion;          ///< motion.X Y: previous minus current pixel position, pixels
+    std::optional<Image> distanceChange;  ///< motion.Z: previous minus current distance from the eye
     std::optional<Image> depth;           ///< depth.Z: distance from the eye; 1e10 where nothing is hit
     std::optional<Image> normal;          ///< normal.X Y Z: 0 where nothing is hit; need not have unit length
 };
 
-/// The geometry layers among a file's channels.
+/// Returns the geometry layers among a file's channels.
 Geometry geometryOf(const LayeredImage& layers);
 
 }  // namespace limpid::image

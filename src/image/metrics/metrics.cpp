@@ -22,7 +22,7 @@ bool invalid(const Image& image, size_t pixel) {
     return !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]);
 }
 
-/// Mean of term(index of a value) over all values of an image of this size.
+/// Returns the mean of term(i) over the indices i of all values of an image.
 template <typename Term>
 double meanOverValues(const Image& image, const Term& term) {
     const size_t rowValues = size_t{image.width} * image.components;

@@ -1,5 +1,4 @@
-// What all metrics ask of their arguments, and what they do with pixels that are no colour. Private to
-// src/image.
+// Checks of the metrics' arguments, and their treatment of invalid pixels. Private to src/image.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +11,14 @@ namespace limpid::image {
 /// Throws Error unless both have 3 components, the same size, and at least one pixel.
 void checkComparable(const Image& test, const Image& reference);
 
-/// Pixels of an image of 3 components with a NaN or an infinity, ascending.
+/// Returns the indices of the pixels with a NaN or an infinity, ascending. The image has 3 components.
 std::vector<size_t> invalidPixels(const Image& image);
 
-/// Throws Error if the reference has such pixels: there is no truth to compare with.
+/// Throws Error if the reference has invalid pixels.
 void checkReferenceValid(const Image& reference);
 
-/// Sets these pixels of a displayed test picture to black or white in each component, whichever is farther
-/// from the displayed reference.
+/// Sets each component of these pixels of a display-encoded test picture to 0 or 1, whichever is farther from
+/// the display-encoded reference.
 void showAsWorst(const std::vector<size_t>& pixels, const Image& shownReference, Image& shownTest);
 
 }  // namespace limpid::image

@@ -20,8 +20,8 @@ Image randomImage(uint32_t width, uint32_t height, unsigned seed) {
     return image;
 }
 
-/// SSIM from its definition: for each pixel a 2D window, means, then variances about these means; all in
-/// double.
+/// Computes SSIM directly from its definition, in double precision: for each pixel a 2D window, the means,
+/// then the variances about these means.
 double directSsim(const Image& a, const Image& b) {
     const auto luma = [](const Image& image, int x, int y) {
         const auto column = static_cast<uint32_t>(std::clamp(x, 0, static_cast<int>(image.width) - 1));
@@ -116,7 +116,7 @@ TEST(Compare, InvalidPixelsCountAsTheWorst) {
     EXPECT_EQ(c.invalidPixels, 2u);
     EXPECT_EQ(c.flipMap.at(4, 5, 0), 1.0f);
     EXPECT_EQ(c.flipMap.at(6, 7, 0), 1.0f);
-    const double shown = srgbEncode(0.25f);  // above a half: black is farther than white
+    const double shown = srgbEncode(0.25f);  // above 0.5, so black is farther than white
     EXPECT_NEAR(c.psnr, -10.0 * std::log10(2.0 / 400.0 * shown * shown), 1e-4);
     EXPECT_NEAR(c.relMse, 2.0 / 400.0 * std::pow(65504.0 - 0.25, 2) / 0.0725, 1e3);
     EXPECT_TRUE(std::isfinite(c.ssim) && std::isfinite(c.flip));

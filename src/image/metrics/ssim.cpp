@@ -14,7 +14,7 @@ constexpr double windowSigma = 1.5;
 constexpr double c1 = 0.01 * 0.01;
 constexpr double c2 = 0.03 * 0.03;
 
-/// Luma less one half: nothing is lost to cancellation when squares of means are subtracted from means of
+/// Returns luma - 0.5. Centring reduces cancellation when the squared mean is subtracted from the mean of
 /// squares.
 Image centredLuma(const Image& image) {
     Image luma(image.width, image.height, 1);
@@ -31,7 +31,8 @@ Image blurredProduct(const Image& a, const Image& b, const Kernel& window) {
     return filterSeparably(product, window, window);
 }
 
-/// The pixels of a row or column whose window lies within it; all if it is shorter than the window.
+/// Returns the range of pixels in a row or column whose window lies within it; all pixels if it is shorter
+/// than the window.
 std::pair<size_t, size_t> insideRange(size_t length) {
     constexpr size_t radius = windowRadius;
     if (length < 2 * radius + 1) return {0, length};

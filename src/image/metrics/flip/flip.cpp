@@ -1,6 +1,6 @@
-// FLIP for images of low dynamic range. Equation numbers are those of the paper that image/metrics/metrics.h
-// names; what the paper leaves open (repeated borders, filter radii, the colour matrix) is as in NVIDIA's
-// reference program. Its loops are in image/flip_rows.h.
+// FLIP for images of low dynamic range. Equation numbers are those of the paper cited in
+// image/metrics/metrics.h. What the paper leaves open (repeated borders, filter radii, the colour matrix)
+// follows NVIDIA's reference program. The inner loops are in image/metrics/flip/flip_rows.h.
 #include "image/metrics/flip/flip.h"
 
 #include <tbb/parallel_for.h>
@@ -24,8 +24,8 @@ namespace {
 constexpr double featureWidth = 0.082;  // w: width of a feature, degrees
 constexpr double pi2 = std::numbers::pi * std::numbers::pi;
 
-/// Contrast sensitivity as a sum of two Gaussians of frequency, a * sqrt(pi/b) * exp(-pi^2 x^2 / b) in
-/// degrees.
+/// A contrast sensitivity function: in the spatial domain a sum of two Gaussians
+/// a * sqrt(pi/b) * exp(-pi^2 x^2 / b), with x in degrees.
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
@@ -44,7 +44,7 @@ Image decode(const Image& encoded) {
     return linear;
 }
 
-/// Values of `function` at 1 .. radius, divided by `sum`. What a float cannot add to the middle is left out.
+/// Returns `function` at 1 .. radius, divided by `sum`. Weights too small to change a float sum are left out.
 template <typename Function>
 std::vector<float> weightsOf(int radius, double sum, const Function& function) {
     std::vector<float> weights;
@@ -60,7 +60,7 @@ std::vector<float> gaussianWeights(int radius, double sigma) {
     return weightsOf(radius, sum, gaussian);
 }
 
-/// The share of the first Gaussian in the sum of all weights of the square window.
+/// Returns the first Gaussian's fraction of the sum of all weights in the square window.
 float firstShare(const Sensitivity& s, int radius, double pixelsPerDegree) {
     const auto volume = [&](double a, double b) {
         double sum = 0.0;
@@ -72,7 +72,7 @@ float firstShare(const Sensitivity& s, int radius, double pixelsPerDegree) {
     return static_cast<float>(first / (first + volume(s.a2, s.b2)));
 }
 
-/// The distance of green to blue, as the loops compute it.
+/// Returns the distance between green and blue, computed by the same loops as the pixels' distances.
 float largestColorDistance() {
     const std::array<float, 3> green{0, 1, 0}, blue{0, 0, 1};
     std::array<std::array<float, flipGroup>, 6> rows{};
@@ -89,15 +89,15 @@ float largestColorDistance() {
     return distance[0];
 }
 
-/// Beyond every filter's reach.
+/// Returns a radius that is larger than that of every filter.
 constexpr size_t radiusOf(double pixelsPerDegree) {
     return static_cast<size_t>(3.0 * std::max(0.0450160, 0.5 * featureWidth) * pixelsPerDegree) + 2;
 }
 
 }  // namespace
 
-/// Some rows of one picture, filtered along the rows, and as many on either side as filters of columns reach.
-/// A band stays in a processor's cache, where the whole picture would not.
+/// Some rows of one picture, filtered along the rows, with as many rows above and below as the column filters
+/// read. A band fits in a processor's cache, which a whole picture would not.
 struct LinearFlip::Band {
     Band(const LinearFlip& flip, size_t begin, size_t end)
         : first(static_cast<int64_t>(begin) - static_cast<int64_t>(flip.margin_)),
@@ -112,7 +112,7 @@ struct LinearFlip::Band {
     std::unique_ptr<float[]> values;
 };
 
-/// One row of one picture, filtered both ways.
+/// One row of one picture, filtered along rows and columns.
 struct LinearFlip::RowBuffers {
     explicit RowBuffers(size_t width) : values(8 * flipPadded(width)) {
         const auto at = [&](size_t i) { return &values[i * flipPadded(width)]; };
@@ -136,7 +136,7 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
     blueYellowSecond_ = gaussian(blueYellow.b2);
     blueYellowShare_ = firstShare(blueYellow, radius, pixelsPerDegree);
 
-    // First and second derivatives of a Gaussian; positive weights have the sum 1, negative ones -1.
+    // First and second derivatives of a Gaussian. Positive weights are scaled to a sum of 1, negative to -1.
     const double sigma = 0.5 * featureWidth * pixelsPerDegree;
     const int featureRadius = static_cast<int>(std::ceil(3.0 * sigma));
     const auto slope = [&](int x) { return x * std::exp(-x * x / (2.0 * sigma * sigma)); };
@@ -157,7 +157,7 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
 
 void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, const Band& band, int64_t y) const {
     const FlipRows& loops = flipRows();
-    // Each of Y, Cx and Cz with its ends repeated, as far as filters look.
+    // Rows of Y, Cx and Cz; their first and last values are repeated as far as the filters read.
     const size_t length = stride_ + 2 * margin_;
     std::array<float*, 3> values{};
     for (size_t c = 0; c < 3; ++c) values[c] = &padded[c * length + margin_];
@@ -197,7 +197,7 @@ LinearFlip::Band LinearFlip::filterRows(const Image& picture, size_t begin, size
     const auto last = static_cast<int64_t>(height_) - 1;
     int64_t filtered = -1;
     for (int64_t y = band.first; y < band.first + static_cast<int64_t>(band.rows); ++y) {
-        // The picture's first and last row are repeated beyond its ends.
+        // Rows outside the picture repeat its first and last row.
         const int64_t inside = std::clamp<int64_t>(y, 0, last);
         if (inside == filtered) {
             for (int plane = 0; plane < PlaneCount; ++plane)
@@ -228,7 +228,7 @@ void LinearFlip::filterColumns(const Band& band, int64_t y, RowBuffers& buffers)
                       stride_);
     smoothColumn(band, Luma, luma_, y, out.y);
     smoothColumn(band, RedGreen, redGreen_, y, out.cx);
-    // A sum of two Gaussians; each of them is separable, their sum is not.
+    // The sum of two Gaussians is not separable, but each of them is.
     smoothColumn(band, BlueYellow, blueYellow_, y, out.cz);
     smoothColumn(band, BlueYellowSecond, blueYellowSecond_, y, buffers.second);
     for (size_t x = 0; x < stride_; ++x)
@@ -251,7 +251,7 @@ void LinearFlip::compareBand(const Image& test, const Image& reference, size_t b
 void LinearFlip::compare(const Image& test, const Image& reference, Image& map) const {
     checkComparable(test, reference);
     constexpr size_t bandRows =
-        64;  // more would not fit into a cache, fewer would filter margins for nothing
+        64;  // more would not fit in a cache; fewer would filter the margins more often
     tbb::parallel_for(size_t{0}, (height_ + bandRows - 1) / bandRows, [&](size_t band) {
         compareBand(test, reference, band * bandRows, std::min((band + 1) * bandRows, height_), map);
     });

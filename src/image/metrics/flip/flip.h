@@ -1,4 +1,5 @@
-// LDR-FLIP where it meets HDR-FLIP. Private to src/image; image/metrics/metrics.h is the public face.
+// LDR-FLIP on linear display values, shared by flip() and hdrFlip(). Private to src/image; the public
+// functions are in image/metrics/metrics.h.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +9,23 @@
 
 namespace limpid::image {
 
-/// flip() of images that are not encoded: linear display values in [0,1]. Saves HDR-FLIP an encoding that
-/// LDR-FLIP would undo at once.
+/// Computes LDR-FLIP maps of linear display values in [0,1]. HDR-FLIP tone-maps to such values directly,
+/// without the sRGB encoding that flip() would have to undo.
 class LinearFlip {
   public:
-    /// For images of this size.
+    /// All images must have this size.
     LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree);
 
     /// Sets `map`, an image of one component, to the error of each pixel.
     void compare(const Image& test, const Image& reference, Image& map) const;
 
   private:
-    /// The weights at 1, 2 .. of filters that are symmetric or antisymmetric; their middle follows from their
-    /// sum.
+    /// Weights at 1, 2, .. of a symmetric or antisymmetric filter; the middle weight follows from their sum.
     struct Weights {
-        std::vector<float> values;  ///< zeros behind `reach`, as many as the longest filter needs
+        std::vector<float> values;  ///< zero-padded after `reach` to the length of the longest filter
         size_t reach;
     };
-    /// What rows are filtered to before columns are: filters, and the plane that they look at.
+    /// The results of filtering along rows, which are then filtered along columns.
     enum Plane { Edge, Smooth, Point, Luma, RedGreen, BlueYellow, BlueYellowSecond, PlaneCount };
     struct Band;
     struct RowBuffers;
@@ -38,11 +38,11 @@ class LinearFlip {
     Weights zeroPadded(std::vector<float> values) const;
 
     size_t width_, height_;
-    size_t stride_;  ///< of rows
-    size_t margin_;  ///< of pixels around the picture, at least as many as filters reach
+    size_t stride_;  ///< distance of rows, in values
+    size_t margin_;  ///< pixels added around the picture, at least the radius of the longest filter
     Weights smooth_, edge_, point_, luma_, redGreen_, blueYellow_, blueYellowSecond_;
-    float blueYellowShare_ = 1.0f;  ///< of the first of the two
-    float largest_ = 1.0f;          ///< distance of two colours: green to blue
+    float blueYellowShare_ = 1.0f;  ///< weight of the first of the two blue-yellow Gaussians
+    float largest_ = 1.0f;          ///< the largest distance of two colours: green to blue
 };
 
 }  // namespace limpid::image

@@ -1,5 +1,5 @@
-// For tests: FLIP once more, from the paper's formulas: double precision, two-dimensional filters, nothing
-// shared with the code under test. Slow, so for small images only.
+// For tests: a second implementation of FLIP, directly from the paper's formulas, in double precision and
+// with two-dimensional filters. It shares no code with the one under test. Slow, so only for small images.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Picture {
     std::vector<Vec> linear;
 };
 
-/// One channel; pixels beyond the border repeat those at the border.
+/// One channel. The border is repeated beyond the image.
 struct Plane {
     int width, height;
     std::vector<double> values;
@@ -36,7 +36,7 @@ struct Plane {
 
 using Filter = std::function<double(int, int)>;
 
-/// Convolution with positive weights scaled to the sum 1 and negative ones to -1.
+/// Convolves, with positive weights scaled to a sum of 1 and negative ones to -1.
 inline Plane filtered(const Plane& in, int radius, const Filter& filter) {
     double positive = 0, negative = 0;
     for (int j = -radius; j <= radius; ++j) {
@@ -139,7 +139,7 @@ inline std::vector<Vec> perceivedColors(const std::array<Plane, 3>& planes, doub
     return colors;
 }
 
-/// Edge and point strengths of each pixel.
+/// Returns the edge and point strengths of each pixel.
 inline std::vector<std::array<double, 2>> features(Plane y, double ppd) {
     for (double& v : y.values) v = (v + 16) / 116;
     const double sd = 0.5 * 0.082 * ppd;

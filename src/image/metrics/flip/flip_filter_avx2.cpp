@@ -1,4 +1,5 @@
-// As flip_filter.cpp, compiled for AVX2 and fused multiply-add. A fused sum changes nothing on a constant.
+// Like flip_filter.cpp, compiled for AVX2 with fused multiply-add. On a constant input the result is still
+// exact.
 #include "image/metrics/flip/flip_rows.h"
 
 namespace limpid::image {

@@ -1,11 +1,12 @@
-// The filters of FlipRows. Included by the files that are compiled for one kind of processor each, inside an
-// anonymous namespace.
+// The filters of FlipRows. Included inside an anonymous namespace by files that are each compiled for one
+// instruction set.
 
-/// Some neighbouring pixels: what the compiler makes vector instructions of, or several where it has to.
+/// Eight neighbouring values, which the compiler maps to vector instructions; to several narrower ones if the
+/// instruction set has none of this width.
 typedef float Lanes __attribute__((vector_size(32), aligned(4), may_alias));
 constexpr size_t lanes = sizeof(Lanes) / sizeof(float), blocks = flipGroup / lanes;
 
-/// One group of pixels. Its sums stay in registers, and each neighbour is loaded once for all filters.
+/// Filters one group of pixels. Sums stay in registers, and each neighbour is loaded once for all filters.
 template <size_t evens, bool odd>
 [[gnu::always_inline]] inline void filterGroup(const float* in, ptrdiff_t step, const FlipFilters& f,
                                                size_t x) {

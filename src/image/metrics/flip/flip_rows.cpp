@@ -1,6 +1,6 @@
 #include "image/metrics/flip/flip_rows.h"
 
-#include <math.h>  // NOLINT: the names that the compiler has vector versions of
+#include <math.h>  // NOLINT: declares the C functions of which the compiler has vector versions
 
 #include <numbers>
 

@@ -1,5 +1,5 @@
-// As flip_rows.cpp, compiled for AVX2.
-#include <math.h>  // NOLINT: the names that the compiler has vector versions of
+// Like flip_rows.cpp, compiled for AVX2.
+#include <math.h>  // NOLINT: declares the C functions of which the compiler has vector versions
 
 #include <numbers>
 

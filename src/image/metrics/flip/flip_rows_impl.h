@@ -1,11 +1,12 @@
-// The functions of FlipRows. Included by the files that are compiled for one kind of processor each, inside
-// an anonymous namespace: nothing here may be a function that the linker merges with that of another file.
-// Equation numbers and names are those of the paper that image/metrics/metrics.h names.
+// The functions of FlipRows. Included inside an anonymous namespace by files that are each compiled for one
+// instruction set. Every function here must have internal linkage: otherwise the linker might use the AVX2
+// version on a processor without AVX2. Names such as qc are those of the paper cited in
+// image/metrics/metrics.h.
 
 constexpr float colorExponent = 0.7f;    // qc
-constexpr float colorKnee = 0.4f;        // pc: this part of the largest colour difference ...
+constexpr float colorKnee = 0.4f;        // pc: this fraction of the largest colour difference ...
 constexpr float colorKneeValue = 0.95f;  // pt: ... maps to this error
-/// The white of all spaces: that of linear RGB (1,1,1).
+/// The reference white of all colour spaces: linear RGB (1,1,1).
 constexpr float whiteX = 23359437.0f / 24577794.0f, whiteZ = 80288407.0f / 73733382.0f;
 
 void toYcxcz(const float* rgb, size_t count, float* y, float* cx, float* cz) {
@@ -24,8 +25,7 @@ void toYcxcz(const float* rgb, size_t count, float* y, float* cx, float* cz) {
     return v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
 }
 
-/// As (first ? a : b), without a branch: the compiler has vector versions of functions that are always
-/// called.
+/// Returns first ? a : b, without a branch: the compiler only vectorises calls that are unconditional.
 [[gnu::always_inline]] inline float chosen(bool first, float a, float b) {
     const float share = first ? 1.0f : 0.0f;
     return share * a + (1.0f - share) * b;
@@ -33,7 +33,7 @@ void toYcxcz(const float* rgb, size_t count, float* y, float* cx, float* cz) {
 
 [[gnu::always_inline]] inline float labCurve(float t) {
     constexpr float delta = 6.0f / 29.0f;
-    // Only roots of larger values count; that of 0 is slow.
+    // The root is only used for larger t. The limit avoids cbrtf(0), which is slow.
     const float root = ::cbrtf(t > 0.008f ? t : 0.008f), line = t / (3.0f * delta * delta) + 4.0f / 29.0f;
     return chosen(t > delta * delta * delta, root, line);
 }
@@ -42,8 +42,8 @@ struct Lab {
     float l, a, b;
 };
 
-/// What the eye makes of a filtered colour: clamped to what a screen can show, then CIELAB whose chroma
-/// shrinks with lightness (Hunt effect).
+/// Converts a filtered colour to CIELAB: clamps it to the display's gamut, and scales chroma by lightness
+/// (Hunt effect).
 [[gnu::always_inline]] inline Lab perceived(float luma, float cx, float cz) {
     const float y = (luma + 16.0f) / 116.0f;
     const float x = (y + cx / 500.0f) * whiteX, z = (y - cz / 200.0f) * whiteZ;
@@ -57,7 +57,7 @@ struct Lab {
     return {lightness, 0.01f * lightness * 500.0f * (fx - fy), 0.01f * lightness * 200.0f * (fy - fz)};
 }
 
-/// powf is slow at 0.
+/// powf() with a minimum for the base, since it is slow at 0.
 [[gnu::always_inline]] inline float power(float base, float exponent) {
     return ::powf(base > 1e-30f ? base : 1e-30f, exponent);
 }
@@ -73,7 +73,8 @@ void distances(const FlipRow& test, const FlipRow& reference, size_t count, floa
     for (size_t i = 0; i < count; ++i) distance[i] = power(distanceAt(test, reference, i), colorExponent);
 }
 
-/// The difference of two features' sizes; they are of Y, not of Y / 116.
+/// Returns the difference of two gradient magnitudes. Gradients here are of Y, but the paper's are of Y /
+/// 116.
 [[gnu::always_inline]] inline float featureDifference(const float* testX, const float* testY,
                                                       const float* referenceX, const float* referenceY,
                                                       size_t i) {
@@ -88,16 +89,16 @@ void errors(const FlipRow& test, const FlipRow& reference, float largest, size_t
     for (size_t i = 0; i < count; ++i) {
         const float difference = distanceAt(test, reference, i);
         const float distance = power(difference, colorExponent);
-        // Spreads distances over [0,1], most of it to small ones.
+        // Maps distances to [0,1], with most of that range for small ones.
         const float below = colorKneeValue / knee * distance;
         const float above = colorKneeValue + (distance - knee) / (largest - knee) * (1.0f - colorKneeValue);
         const float colorError = distance < knee ? below : above;
         const float edges = featureDifference(test.edgeX, test.edgeY, reference.edgeX, reference.edgeY, i);
         const float points =
             featureDifference(test.pointX, test.pointY, reference.pointX, reference.pointY, i);
-        // qf is 1/2.
+        // The square root is the exponent qf = 1/2.
         const float featureError = ::sqrtf((edges > points ? edges : points) / std::numbers::sqrt2_v<float>);
-        // A difference of features amplifies a difference of colours.
+        // Feature differences amplify colour differences.
         const float amplified = power(colorError, 1.0f - featureError);
         error[i] = chosen(difference > 0.0f, clamped(amplified), 0.0f);
     }

@@ -1,4 +1,4 @@
-// HDR-FLIP. Section and formulas are those of the paper that image/metrics/metrics.h names.
+// HDR-FLIP, by the paper cited in image/metrics/metrics.h.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -13,10 +13,11 @@
 namespace limpid::image {
 namespace {
 
-/// Where the brightest pixel lands at the first exposure and the median one at the last.
+/// The tone-mapped value of the brightest pixel at the first exposure, and of the median pixel at the last.
 constexpr double displayTarget = 0.85;
 
-/// Mean of the two middle values where their number is even. `values` is not empty and is reordered.
+/// Returns the median; the mean of the two middle values if their number is even. `values` must not be empty
+/// and is reordered.
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -42,7 +43,7 @@ void toneMap(const Image& radiance, double stops, Image& mapped) {
         const float* const from = &radiance.pixels[y * rowValues];
         float* const to = &mapped.pixels[y * rowValues];
         for (size_t i = 0; i < rowValues; ++i) {
-            // The curve is 1 long before the bound, which keeps the product a float.
+            // The bound keeps the product in the range of a float. The curve reaches 1 far below it.
             const double exposed = std::min(scale * static_cast<double>(from[i]), 1e30);
             to[i] = filmicCurve(static_cast<float>(exposed));
         }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double ppd = flipPixelsPerDegree;
 
-// HDR-FLIP from the paper's words, on top of the double-precision FLIP of image/flip_direct.h.
+// A second implementation of HDR-FLIP, from the paper, on top of the double-precision FLIP of flip_direct.h.
 namespace direct_hdr {
 
 double aces(double radiance) {
@@ -25,7 +25,7 @@ double aces(double radiance) {
     return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 
-/// The radiance that `aces` takes to 0.85, by bisection.
+/// Finds the radiance that `aces` maps to 0.85, by bisection.
 double radianceOfTarget() {
     double low = 0, high = 100;
     for (int i = 0; i < 200; ++i) (aces((low + high) / 2) < 0.85 ? low : high) = (low + high) / 2;
@@ -134,8 +134,8 @@ TEST(HdrFlip, AgreesWithTheFormulas) {
 }
 
 TEST(HdrFlip, GreysByHand) {
-    // One brightness everywhere: both exposures bring the reference to 0.85, and what remains of FLIP is the
-    // distance of two lightnesses.
+    // Both pictures are uniform, so both exposures map the reference to 0.85, and FLIP is just the distance
+    // of two lightnesses.
     const Image reference(40, 30, 3, 7.0f), test(40, 30, 3, 3.5f);
     const HdrFlip result = hdrFlip(test, reference);
     const double x = 0.6 * direct_hdr::radianceOfTarget() / 2.0;
@@ -157,7 +157,7 @@ TEST(HdrFlip, ExposuresComeFromTheBrightestAndTheMedianPixel) {
     EXPECT_NEAR(four.stop, std::log2(target / 3), 1e-6);
     EXPECT_EQ(four.count, 5);
     EXPECT_NEAR(hdrFlipExposures(greys({5, 1, 80})).stop, std::log2(target / 5), 1e-6);
-    // One pixel, or one brightness: the paper's two exposures at least, here the same.
+    // With one pixel, or uniform brightness, there are the paper's minimum of two exposures, here equal.
     const HdrFlipExposures one = hdrFlipExposures(greys({8}));
     EXPECT_EQ(one.count, 2);
     EXPECT_EQ(one.start, one.stop);
