@@ -58,7 +58,8 @@ struct ConvolutionChain::Impl {
     uint32_t bandRows = 0;  ///< rows per step of the output layer
     std::optional<Step> output;
     memory band, blocked,
-        planar;  ///< its input including the rows around it; its result in blocks, and as planar channels
+        planar;  ///< the output layer's input for one step, including the rows around it; its result in
+                 ///< blocks; the same result as planar channels
 
     Kept keep(const ConvolutionLayer& layer, bool first) {
         Kept kept{layer.inputs, layer.outputs, layer.relu, {}, {}};

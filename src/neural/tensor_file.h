@@ -1,6 +1,6 @@
 // Reads and writes named tensors in the safetensors format (https://github.com/huggingface/safetensors,
-// "Format"), which PyTorch users know: 8 bytes of length, JSON of that length, then the tensors' elements,
-// all little-endian.
+// "Format"), which is common in the PyTorch world: 8 bytes with the header's length, the header as JSON, then
+// the tensors' elements, all little-endian.
 #pragma once
 
 #include <cstddef>

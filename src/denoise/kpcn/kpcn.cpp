@@ -36,13 +36,14 @@ using gpu::ImageHandle;
 constexpr uint32_t minSamplesForErrors = 8;
 constexpr const char* sideNames[] = {"diffuse", "specular"};
 constexpr uint32_t reach = KPCN_TAPS / 2;
-constexpr uint32_t block = 4;         // pixels that an invocation of kpcn_convolve.glsl computes
-constexpr uint32_t workgroup = 16;    // pixels along the edge of a workgroup of kpcn_matrix.glsl
-constexpr uint32_t alignment = 16;    // of tiles
-constexpr uint32_t texelsOfSlab = 4;  // of a pixel
+constexpr uint32_t block = 4;         // pixels per invocation of kpcn_convolve.glsl
+constexpr uint32_t workgroup = 16;    // edge length of a workgroup of kpcn_matrix.glsl in pixels
+constexpr uint32_t alignment = 16;    // sizes of tiles are multiples of this, in pixels
+constexpr uint32_t texelsOfSlab = 4;  // texels of one pixel in one slab
 
-/// Pixels between the taps of a level after the kernels, from the last on. That one takes in direct
-/// neighbours: odd and even pixels would be filtered apart.
+/// Distances between the taps of the filter levels after the network, in pixels, from the last level to the
+/// first. The last level must read direct neighbours: without it, odd and even pixels would be filtered
+/// separately.
 constexpr uint32_t levelSteps[] = {1, 2, 8, 32, 128, 512};
 
 uint32_t stepOf(int left) {
@@ -53,12 +54,12 @@ uint32_t divideUp(uint32_t a, uint32_t b) {
     return (a + b - 1) / b;
 }
 
-/// The ways to compute it; the host computes features alone on the device, in single precision.
+/// The shaders for one precision. (KpcnPrecision::Host uses only `features`, in single precision.)
 struct Shaders {
     const gpu::ShaderCode &features, &hidden, &kernel;
-    Format format;        ///< of four channels
-    uint32_t texelBytes;  ///< ... in bytes
-    uint32_t width;       ///< pixels that an invocation computes
+    Format format;        ///< of a texel, which holds four channels
+    uint32_t texelBytes;  ///< size of a texel
+    uint32_t width;       ///< pixels per invocation
 };
 
 const Shaders& shadersOf(KpcnPrecision precision) {
@@ -90,7 +91,7 @@ const Shaders& shadersOf(KpcnPrecision precision) {
     }
 }
 
-/// The largest number up to `max` that divides `count`.
+/// Returns the largest divisor of `count` that is at most `max`.
 uint32_t divisor(uint32_t count, uint32_t max) {
     for (uint32_t d = max; d > 1; --d) {
         if (count % d == 0) return d;
@@ -150,7 +151,8 @@ class Recorder {
     }
 
   private:
-    /// Even parts of the picture, at most `wanted` pixels along an edge and what the device's buffers hold.
+    /// Divides the picture into tiles of about equal size, at most `wanted` pixels along an edge, and small
+    /// enough for the device's buffers.
     Extent tileSize(uint32_t wanted) const {
         const auto part = [&](uint32_t length, uint32_t max) {
             const uint32_t even = divideUp(length, divideUp(length, max));
@@ -167,13 +169,14 @@ class Recorder {
         }
     }
 
-    /// With the margin on both sides, and what workgroups at its end compute beyond it.
+    /// Returns the edge length of a tile's buffers: the tile, the margin on both sides, and the pixels that
+    /// the last workgroups compute beyond that.
     uint32_t bufferSize(uint32_t tile, uint32_t picture) const {
         return std::min(tile + 2 * margin_, divideUp(picture, alignment) * alignment) + workgroup;
     }
 
-    /// The tile and `margin` pixels around it, as far as they lie in the picture; in buffers that begin
-    /// `margin_` pixels before the tile, or with the picture.
+    /// Returns the tile with `margin` pixels around it, clipped to the picture. The buffers begin `margin_`
+    /// pixels before the tile, or at the picture's edge.
     KpcnRegion region(const Tile& tile, uint32_t margin) const {
         const auto begin = [](uint32_t at, uint32_t around) {
             return static_cast<int>(at - std::min(at, around));
@@ -185,7 +188,7 @@ class Recorder {
         r.height = static_cast<int>(std::min(tile.top + tile.height + margin, picture_.height)) - r.top;
         r.originX = begin(tile.left, margin_);
         r.originY = begin(tile.top, margin_);
-        r.pitch = onHost() ? r.width : static_cast<int>(pitch_);  // the host wants no gaps
+        r.pitch = onHost() ? r.width : static_cast<int>(pitch_);  // the host needs rows without gaps
         r.rows = onHost() ? r.height : static_cast<int>(rows_);
         r.pictureWidth = static_cast<int>(picture_.width);
         r.pictureHeight = static_cast<int>(picture_.height);
@@ -241,8 +244,8 @@ class Recorder {
                        {"clean", clean}});
     }
 
-    /// In small pictures what is flat is small, too: of taps further apart than a tenth of the shorter edge
-    /// there are none.
+    /// Returns the number of filter levels. Levels with taps further apart than a tenth of the shorter edge
+    /// are skipped, because flat areas are small in small pictures.
     int levelCount() const {
         const uint32_t widest = std::max(1u, std::min(picture_.width, picture_.height) / 10);
         int count = settings_.levels;
@@ -250,7 +253,8 @@ class Recorder {
         return count;
     }
 
-    /// The widest first: the more noise is left, the more difference is forgiven as noise.
+    /// Records the filter levels. The widest comes first, while there is most noise: a level tolerates
+    /// differences of luminance in proportion to the noise that is left.
     ImageHandle levels(size_t side, ImageHandle clean) {
         const int count = levelCount();
         for (int i = 0; i < count; ++i) {
@@ -360,9 +364,9 @@ class Recorder {
     const Shaders& shaders_;
     const KpcnSettings& settings_;
     Extent picture_;
-    uint32_t margin_ = 0;  ///< that a tile's features need around it
+    uint32_t margin_ = 0;  ///< pixels around a tile for which features are computed
     Extent tile_;
-    uint32_t pitch_ = 0, rows_ = 0;  ///< of the buffers, in pixels
+    uint32_t pitch_ = 0, rows_ = 0;  ///< size of the buffers in pixels
     std::array<ImageHandle, 2> channels_;
     ImageHandle light_, faces_;
 };

@@ -21,11 +21,14 @@ struct KpcnSettings {
 };
 const ParamTable<KpcnSettings>& kpcnParams();
 
-/// Returns the clean beauty, rgba32f, alpha 1, from this frame alone. `input.samples` and the variances in
-/// alpha must be correct. Passes: "kpcn/distances", "kpcn/largest"; for each side (diffuse, specular) and
-/// tile "kpcn/diffuse features", "kpcn/diffuse hidden 1" and so on, "kpcn/diffuse kernel"; for each side
-/// "kpcn/diffuse level 1" and so on; "kpcn/compose". The network must be on the device that executes the
-/// graph, and must outlive that execution.
+/// Adds the passes that denoise a frame by itself, and returns the denoised beauty (rgba32f, alpha 1).
+/// `input.samples` and the variances in alpha must be correct. The network must be on the device that
+/// executes the graph, and must outlive that execution. Passes, in this order:
+/// - "kpcn/distances" and "kpcn/largest" find the largest distance in the picture;
+/// - for each side (diffuse, specular) and tile: "kpcn/diffuse features", "kpcn/diffuse hidden 1" and so on,
+///   "kpcn/diffuse kernel";
+/// - for each side: the filter levels after the network, "kpcn/diffuse level 1" and so on;
+/// - "kpcn/compose".
 gpu::ImageHandle filterKpcn(gpu::FrameGraph& graph, const DenoiserInput& input, const KpcnSettings& settings,
                             const KpcnNetwork& network);
 

@@ -34,13 +34,15 @@ void KpcnHost::run(size_t, const KpcnHostTile&, std::span<const float>, std::spa
 
 namespace {
 
-/// Rows of the output layer that are computed at a time: of 441 channels, 2 MB for each 64 pixels of width.
+/// Rows of the output layer that are computed at a time. With 441 channels, they take about 2 MB for every 64
+/// pixels of width.
 constexpr uint32_t bandRows = 16;
-/// Of taps that do not count.
+/// The logit of taps that are excluded.
 constexpr float noLogit = -1e30f;
 
-/// Within 3e-7 of e^x, relatively, for x from -87 to 0; 0 below. Written so that compilers make vector code
-/// of it: Taylor's polynomial of what is left below half a power of 2, and the power into the exponent.
+/// Returns e^x with a relative error below 3e-7 for x from -87 to 0, and 0 for smaller x. Compilers can
+/// vectorise it. x is split into a power of 2, which becomes the float's exponent, and a remainder, for which
+/// a Taylor polynomial is used.
 inline float exponential(float x) {
     const float t = std::max(x, -87.0f) * 1.44269504f;
     const float whole = static_cast<float>(static_cast<int>(t - 0.5f));
@@ -56,7 +58,7 @@ inline float exponential(float x) {
     return x < -87.0f ? 0.0f : p * scale;
 }
 
-/// Where a part's surfaces face.
+/// The unpacked normals of a part of the picture (features.faces() in training/limpid_training/features.py).
 class Faces {
   public:
     /// `minCosine`: KpcnWeights::facing.
@@ -68,8 +70,8 @@ class Faces {
                     static_cast<float>(static_cast<int8_t>(packed[i] >> (8 * c) & 255u)) / 127.0f;
         }
     }
-    /// Makes logits[x] no logit for those x from `begin` to before `end` whose pixels `a` + x and `b` + x do
-    /// not face the same way.
+    /// For each x in [begin, end): excludes the tap, by setting logits[x] to noLogit, if the normals of the
+    /// pixels `a` + x and `b` + x differ too much.
     void mask(size_t a, size_t b, size_t begin, size_t end, float* logits) const {
         const float *p = components_[0].data(), *q = components_[1].data(), *r = components_[2].data(),
                     *s = components_[3].data();
@@ -85,7 +87,8 @@ class Faces {
     float minCosine_;
 };
 
-/// The means of one row of pixels; as if one after the other, all pixels of the row are under way at once.
+/// Computes the weighted means of one row of pixels. Loops run over taps outside and over the row's pixels
+/// inside, so that compilers can vectorise them.
 class RowOfMeans {
   public:
     RowOfMeans(const KpcnHostTile& tile, uint32_t kernelWidth, std::span<const float> light,
@@ -96,8 +99,8 @@ class RowOfMeans {
           faces_(faces),
           sums_(6 * size_t{tile.columns}) {}
 
-    /// `logits`: (channels, count, columns) of which `row`, in the part the row `y`; those of taps that face
-    /// elsewhere are overwritten.
+    /// `logits`: (channels, count, columns). Uses their row `row`, which is row `y` of the part. Overwrites
+    /// the logits of taps that are excluded because of their normal.
     void compute(std::span<float> logits, uint32_t count, uint32_t row, uint32_t y, float* clean) {
         const size_t n = tile_.columns;
         std::fill(sums_.begin(), sums_.end(), 0.0f);
@@ -128,8 +131,9 @@ class RowOfMeans {
     }
 
   private:
-    /// Taps that lie in the picture: what lies outside the part but in the picture is never asked for by
-    /// wanted pixels. The tap of the row's pixel x is pixel `from` + x of the part.
+    /// Calls visit(logits, from, begin, end) for each tap of the kernel: the tap of pixel x of the row is
+    /// pixel `from` + x of the part, for x in [begin, end). Skips taps outside the part; for the pixels that
+    /// are to be computed, these also lie outside the picture.
     template <typename Visit>
     void eachTap(std::span<float> logits, uint32_t count, uint32_t row, uint32_t y, Visit visit) const {
         const int n = static_cast<int>(tile_.columns), reach = static_cast<int>(kernelWidth_ / 2);
@@ -150,7 +154,7 @@ class RowOfMeans {
     uint32_t kernelWidth_;
     std::span<const float> light_;
     const Faces& faces_;
-    std::vector<float> sums_;  ///< largest logit, weights, red, green, blue, weighted variances: a row each
+    std::vector<float> sums_;  ///< one row each: largest logit, weights, red, green, blue, weighted variances
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The network's layers and kernels on the CPU, for devices that are CPUs themselves: oneDNN is several times
-// as fast there as shaders.
+// The network's layers and kernels on the host, with oneDNN: used for software devices, where it is several
+// times as fast as shaders.
 #pragma once
 
 #include <array>

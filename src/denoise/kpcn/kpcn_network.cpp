@@ -14,7 +14,8 @@ uint32_t slabsOf(uint32_t channels) {
     return (channels + KPCN_SLAB - 1) / KPCN_SLAB;
 }
 
-/// `hidden`: one more output, always 1, is the next layer's bias channel.
+/// Appends a layer's weights to `packed` in the order that KpcnNetwork describes. `hidden`: adds an output
+/// that is always 1, the next layer's bias channel.
 void pack(const KpcnLayer& layer, bool hidden, std::vector<float>& packed) {
     const uint32_t outputs = slabsOf(layer.outputs + (hidden ? 1 : 0)) * KPCN_SLAB;
     const size_t begin = packed.size();

@@ -21,12 +21,13 @@ enum class KpcnPrecision {
 };
 std::string_view toString(KpcnPrecision precision);
 
-/// The fastest that the device supports; on GPUs Float unless `half`.
+/// Returns the fastest precision that the device supports. Without `half`, GPUs use Float.
 KpcnPrecision kpcnPrecision(const gpu::DeviceInfo& device, bool half);
 
-/// The weights in the order in which the passes read them, from the outermost index: slab of 16 inputs, tap,
-/// input, output (padded to whole slabs). One additional input is always 1; its weights at the centre tap are
-/// the bias. Hidden layers pass it on.
+/// The weights in the order in which the passes read them. Indices from the slowest to the fastest: slab of
+/// 16 inputs, tap, input within the slab, output (padded to whole slabs). Every layer has one additional
+/// input that is always 1; its weights at the centre tap are the bias. Hidden layers have an additional
+/// output that produces this 1 for the next layer.
 class KpcnNetwork {
   public:
     KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPrecision precision);

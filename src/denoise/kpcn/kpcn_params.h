@@ -34,8 +34,8 @@ struct KpcnRegion {
 
 struct KpcnFeaturesParams {
     KpcnRegion region;
-    float ofMean;  // factor from mean squared deviation to variance of the mean: 1 / (samples - 1); 0 for one
-                   // sample
+    float ofMean;   // converts mean squared deviation to variance of the mean: 1 / (samples - 1); 0 for one
+                    // sample
     uint specular;  // which side
 };
 

@@ -75,7 +75,7 @@ class Reader {
         return result;
     }
 
-    /// Files that name none are of networks that were made before the condition was one of the network's.
+    /// Older files do not have the field; their networks use the default.
     float readFacing(const json& shape) const {
         if (!shape.contains("facing")) return KpcnWeights{}.facing;
         const json& facing = shape["facing"];
@@ -84,7 +84,8 @@ class Reader {
         return facing.get<float>();
     }
 
-    /// Taken out of the file, so that what is left is too much.
+    /// Returns a tensor's values and removes it from `file_`, so that read() can detect tensors that are left
+    /// over.
     std::vector<float> take(const std::string& name, const std::vector<uint64_t>& shape) {
         const auto found = file_.tensors.find(name);
         if (found == file_.tensors.end()) fail(formatText("lacks the tensor '{}'", name));

@@ -1,4 +1,4 @@
-// Files of weights: what is refused, and why.
+// Tests that weight files are read, and that invalid ones are refused with a message that names the fault.
 #include "denoise/kpcn/kpcn_weights.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ neural::Tensor filled(std::vector<uint64_t> shape, float value) {
     return neural::makeTensor(ElementType::Float32, std::move(shape), std::vector<float>(count, value));
 }
 
-/// A whole network, of one hidden layer of two channels and kernels of 3x3.
+/// Returns a valid file: a network with one hidden layer of two channels and kernels of 3x3 pixels.
 TensorFile whole() {
     TensorFile file;
     file.metadata = {{"limpid.network", "kpcn"}, {"limpid.shape", R"({"hidden":1,"channels":2,"width":3})"}};

@@ -1,4 +1,4 @@
-// A convolution of 5x5 taps on any device: each invocation computes 16 channels of 4 pixels beside each other.
+// A convolution of 5x5 taps for any device: each invocation computes 16 channels of 4 horizontally adjacent pixels.
 #include "denoise/kpcn/shaders/kpcn_storage.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -9,15 +9,15 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 layout(set = 0, binding = 1, scalar) readonly buffer inputTexels { KPCN_TEXEL texels[]; } inputs;
 layout(set = 0, binding = 2, scalar) readonly buffer weightTexels { KPCN_TEXEL texels[]; } weights;
 
-const int BLOCK = 4;                    // pixels
+const int BLOCK = 4;                    // pixels per invocation
 const int REACH = int(KPCN_TAPS) / 2;
 
-/// sums[pixel][four channels] of the tile's channels.
+/// Computes one tile of 16 output channels for BLOCK pixels from `first` on: sums[pixel][channel / 4][channel % 4].
 void convolve(ivec2 first, uint tile, out vec4 sums[BLOCK][4]) {
     for (int p = 0; p < BLOCK; ++p) {
         for (int o = 0; o < 4; ++o) sums[p][o] = vec4(0.0);
     }
-    const uint line = params.outputTiles * 4u;  // texels of the weights of one input channel
+    const uint line = params.outputTiles * 4u;  // texels per input channel and tap: the weights of all outputs
     for (uint slab = 0u; slab < params.inputSlabs; ++slab) {
         for (uint row = 0u; row < KPCN_TAPS; ++row) {
             for (uint group = 0u; group < 4u; ++group) {
@@ -44,7 +44,7 @@ void convolve(ivec2 first, uint tile, out vec4 sums[BLOCK][4]) {
     }
 }
 
-/// Of this invocation.
+/// Returns the first pixel of this invocation.
 ivec2 firstPixel() {
     return ivec2(params.region.left, params.region.top) + ivec2(gl_GlobalInvocationID.xy) * ivec2(BLOCK, 1);
 }

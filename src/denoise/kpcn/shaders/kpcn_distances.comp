@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Distances, of which kpcn_largest.comp finds the largest.
+// Writes the distance of each pixel, 0 where nothing is hit. kpcn_largest.comp finds the largest of them.
 #include "denoise/stages/guides.glsl"
 #include "denoise/kpcn/kpcn_params.h"
 

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// What one side's network sees of each pixel, the light that its kernels average, and where surfaces face, by which they choose:
-// docs/kpcn.md, "What a network sees" (training/limpid_training/features.py does the same).
+// Computes for one side and each pixel: the network's input, the light that its kernels average, and the normal by
+// which kernels exclude pixels. docs/kpcn.md, "What a network sees"; training/limpid_training/features.py does the
+// same.
 #include "denoise/stages/guides.glsl"
 #include "denoise/kpcn/shaders/kpcn_storage.glsl"
 
@@ -21,8 +22,8 @@ layout(set = 0, binding = 8, scalar) writeonly buffer faceTexels { uint texels[]
 
 struct Seen {
     vec4 light, albedo, normal;  // alpha: variance
-    vec2 depth;                  // and variance
-    vec4 averaged;
+    vec2 depth;                  // distance over the largest distance; its variance
+    vec4 averaged;               // the light that kernels average; alpha: variance
 };
 
 float varianceOf(float deviation) {
@@ -56,18 +57,18 @@ Seen seenAt(ivec2 pixel) {
     return seen;
 }
 
-/// The normal of length 1, and 1 where there is none. The dot product of two is the cosine between the normals, 1 if neither has
-/// one, and 0 if one of them has.
+/// Returns the unit normal, and in w a flag that is 1 where there is no normal. The dot product of two such vectors is
+/// the cosine between the normals, 1 if neither pixel has a normal, and 0 if only one has.
 vec4 faceOf(vec4 seenNormal) {
     const vec3 n = unitNormal(seenNormal);
-    return dot(n, n) > 0.9 ? vec4(n, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);  // squares of very short ones are 0, or inexact
+    return dot(n, n) > 0.9 ? vec4(n, 0.0) : vec4(0.0, 0.0, 0.0, 1.0);  // the squares of very short normals underflow
 }
 
 void main() {
     if (gl_GlobalInvocationID.x >= uint(params.region.width) || gl_GlobalInvocationID.y >= uint(params.region.height)) return;
     const ivec2 pixel = ivec2(params.region.left, params.region.top) + ivec2(gl_GlobalInvocationID.xy);
     const Seen here = seenAt(pixel);
-    Seen left = here, above = here;  // no gradient at the picture's edges
+    Seen left = here, above = here;  // gradients are 0 in the first column and row
     if (pixel.x > 0) left = seenAt(pixel - ivec2(1, 0));
     if (pixel.y > 0) above = seenAt(pixel - ivec2(0, 1));
     const vec3 lightX = here.light.rgb - left.light.rgb, lightY = here.light.rgb - above.light.rgb;

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The last layer, the softmax of its channels, and the mean of the light by it: no channel goes to memory.
+// The last layer, fused with the softmax of its channels and the weighted mean of the light, so that the kernels are
+// never written to memory.
 #include "denoise/kpcn/shaders/kpcn_convolve.glsl"
 #include "denoise/kpcn/shaders/kpcn_softmax.glsl"
 

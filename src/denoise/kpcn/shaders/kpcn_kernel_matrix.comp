@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The last layer on cooperative matrices, the softmax of its channels, and the mean of the light by it: no channel goes to memory.
+// Like kpcn_kernel.comp, on cooperative matrices: the last layer, fused with the softmax of its channels and the
+// weighted mean of the light.
 #include "denoise/kpcn/shaders/kpcn_matrix.glsl"
 #include "denoise/kpcn/shaders/kpcn_storage.glsl"
 #include "denoise/kpcn/shaders/kpcn_softmax.glsl"
@@ -9,7 +10,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer lightTexels { vec4 texels[]
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D clean;
 layout(set = 0, binding = 5, scalar) readonly buffer faceTexels { uint texels[]; } faces;
 
-const uint LOGITS_PITCH = 2u * TILES + 1u;  // uvec4 a pixel; 256 of them fit the stage for up to 4 tiles
+const uint LOGITS_PITCH = 2u * TILES + 1u;  // uvec4 per pixel; 256 pixels fit in `stage` if TILES <= 4
 
 void main() {
     const ivec2 pixel = groupsFirst() + ivec2(gl_LocalInvocationID.xy);
@@ -32,7 +33,7 @@ void main() {
                 ivec2 tap;
                 if (!kernelTap(params, pixel, tile * KPCN_SLAB + i * 8u + k, tap)) continue;
                 const uint at = pixelTexel(params.region, tap);
-                const float logit = clamp(pair[k % 2u], -MAX_HALF, MAX_HALF);  // one that is infinite leaves no mean
+                const float logit = clamp(pair[k % 2u], -MAX_HALF, MAX_HALF);  // infinity would give NaN
                 if (alike(params, face, faces.texels[at])) add(mean, logit, light.texels[at]);
             }
         }

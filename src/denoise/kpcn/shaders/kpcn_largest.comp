@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The largest of each 8x8 texels.
+// Writes the maximum of each 8x8 texels. Repeated until one texel is left.
 #include "denoise/kpcn/kpcn_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,6 +1,12 @@
-// A convolution of 5x5 taps as matrix products on cooperative matrices: 16x16 pixels by TILES x 16 channels in a workgroup, whose eight
-// subgroups have two rows of pixels each. Products in half precision, sums in single.
-// Loops over matrices are unrolled explicitly: NVIDIA's compiler otherwise keeps them in memory, five times slower.
+// A convolution of 5x5 taps as products of cooperative matrices. A workgroup computes TILES x 16 channels of 16x16
+// pixels; each of its eight subgroups computes two rows of pixels. Products are in half precision, sums in single
+// precision.
+//
+// Inputs and weights go through shared memory: for each slab of input channels the 20x20 pixels around the workgroup,
+// and for each row of taps its weights.
+//
+// Loops over matrices are unrolled explicitly: otherwise NVIDIA's compiler keeps the matrices in memory, which is five
+// times slower.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_memory_scope_semantics : require
 #extension GL_EXT_control_flow_attributes : require
@@ -10,24 +16,24 @@
 
 layout(local_size_x = 16, local_size_y = 16) in;
 
-layout(constant_id = 0) const uint TILES = 7u;  // of outputs at a time, at most 8; divides outputTiles
+layout(constant_id = 0) const uint TILES = 7u;  // tiles of 16 outputs at a time, at most 8; divides outputTiles
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     KpcnLayerParams params;
 };
-// Eight halves each.
+// A texel holds eight halves.
 layout(set = 0, binding = 1, scalar) readonly buffer inputTexels { uvec4 texels[]; } inputs;
 layout(set = 0, binding = 2, scalar) readonly buffer weightTexels { uvec4 texels[]; } weights;
 
 #define HalfMatrix fcoopmatNV<16, gl_ScopeSubgroup, 16, 16>
 #define FloatMatrix fcoopmatNV<32, gl_ScopeSubgroup, 16, 16>
 
-const uint EDGE = 16u;                         // pixels of a workgroup
-const uint HALO = EDGE + KPCN_TAPS - 1u;       // and what lies around them
-const uint HALO_PITCH = 3u;                    // uvec4 a pixel, one of them to spread the banks
+const uint EDGE = 16u;                         // edge length of a workgroup in pixels
+const uint HALO = EDGE + KPCN_TAPS - 1u;       // including the pixels that its taps read around it
+const uint HALO_PITCH = 3u;                    // uvec4 per pixel; one is padding that avoids bank conflicts
 const uint HALO_LOADS = (HALO * HALO * 2u + 255u) / 256u;
 const uint WEIGHTS_AT = HALO * HALO * HALO_PITCH;
-const uint WEIGHT_LINES = KPCN_TAPS * KPCN_SLAB;  // of a row of taps
+const uint WEIGHT_LINES = KPCN_TAPS * KPCN_SLAB;  // lines of weights in a row of taps: one per tap and input
 const uint WEIGHT_LOADS = WEIGHT_LINES * 16u / 256u;
 const uint WEIGHT_PITCH = 2u * TILES + 1u;
 const uint SHARED_TEXELS = WEIGHTS_AT + WEIGHT_LINES * 17u;
@@ -61,7 +67,7 @@ void keepHalo(uvec4 fetched[HALO_LOADS]) {
     }
 }
 
-/// Of one row of taps and one slab, for the tiles from `tile` on.
+/// Loads the weights of one row of taps and one slab of inputs, for the output tiles from `tile` on.
 void fetchWeights(uint slab, uint row, uint tile, out uvec4 fetched[WEIGHT_LOADS]) {
     const uint line = 2u * params.outputTiles;
     const uint first = params.weights + (slab * KPCN_TAPS + row) * WEIGHT_LINES * line + tile * 2u;
@@ -79,7 +85,8 @@ void keepWeights(uvec4 fetched[WEIGHT_LOADS]) {
     }
 }
 
-/// sums[row of pixels][tile from `tile` on]. What is fetched next is under way while this is multiplied.
+/// Computes TILES tiles of output channels from `tile` on: sums[row of pixels of the subgroup][tile]. The next inputs
+/// and weights are loaded into registers while the current ones are multiplied.
 void convolve(uint tile, out FloatMatrix sums[2][TILES]) {
     [[unroll]] for (uint m = 0u; m < 2u; ++m) {
         [[unroll]] for (uint n = 0u; n < TILES; ++n) sums[m][n] = FloatMatrix(0.0);

@@ -1,15 +1,15 @@
-// A mean weighted by a softmax, of weights that come one after the other: M. Milakov, N. Gimelshein, "Online normalizer
+// A mean weighted by a softmax whose logits arrive one at a time: M. Milakov, N. Gimelshein, "Online normalizer
 // calculation for softmax", 2018.
 struct WeightedMean {
-    vec3 sum;
-    float weights;
-    float squares;  // of weighted variances
-    float largest;
+    vec3 sum;       // weighted light
+    float weights;  // sum of the weights
+    float squares;  // sum of squared weight times variance
+    float largest;  // largest logit so far; weights are exp(logit - largest)
 };
 
 const WeightedMean NO_MEAN = WeightedMean(vec3(0.0), 0.0, 0.0, -1e30);
 
-/// `value`: light, and its variance.
+/// Adds a pixel to the mean. `value`: its light, and in alpha the light's variance.
 void add(inout WeightedMean mean, float logit, vec4 value) {
     if (logit > mean.largest) {
         const float shrink = exp(mean.largest - logit);
@@ -24,19 +24,20 @@ void add(inout WeightedMean mean, float logit, vec4 value) {
     mean.squares += weight * weight * value.a;
 }
 
-/// And its deviation.
+/// Returns the mean, and in alpha its standard deviation.
 vec4 resultOf(WeightedMean mean) {
     return vec4(mean.sum, sqrt(mean.squares)) / mean.weights;
 }
 
-/// The `channel`-th tap of a kernel around `pixel`, if there is one and it lies in the picture.
+/// Sets `tap` to the pixel that channel `channel` of the kernel around `pixel` belongs to. Returns false if the kernel
+/// has no such channel, or if the tap lies outside the picture.
 bool kernelTap(KpcnLayerParams params, ivec2 pixel, uint channel, out ivec2 tap) {
     const uint width = params.kernelWidth;
     tap = pixel + ivec2(channel % width, channel / width) - int(width / 2u);
     return channel < width * width && inPicture(params.region, tap);
 }
 
-/// Whether they face the same way, or both nowhere: kpcn_features.comp packed them.
+/// Returns whether two pixels have similar normals, or both none. `face` and `other` are packed by kpcn_features.comp.
 bool alike(KpcnLayerParams params, uint face, uint other) {
     return dot(unpackSnorm4x8(face), unpackSnorm4x8(other)) >= params.facing;
 }

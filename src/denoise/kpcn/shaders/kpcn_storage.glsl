@@ -1,4 +1,4 @@
-// Buffers of the network's passes: four channels a texel, as halves, or as floats where KPCN_FLOAT is defined.
+// Texels in the buffers of the network's passes: four channels each, as halves, or as floats if KPCN_FLOAT is defined.
 #ifndef LIMPID_KPCN_STORAGE_GLSL
 #define LIMPID_KPCN_STORAGE_GLSL
 
@@ -23,12 +23,12 @@ uvec2 toTexel(vec4 value) {
 }
 #endif
 
-/// Of a pixel's first channel in a slab.
+/// Returns the texel index of a pixel's first channels in a slab.
 uint channelTexel(KpcnRegion region, uint slab, ivec2 pixel) {
     return ((slab * uint(region.rows) + uint(pixel.y - region.originY)) * uint(region.pitch) + uint(pixel.x - region.originX)) * 4u;
 }
 
-/// Of a pixel in a buffer with one texel a pixel.
+/// Returns the texel index of a pixel in a buffer with one texel per pixel.
 uint pixelTexel(KpcnRegion region, ivec2 pixel) {
     return uint(pixel.y - region.originY) * uint(region.pitch) + uint(pixel.x - region.originX);
 }
