@@ -47,15 +47,13 @@ struct LightRecord {
 class EmbreeScene {
   public:
     /// `data` must be the result of buildSceneData(scene): the light tables come from there, so that both
-    /// tracers sample the same lights. Throws Error, naming the feature, if the scene has anything but
-    /// Lambertian triangles, some of which emit; or if Embree fails.
+    /// tracers sample the same lights. The scene may only have Lambertian triangles, with or without
+    /// emission; for anything else throws Error, naming the feature. Also throws Error if Embree fails.
     EmbreeScene(const scene::Scene& scene, const scene::SceneData& data);
 
     RTCScene handle() const { return scene_.get(); }
-    const std::vector<TriangleRecord>& triangles() const {
-        return triangles_;
-    }  ///< indexed by Embree's
-       ///< primitive
+    /// Indexed by Embree's primitive number.
+    const std::vector<TriangleRecord>& triangles() const { return triangles_; }
     const std::vector<MaterialRecord>& materials() const { return materials_; }
     const std::vector<LightRecord>& lights() const { return lights_; }
     const std::vector<scene::AliasEntry>& lightAlias() const { return lightAlias_; }

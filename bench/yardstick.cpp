@@ -23,7 +23,8 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// The paths are equal up to rounding; a hit on an edge may fall on either side.
+/// Largest accepted relative difference of ray counts. Paths are equal except for rounding, but a ray that
+/// hits an edge may hit either side.
 constexpr double maxRayDifference = 0.005;
 
 struct Options {

@@ -1,8 +1,8 @@
-/* Limpid with pictures in host memory, in C99: no Vulkan in this program. It paints noisy pictures in which a disc
- * moves before a wall, denoises them frame by frame, prints the PSNR of the last one before and after, and writes
- * noisy.ppm and clean.ppm.
+/* Denoises pictures in host memory with Limpid, in C99; the program itself does not use Vulkan. It paints noisy
+ * pictures of a disc that moves in front of a wall and denoises them frame by frame. For the last frame it prints the
+ * PSNR before and after, and writes noisy.ppm and clean.ppm.
  *
- *     limpid-c [DEVICE]      a part of a GPU's name, or cpu
+ *     limpid-c [DEVICE]      DEVICE: part of a GPU's name, or cpu
  */
 #include <limpid/denoise.h>
 #include <math.h>
@@ -11,18 +11,18 @@
 
 enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES = 16 };
 
-/* Images have three floats a pixel, or as many as the denoiser needs of them. */
+/* Colours and normals have three floats per pixel, motion two, depth one. */
 static float truth[PIXELS * 3], noisy[PIXELS * 3], clean[PIXELS * 3];
 static float albedo[PIXELS * 3], normal[PIXELS * 3], depth[PIXELS], motion[PIXELS * 2];
 
-/* 0 to 1, uniform. */
+/* Returns a uniform random number from 0 to 1. */
 static float uniform(void) {
     static uint32_t state = 1;
     state = state * 1664525u + 1013904223u;
     return (float)(state >> 8) / 16777216.0f;
 }
 
-/* An orthographic camera looks along -z: one unit of the world is one pixel. The disc is nearer than the wall. */
+/* The camera is orthographic and looks along -z; one world unit is one pixel. The disc is in front of the wall. */
 static void paint(int frame) {
     const float step = 4.0f, discX = 80.0f + step * (float)frame, discY = 90.0f;
     for (int i = 0; i < PIXELS; ++i) {
@@ -31,9 +31,9 @@ static void paint(int frame) {
         const int square = ((int)(x / 16.0f) + (int)(y / 16.0f)) % 2;
         const float light = disc ? 0.6f : 0.2f + 0.4f * x / WIDTH;
         depth[i] = disc ? 5.0f : 10.0f;
-        motion[2 * i] = disc ? -step : 0.0f; /* from here to where it was, in pixels */
+        motion[2 * i] = disc ? -step : 0.0f; /* previous minus current position, in pixels */
         motion[2 * i + 1] = 0.0f;
-        const float found = light * 4.0f * (uniform() < 0.25f); /* rare and bright, as light in a path tracer is */
+        const float found = light * 4.0f * (uniform() < 0.25f); /* noise: few pixels find light */
         for (int c = 0; c < 3; ++c) {
             albedo[3 * i + c] = disc ? (c == 0 ? 0.9f : 0.3f) : square ? 0.8f : 0.4f;
             normal[3 * i + c] = c == 2 ? 1.0f : 0.0f;
@@ -45,7 +45,7 @@ static void paint(int frame) {
 
 static void setCamera(limpid_camera* camera) {
     const float view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    /* Columns. x and y: -1 to 1 over the picture, y down; z: 0 to 1 from 0 to 100 units away. */
+    /* Column-major. Clip space: x and y from -1 to 1 over the picture, y down; z from 0 to 1 at distances 0 to 100. */
     const float projection[16] = {2.0f / WIDTH, 0, 0, 0, 0, -2.0f / HEIGHT, 0, 0, 0, 0, -0.01f, 0, 0, 0, 0, 1};
     for (int i = 0; i < 16; ++i) {
         camera->view[i] = camera->previous_view[i] = view[i];

@@ -1,7 +1,10 @@
-"""A noisy sequence, made with NumPy alone, before and after Limpid: denoise_sequence.py [DEVICE]
+"""Denoises a noisy sequence that is made with NumPy, and prints the PSNR before and after.
+
+    denoise_sequence.py [DEVICE]
 
 A camera moves past three spheres on a floor. Each pixel's light is multiplied by a random number, as if it were an
-estimate from one sample. Motion is left out: Limpid follows the surfaces by the camera's matrices.
+estimate from one sample. No motion vectors are given: the scene is static, so Limpid can compute them from the
+camera's matrices.
 """
 
 import sys
@@ -15,7 +18,7 @@ SPHERES = [((-1.6, 1.0, -0.5), 1.0, (0.8, 0.3, 0.2)), ((0.4, 0.7, 0.6), 0.7, (0.
 
 
 def trace(view):
-    """Depth (0: nothing), normal and albedo of what the pixels' centres see."""
+    """Traces rays through the pixels' centres; returns depth (0 where nothing is hit), normal and albedo."""
     half = np.tan(np.radians(FOV / 2))
     x = (2 * (np.arange(WIDTH) + 0.5) / WIDTH - 1) * half * WIDTH / HEIGHT
     y = (1 - 2 * (np.arange(HEIGHT) + 0.5) / HEIGHT) * half

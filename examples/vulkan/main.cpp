@@ -1,6 +1,6 @@
-// Limpid in a Vulkan program. It traces a scene that moves with one noisy path a pixel, has SVGF clean each frame in
-// the same command buffer, changes size half-way, and writes the last frame as noisy.ppm and clean.ppm.
-//     limpid-vulkan [--validate] [--two]      --two: a second denoiser in the same command buffers, to clean2.ppm
+// Limpid in a Vulkan program. Traces a moving scene with one path per pixel, denoises each frame with SVGF in the same
+// command buffer, changes the picture's size half-way, and writes the last frame to noisy.ppm and clean.ppm.
+//     limpid-vulkan [--validate] [--two]      --two: adds a second denoiser, which writes clean2.ppm
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -14,7 +14,7 @@ constexpr uint32_t traceCode[] =
     ;
 constexpr uint32_t frameCount = 32, framesInFlight = 3;
 constexpr Format half4 = Format::eR16G16B16A16Sfloat;
-// What the tracer writes: inputs of the denoiser, in formats that engines have. The order is the shader's.
+// The tracer's outputs, which are the denoiser's inputs, in formats common in engines. Same order as in trace.comp.
 constexpr std::pair<limpid_input, Format> layers[] = {{LIMPID_INPUT_RADIANCE, half4},
                                                       {LIMPID_INPUT_ALBEDO, Format::eR8G8B8A8Unorm},
                                                       {LIMPID_INPUT_NORMAL, Format::eA2B10G10R10UnormPack32},
@@ -27,7 +27,7 @@ constexpr ImageSubresourceRange wholeImage(ImageAspectFlagBits::eColor, 0, 1, 0,
 struct Gpu {
     raii::PhysicalDevice physical;
     raii::Device device;
-    raii::Queue queue{device, 0, 0};  // of family 0, which computes with every driver that we know of
+    raii::Queue queue{device, 0, 0};  // queue family 0 supports compute on all drivers that we know
     raii::CommandPool pool{device, {CommandPoolCreateFlagBits::eResetCommandBuffer, 0}};
     raii::DeviceMemory allocate(const MemoryRequirements& needs, MemoryPropertyFlags wanted) const {
         const auto types = physical.getMemoryProperties().memoryTypes;
@@ -55,7 +55,7 @@ struct Picture {
     raii::ImageView view = nullptr;
 };
 
-// As Limpid sees it: in which layout it is, and who wrote it last.
+// Describes a picture to Limpid: its layout, and the stage and access that wrote it last.
 limpid_vulkan_image forLimpid(const Picture& picture, VkImageLayout layout) {
     return limpid::image(*picture.image, *picture.view, VkFormat(picture.format), layout,
                          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
@@ -78,15 +78,15 @@ void trace(const raii::CommandBuffer& commands, const std::vector<Picture>& pict
     commands.dispatch((pictures[0].extent.width + 7) / 8, (pictures[0].extent.height + 7) / 8, 1);
 }
 
-// The shader's eye: it looks along -z and moves sideways. Matrices are column-major.
+// The camera of trace.comp: it looks along -z and moves sideways. Matrices are column-major.
 void look(float time, Extent2D size, float (&view)[16], float (&projection)[16]) {
     view[0] = view[5] = view[10] = view[15] = 1.0f;
     view[12] = -0.8f * std::sin(time), view[13] = -1.2f, view[14] = -5.0f;
     projection[0] = 2.0f * size.height / size.width, projection[5] = -2.0f;  // Vulkan's clip space: y points down
-    projection[10] = projection[11] = -1.0f, projection[14] = -0.1f;         // from 0.1 to infinity
+    projection[10] = projection[11] = -1.0f, projection[14] = -0.1f;         // near plane 0.1, no far plane
 }
 
-// As bytes in a file that every viewer opens.
+// Writes a picture as an 8-bit PPM file.
 void save(const Gpu& gpu, const Picture& picture, const char* name) {
     const auto [width, height, depth] = picture.extent;
     const DeviceSize size = DeviceSize{8} * width * height;
@@ -121,7 +121,7 @@ constexpr auto onMessage = [](auto, auto, const VkDebugUtilsMessengerCallbackDat
 int main(int argc, char** argv) try {
     bool validate = false, two = false;
     for (int i = 1; i < argc; ++i) (argv[i] == std::string("--two") ? two : validate) = true;
-    // The program's own Vulkan. Limpid adds what it needs to the features that the program switches on.
+    // The program's own Vulkan device. limpid::enableFeatures() adds the features that Limpid needs.
     const raii::Context context;
     const ApplicationInfo app("limpid-vulkan", 1, nullptr, 0, VK_API_VERSION_1_3);
     const std::vector<const char*> layer(validate, "VK_LAYER_KHRONOS_validation");
@@ -147,7 +147,7 @@ int main(int argc, char** argv) try {
     const ComputePipelineCreateInfo pipeline({}, {{}, compute, *code, "main"}, *layout);
     const raii::Pipeline tracer(gpu.device, nullptr, pipeline);
 
-    // Limpid on this device.
+    // Limpid uses this device.
     const auto limpidDevice = limpid::adopt(*instance, *physical, *gpu.device, 0, vkGetInstanceProcAddr);
     limpid::DenoiserDesc desc(640, 360, LIMPID_METHOD_SVGF);
     desc.normal_encoding = LIMPID_NORMAL_UNORM;
@@ -156,12 +156,12 @@ int main(int argc, char** argv) try {
     denoisers.emplace_back(limpidDevice, desc);
     desc.method = LIMPID_METHOD_ATROUS;
     if (two) denoisers.emplace_back(limpidDevice, desc);
-    std::vector<Picture> traced, clean;  // by layer; by denoiser
+    std::vector<Picture> traced, clean;  // indexed by layer; by denoiser
     const raii::CommandBuffers buffers(gpu.device, {*gpu.pool, {}, framesInFlight});
     std::vector<raii::Fence> fences;
     for (uint32_t number = 0; number < frameCount; ++number) {
         if (number < framesInFlight) fences.emplace_back(gpu.device, FenceCreateInfo(FenceCreateFlagBits::eSignaled));
-        // Three frames ago must be done: its command buffer, and what Limpid has kept for it, are used again.
+        // The frame three frames ago must be done: its command buffer and Limpid's resources for it are reused.
         const raii::CommandBuffer& commands = buffers[number % framesInFlight];
         const Fence fence = *fences[number % framesInFlight];
         if (gpu.device.waitForFences(fence, true, UINT64_MAX) != Result::eSuccess) return 1;
@@ -193,7 +193,7 @@ int main(int argc, char** argv) try {
     save(gpu, clean.front(), "clean.ppm");
     if (two) save(gpu, clean.back(), "clean2.ppm");
     return messages == 0 ? 0 : 1;
-} catch (const std::exception& error) {  // limpid::Error, and those of Vulkan-Hpp
+} catch (const std::exception& error) {  // limpid::Error or an exception of Vulkan-Hpp
     std::cerr << error.what() << '\n';
     return 1;
 }

@@ -1,13 +1,13 @@
 #version 460
-// One noisy frame of a scene that moves, and what a denoiser wants to know of it. One path a pixel: the surface that
-// is seen, one diffuse bounce in a random direction, and the sky with its small sun, which it rarely finds.
+// Traces one noisy frame of a moving scene, with the guide layers for a denoiser. One path per pixel: the visible
+// surface, then one diffuse bounce in a random direction. The sky has a small sun, which few paths hit.
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const int radianceOut = 0;  // scattered light, albedo in it; the sky
-const int albedoOut = 1;    // 1 where nothing is seen
-const int normalOut = 2;    // world space, 0 to 1 for -1 to 1
-const int depthOut = 3;     // distance from the eye; 0: nothing is seen
-const int motionOut = 4;    // pixels: where it was minus where it is
+const int radianceOut = 0;  // scattered light including albedo; the sky
+const int albedoOut = 1;    // 1 where nothing is hit
+const int normalOut = 2;    // world space, mapped from [-1, 1] to [0, 1]
+const int depthOut = 3;     // distance from the eye; 0 where nothing is hit
+const int motionOut = 4;    // previous minus current position, pixels
 layout(binding = 0) uniform writeonly image2D layers[5];
 
 layout(push_constant) uniform Push {
@@ -15,7 +15,7 @@ layout(push_constant) uniform Push {
 };
 const float focal = 2.0;  // 1 / tan(half the vertical angle of view)
 
-/// Looks along -z and moves sideways.
+/// Returns the camera's position. It looks along -z and moves sideways.
 vec3 eyeAt(float t) {
     return vec3(0.8 * sin(t), 1.2, 5.0);
 }
@@ -24,14 +24,14 @@ const int sphereCount = 4, ground = sphereCount, nothing = -1;
 const vec3 colors[5] = vec3[5](vec3(0.9, 0.3, 0.2), vec3(0.2, 0.6, 0.9), vec3(0.3, 0.8, 0.3), vec3(0.9, 0.8, 0.3),
                                vec3(0.5));
 
-/// Centre and radius. They circle, and the first one jumps.
+/// Returns centre and radius of a sphere. All spheres circle around the origin, and the first one jumps.
 vec4 sphere(int i, float t) {
     const float angle = 1.57 * i + 0.6 * t;
     const float height = i == 0 ? 0.5 + abs(sin(3.0 * t)) : 0.5;
     return vec4(1.4 * cos(angle), height, 1.4 * sin(angle), 0.5);
 }
 
-/// What a ray hits first, and how far away.
+/// Returns the first object that a ray hits, and its distance.
 int trace(vec3 origin, vec3 direction, float time, out float distance) {
     int hit = nothing;
     distance = 1e9;
@@ -65,13 +65,13 @@ float random(inout uint state) {
     return float(((word >> 22) ^ word) >> 8) / 16777216.0;
 }
 
-/// Cosine-weighted: a point on the unit sphere that stands on the surface.
+/// Samples a cosine-weighted direction: towards a random point of the unit sphere that touches the surface.
 vec3 bounce(vec3 normal, inout uint state) {
     const float z = 2.0 * random(state) - 1.0, angle = 6.2831853 * random(state);
     return normalize(normal * 1.0001 + vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z));
 }
 
-/// In pixels, of a point as an eye sees it that looks along -z.
+/// Projects a point, relative to the camera, to pixel coordinates.
 vec2 project(vec3 fromEye, vec2 size) {
     const vec2 clip = focal * vec2(fromEye.x * size.y / size.x, -fromEye.y) / -fromEye.z;
     return (0.5 * clip + 0.5) * size;
@@ -106,10 +106,10 @@ void main() {
     const vec3 onward = bounce(normal, state);
     float further;
     const int second = trace(position + 1e-3 * normal, onward, time, further);
-    // The second surface is lit by the mean of the sky, roughly.
+    // An approximation: the second surface receives the mean light of the sky.
     const vec3 light = second == nothing ? sky(onward) : 0.5 * colors[second];
 
-    // Where this point of the surface was one frame ago. The spheres do not turn.
+    // The surface point's movement since the previous frame. The spheres do not rotate.
     const vec3 moved = hit == ground ? vec3(0.0) : sphere(hit, previousTime).xyz - s.xyz;
     const vec2 motion = project(position + moved - eyeAt(previousTime), size) - project(position - eye, size);
 

@@ -1,4 +1,4 @@
-/* Prints the sizes, offsets and values that programs were compiled with: what may not change while the SONAME stays. */
+/* Prints the sizes, offsets and values that are compiled into programs. They must not change without a new SONAME. */
 #include <limpid/denoise_vulkan.h>
 #include <stddef.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Prints the sizes, offsets and values of neural.h: what may not change while the SONAME stays. */
+/* Prints the sizes, offsets and values of neural.h. They must not change without a new SONAME. */
 #include <limpid/neural.h>
 #include <stddef.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
-// A device that is lost: calls of Limpid say so, and destroying what there is stays clean. The driver is
-// played by functions between Limpid and the real one, which report VK_ERROR_DEVICE_LOST from a chosen moment
-// on.
+// Tests what happens when the Vulkan device is lost: Limpid's calls report it, and all objects can still be
+// destroyed. The loss is simulated: functions between Limpid and the real driver return VK_ERROR_DEVICE_LOST
+// when the test asks for it.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Functions that can fail, and those that destroy what they make.
+/// The Vulkan functions that are wrapped: those that can fail, and those that destroy objects.
 // clang-format off
 #define FAILING_FUNCTIONS(X) \
     X(AllocateMemory) X(CreateBuffer) X(CreateComputePipelines) X(CreateDescriptorPool) \
@@ -26,8 +26,8 @@ using testing::HasSubstr;
     X(DestroyPipelineLayout) X(DestroyQueryPool) X(DestroyShaderModule)
 // clang-format on
 
-// Vulkan's functions take no pointer of ours: the driver's state is the program's. Pipelines are made by
-// several threads.
+// The wrappers' state is global, since Vulkan's functions have no argument for it. It is atomic because
+// several threads create pipelines.
 enum class Failing {
 #define ENUMERATOR(name) name,
     FAILING_FUNCTIONS(ENUMERATOR) Count
@@ -35,8 +35,8 @@ enum class Failing {
 };
 constexpr int nothing = -1, everything = static_cast<int>(Failing::Count);
 constexpr int lastThatMakes = static_cast<int>(Failing::CreateShaderModule);
-std::atomic<int> lost = nothing;  ///< which function reports it
-std::atomic<int> alive = 0;       ///< objects that were made and not destroyed
+std::atomic<int> lost = nothing;  ///< the function that reports the loss: a Failing, nothing or everything
+std::atomic<int> alive = 0;       ///< number of objects that were created and not yet destroyed
 std::atomic<bool> reported = false;
 
 template <typename Function, Failing which>
@@ -124,7 +124,7 @@ class DeviceLostTest : public VulkanProgramTest {
         limpid_device_destroy(std::exchange(adopted_, nullptr));
     }
 
-    /// What recording a frame says; the command buffer runs in any case.
+    /// Records a frame and returns the result. The command buffer is submitted even after an error.
     limpid_result record(limpid_denoiser* denoiser, int number) {
         const auto f = upload(SyntheticScene({}), number);
         limpid_result result = LIMPID_OK;
@@ -147,7 +147,7 @@ TEST_F(DeviceLostTest, EveryCallThatMeetsItSaysSo) {
     EXPECT_EQ(limpid_device_pipeline_cache(adopted_, nullptr, &size), LIMPID_ERROR_DEVICE_LOST);
     limpid_denoiser_desc desc = {sizeof desc};
     desc.width = width, desc.height = height;
-    desc.method = LIMPID_METHOD_ATROUS;  // its pipelines are not there yet
+    desc.method = LIMPID_METHOD_ATROUS;  // its pipelines do not exist yet
     limpid_denoiser* second = nullptr;
     EXPECT_EQ(limpid_denoiser_create(adopted_, &desc, &second), LIMPID_ERROR_DEVICE_LOST);
     EXPECT_EQ(second, nullptr);
@@ -157,7 +157,7 @@ TEST_F(DeviceLostTest, EveryCallThatMeetsItSaysSo) {
     EXPECT_EQ(alive, 0) << "objects are left";
 }
 
-/// Whichever function meets it first, at any point of a frame.
+/// Lets each function be the first to report the loss, at any point of a frame.
 TEST_F(DeviceLostTest, WhereverAFrameStopsNothingIsLeft) {
     int met = 0;
     for (int function = 0; function < everything; ++function) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# embed.sh TEST SOURCE BUILD LIBDIR: one test of Limpid as other programs meet it. CTest runs them (label embed),
-# "install" first: it installs the libraries into BUILD/tests/embed/prefix, and the others build programs against that.
-# CXX and CMAKE_GENERATOR are those of the build.
+# embed.sh TEST SOURCE BUILD LIBDIR: runs one test of the installed library. CTest runs these tests (label embed). The
+# first one, "install", installs the libraries into BUILD/tests/embed/prefix; the others build programs against that.
+# The environment has the CXX and CMAKE_GENERATOR of the build.
 set -euo pipefail
 test=$1 source=$2 build=$3 libdir=$4
 work=$build/tests/embed
@@ -13,7 +13,7 @@ export PKG_CONFIG_PATH=$prefix/$libdir/pkgconfig CMAKE_PREFIX_PATH=$prefix
 fail() { echo "embed.sh $test: $*" >&2; exit 1; }
 # configure FOLDER BUILD OPTION ...
 configure() { cmake -S "$1" -B "$2" -D CMAKE_BUILD_TYPE=Release "${@:3}"; }
-# refuses TEXT COMMAND ...: the command fails, and says TEXT.
+# refuses TEXT COMMAND ...: checks that the command fails and that its output contains TEXT.
 refuses() {
     local said
     if said=$("${@:2}" 2>&1); then fail "not refused: ${*:2}"; fi
@@ -24,7 +24,7 @@ consumer() {
     "$own/version"
     "$own/wrapper"
 }
-# pictures FOLDER WIDTH HEIGHT NAME ...: each is there and of that size, and no two are the same.
+# pictures FOLDER WIDTH HEIGHT NAME ...: checks that all files exist, have that size, and differ from each other.
 pictures() {
     cd "$1"
     local size=$2x$3 name
@@ -35,7 +35,7 @@ pictures() {
     [ "$(sha256sum "$@" | cut -d ' ' -f 1 | sort -u | wc -l)" -eq $# ] || fail "two of $* are the same"
 }
 
-# soname FILE NAME
+# soname FILE NAME: checks the library's SONAME.
 soname() { readelf -d "$prefix/$libdir/$1" | grep SONAME | grep -qF "[$2]" || fail "the SONAME is not $2"; }
 installed() {
     local file
@@ -43,7 +43,8 @@ installed() {
         [ -e "$prefix/$file" ] || fail "$file is not installed"
     done
 }
-# abi LIBRARY PREFIX PROGRAM FILE: LIBRARY exports only PREFIX*; FILE lists that and what PROGRAM.c prints.
+# abi LIBRARY PREFIX PROGRAM FILE: checks that LIBRARY exports only symbols PREFIX*, and that FILE lists these symbols
+# and the output of PROGRAM.c.
 abi() {
     nm -D --defined-only "$prefix/$libdir/$1.so" | awk '$2 != "A" {sub(/@.*/, "", $3); print $3}' |
         LC_ALL=C sort >"$own/symbols"

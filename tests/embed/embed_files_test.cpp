@@ -1,5 +1,5 @@
-// The library inside a Vulkan program, fed with the frames that `limpid render` writes, against `limpid
-// denoise` on the same files: the pictures are equal bit for bit.
+// Tests that the library in a Vulkan program gives the same pictures, bit for bit, as `limpid denoise` for
+// the same frames, which `limpid render` has written.
 #include <gmock/gmock.h>
 
 #include "denoise/api/camera_matrices.h"
@@ -16,9 +16,8 @@ using image::LayeredImage;
 constexpr int frameCount = 4;
 constexpr gpu::Extent extent{64, 36};
 
-/// How far two pictures are apart.
 struct Difference {
-    size_t values = 0;  ///< of those that differ at all
+    size_t values = 0;  ///< number of values that differ
     float largest = 0;
 };
 
@@ -26,13 +25,14 @@ CameraParams cameraOf(const LayeredImage& file) {
     return parseCameraText(file.metadata.at(cameraAttribute)).value();
 }
 
-/// What the library makes of the matrices of a camera: the same but for rounding.
+/// Converts a camera to the interface's matrices and back, as the library does. The result differs by
+/// rounding.
 CameraParams roundedCamera(const CameraParams& camera) {
     const limpid_camera matrices = matricesOf(camera, camera);
     return denoise::cameraFromMatrices(matrices.view, matrices.projection, false, extent.height).params;
 }
 
-/// A denoiser as the program and the library name it.
+/// A denoiser's settings, as options of the program and as values of the library.
 struct Variant {
     std::string options;
     limpid_method method = LIMPID_METHOD_SVGF;
@@ -53,7 +53,7 @@ class EmbedFilesTest : public ProgramTest<VulkanProgramTest> {
         ASSERT_EQ(result.code, 0) << arguments << "\n" << result.output;
     }
 
-    /// Objects and the camera move.
+    /// Renders frames in which objects and the camera move.
     void SetUp() override {
         ProgramTest::SetUp();
         if (IsSkipped()) return;
@@ -64,7 +64,7 @@ class EmbedFilesTest : public ProgramTest<VulkanProgramTest> {
             cameras_.push_back(cameraOf(image::readExr(name("noisy", frame))));
     }
 
-    /// Gives each file the camera that the library will derive from its matrices. Returns how many changed.
+    /// Replaces the camera in each file by roundedCamera(). Returns the number of cameras that changed.
     int roundCameras() {
         int changed = 0;
         for (int frame = 0; frame < frameCount; ++frame) {
@@ -85,7 +85,7 @@ class EmbedFilesTest : public ProgramTest<VulkanProgramTest> {
         return pictures;
     }
 
-    /// The layers of a file as images in the formats that they come in: three floats do not make an image.
+    /// Uploads a file's layers as images with four floats per pixel (few devices support images with three).
     std::unique_ptr<ProgramFrame> uploadFile(const LayeredImage& file) {
         std::map<limpid_input, std::vector<float>> layers;
         const auto add = [&](limpid_input input, const char* layer, const char* suffixes) {
@@ -105,7 +105,7 @@ class EmbedFilesTest : public ProgramTest<VulkanProgramTest> {
         add(LIMPID_INPUT_DEPTH, "depth", "Z");
         add(LIMPID_INPUT_MOTION, "motion", "XYZ");
         add(LIMPID_INPUT_REFLECTION_MOTION, "reflectionMotion", "XYZ");
-        // Files have 1e10 where there is no reflection to follow; the library takes zeros for that.
+        // Files have 1e10 where there is no reflection motion; the library's interface has 0.
         for (float& value : layers[LIMPID_INPUT_REFLECTION_MOTION])
             if (value > 1e9f) value = 0.0f;
         const std::vector<float> numbers = file.get("id", "I").pixels;
@@ -151,7 +151,7 @@ class EmbedFilesTest : public ProgramTest<VulkanProgramTest> {
         return result;
     }
 
-    std::vector<CameraParams> cameras_;  ///< that the program rendered with
+    std::vector<CameraParams> cameras_;  ///< the cameras of the rendered frames
 };
 
 const Variant oneSignal{"--denoiser svgf --set svgf.separate=off", LIMPID_METHOD_SVGF, 1, {}},
@@ -172,8 +172,8 @@ TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
     }
 }
 
-/// Files hold the renderer's own camera, and matrices of floats lose its last bits: a pixel whose history is
-/// just accepted may then be just rejected.
+/// Files hold the renderer's exact camera; float matrices round it. Then a pixel whose history is barely
+/// accepted may be rejected, and vice versa. This bounds the resulting difference.
 TEST_F(EmbedFilesTest, MatricesLoseTheLastBitsOfACamera) {
     const Difference difference = differenceOf(twoSignals);
     constexpr size_t all = size_t{4} * frameCount * extent.width * extent.height;

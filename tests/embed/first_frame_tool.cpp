@@ -1,5 +1,5 @@
-// Not a test: how long the first frame of a denoiser takes inside a Vulkan program, and later ones, with and
-// without limpid_warm_up() (docs/benchmarks.md, "The library").
+// Not a test, but a benchmark: measures how long the first frame of a denoiser takes in a Vulkan program, and
+// the later ones, with and without limpid_warm_up() (docs/benchmarks.md, "The library").
 //     limpid_first_frame DEVICE WIDTH HEIGHT [warm-up]
 #include <sys/resource.h>
 
@@ -25,7 +25,8 @@ constexpr int laterFrames = 20;
 constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 constexpr float perspective[16] = {1, 0, 0, 0, 0, -1.78f, 0, 0, 0, 0, -1, -1, 0, 0, -0.1f, 0};
 
-/// By the clock, and of all cores: a CPU that others use too has only the second to compare.
+/// Elapsed time, and processor time of all cores, in milliseconds. If other programs use the CPU too, only
+/// processor times can be compared.
 struct Time {
     double wall = 0, user = 0, system = 0;
 };
@@ -53,7 +54,7 @@ void print(const char* what, const Time& time) {
                 time.wall, time.user, time.system);
 }
 
-/// Noise before a wall; everything stands still.
+/// The inputs of a frame: noisy light on a static wall.
 struct Wall {
     Wall(gpu::Device& device, gpu::Extent extent) {
         const size_t pixels = size_t{extent.width} * extent.height;
@@ -94,7 +95,7 @@ struct Wall {
                              VK_ACCESS_2_MEMORY_WRITE_BIT);
     }
 
-    gpu::FrameGraph graph;  ///< keeps the images
+    gpu::FrameGraph graph;  ///< owns the images
     VulkanFrame frame;
 };
 

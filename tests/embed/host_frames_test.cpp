@@ -1,4 +1,5 @@
-// The C interface with frames in host memory: the same picture as the denoisers inside, and what it refuses.
+// Tests the C interface with frames in host memory: it gives the same picture as the internal denoisers, and
+// refuses invalid arguments.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -42,7 +43,8 @@ class HostFramesTest : public DenoiseTest {
         ASSERT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_OK) << limpid_last_error();
     }
 
-    inline static limpid_device* device_ = nullptr;  ///< of all tests: each shader is compiled once
+    inline static limpid_device* device_ =
+        nullptr;  ///< shared by all tests, so that each shader is compiled once
     limpid_denoiser* denoiser_ = nullptr;
 };
 
@@ -50,7 +52,8 @@ limpid_host_image imageOf(const std::vector<float>& pixels) {
     return {pixels.data(), 3, 4 * sizeof(float), 0};
 }
 
-/// What a SyntheticScene's frame is for other programs. `depths` keeps the distances.
+/// Describes a SyntheticScene's frame as the C interface takes it. `depths`, `ids` and `result` hold its
+/// distances, ids and output, and must outlive it.
 limpid_host_frame hostFrame(const HostFrame& frame, std::vector<float>& depths, std::vector<float>& ids,
                             std::vector<float>& result) {
     limpid_host_frame given = {sizeof given};
@@ -76,7 +79,7 @@ limpid_host_frame hostFrame(const HostFrame& frame, std::vector<float>& depths, 
     return given;
 }
 
-/// Frames whose motion is valid or 0 as a whole, as the interface has them.
+/// Returns a frame without reflection motion, which hostFrame() does not pass on.
 HostFrame embeddable(const SyntheticScene& scene, int number) {
     HostFrame frame = scene.frame(number, width, height, 1);
     std::fill(frame.reflectionMotion.begin(), frame.reflectionMotion.end(), 0.0f);
@@ -100,7 +103,8 @@ TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
         filters_ = gpu::filterBacking(device());
         inside = denoise(*denoise::findDenoiser("svgf"), frame);
     }
-    // Cameras go through matrices, and frames that see nothing have other fillings: rounding.
+    // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without a
+    // hit hold other values.
     EXPECT_LT(rmsDifference(result, inside), 2e-3);
     const std::vector<float> truth = scene.truth(5, width, height);
     EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
@@ -202,7 +206,7 @@ TEST_F(HostFramesTest, RefusesImpossibleDescriptions) {
     EXPECT_THAT(limpid_last_error(), HasSubstr("no such device"));
 }
 
-/// A struct of a later version: longer, and zero where we do not look.
+/// A struct of a later version is longer. It is accepted if the unknown members are 0.
 TEST_F(HostFramesTest, StructsMayGrow) {
     struct Later {
         limpid_denoiser_desc desc;

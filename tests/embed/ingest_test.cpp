@@ -1,4 +1,4 @@
-// The ingest pass: whatever encoding a frame comes in, the denoisers read the same.
+// Tests the ingest pass: frames in all encodings are converted to the same internal layers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,11 +13,11 @@ namespace {
 constexpr uint32_t width = 24, height = 16;
 constexpr gpu::Extent extent{width, height};
 
-/// A frame in the plainest encoding, and what the ingest pass must make of it.
+/// Inputs in the default encoding, and the layers that the ingest pass must convert them to.
 struct Given {
-    HostFrame frame;
+    HostFrame frame;  ///< the expected layers
     CameraParams before{};
-    std::vector<float> normal, depth, motion;  ///< four floats a pixel
+    std::vector<float> normal, depth, motion;  ///< the inputs, four floats per pixel
 };
 
 class IngestTest : public DenoiseTest {
@@ -62,7 +62,7 @@ class IngestTest : public DenoiseTest {
                 graph_.downloadFloat(device(), input.motion)};
     }
 
-    /// `tolerance`: relative for distances, absolute for normals; motion within a fiftieth of a pixel.
+    /// `tolerance`: relative for distances, absolute for normals. Motion must match within 0.02 pixels.
     void expectSame(const Result& result, const HostFrame& frame, float tolerance, bool motionToo = true) {
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             const bool seen = frame.depth[4 * p + 1] > 0.0f;
@@ -93,11 +93,11 @@ TEST_F(IngestTest, MotionOfTheCameraFollowsFromItsMatrices) {
     for (const bool orthographic : {false, true}) {
         const Given given = still(orthographic);
         expectSame(run(given, {}, false), given.frame, 1e-5f);
-        expectSame(run(given, {}, true), given.frame, 1e-5f);  // xy from the image, depth from the matrices
+        expectSame(run(given, {}, true), given.frame, 1e-5f);  // xy from the image, z from the matrices
     }
 }
 
-/// Where nothing is seen: antialiasing follows a sky at infinity.
+/// Where nothing is hit, motion is that of a sky at infinity, which anti-aliasing follows.
 TEST_F(IngestTest, TheSkyMovesAsTheCameraTurns) {
     Given given = still();
     std::fill(given.depth.begin(), given.depth.end(), 0.0f);
@@ -145,7 +145,7 @@ TEST_F(IngestTest, LinearAndDeviceDepth) {
             limpid_denoiser_desc desc = {};
             desc.depth = device ? LIMPID_DEPTH_DEVICE : LIMPID_DEPTH_LINEAR;
             desc.motion_depth = LIMPID_MOTION_DISTANCE;
-            // Depth buffers that are not reversed keep few digits of far points.
+            // Depth buffers that are not reversed are imprecise for distant points.
             expectSame(run(given, desc, true, &camera), given.frame,
                        !device    ? 1e-5f
                        : reversed ? 1e-4f

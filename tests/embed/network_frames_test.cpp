@@ -1,5 +1,5 @@
-// The network's C interface: the same picture as the denoiser inside, what it takes for what is left out, and
-// what it refuses.
+// Tests the network's C interface: it gives the same picture as the internal denoiser, uses the documented
+// defaults for missing inputs, and refuses invalid arguments.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -28,9 +28,9 @@ std::string smallWeights() {
     return std::string(LIMPID_SOURCE_DIR) + "/tests/data/kpcn_small.safetensors";
 }
 
-/// A frame as the interface takes it.
+/// A synthetic frame, as the C interface takes it and as the internal denoisers do.
 struct GivenFrame {
-    HostFrame frame;  ///< the same for the denoisers inside
+    HostFrame frame;  ///< for the internal denoisers
     std::array<std::vector<float>, 5> variances;
     std::vector<float> depths, clean;
     limpid_network_frame given{};
@@ -116,7 +116,8 @@ class NetworkFramesTest : public DenoiseTest {
         EXPECT_THAT(limpid_network_last_error(), HasSubstr(why));
     }
 
-    inline static limpid_network* network_ = nullptr;  ///< of all tests: each shader is compiled once
+    inline static limpid_network* network_ =
+        nullptr;  ///< shared by all tests, so that each shader is compiled once
     inline static std::vector<std::string> told_;
 };
 

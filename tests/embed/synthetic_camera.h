@@ -1,4 +1,4 @@
-// Matrices, as renderers have them, of the cameras that tests have.
+// Converts the tests' cameras to the view and projection matrices that the C interface takes.
 #pragma once
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -14,7 +14,7 @@ inline glm::dmat4 viewOf(const CameraParams& camera) {
     return glm::lookAtRH(eye, eye + forward, up);
 }
 
-/// Vulkan's clip space: y points down, depth from 0 to 1.
+/// Returns a projection to Vulkan's clip space: y points down, depth is from 0 to 1.
 inline glm::dmat4 projectionOf(const CameraParams& camera) {
     const double x = glm::length(glm::dvec3(camera.right)), y = glm::length(glm::dvec3(camera.up));
     constexpr double near = 0.01, far = 1000.0;

@@ -1,4 +1,4 @@
-// The C interface inside a Vulkan program (vulkan_program.h).
+// Tests the C interface in a Vulkan program (vulkan_program.h).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_F(VulkanFramesTest, TwoDenoisersShareACommandBuffer) {
     EXPECT_EQ(alone2, together2);
 }
 
-/// Several frames in one submission: nothing that one uses is touched by the next.
+/// Records several frames into one submission: a frame must not overwrite what an earlier one still uses.
 TEST_F(VulkanFramesTest, ThreeFramesAreInFlight) {
     const SyntheticScene scene(movingObject);
     const std::vector<float> oneByOne = denoiseSequence(create(), scene, 6);
@@ -89,7 +89,7 @@ TEST_F(VulkanFramesTest, TellsTheTimesOfFramesThatAreDone) {
     uint32_t count = 0;
     denoiseSequence(denoiser, SyntheticScene({}), 1);
     ASSERT_EQ(limpid_denoiser_timings(denoiser, nullptr, &count), LIMPID_OK);
-    EXPECT_EQ(count, 0u);  // nothing says that the first is done
+    EXPECT_EQ(count, 0u);  // Limpid does not know yet whether the first frame is done
     denoiseSequence(denoiser, SyntheticScene({}), 3);
     ASSERT_EQ(limpid_denoiser_timings(denoiser, nullptr, &count), LIMPID_OK);
     ASSERT_GT(count, 5u);
@@ -105,7 +105,7 @@ TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
     ASSERT_EQ(limpid_device_pipeline_cache(adopted_, nullptr, &size), LIMPID_OK);
     std::vector<char> bytes(size);
     ASSERT_EQ(limpid_device_pipeline_cache(adopted_, bytes.data(), &size), LIMPID_OK);
-    // Pipelines exist: it is too late.
+    // A cache can only be loaded before pipelines exist.
     EXPECT_NE(limpid_device_load_pipeline_cache(adopted_, bytes.data(), size), LIMPID_OK);
     const SyntheticScene scene({});
     const auto f = upload(scene, 0);
@@ -117,7 +117,7 @@ TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
 }
 
 TEST_F(VulkanFramesTest, DamagedPipelineCachesAreIgnored) {
-    ASSERT_EQ(adopt({}), LIMPID_OK);  // one without pipelines
+    ASSERT_EQ(adopt({}), LIMPID_OK);  // a device without pipelines
     const std::string garbage(1000, 'x');
     EXPECT_EQ(limpid_device_load_pipeline_cache(adopted_, garbage.data(), garbage.size()), LIMPID_OK)
         << limpid_last_error();

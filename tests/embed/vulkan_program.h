@@ -1,5 +1,5 @@
-// The C interface inside a Vulkan program: on its device, in its command buffers. The program is played by a
-// device of the tests, whose validation layer watches both.
+// A fixture for tests of the C interface in a Vulkan program, on the program's device and in its command
+// buffers. The tests' own device acts as the program's; its validation layer checks both.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr uint32_t width = 40, height = 24;
 
 /// Images of one frame on the program's device, and the frame as limpid_record() takes it.
 struct ProgramFrame {
-    gpu::FrameGraph graph;  ///< keeps the images
+    gpu::FrameGraph graph;  ///< owns the images
     limpid_vulkan_frame frame = {sizeof frame};
     gpu::ImageHandle color;
 };
@@ -75,7 +75,7 @@ class VulkanProgramTest : public DenoiseTest {
         return result;
     }
 
-    /// Puts images on the device: inputs, and what stands in the output before it is written.
+    /// Uploads the inputs, and fills the output with -1.
     using Pixels = std::map<limpid_input, std::pair<gpu::Format, std::span<const std::byte>>>;
     std::unique_ptr<ProgramFrame> upload(const Pixels& inputs, gpu::Extent extent) {
         auto f = std::make_unique<ProgramFrame>();
@@ -100,7 +100,7 @@ class VulkanProgramTest : public DenoiseTest {
         return f;
     }
 
-    /// `number`: of the sequence. The images are on the device when this returns.
+    /// Uploads frame `number` of a scene. The upload is complete when this returns.
     std::unique_ptr<ProgramFrame> upload(const SyntheticScene& scene, int number,
                                          gpu::Extent extent = {width, height}) {
         const HostFrame host = scene.frame(number, extent.width, extent.height, 1);
@@ -126,7 +126,7 @@ class VulkanProgramTest : public DenoiseTest {
         return f;
     }
 
-    /// Records by `record` into a command buffer of the program's, submits it and waits.
+    /// Lets `record` record into a command buffer of the program, submits it and waits.
     void run(const std::function<void(VkCommandBuffer)>& record) { device().impl().transfer().run(record); }
 
     std::vector<float> pixels(ProgramFrame& f) { return f.graph.downloadFloat(device(), f.color); }
@@ -143,7 +143,8 @@ class VulkanProgramTest : public DenoiseTest {
         return last;
     }
 
-    inline static limpid_device* adopted_ = nullptr;  ///< of all tests: each shader is compiled once
+    inline static limpid_device* adopted_ =
+        nullptr;  ///< shared by all tests, so that each shader is compiled once
     std::vector<limpid_denoiser*> denoisers_;
 };
 

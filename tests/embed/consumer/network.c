@@ -1,4 +1,4 @@
-/* The network in C: the header's version is the library's, the installed weights are found, and a frame is denoised. */
+/* Tests the network's C interface: equal versions of header and library, installed weights, and one denoised frame. */
 #include <limpid/neural.h>
 #include <stdio.h>
 

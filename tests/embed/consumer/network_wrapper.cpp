@@ -1,5 +1,5 @@
-// The C++ wrapper of the network: defaults, exceptions with their code, moves, parameters. It links nothing
-// of Limpid but liblimpid-neural.
+// Tests the network's C++ wrapper: defaults, exceptions with their code, moves, parameters. Of Limpid it only
+// links liblimpid-neural.
 #include <cstdio>
 #include <limpid/neural.hpp>
 #include <utility>

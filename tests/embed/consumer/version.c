@@ -1,4 +1,4 @@
-/* The header's version is the library's, and a call that needs no device works. */
+/* Tests that header and library have the same version, and that a call that needs no device works. */
 #include <limpid/denoise.h>
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-// The C++ wrapper: defaults, exceptions with their code, moves, parameters.
+// Tests the C++ wrapper: defaults, exceptions with their code, moves, parameters.
 #include <cstdio>
 #include <limpid/denoise_vulkan.hpp>
 #include <utility>
