@@ -1,5 +1,5 @@
-// Properties that every denoiser must have: design, section 11.4. A new denoiser is tested once it is in
-// denoise::denoisers(). kpcn_test.cpp tests networks.
+// Tests properties that every denoiser must have. A new denoiser is tested automatically once it is in
+// denoise::denoisers(). Networks are tested in kpcn_test.cpp.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -128,7 +128,7 @@ TEST_P(DenoiserSuite, ResizeAndResetStartAnew) {
     EXPECT_EQ(denoiseSequence(scene), fresh) << "after a reset; and the same input gives the same bits";
 }
 
-/// Both ends of the range, and a value in between.
+/// Returns both ends of a parameter's range, and a value in between.
 std::vector<std::string> numbersOf(const ParamInfo& info) {
     if (!std::holds_alternative<int>(info.defaultValue)) {
         const double between = std::min(std::ceil(info.minimum) + 1.0, 0.5 * (info.minimum + info.maximum));

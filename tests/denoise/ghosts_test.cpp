@@ -16,7 +16,8 @@ constexpr size_t pixels = size_t{extent.width} * extent.height;
 constexpr uint64_t lastFrame = 30;
 constexpr uint32_t seeds = 16;
 
-/// By pixel: the object was here and the wall behind it is visible now; or the same wall, never covered.
+/// Two sets of pixels, both showing the same wall: where the object was in an earlier frame, and where it
+/// never was.
 struct Regions {
     std::vector<bool> swept, elsewhere;
 };

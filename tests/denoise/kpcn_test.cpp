@@ -283,7 +283,7 @@ HostFrame repeated(const HostFrame& frame, uint32_t across, uint32_t down) {
 }
 
 TEST_F(KpcnTest, LevelsAgreeWithDoublePrecision) {
-    // 90x111 pixels, where the fourth level's taps would be further apart than a tenth of an edge.
+    // 90x111 pixels: the fourth level is skipped, because its taps are further apart than a tenth of an edge.
     const HostFrame frame =
         repeated(frameOf(neural::readTensorFile(dataFolder + "kpcn_cases.safetensors"), "small"), 2, 3);
     const std::vector<int> steps{8, 2, 1};

@@ -8,7 +8,7 @@
 namespace limpid::test {
 namespace {
 
-/// Limits a value to what a half can store: NaN, which only C itself can be, becomes 0.
+/// Limits a value to what a half can store. NaN becomes 0; it can only come from the frame's own light.
 double storable(double value) {
     constexpr double largestHalf = 65504.0;
     return std::isnan(value) ? 0.0 : std::clamp(value, -largestHalf, largestHalf);

@@ -1,6 +1,7 @@
 // The edge-avoiding a-trous filter in double precision, written only from the formulas of docs/denoising.md:
 // the oracle of the denoiser `atrous`. Each step takes its input as an argument, so that it can be given
-// values that a device stored (halves, packed normals) and be compared on its own.
+// values that a device stored (halves, packed normals) and be compared on its own. Names such as C, L and d
+// are those of docs/denoising.md.
 #pragma once
 
 #include <vector>
@@ -21,19 +22,19 @@ struct DoubleAtrousParams {
 
 struct AtrousGeometry {
     std::vector<dvec3> normal;
-    /// d: along the camera's `forward`; with `plane` off the distance from the eye; 0 where the ray misses.
+    /// d: the distance along the camera's `forward`; with `plane` off, from the eye. 0 where the ray misses.
     std::vector<double> distance;
 };
 
 struct Demodulated {
-    std::vector<dvec4> light;  ///< L, and N, the sample count of the mean
+    std::vector<dvec4> light;  ///< demodulated light L, and in w the sample count N of the mean
     AtrousGeometry geometry;
 };
 
-/// Returns C, and 1: the filter's input with `atrous.temporal=off`.
+/// Returns the scattered light C, and 1 in w: the filter's input with `atrous.temporal=off`.
 std::vector<dvec4> scatteredLight(const denoise::HostFrame& frame);
 
-/// Rounds nothing. `mean`: the history's mean with its count, or scatteredLight().
+/// Computes step 1, without rounding. `mean`: the history's mean with its count, or scatteredLight().
 Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
                        const DoubleAtrousParams& params);
 
@@ -41,7 +42,7 @@ Demodulated demodulate(const denoise::HostFrame& frame, const std::vector<dvec4>
 std::vector<dvec4> level(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
                          const AtrousGeometry& geometry, uint32_t i, const DoubleAtrousParams& params);
 
-/// Returns the result; alpha 1.
+/// Computes step 3, the denoised picture with alpha 1.
 std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<dvec4>& light,
                             const DoubleAtrousParams& params);
 

@@ -6,10 +6,12 @@
 namespace limpid::test {
 namespace {
 
-/// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
+/// Margin for comparisons of the position s, in pixels: several times its error in float32, which is one ulp
+/// (2^-16 for pictures up to 256 pixels).
 constexpr double positionMargin = 1e-4;
 
-/// `operands`: the magnitude of the values that were used, for thresholds much smaller than those.
+/// Returns the margin for comparing a float32 value with a threshold. `operands`: magnitude of the values
+/// that were subtracted; rounding is relative to it, even if the threshold is much smaller.
 double marginOf(double threshold, double operands) {
     return 1e-4 * std::abs(threshold) + 1e-6 * operands;
 }
@@ -26,7 +28,7 @@ void Decision::near(double value, double threshold, double margin) {
     doubtful_ = doubtful_ || std::abs(value - threshold) < margin;
 }
 
-/// The expected appearance of a surface point in the previous frame.
+/// What the previous frame is expected to show of a surface point.
 struct Reprojector::Expected {
     dvec3 normal;
     double distance, id;
@@ -53,7 +55,7 @@ Reprojector::Expected Reprojector::expect(size_t p, const dvec3& motion) const {
         footprint = 1.5 * width;
         e.tolerance = e.distance * params_.depth + footprint * tangent;
     }
-    // Near c = 1, sqrt(1 - c^2) keeps half of float32's digits.
+    // Near c = 1, sqrt(1 - c^2) has only half of float32's digits.
     e.toleranceMargin = marginOf(e.tolerance, std::abs(e.distance)) + 1e-3 * footprint;
     return e;
 }

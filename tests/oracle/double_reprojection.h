@@ -43,8 +43,8 @@ struct Tap {
 };
 
 struct Reprojection {
-    int failure = 0;        ///< 0: there are taps; else the specification's failure case
-    std::vector<Tap> taps;  ///< those that count
+    int failure = 0;  ///< 0: there are taps; else the case of step 2, Disocclusion, in docs/denoising.md
+    std::vector<Tap> taps;  ///< the taps that passed all tests
     bool searched = false;
 };
 
@@ -74,8 +74,8 @@ class Reprojector {
     const ReprojectionParams& params_;
 };
 
-/// A mean over taps. `slope` bounds its change per pixel in x and y. Multiplied by float32's error of the
-/// position, it bounds the error of a correct shader between noisy taps.
+/// A mean over taps. `slope` bounds the change of the mean if the position moves by one pixel. Multiplied by
+/// float32's error of the position, it bounds the error that a correct shader may have between noisy taps.
 struct Resampled {
     dvec4 mean{0.0}, slope{0.0};
 };

@@ -2,6 +2,10 @@
 // docs/denoising.md: the oracle of the denoiser `svgf`. Each step takes its input as an argument, so that it
 // can be given values that a device stored (halves, packed normals) and be compared on its own. Nothing is
 // rounded, except that values stored as halves are limited to 65504 in magnitude.
+//
+// Steps and symbols are those of docs/denoising.md, "Spatiotemporal variance-guided filtering": colour c with
+// standard deviation sigma, moments m1 and m2, fast mean f, history length N, stable light h and its weight
+// b.
 #pragma once
 
 #include <vector>
@@ -26,7 +30,7 @@ struct DoubleSvgfParams {
 /// The signals that can be filtered separately: `Joint` is the sum of the other two.
 enum class SvgfSignal { Joint, Diffuse, Specular };
 
-/// Step 1.
+/// The result of step 1.
 struct SvgfSurfaces {
     std::vector<dvec3> normal;
     std::vector<double> distance;  ///< z; 0 where the ray misses
@@ -48,24 +52,24 @@ struct SvgfHistory {
 };
 
 struct SvgfPixel {
-    int failure = 0;         ///< 0: history was found; else the failure case of history tracking
+    int failure = 0;         ///< 0: history was found; else as Reprojection::failure
     bool reflected = false;  ///< the history was found by the reflection's motion
     bool rejected = false;   ///< the sample has a NaN or an infinity
     /// A decision was so close that float32 may decide otherwise: skip the comparison here.
     bool doubtful = false;
     /// Bounds the change of the results if the reprojected position s is off by one pixel.
     dvec4 colorSlope{0.0}, momentsSlope{0.0}, stablePastSlope{0.0};
-    /// The magnitude of the averaged values, which rounding is relative to.
+    /// The magnitude of the averaged values. Rounding errors are relative to it.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
-/// c' with sigma, the moments, and h with b.
+/// The result of steps 2 and 3: c' with sigma, the moments (m1', m2', f', N'), and h with b.
 struct SvgfAccumulated {
     std::vector<dvec4> color, moments, stablePast;
     std::vector<SvgfPixel> pixels;
 };
 
-/// C / M of one signal: the input of the filter. `rejected` samples are 0.
+/// The demodulated light x = C / M of one signal, the input of the filter; 0 for `rejected` samples.
 struct SvgfSample {
     dvec3 x{0.0};
     bool rejected = false;
@@ -79,34 +83,35 @@ inline double luminance(const dvec3& color) {
 /// Returns sigma for one pixel's moments. `error` is first added to m2 - m1^2; it bounds float32's error of
 /// that difference.
 double svgfDeviation(double m1, double m2, double error = 0.0);
-/// Returns the factor of the deviation.
+/// Returns B, the factor of the standard deviation.
 double svgfBoost(double frames, bool boost);
 
-/// Steps 2 and 3.
+/// Computes steps 2 and 3.
 SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signal,
                                const SvgfHistory& previous, const DoubleSvgfParams& params);
 
-/// The tiles of step 4, 8x8 pixels each, row 0 first. `error` bounds each tile's error of the lag from
-/// float32 and from errors of the moments (one for each component, or none). It is infinite where these
-/// decide whether a pixel counts.
+/// The lag of each tile of step 4 (8x8 pixels, row 0 first). `error` bounds the error of the lag that float32
+/// and errors of the moments cause. It is infinite where these errors may decide whether a pixel counts.
+/// `errors` of svgfTiles(): bounds for each component of the moments; empty: no errors.
 struct SvgfTiles {
     std::vector<double> tiles, error;
 };
 SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& moments,
                     const DoubleSvgfParams& params, const std::vector<dvec4>& errors = {});
 
-/// Step 4's anti-lag: shortens the histories of step 3's result. The slopes are valid for the result.
+/// Applies step 4 to the result of step 3: shortens histories where the tiles' lag is large. Also updates the
+/// slopes in `accumulated`.
 void svgfShorten(const denoise::HostFrame& frame, SvgfSignal signal, const std::vector<double>& tiles,
                  const DoubleSvgfParams& params, SvgfAccumulated& accumulated);
 
 /// Returns k of step 4: the variance of f - m1 under steady light, as a fraction of E[m2 - m1^2].
 double svgfSteadyShare(const DoubleSvgfParams& params);
 
-/// Returns zx and zy of step 6.
+/// Returns the slopes of distance, zx and zy, of step 6.
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance);
 
-/// Step 5. `color`: from step 3. `error` bounds float32's error of each pixel's sigma^2; it is infinite where
-/// all weights are so small that float32 may underflow.
+/// The result of step 5. `error` bounds float32's error of each pixel's sigma^2. It is infinite where all
+/// weights are so small that they may underflow in float32.
 struct SvgfVariance {
     std::vector<dvec4> color;
     std::vector<double> error;
@@ -119,10 +124,10 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
-/// Step 7 for one pixel that sees a surface. `color`: c with sigma; `past`: h with b.
+/// Computes step 7 for one pixel with a hit. `color`: c with sigma; `past`: h with b.
 dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);
 
-/// Step 8, applied to the result of step 7; alpha 1.
+/// The filtered light of one signal, the input of step 8. svgfModulate() returns the picture with alpha 1.
 struct SvgfFiltered {
     SvgfSignal signal;
     std::vector<dvec4> color;

@@ -1,4 +1,4 @@
-// Step 4: tiles, and how they shorten histories.
+// Step 4 of SVGF, anti-lag: computes the lag of tiles, and shortens histories by it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double largestHalf = 65504.0;
 constexpr size_t tileEdge = 8;
-/// Minimum number of frames of a history that counts: two, except for rounding.
+/// Histories shorter than this many frames do not count in a tile. Meant is two; the margin is for rounding.
 constexpr double minLength = 1.5;
 /// Smaller lags do not affect a pixel.
 constexpr double minLag = 0.1;
@@ -47,8 +47,8 @@ struct TileSums {
             k * (errors.y + 2.0 * std::abs(m.x) * errors.x + errors.x * errors.x + 4.0 * rounding * m.y);
         const double most = params.antilagPixel * std::sqrt(v);
         const double differenceError = errors.z + errors.x + rounding * (std::abs(m.z) + std::abs(m.x));
-        // The result is the median of the difference and both bounds, so it moves no further than the one
-        // that moves most.
+        // Clamping gives the median of the difference and both bounds, so its error is at most the largest
+        // error of the three.
         const double maxError = params.antilagPixel * rootError(v, vError);
         lag.add(glm::clamp(m.z - m.x, -most, most),
                 std::min(std::max(differenceError, maxError), 2.0 * (most + maxError)));
@@ -76,7 +76,8 @@ double lagAt(const denoise::HostFrame& frame, const std::vector<double>& tiles, 
     return lag;
 }
 
-/// How much further than in step 3 a mean moves towards the sample, and the derivative by step 3's N'.
+/// The fraction by which shortening the history moves a mean further towards the sample than step 3 did, and
+/// its derivative with respect to the N' of step 3.
 struct Step {
     double share = 0.0, slope = 0.0;
 };

@@ -1,4 +1,4 @@
-// Steps 5 and 6: filters over a pixel's neighbours.
+// Steps 5 and 6 of SVGF: the filters over a pixel's neighbours.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace limpid::test {
 namespace {
 
-constexpr double minCosine = 0.05;  // steeper surfaces use this slope
+constexpr double minCosine = 0.05;  // limits the slope of surfaces seen at grazing angles
 constexpr double youngFrames = 4.0;
 constexpr double largestHalf = 65504.0;
 /// Smaller sums of weights may underflow in float32.
@@ -49,7 +49,7 @@ class Neighbours {
         }
     }
 
-    /// Returns w_n w_z of a neighbour `offset` pixels away.
+    /// Returns the weight w_n w_z (normals and distances) of a neighbour `offset` pixels away.
     double weight(size_t p, size_t q, const dvec2& offset) const {
         if (p == q) return 1.0;
         const dvec3 &n = surfaces_.normal[p], &other = surfaces_.normal[q];
@@ -110,7 +110,7 @@ class Level {
         return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
     }
 
-    /// Returns g.
+    /// Returns g, the blurred variance that sets the tolerance for luminance.
     double guide(size_t p) const {
         if (level_ >= params_.blurLevels) return color_[p].w * color_[p].w;
         double sum = 0.0, weights = 0.0;
@@ -130,7 +130,7 @@ class Level {
     std::vector<double> luminances_;
 };
 
-/// sigma, and the bound of float32's error of its square.
+/// The standard deviation sigma, and a bound of float32's error of its square.
 struct Deviation {
     double sigma, error;
 };

@@ -1,4 +1,4 @@
-// Steps 1 to 3, 7 and 8: work per pixel and over time.
+// Steps 1 to 3, 7 and 8 of SVGF: those that only use a pixel itself and its history.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -39,7 +39,7 @@ std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t
     return result;
 }
 
-/// A value, and the bound of its change if s is off by one pixel.
+/// A value, and a bound of its change if the position s is off by one pixel.
 struct Sloped {
     double value, slope;
 };
@@ -79,7 +79,7 @@ class Accumulator {
     Reprojector reprojector_;
 };
 
-/// Returns the mean of r around p; none if no pixel has one.
+/// Returns the mean reflection motion r of the 3x3 pixels around p with the same id; nothing if none has one.
 std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
     const DoubleFrame pixels(frame_);
     const size_t x = p % frame_.width, y = p / frame_.width;
@@ -97,9 +97,9 @@ std::optional<dvec3> Accumulator::reflectionMotion(size_t p) const {
     return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// One decision covers both look-ups: where float32 finds history by r, it may not need m, and vice versa.
-/// Its mean of r is off by at most 1e-6 of r; inside the picture that is less than the rounding of s = p +
-/// 0.5 + r, so the margins for s cover both.
+/// Both look-ups, by r and by m, share one Decision: if float32 may decide otherwise in the first, it may
+/// also use the other motion. The mean of r has an error of at most 1e-6 r in float32. Inside the picture
+/// that is less than the rounding of s = p + 0.5 + r, so the margins for s cover it.
 Reprojection Accumulator::reproject(size_t p, SvgfPixel& pixel) const {
     Decision decision;
     Reprojection found{2, {}};
@@ -152,7 +152,7 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
     pixel.momentsOperands.w = old.moments.mean.w;
 }
 
-/// Returns h with b.
+/// Returns the stable light h of the previous frame, with its weight b in w.
 dvec4 Accumulator::stablePast(const Old& old, double frames) const {
     if (previous_.stable.empty()) return {0.0, 0.0, 0.0, 1.0};
     return {dvec3(old.stable.mean), std::max(params_.stabilisationAlpha, 1.0 / std::max(frames, 1.0))};

@@ -27,7 +27,7 @@ struct TaaPixel {
     dvec3 rounding{0.0};
 };
 
-/// Returns E and its inverse.
+/// E, the colour transform of docs/denoising.md, "Temporal anti-aliasing", and its inverse.
 dvec3 taaEncode(const dvec3& color);
 dvec3 taaDecode(const dvec3& encoded);
 

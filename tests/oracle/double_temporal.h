@@ -31,12 +31,13 @@ struct TemporalImages {
 };
 
 struct TemporalPixel {
-    int failure = 0;        ///< 0: history was found; else the specification's failure case
+    int failure = 0;  ///< 0: history was found; else the case of step 2, Disocclusion, in docs/denoising.md
     bool rejected = false;  ///< the sample has a NaN or an infinity
     /// A decision was so close that float32 may decide otherwise: skip the comparison here.
     bool doubtful = false;
     /// Bounds the change of the new mean and count if the reprojected position s is off by one pixel.
-    /// Multiplied by float32's error of s, it bounds the error of a correct shader between noisy taps.
+    /// Multiplied by float32's error of s, it bounds the error that a correct shader may have between noisy
+    /// taps.
     dvec4 slope{0.0};
 };
 

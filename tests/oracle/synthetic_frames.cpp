@@ -158,8 +158,9 @@ class Moments {
         const dvec3 n = previousNormal(hit);
         return glm::dot(n, point - pose(hit, 1).toWorld(hit.point)) / glm::dot(n, along);
     }
-    /// Most are correct, some with half a share. Wrong values in x stay outside the picture, and in z too far
-    /// away, even in a mean of nine.
+    /// Appends a reflection motion, with errors for a few choices. Some correct ones have a weight of one
+    /// half. Wrong ones are not finite, or so large that even the mean of nine pixels is rejected: it lies
+    /// outside the picture (x), or too far away (z).
     void appendFlawed(std::vector<float>& layer, dvec3 r, double choice) const {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         if (choice < 0.5) return append(layer, 0.5 * r, 0.5);
