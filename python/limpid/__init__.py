@@ -1,8 +1,8 @@
 """Limpid: denoisers and a path tracer for any Vulkan device, with NumPy arrays in and out.
 
-denoise() cleans a still, Denoiser the frames of a sequence, Network single frames by a trained network. compare()
-measures how far a picture is from its reference, render() and render_sequence() path-trace a scene. docs/python.md has
-examples.
+denoise() denoises a still, Denoiser the frames of a sequence, and Network single frames with a trained network.
+render() and render_sequence() path-trace a scene. compare() measures the difference between a picture and its
+reference. docs/python.md has examples.
 """
 
 from limpid._camera import look_at, perspective

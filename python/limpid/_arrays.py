@@ -1,10 +1,10 @@
-"""Checks arrays and matrices before they reach the library: ValueError names the argument that is wrong."""
+"""Checks and converts arguments before they reach the library. A ValueError names the argument that is wrong."""
 
 import numpy as np
 
 
 def choose(name, value, table):
-    """What `table` has for a name; ValueError lists the names if there is none."""
+    """Returns table[value]. Raises ValueError, which lists the valid names, if there is no such entry."""
     if value not in table:
         raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, table))}")
     return table[value]
@@ -21,9 +21,9 @@ def _check_dtype(name, array):
 
 
 def image(name, value, components, size=None):
-    """A float32 view of (height, width, n), n being one of `components`, or a copy where a view is not possible.
+    """Returns a float32 view of an array (height, width, n), or a copy if a view is not possible.
 
-    `size`: the (height, width) that it must have.
+    `components`: the accepted values of n. `size`: the required (height, width).
     """
     array = np.asarray(value)
     _check_dtype(name, array)
@@ -43,7 +43,7 @@ def image(name, value, components, size=None):
 
 
 def identifiers(name, value, size):
-    """Integers of (height, width), as float32: they are exact up to 2^24."""
+    """Returns integers (height, width) as float32, which is exact up to 2^24."""
     array = np.asarray(value)
     if array.dtype.kind not in "iu":
         raise ValueError(f"{name}: the dtype is {array.dtype}, not an integer")
@@ -53,7 +53,7 @@ def identifiers(name, value, size):
 
 
 def matrix(name, value):
-    """A float64 matrix of (4, 4)."""
+    """Returns a float64 matrix (4, 4)."""
     array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name}: the dtype is {array.dtype}, not a floating-point number")

@@ -1,4 +1,4 @@
-"""Matrices of cameras. Points are columns: clip = projection @ view @ [x, y, z, 1]."""
+"""View and projection matrices. Points are column vectors: clip = projection @ view @ [x, y, z, 1]."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def look_at(eye, target, up=(0.0, 1.0, 0.0)):
-    """The view matrix, (4, 4) float64, of a camera at `eye` that looks at `target`.
+    """Returns the view matrix, (4, 4) float64, of a camera at `eye` that looks at `target`.
 
     View space is right-handed: x to the right, y up, and the camera looks along -z.
     """
@@ -19,7 +19,7 @@ def look_at(eye, target, up=(0.0, 1.0, 0.0)):
 
 
 def perspective(fov, aspect, near=0.1, far=math.inf, clip_y="down"):
-    """A projection matrix, (4, 4) float64, for view spaces as look_at() makes them.
+    """Returns a perspective projection, (4, 4) float64, for the view space of look_at().
 
     fov: vertical field of view, degrees. aspect: width / height. near, far: distances of the clip planes, world units;
     depth is 0 at the near and 1 at the far plane. clip_y: "down" as in Vulkan, "up" as in OpenGL and Direct3D.
@@ -49,7 +49,9 @@ def _view(eye, right, up, forward):
 
 
 def matrices_of(camera):
-    """View and projection of a camera as limpid._renderer describes it: origin, axes scaled to the picture's edges."""
+    """Returns view and projection of a camera of limpid._renderer, which has an origin and three axes.
+
+    `right` and `up` are scaled so that they reach the picture's edges."""
     origin, forward, right, up = (np.array(camera[key], np.float64) for key in ("origin", "forward", "right", "up"))
     half_width, half_height = np.linalg.norm(right), np.linalg.norm(up)
     view = _view(origin, right, up, forward)

@@ -12,12 +12,12 @@ _COMPONENTS = {
     "radiance": (3, 4), "specular": (3, 4), "emission": (3, 4), "albedo": (3, 4), "albedo_specular": (3, 4),
     "depth": (1,), "roughness": (1,), "hit_distance": (1,),
 }
-# The library's floats have 32 bits: print 0.2, not 0.20000000298.
+# The library's floats have 32 bits. Round so that Python prints 0.2, not 0.20000000298.
 _TYPES = {"bool": bool, "int": int, "float": lambda value: float(str(np.float32(value)))}
 
 
 class Parameter(NamedTuple):
-    """What can be set about a method."""
+    """A parameter of a denoising method."""
 
     name: str
     type: type
@@ -29,7 +29,8 @@ class Parameter(NamedTuple):
 
 
 def parameters_of(rows):
-    """By name, of what an extension module lists: (name, type, default, minimum, maximum, unit, help)."""
+    """Returns a dict of Parameter by name, from an extension module's list of (name, type, default, minimum, maximum,
+    unit, help)."""
     result = {}
     for name, kind, default, *rest in rows:
         default = _TYPES[kind](default)
@@ -38,12 +39,14 @@ def parameters_of(rows):
 
 
 def parameter_value(kind, number):
-    """A number of the library's as a bool, int or float."""
+    """Converts a number from the library to bool, int or float."""
     return _TYPES[kind.__name__](number)
 
 
 def parameters(method="svgf"):
-    """The parameters of a method, "kpcn" too, by name: a dict of limpid.Parameter. They are those of 'limpid info'."""
+    """Returns the parameters of a method as a dict of limpid.Parameter by name. `limpid info` lists the same ones.
+
+    method: as in limpid.Denoiser, or "kpcn"."""
     if method == "kpcn":
         return _network().parameters()
     return parameters_of(_denoise.parameters(_arrays.choose("method", method, _denoise.METHODS)))
@@ -52,11 +55,11 @@ def parameters(method="svgf"):
 class Device:
     """A Vulkan device.
 
-    select: None for the best device (discrete before integrated before CPU); "cpu" for a software device; a number as
-        text for that device; otherwise a part of its name, in any case.
-    validation: has Vulkan's validation layer check every call (slow); what it says is in messages().
+    select: None for the best device (discrete before integrated before CPU); "cpu" for a software device; text with a
+        number for the device of that number; otherwise a part of its name, in upper or lower case.
+    validation: lets Vulkan's validation layer check every call (slow); messages() returns its messages.
 
-    Throws limpid.Error with the code "unsupported" if no device fits; its text lists the devices that there are.
+    Raises limpid.Error with the code "unsupported" if no device fits; its text lists the available devices.
     """
 
     def __init__(self, select=None, *, validation=False):
@@ -67,21 +70,22 @@ class Device:
 
     @property
     def name(self):
-        """As the driver calls it."""
+        """The device's name, as the driver reports it."""
         return self._handle.name()
 
     def messages(self):
-        """Messages of the library and the validation layer since the last call: a list of (level, text); level is
-        "debug", "info", "warning" or "error"."""
+        """Returns the messages of the library and the validation layer since the last call: a list of (level, text).
+        The level is "debug", "info", "warning" or "error"."""
         return self._handle.messages()
 
     def pipeline_cache(self):
-        """What the driver has compiled so far, as bytes: to be stored for load_pipeline_cache()."""
+        """Returns what the driver has compiled so far, as bytes. Store them for load_pipeline_cache()."""
         return self._handle.pipeline_cache()
 
     def load_pipeline_cache(self, data):
-        """Takes bytes of pipeline_cache() of an earlier run, before the first denoiser is made: then the driver
-        compiles nothing again. Bytes of another device or driver, and damaged ones, are ignored."""
+        """Loads bytes that pipeline_cache() returned in an earlier run, so that the driver need not compile again.
+        Call it before the first denoiser is made. Bytes from another device or driver, and damaged ones, are
+        ignored."""
         self._handle.load_pipeline_cache(bytes(data))
 
 
@@ -91,7 +95,7 @@ atexit.register(_devices.clear)
 
 
 def _device_of(choice):
-    """The device itself, or one that is shared by all who choose it by the same text."""
+    """Returns `choice` if it is a Device, else a device that is shared by all calls with the same text."""
     if isinstance(choice, Device):
         return choice
     key = "" if choice is None else str(choice)
@@ -101,31 +105,32 @@ def _device_of(choice):
 
 
 class Denoiser:
-    """Denoises the frames of a sequence, each with the help of those before it.
+    """Denoises the frames of a sequence, each with the help of the previous ones.
 
-    width, height: of all images, pixels, 1 to 32768.
+    width, height: size of all images in pixels, 1 to 32768.
     method: "svgf" (spatiotemporal variance-guided filtering: the best), "atrous" (temporal accumulation, then the
         edge-avoiding a-trous filter), "temporal" (temporal accumulation alone),
         "bilateral" (a joint bilateral filter of one frame, without history: the simplest).
     device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
-    signals: 1: radiance is all light that is filtered; 2: radiance is diffuse, specular is specular light.
-    demodulated: radiance comes without albedo in it, and leaves without.
-    normal_encoding: "signed" (xyz, -1 to 1), "unorm" (xyz, 0 to 1 for -1 to 1), "octahedral_signed" (xy, -1 to 1),
-        "octahedral_unorm" (xy, 0 to 1 for -1 to 1).
-    normal_space: "world" or "view" (of the frame's view matrix).
-    depth_encoding: "distance" (from the eye, along the pixel's ray, world units), "linear" (along the view axis, world
-        units), "device" (of the depth buffer, 0 to 1; the projection matrix says how).
-    far_depth: depth from which on nothing is seen; not with "device". World units.
-    motion_unit: "pixels", "uv" (1 is the width or height of the picture, v points down), "ndc" (2 is).
-    motion_direction: "to_previous" (position in the previous frame minus position now) or "from_previous".
-    motion_depth: "2d" (only x and y are read: what moves in depth is taken to stand still) or "distance" (z is the
-        change of distance from the eye, world units).
-    clip_y: "down" as in Vulkan, "up" as in OpenGL and Direct3D: where y = 1 is in clip space.
-    timings: measures the passes (see timings()).
-    parameters: a mapping of names to values, as set() takes them.
+    signals: 1: radiance is all light that is to be filtered; 2: radiance is diffuse light, and specular light is given
+        separately.
+    demodulated: True if radiance is divided by albedo; the result then is, too.
+    normal_encoding: "signed" (xyz, -1 to 1), "unorm" (xyz, mapped to 0 to 1), "octahedral_signed" (xy, -1 to 1), or
+        "octahedral_unorm" (xy, mapped to 0 to 1).
+    normal_space: "world" or "view" (the space of the frame's view matrix).
+    depth_encoding: "distance" (from the eye along the pixel's ray, world units), "linear" (along the view axis, world
+        units), or "device" (values of the depth buffer, 0 to 1, by the projection matrix).
+    far_depth: depths of this value and beyond mean that nothing is hit; not with "device". World units.
+    motion_unit: "pixels", "uv" (the picture is 1 wide and high, v points down) or "ndc" (it is 2 wide and high).
+    motion_direction: "to_previous" (previous minus current position) or "from_previous".
+    motion_depth: "2d" (only x and y are used, and points are assumed not to move in depth) or "distance" (z is the
+        change of the distance from the eye, world units).
+    clip_y: the direction of y in clip space: "down" as in Vulkan, "up" as in OpenGL and Direct3D.
+    timings: True to measure the passes' times (see timings()).
+    parameters: a dict of names and values for set().
 
-    Several threads may use denoisers at once; calls to one denoiser wait for each other. The GIL is released while the
-    device works.
+    Different threads may use different denoisers at the same time. Calls to one denoiser wait for each other. The GIL
+    is released while the device works.
     """
 
     def __init__(self, width, height, method="svgf", *, device=None, signals=1, demodulated=False,
@@ -169,17 +174,17 @@ class Denoiser:
 
     @property
     def width(self):
-        """Pixels."""
+        """Width of all images in pixels."""
         return self._handle.width
 
     @property
     def height(self):
-        """Pixels."""
+        """Height of all images in pixels."""
         return self._handle.height
 
     @property
     def method(self):
-        """Its name."""
+        """The method's name."""
         return self._method
 
     @property
@@ -193,15 +198,16 @@ class Denoiser:
                 reset=False, outputs="color"):
         """Denoises the next frame of the sequence and returns the clean picture, (height, width, 3) float32.
 
-        All images are arrays of (height, width, components), float16, float32 or float64; row 0 is the top. float32
-        arrays are read where they are, slices and flipped channels of them too, if a pixel's components are adjacent.
+        All images are arrays (height, width, components) of float16, float32 or float64; row 0 is the top. float32
+        arrays, and slices of them, are not copied if a pixel's components are adjacent in memory and no axis is
+        reversed.
 
-        radiance: (h, w, 3), linear: light that is scattered towards the eye; with two signals diffuse light.
-        normal: (h, w, 3), or 2 components if octahedral.
-        depth: (h, w). Where nothing is seen: 0 or below, not finite, or far_depth and beyond.
-        specular: (h, w, 3), specular light; needed with two signals.
-        emission: (h, w, 3): what the camera sees directly (emitters, sky); it is added, and not filtered.
-        albedo: (h, w, 3), diffuse albedo, 0 to 1, textures in it: they stay sharp.
+        radiance: (h, w, 3), linear light scattered towards the eye; with two signals only the diffuse light.
+        normal: (h, w, 3); (h, w, 2) if octahedral.
+        depth: (h, w). Where nothing is hit: 0 or below, not finite, or at least far_depth.
+        specular: (h, w, 3), specular light; required with two signals.
+        emission: (h, w, 3), light of emitters and sky that the camera sees directly. It is added unfiltered.
+        albedo: (h, w, 3), diffuse albedo from 0 to 1 including textures, which then stay sharp.
         albedo_specular: (h, w, 3), pre-integrated reflectance of the specular lobe, 0 to 1.
         motion: (h, w, 2 or 3), as the denoiser was told. Without it only the camera moves.
         previous_normal: as normal: of the same surface point in the previous frame.
@@ -220,7 +226,7 @@ class Denoiser:
         outputs: "color": the picture with emission and albedo in it. A sequence of names gives a dict of arrays
             instead: "color", "radiance" and "specular" (what the inputs of these names have become; SVGF only).
 
-        Throws ValueError naming the argument whose shape or type is wrong, limpid.Error if the library fails.
+        Raises ValueError, naming the argument, if a shape or type is wrong; limpid.Error if the library fails.
         """
         images = {"radiance": radiance, "specular": specular, "emission": emission, "albedo": albedo,
                   "albedo_specular": albedo_specular, "normal": normal, "depth": depth, "motion": motion,
@@ -253,7 +259,7 @@ class Denoiser:
         return inputs
 
     def _matrices(self, view, projection, previous_view, previous_projection):
-        """The four as the library reads them, column after column, and this frame's two."""
+        """Returns the four matrices in column-major order for the library, and this frame's two as they are."""
         if projection is None and self._needs_projection:
             raise ValueError("projection: is needed with depth_encoding='device'")
         view = np.eye(4) if view is None else _arrays.matrix("view", view)
@@ -268,37 +274,37 @@ class Denoiser:
         return np.ascontiguousarray(stacked, np.float32), (view, projection)
 
     def reset(self):
-        """A cut: the next frame starts without history."""
+        """Discards the history, as after a cut: the next frame starts anew."""
         self._handle.reset()
 
     def resize(self, width, height):
-        """The frames that follow are of another size, in pixels. History starts anew."""
+        """Sets the size of the following frames in pixels. Discards the history."""
         for name, value in (("width", width), ("height", height)):
             _check_side(name, value)
         self._handle.resize(width, height)
 
     def parameters(self):
-        """What can be set, by name: a dict of limpid.Parameter."""
+        """Returns the parameters that set() accepts, as a dict of limpid.Parameter by name."""
         return parameters(self._method)
 
     def set(self, name, value):
-        """Sets a parameter from the next frame on. Throws limpid.Error if there is none of this name, or if the value
+        """Sets a parameter from the next frame on. Raises limpid.Error if no parameter has this name, or if the value
         is outside its range."""
         self._handle.set(name, float(value))
 
     def get(self, name):
-        """The value of a parameter: a bool, int or float, as its type is."""
+        """Returns the value of a parameter, as bool, int or float."""
         value = self._handle.get(name)
         return parameter_value(self.parameters()[name].type, value)
 
     def timings(self):
-        """Milliseconds on the device of each pass of the latest frame, by the pass's name, in order. Empty unless the
-        denoiser was made with timings=True."""
+        """Returns a dict from the passes of the latest frame, in order, to their milliseconds on the device. Empty
+        unless the denoiser was made with timings=True."""
         return dict(self._handle.timings())
 
 
 def _network():
-    from limpid import _network as module  # which imports this one
+    from limpid import _network as module  # not at the top, since it imports this module
 
     return module
 
@@ -317,15 +323,15 @@ def _point(name, value):
 
 def denoise(radiance, normal, depth, *, specular=None, emission=None, albedo=None, albedo_specular=None, id=None,
             view=None, projection=None, jitter=(0.0, 0.0), outputs="color", method="svgf", device=None, **options):
-    """Denoises one still: returns the clean picture, (height, width, 3) float32.
+    """Denoises one still and returns the denoised picture, (height, width, 3) float32.
 
-    Images are as Denoiser.denoise() takes them; there are two signals if specular is given. `options` are those of
-    limpid.Denoiser. Sequences need a limpid.Denoiser, which learns from frame to frame.
+    Images are those of Denoiser.denoise(); if specular is given, there are two signals. `options` are those of
+    limpid.Denoiser. For sequences use a limpid.Denoiser, which accumulates over frames.
 
-    method: one of limpid.Denoiser's, or "kpcn", the trained network for stills of about 32 samples per pixel. Then
-    `options` are the variances, samples and parameters of limpid.Network and its denoise(); radiance is its diffuse
-    light; albedo_specular, id, the cameras and jitter are not looked at. It loads its weights in each call: for
-    several stills make a limpid.Network.
+    method: one of limpid.Denoiser's, or "kpcn", the trained network for stills of about 32 samples per pixel. For
+    "kpcn", `options` are those of limpid.Network and the variances and samples of its denoise(); radiance is its
+    diffuse light; albedo_specular, id, the cameras and jitter are ignored. Every call loads the weights, so make a
+    limpid.Network for several stills.
     """
     if method == "kpcn":
         if outputs != "color":

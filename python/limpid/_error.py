@@ -1,12 +1,12 @@
-"""What the library throws."""
+"""The exception that the library raises."""
 
 
 class Error(RuntimeError):
-    """A failure of the library or the device; str() is a sentence about it.
+    """A failure of the library or the device; str() describes it.
 
     code: "invalid_argument" (a value outside its range, an unknown name, a missing input), "unsupported" (no device
-    fits, or it lacks something), "out_of_memory", "device_lost" (make a new Device), "unreadable" (an input file),
-    or "failed" (anything else).
+    fits, or it lacks a feature), "out_of_memory", "device_lost" (make a new Device), "unreadable" (an input file), or
+    "failed" (anything else).
     """
 
     def __init__(self, message, code="failed"):

@@ -1,4 +1,4 @@
-"""Denoising of single frames by a trained network: what needs limpid._neural."""
+"""Denoising of single frames with a trained network. Uses the extension module limpid._neural."""
 
 import os
 
@@ -21,22 +21,22 @@ def _module():
 
 
 def parameters():
-    """Those of the network, by name: a dict of limpid.Parameter."""
+    """Returns the network's parameters as a dict of limpid.Parameter by name."""
     return parameters_of(_module().parameters())
 
 
 class Network:
     """A trained network, KPCN, that denoises single frames of about 32 samples per pixel (docs/kpcn.md).
 
-    weights: the path of a file of weights; None: those that come with Limpid.
-    device: text that chooses a device as limpid.Device does, or a limpid.Device, which names one: the network opens it
-        for itself. None: the best one.
-    parameters: a mapping of names to values, as set() takes them.
+    weights: path of a weight file; None: the weights that come with Limpid.
+    device: text that chooses a device as limpid.Device does, or a limpid.Device. In both cases the network opens the
+        device separately. None: the best one.
+    parameters: a dict of names and values for set().
 
-    Several threads may use networks at once; calls to one network wait for each other. The GIL is released while the
-    device works.
+    Different threads may use different networks at the same time. Calls to one network wait for each other. The GIL is
+    released while the device works.
 
-    Throws limpid.Error if no device fits or the weights cannot be read, ImportError if Limpid was built without its
+    Raises limpid.Error if no device fits or the weights cannot be read, ImportError if Limpid was built without its
     network.
     """
 
@@ -51,38 +51,39 @@ class Network:
 
     @property
     def device_name(self):
-        """The device, as its driver calls it."""
+        """The device's name, as the driver reports it."""
         return self._handle.device_name()
 
     @property
     def precision(self):
-        """How the network is computed: "half precision, cooperative matrices", "single precision, oneDNN"."""
+        """How the network is computed, for example "half precision, cooperative matrices"."""
         return self._handle.precision()
 
     def denoise(self, diffuse, normal, depth, *, diffuse_variance, specular=None, specular_variance=None,
                 emission=None, albedo=None, albedo_variance=None, normal_variance=None, depth_variance=None,
                 samples=32):
-        """Denoises one frame by itself and returns the clean picture, (height, width, 3) float32.
+        """Denoises one frame by itself and returns the denoised picture, (height, width, 3) float32.
 
-        Images are arrays as Denoiser.denoise() takes them: means over a pixel's samples. Variances, (h, w), are those
-        of the means: of N samples with the variance s^2, s^2 / N. limpid.render() returns all of them under these
-        names.
+        Images are arrays as in Denoiser.denoise(), and means over a pixel's samples. Variances, (h, w), are those of
+        the means: s^2 / N for N samples with the variance s^2. limpid.render() returns all of these inputs under the
+        same names.
 
-        diffuse: (h, w, 3), linear: diffuse light, textures in it. All light, if specular is not given.
-        normal: (h, w, 3), world space, -1 to 1; 0 where there is none.
-        depth: (h, w), distance from the eye, world units. Where nothing is seen: 0 or below, not finite, or from 1e9
-            on.
-        diffuse_variance, specular_variance: of the luminance.
-        specular: (h, w, 3), specular light; specular_variance goes with it.
-        emission: (h, w, 3): what the camera sees directly (emitters, sky); it is added, and not filtered.
-        albedo: (h, w, 3), diffuse albedo, 0 to 1, textures in it: they stay sharp. Default: 1.
-        albedo_variance, normal_variance, depth_variance: of the luminance, the components' mean, the distance.
-            Default: 0, as where all rays go through the pixels' centres.
-        samples: per pixel. Of fewer than 8 the variances are too rough for "kpcn.errors", which is then off.
+        diffuse: (h, w, 3), linear diffuse light including albedo; all light if specular is not given.
+        normal: (h, w, 3), world space, -1 to 1; 0 where nothing is hit.
+        depth: (h, w), distance from the eye, world units. Where nothing is hit: 0 or below, not finite, or at least
+            1e9.
+        diffuse_variance, specular_variance: variances of the luminance.
+        specular: (h, w, 3), specular light; needs specular_variance.
+        emission: (h, w, 3), light of emitters and sky that the camera sees directly. It is added unfiltered.
+        albedo: (h, w, 3), diffuse albedo from 0 to 1 including textures, which then stay sharp. Default: 1.
+        albedo_variance, normal_variance, depth_variance: variance of the luminance, mean variance of the components,
+            variance of the distance. Default: 0, as if all rays went through the pixels' centres.
+        samples: samples per pixel. With fewer than 8, variances are too imprecise for "kpcn.errors", which is then
+            off.
 
         A NaN or an infinity counts as 0.
 
-        Throws ValueError naming the argument whose shape or type is wrong, limpid.Error if the library fails.
+        Raises ValueError, naming the argument, if a shape or type is wrong; limpid.Error if the library fails.
         """
         images = {"diffuse": diffuse, "specular": specular, "emission": emission, "albedo": albedo, "normal": normal,
                   "depth": depth, "diffuse_variance": diffuse_variance, "specular_variance": specular_variance,
@@ -102,15 +103,15 @@ class Network:
         return self._handle.denoise(size[1], size[0], int(samples), inputs)
 
     def parameters(self):
-        """What can be set, by name: a dict of limpid.Parameter."""
+        """Returns the parameters that set() accepts, as a dict of limpid.Parameter by name."""
         return parameters()
 
     def set(self, name, value):
-        """Sets a parameter from the next frame on. Throws limpid.Error if there is none of this name, or if the value
-        is outside its range. "kpcn.half" and "kpcn.cis565" load the weights anew."""
+        """Sets a parameter from the next frame on. Raises limpid.Error if no parameter has this name, or if the value
+        is outside its range. "kpcn.half" and "kpcn.cis565" reload the weights."""
         self._handle.set(name, float(value))
 
     def get(self, name):
-        """The value of a parameter: a bool, int or float, as its type is."""
+        """Returns the value of a parameter, as bool, int or float."""
         value = self._handle.get(name)
         return parameter_value(self.parameters()[name].type, value)

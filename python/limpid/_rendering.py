@@ -1,4 +1,4 @@
-"""Rendering and comparing: what needs limpid._renderer."""
+"""Rendering and comparing pictures. Uses the extension module limpid._renderer."""
 
 import atexit
 
@@ -32,16 +32,21 @@ def _device_of(choice):
 
 
 def compare(test, reference, *, exposure="auto"):
-    """How far a picture is from its reference: a dict of floats.
+    """Measures the difference between a picture and its reference.
 
     test, reference: (height, width, 3), linear radiance, float16, float32 or float64.
-    exposure: stops for psnr, ssim and flip, which see the pictures as a screen shows them: exposed, clamped to [0, 1]
-        and sRGB-encoded. "auto": what brings the reference's average luminance to 0.18.
+    exposure: stops for psnr, ssim and flip, which compare display-encoded pictures: exposed, clamped to [0, 1] and
+        sRGB-encoded. "auto" scales the reference's average luminance to 0.18.
 
-    psnr: dB, infinite for equal pictures. ssim: 1 for equal pictures. flip: mean LDR-FLIP at 67 pixels per degree,
-    0 to 1, 0 for equal pictures. relmse: mean((test - reference)^2 / (reference^2 + 0.01)) of linear values, without
-    exposure. exposure: the stops that were applied. invalid_pixels: of the test picture, with a NaN or an infinity;
-    they count as the worst error. Throws limpid.Error if the reference has such pixels.
+    Returns a dict:
+    psnr: in dB, infinite for equal pictures.
+    ssim: 1 for equal pictures.
+    flip: mean LDR-FLIP at 67 pixels per degree, 0 to 1, 0 for equal pictures.
+    relmse: mean((test - reference)^2 / (reference^2 + 0.01)) of linear values, without exposure.
+    exposure: the stops that were applied.
+    invalid_pixels: number of pixels of the test picture with a NaN or an infinity. They count as the largest error.
+
+    Raises limpid.Error if the reference has invalid pixels.
     """
     reference = _arrays.image("reference", reference, (3, 4))
     test = _arrays.image("test", test, (3, 4), reference.shape[:2])
@@ -52,22 +57,26 @@ def compare(test, reference, *, exposure="auto"):
 
 
 def render(scene, width, height, spp=64, **options):
-    """Path-traces a still of a scene: a dict of arrays.
+    """Path-traces a still of a scene and returns a dict of arrays.
 
-    scene: the path of a .gltf, .glb or .obj file, or "builtin:" and a name (builtin_scenes() lists them).
-    width, height: pixels. spp: samples per pixel.
+    scene: path of a .gltf, .glb or .obj file, or "builtin:" followed by a name that builtin_scenes() lists.
+    width, height: size in pixels. spp: samples per pixel.
 
-    options:
-    seed: another one, other noise; the same gives the same picture on the same device. Default: 0.
-    denoiser: None, or "temporal", "atrous", "svgf" or "kpcn": what cleans the picture before it is returned as "color".
-    parameters: a mapping of names to values: {"pathtrace.max_depth": 4}; 'limpid info' lists them.
-    device: as in limpid.Denoiser. environment: path of a lat-long .hdr or .exr.
-    camera: of the scene's, its name or number; default: the first.
-    eye, target: instead, two points of three numbers each; fov: its vertical field of view, degrees.
-    jitter: where in their pixels rays go: "pixel" (anywhere), "frame" (one point for all pixels) or "off" (the
-        centre); default: "pixel", but "off" for sequences and for denoisers that keep a history.
-    weights: of "kpcn": a file instead of the one that comes with Limpid.
-    asset_root: a folder that the scene's files must lie in; default: the folder above the scene's.
+    Options:
+    seed: of the random numbers; default: 0. The same seed gives the same picture on the same device.
+    denoiser: None, "temporal", "atrous", "svgf" or "kpcn": denoises the picture that is returned as "color".
+    parameters: a dict of names and values, such as {"pathtrace.max_depth": 4}; `limpid info` lists them.
+    device: as in limpid.Denoiser.
+    environment: path of an equirectangular .hdr or .exr.
+    camera: name or number of one of the scene's cameras; default: the first.
+    eye, target, fov: a camera instead of the scene's: two points of three numbers each, and the vertical field of view
+        in degrees.
+    jitter: where rays go through their pixels: "pixel" (anywhere), "frame" (at one point, the same for all pixels) or
+        "off" (the centre). Default with a denoiser: "pixel" for "kpcn", else "off". Default without one: "off" for
+        sequences, else "pixel".
+    weights: weight file for "kpcn", instead of the one that comes with Limpid.
+    asset_root: files that the scene refers to must lie in this folder or in the scene's own; default: the parent of
+        the scene's folder.
 
     The arrays are float32 unless said otherwise, row 0 at the top:
     color: (h, w, 3), linear radiance, clean if there is a denoiser. diffuse, specular, emission: (h, w, 3): without a
@@ -98,12 +107,12 @@ def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, a
 
 
 def builtin_scenes():
-    """The scenes that come with Limpid: a dict of "builtin:..." and a line about each."""
+    """Returns the built-in scenes: a dict from "builtin:..." to a one-line description."""
     return dict(_module().builtin_scenes())
 
 
 class _Renderer:
-    """One scene on a device, and the camera's matrices of each frame."""
+    """Renders one scene on a device, and adds the camera's matrices to each frame."""
 
     def __init__(self, scene, width, height, spp, *, default_jitter, seed=0, denoiser=None, parameters=None,
                  device=None, environment=None, camera=None, eye=None, target=None, fov=None, jitter=None,
@@ -132,7 +141,7 @@ class _Renderer:
 
 
 def _text(value):
-    """As the command line takes it."""
+    """Formats a value as the command line expects it."""
     if isinstance(value, bool):
         return "on" if value else "off"
     return "" if value is None else str(value)

@@ -1,4 +1,4 @@
-// What the modules of both C interfaces share (limpid/denoise.h, limpid/neural.h).
+// Shared by the extension modules for the two C interfaces (limpid/denoise.h and limpid/neural.h).
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -35,7 +35,7 @@ inline const char* codeOf(limpid_result result) {
     }
 }
 
-/// In the module that is being made, Failure becomes limpid.Error.
+/// Registers the translation of Failure to limpid.Error for the module that is being initialised.
 inline void translateFailures() {
     pybind11::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
@@ -48,10 +48,10 @@ inline void translateFailures() {
 
 using Array = pybind11::array_t<float>;
 
-/// Where the values of an array of (height, width, components) lie.
+/// Describes an array (height, width, components) as an image of the C interface, without copying it.
 template <typename Image, typename Data>
 Image hostImage(Data* data, const Array& array) {
-    // Strides along an axis of length 1 mean nothing in NumPy; 0 is the C interface's default.
+    // NumPy's strides along an axis of length 1 are arbitrary; 0 is the C interface's default.
     const auto stride = [&](int axis) {
         return array.shape(axis) > 1 ? static_cast<size_t>(array.strides(axis)) : 0;
     };
@@ -63,8 +63,8 @@ Image hostImage(Data* data, const Array& array) {
     return image;
 }
 
-/// Throws std::invalid_argument unless the array is of (height, width, 1 to 4), forwards along the first two
-/// axes, with a pixel's components side by side.
+/// Throws std::invalid_argument unless the array has the shape (height, width, 1 to 4), positive strides, and
+/// adjacent components.
 inline void checkReadable(const Array& array, uint32_t width, uint32_t height) {
     using pybind11::ssize_t;
     const bool shaped = array.ndim() == 3 && array.shape(0) == ssize_t{height} &&
@@ -75,10 +75,10 @@ inline void checkReadable(const Array& array, uint32_t width, uint32_t height) {
         throw std::invalid_argument("an input's shape or strides cannot be read");
 }
 
-/// Name, type, default, minimum, maximum, unit, help.
+/// A parameter as Python gets it: name, type, default, minimum, maximum, unit, help.
 using Parameter = std::tuple<std::string, std::string, double, double, double, std::string, std::string>;
 
-/// `get(index, &parameter)`: a function of the C interface.
+/// Lists all parameters. `get(index, &parameter)` is a function of the C interface.
 template <typename Get>
 std::vector<Parameter> listParameters(const Get& get) {
     constexpr const char* types[] = {"bool", "int", "float"};

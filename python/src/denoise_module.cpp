@@ -23,7 +23,8 @@ namespace {
 
 using namespace limpid::python;
 
-/// Call it on the thread that made the call.
+/// Throws Failure if a call failed. Must run on the same thread as the call, since the error text is per
+/// thread.
 void check(limpid_result result) {
     if (result != LIMPID_OK) throw Failure(limpid_last_error(), result);
 }

@@ -1,4 +1,4 @@
-// limpid._renderer: pictures of scenes, and metrics, for Python. limpid/_rendering.py checks arguments and
+// limpid._renderer: rendering of scenes, and metrics, for Python. limpid/_rendering.py checks arguments and
 // documents them.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

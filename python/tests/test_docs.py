@@ -1,4 +1,4 @@
-"""Runs every block of Python in docs/python.md, one after the other, as a reader would."""
+"""Runs every block of Python in docs/python.md, in order."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Runs the example in examples/python: it must clean what it makes."""
+"""Runs the example in examples/python, which must improve the PSNR."""
 
 import os
 import re

@@ -1,4 +1,5 @@
-"""import limpid: shapes, errors, denoising, comparing, rendering; on the device LIMPID_TEST_DEVICE (cpu)."""
+"""Tests the package: shapes, errors, denoising, comparing, rendering. LIMPID_TEST_DEVICE names the device
+(default: cpu)."""
 
 import os
 import subprocess
@@ -28,7 +29,7 @@ def tearDownModule():
 
 
 def wall(eye_x):
-    """Seen from (eye_x, 0, 0): a wall across the view at z = -3, striped, and nothing to the right of x = 2.5."""
+    """Returns the view from (eye_x, 0, 0) of a striped wall at z = -3 that ends at x = 2.5."""
     half = np.tan(np.radians(FOV / 2))
     x = (2 * (np.arange(WIDTH) + 0.5) / WIDTH - 1) * half * WIDTH / HEIGHT
     y = (1 - 2 * (np.arange(HEIGHT) + 0.5) / HEIGHT) * half
@@ -50,12 +51,12 @@ def mse(a, b):
 
 
 def gain(clean, noisy, truth):
-    """dB of PSNR."""
+    """Returns the gain of PSNR in dB."""
     return 10 * np.log10(mse(noisy, truth) / mse(clean, truth))
 
 
 class Sequence:
-    """Noisy frames of wall(), the camera moving to the right, and what they should be."""
+    """Noisy frames of wall(), seen by a camera that moves to the right, and the noise-free ones."""
 
     def __init__(self, seed=1):
         random = np.random.default_rng(seed)
@@ -68,14 +69,14 @@ class Sequence:
             self.frames.append((inputs, truth))
 
     def run(self, denoiser, **more):
-        """The last clean frame's gain."""
+        """Denoises all frames and returns the gain of the last one."""
         for inputs, truth in self.frames:
             clean = denoiser.denoise(**{**inputs, **more})
         return gain(clean, inputs["radiance"], truth)
 
 
 def still():
-    """The first frame: denoise()'s arguments but for albedo and cameras."""
+    """Returns the first frame as arguments of denoise(), without albedo and cameras."""
     inputs = Sequence().frames[0][0]
     return {name: inputs[name].astype(np.float32) for name in ("radiance", "normal", "depth")}
 
@@ -195,7 +196,7 @@ class ShapeTest(unittest.TestCase):
         self.assertIn("singular", str(caught.exception))
         with self.assertRaises(limpid.Error):
             self.denoiser.denoise(**still(), outputs=("radiance",))  # SVGF only
-        self.denoiser.denoise(**still())  # continues the sequence
+        self.denoiser.denoise(**still())  # an error must not end the sequence
 
 
 class ParameterTest(unittest.TestCase):

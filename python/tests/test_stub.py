@@ -1,4 +1,4 @@
-"""The type stub has every public name, and every parameter by its name, kind and default."""
+"""Tests that the type stub has every public name, and every parameter with its name, kind and default."""
 
 import ast
 import inspect
@@ -16,7 +16,7 @@ def public(nodes):
 
 
 def described(function):
-    """(name, is keyword-only, has a default) of each parameter in the stub, without self and **options."""
+    """Returns (name, is keyword-only, has a default) for each parameter in the stub, without self and **options."""
     a = function.args
     plain = a.posonlyargs + a.args
     missing = len(plain) - len(a.defaults)
