@@ -1,6 +1,7 @@
-# What `cmake --install` puts where. Its components are also the Debian packages (LimpidPackages.cmake):
-# library: liblimpid.so.0; development: headers, CMake package, pkg-config; neural and neural_development: the same of
-# liblimpid-neural.so.0; weights: what the network needs; program: limpid.
+# Installation rules. Each component is also a Debian package (LimpidPackages.cmake):
+# - library: liblimpid.so.0; development: its headers, CMake package and pkg-config file;
+# - neural and neural_development: the same for liblimpid-neural.so.0; weights: the network's weights;
+# - program: limpid; python: the Python package.
 include(CMakePackageConfigHelpers)
 find_program(LIMPID_GZIP gzip REQUIRED)
 
@@ -11,7 +12,7 @@ install(TARGETS limpid_denoise EXPORT limpidTargets
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/limpid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "neural.*" EXCLUDE)
 
-# find_package(limpid)
+# For find_package(limpid).
 install(EXPORT limpidTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/limpidConfig.cmake.in
   ${PROJECT_BINARY_DIR}/install/limpidConfig.cmake INSTALL_DESTINATION ${LIMPID_CMAKE_DIR}
@@ -21,16 +22,17 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/install/limpidConfigVersi
 install(FILES ${PROJECT_BINARY_DIR}/install/limpidConfig.cmake ${PROJECT_BINARY_DIR}/install/limpidConfigVersion.cmake
   DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
 
-# The program looks for them in ../share/limpid, the library where src/denoise/api/network/CMakeLists.txt says.
+# The program looks for weights in ../share/limpid, the library in the folder that
+# src/denoise/api/network/CMakeLists.txt sets.
 if(LIMPID_APPS OR TARGET limpid_neural)
   install(FILES ${PROJECT_SOURCE_DIR}/weights/kpcn.safetensors ${PROJECT_SOURCE_DIR}/weights/kpcn-cis565.safetensors
     DESTINATION ${CMAKE_INSTALL_DATADIR}/limpid COMPONENT weights)
 endif()
 
-# pkg-config: its paths follow from where limpid.pc lies, so that a moved prefix still works.
+# For pkg-config. Paths in the .pc file are relative to its own folder, so that the prefix can be moved.
 file(RELATIVE_PATH LIMPID_PREFIX_FROM_PC
   ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-# limpid_install_pc(NAME DESCRIPTION COMPONENT): NAME.pc for libNAME.so.
+# limpid_install_pc(NAME DESCRIPTION COMPONENT): installs NAME.pc for libNAME.so.
 function(limpid_install_pc NAME DESCRIPTION COMPONENT)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/limpid.pc.in ${PROJECT_BINARY_DIR}/install/${NAME}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/install/${NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
@@ -43,7 +45,7 @@ if(TARGET limpid_neural)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT neural NAMELINK_COMPONENT neural_development)
   install(FILES ${PROJECT_SOURCE_DIR}/include/limpid/neural.h ${PROJECT_SOURCE_DIR}/include/limpid/neural.hpp
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limpid COMPONENT neural_development)
-  # limpidConfig.cmake takes it in where it lies beside.
+  # limpidConfig.cmake includes it if it is in the same folder.
   install(EXPORT limpidNeuralTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT neural_development)
   limpid_install_pc(limpid-neural "Kernel-predicting denoising network for any Vulkan device" neural_development)
 endif()

@@ -3,7 +3,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limpid)
 set(CPACK_PACKAGE_VENDOR "The Limpid authors")
 set(CPACK_PACKAGE_CONTACT "The Limpid authors <limpid@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own, below
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # set for each package below
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(LIMPID_DEB_VERSION ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
@@ -26,7 +26,8 @@ if(TARGET limpid_python_denoise)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# The Python module's library is in another of these packages, which its dependencies below name.
+# The Python module needs liblimpid, which is in another of these packages. Its dependency is added by hand below;
+# dpkg-shlibdeps only has to find the library.
 get_target_property(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS limpid_denoise BINARY_DIR)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
@@ -37,10 +38,10 @@ set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "real-time denoisers for any Vulkan device
 Filters noisy pictures of path tracers, frame by frame: SVGF and others. They
 record into the command buffers of a program with a Vulkan device of its own,
 or take pictures in host memory.")
-# ldconfig runs when the library comes or goes.
+# Run ldconfig when the library is installed or removed.
 file(WRITE ${PROJECT_BINARY_DIR}/install/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/install/triggers)
-# The loader is opened when a device is made, so that dpkg-shlibdeps does not see it.
+# Vulkan's loader is opened at run time, so dpkg-shlibdeps does not find this dependency.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libvulkan1)
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblimpid-dev)
@@ -83,13 +84,13 @@ pictures, on GPUs and on CPUs.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limpid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 if(TARGET limpid_python_denoise)
-  # An extension module fits one minor version of Python.
+  # An extension module works with only one minor version of Python.
   math(EXPR LIMPID_NEXT_PYTHON "${LIMPID_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "liblimpid0 (= ${LIMPID_DEB_VERSION}), python3-numpy, \
 python3 (>= 3.${LIMPID_PYTHON_MINOR}), python3 (<< 3.${LIMPID_NEXT_PYTHON})")
   if(TARGET limpid_neural)
     string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${LIMPID_DEB_VERSION})")
-    get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # where dpkg-shlibdeps finds it
+    get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # for dpkg-shlibdeps
     list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_NEURAL_DIR})
   endif()
 endif()
@@ -98,12 +99,13 @@ NumPy arrays in, NumPy arrays out: denoises stills and sequences, renders
 scenes, and compares pictures.")
 include(CPack)
 
-# Packs a file without its name and time: here and now, since the library alone may be built and installed.
+# limpid_gzip(FILE RESULT): compresses a file, without its name and time. It runs while configuring, not in a build
+# target, because one may build and install only the library.
 function(limpid_gzip FILE RESULT)
   execute_process(COMMAND ${LIMPID_GZIP} -9nc ${FILE} OUTPUT_FILE ${RESULT} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# Licence and changes, where Debian has them: usr/share/doc/PACKAGE.
+# Install licence and changelog where Debian expects them: usr/share/doc/PACKAGE.
 string(TIMESTAMP LIMPID_DEB_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/changelog.Debian.in ${PROJECT_BINARY_DIR}/install/changelog.Debian @ONLY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)

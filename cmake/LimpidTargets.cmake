@@ -1,27 +1,28 @@
-# Helpers that every folder's CMakeLists.txt uses, so that a folder lists only what it has.
+# Functions that the CMakeLists.txt of every folder uses to define its targets.
 
-# How Limpid's own files are compiled; whoever links its libraries sees none of it.
+# Compiler options for Limpid's own files. Programs that link its libraries do not inherit them.
 add_library(limpid_options INTERFACE)
 target_include_directories(limpid_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
-# Everything can go into the shared library, which exports nothing by accident.
+# All code must be usable in the shared libraries, which export only what is listed explicitly.
 target_compile_options(limpid_options INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
 target_compile_options(limpid_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # GCC 12 sees overlaps inside std::string that are not there (its bug 105651).
+  # GCC 12 warns wrongly about overlaps inside std::string (its bug 105651).
   target_compile_options(limpid_options INTERFACE -Wno-restrict)
 endif()
 if(LIMPID_WERROR)
   target_compile_options(limpid_options INTERFACE -Werror)
 endif()
 if(LIMPID_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # With precompiled headers GCC 12's optimizer sees more faults in the standard library that are not there.
+  # With precompiled headers, GCC 12 has more wrong warnings about the standard library.
   foreach(WARNING array-bounds dangling-pointer free-nonheap-object maybe-uninitialized restrict stringop-overflow
           stringop-overread use-after-free)
     target_compile_options(limpid_options INTERFACE -Wno-${WARNING})
   endforeach()
 endif()
 if(LIMPID_UNITY)
-  # A local name may then be that of another file's constant, and types of anonymous namespaces seem to come from a header.
+  # In unity builds, local names may shadow constants of other files, and types in anonymous namespaces seem to come
+  # from a header.
   target_compile_options(limpid_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
 endif()
 if(LIMPID_SANITIZE)
@@ -38,8 +39,8 @@ if(LIMPID_FUZZ)
   target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# limpid_optional(NAME PACKAGE DEBIAN LOSS): sets LIMPID_HAVE_NAME to whether CMake finds PACKAGE; if not, says what is
-# lost without it and which Debian package brings it.
+# limpid_optional(NAME PACKAGE DEBIAN LOSS): sets LIMPID_HAVE_NAME to whether CMake finds PACKAGE. If not, prints which
+# Debian package has it and what is missing without it.
 function(limpid_optional NAME PACKAGE DEBIAN LOSS)
   find_package(${PACKAGE} QUIET GLOBAL)
   if(NOT ${PACKAGE}_FOUND)
@@ -48,8 +49,9 @@ function(limpid_optional NAME PACKAGE DEBIAN LOSS)
   set(LIMPID_HAVE_${NAME} ${${PACKAGE}_FOUND} PARENT_SCOPE)
 endfunction()
 
-# limpid_find_neural(): sets LIMPID_HAVE_ONEDNN, and LIMPID_HAVE_NEURAL to whether liblimpid-neural is built: if
-# LIMPID_NEURAL is on and all that it needs is there. (The programs have the network without oneDNN, too: in shaders.)
+# limpid_find_neural(): sets LIMPID_HAVE_ONEDNN and LIMPID_HAVE_NEURAL. The latter tells whether liblimpid-neural is
+# built: if LIMPID_NEURAL is on and all its dependencies are found. (The programs have the network without oneDNN, too:
+# it then runs in shaders.)
 macro(limpid_find_neural)
   set(LIMPID_HAVE_NEURAL ${LIMPID_NEURAL})
   if(LIMPID_NEURAL AND NOT LIMPID_APPS)
@@ -70,13 +72,13 @@ macro(limpid_find_neural)
   endif()
 endmacro()
 
-# With LIMPID_PCH these headers are parsed once: a clean build takes two thirds of the time. Off by default, so that a file
-# must include what it uses.
+# With LIMPID_PCH these headers are precompiled, which reduces the time of a clean build to two thirds. It is off by
+# default, so that missing includes are noticed.
 set(LIMPID_PCH_HEADERS
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <set>
   <span> <sstream> <string> <string_view> <vector> <fmt/format.h> <glm/glm.hpp> <nlohmann/json.hpp>)
 
-# limpid_precompile(): makes the two sets of precompiled headers, once their packages are found.
+# limpid_precompile(): creates the two sets of precompiled headers. Call it after their packages are found.
 function(limpid_precompile)
   if(NOT LIMPID_PCH OR LIMPID_FUZZ)
     return()
@@ -93,8 +95,8 @@ function(limpid_precompile)
   endif()
 endfunction()
 
-# limpid_use_pch(TARGET FROM): TARGET uses the precompiled headers of FROM, where there are any, and the definitions that
-# they were parsed with.
+# limpid_use_pch(TARGET FROM): lets TARGET use the precompiled headers of FROM, if that exists, with the definitions
+# that they were compiled with.
 function(limpid_use_pch NAME FROM)
   if(TARGET ${FROM})
     target_precompile_headers(${NAME} REUSE_FROM ${FROM})
@@ -102,20 +104,21 @@ function(limpid_use_pch NAME FROM)
   endif()
 endfunction()
 
-# With LIMPID_UNITY several files of a target are compiled as one. A clean build takes half the time, but a change of one file
-# compiles its neighbours, too; for CI.
+# limpid_unity(TARGET): with LIMPID_UNITY, compiles several files of the target as one. A clean build takes half the
+# time, but a change of one file recompiles others, too. Meant for CI.
 function(limpid_unity NAME)
   if(LIMPID_UNITY)
     set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
 endfunction()
 
-# limpid_alone(a.cpp ...): these are compiled by themselves even then: their private names are those of other files, too.
+# limpid_alone(a.cpp ...): excludes files from unity builds, because other files have the same private names.
 macro(limpid_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endmacro()
 
-# limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ...): the static library limpid_NAME, alias limpid::NAME.
+# limpid_library(NAME SOURCES a.cpp ... DEPS limpid::base ... [PRIVATE_DEPS ...]): adds the static library limpid_NAME,
+# with the alias limpid::NAME.
 function(limpid_library NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(limpid_${NAME} STATIC ${ARG_SOURCES})
@@ -125,8 +128,9 @@ function(limpid_library NAME)
   limpid_unity(limpid_${NAME})
 endfunction()
 
-# limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): libFILE.so.0, limpid::NAME for programs that
-# include include/limpid. What it needs is in it; it exports what the version script EXPORTS lists.
+# limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): adds the shared library libFILE.so.0, target
+# limpid::NAME, for programs that include include/limpid. It contains the static libraries it needs, and exports what
+# the version script EXPORTS lists.
 function(limpid_shared_library NAME FILE EXPORTS)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   set(TARGET limpid_${NAME})
@@ -138,14 +142,14 @@ function(limpid_shared_library NAME FILE EXPORTS)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_options(${TARGET} PRIVATE -Wl,--version-script=${SCRIPT})
   if(NOT LIMPID_SANITIZE)
-    target_link_options(${TARGET} PRIVATE -Wl,--no-undefined)  # the sanitizers' own come from the program
+    target_link_options(${TARGET} PRIVATE -Wl,--no-undefined)  # with sanitizers, the program defines their symbols
   endif()
   set_target_properties(${TARGET} PROPERTIES
     OUTPUT_NAME ${FILE} EXPORT_NAME ${NAME} VERSION ${PROJECT_VERSION} SOVERSION 0
     POSITION_INDEPENDENT_CODE OFF LINK_DEPENDS ${SCRIPT})
 endfunction()
 
-# limpid_program(NAME SOURCES a.cpp ... DEPS limpid::base ...): an executable.
+# limpid_program(NAME SOURCES a.cpp ... DEPS limpid::base ...): adds an executable.
 function(limpid_program NAME)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(${NAME} ${ARG_SOURCES})
@@ -155,21 +159,21 @@ function(limpid_program NAME)
   limpid_unity(${NAME})
 endfunction()
 
-# What embedded shaders go through. Not -O: it inlines every call and unrolls loops, which makes them larger (atrous_level
-# 25 times) and leaves drivers, which do both where it helps their device, nothing to decide. Nothing here changes what is
-# computed with floats.
+# The optimisation passes for embedded shaders. Not -O, which inlines every call and unrolls loops: shaders become
+# larger (atrous_level 25 times), and drivers can no longer choose where inlining and unrolling help their device. None
+# of these passes changes floating-point results.
 set(LIMPID_SPIRV_PASSES
   --eliminate-dead-functions --eliminate-local-single-block --eliminate-local-single-store
   --eliminate-dead-code-aggressive --scalar-replacement=100 --convert-local-access-chains --ssa-rewrite
   --eliminate-dead-code-aggressive --redundancy-elimination --eliminate-dead-code-aggressive --merge-blocks)
 
-# limpid_shaders(TARGET a/b.comp ... [WORDS_ONLY c.vert ...] [UNOPTIMISED a/b.comp ...]): compiles shaders below the current
-# folder and embeds each in TARGET as `limpid::shaders::b_comp` (gpu/graph/shader.h: ShaderCode), declared in the generated
-# header "b.comp.h". Of those after WORDS_ONLY, which the frame graph cannot use, only the SPIR-V is embedded
-# (std::span<const uint32_t>); of those after UNOPTIMISED, names of others, the SPIR-V is stripped, and not optimised.
+# limpid_shaders(TARGET a/b.comp ... [WORDS_ONLY c.vert ...] [UNOPTIMISED a/b.comp ...]): compiles shaders below the
+# current folder and embeds each in TARGET as `limpid::shaders::b_comp` (a ShaderCode of gpu/graph/shader.h), declared
+# in the generated header "b.comp.h". WORDS_ONLY: shaders that the frame graph cannot use; only their SPIR-V is
+# embedded (std::span<const uint32_t>). UNOPTIMISED: those of the given shaders that are not optimised, only stripped.
 #
-# glslc -g without -O writes shaders/b.comp.spv, which has the names that the frame graph binds by; limpid_reflect reads
-# these, and what spirv-opt makes of the file is embedded.
+# First, glslc -g (without -O) writes shaders/b.comp.spv, which still has the names by which the frame graph binds
+# resources; limpid_reflect reads these. Then spirv-opt optimises and strips the file, and the result is embedded.
 function(limpid_shaders TARGET)
   cmake_parse_arguments(ARG "" "" "WORDS_ONLY;UNOPTIMISED" ${ARGN})
   set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/shaders)
@@ -193,15 +197,16 @@ function(limpid_shaders TARGET)
   target_include_directories(${TARGET} PUBLIC ${GENERATED})
 endfunction()
 
-# limpid_shader_variants(TARGET SUFFIX MACRO a/b.comp ...): compiles shaders once more, with MACRO defined, and embeds each as
-# `limpid::shaders::b_SUFFIX_comp`. Its name is "a/b.comp -DMACRO".
+# limpid_shader_variants(TARGET SUFFIX MACRO a/b.comp ...): compiles shaders again with MACRO defined, and embeds each
+# as `limpid::shaders::b_SUFFIX_comp`. Its name is "a/b.comp -DMACRO".
 function(limpid_shader_variants TARGET SUFFIX MACRO)
   foreach(SOURCE ${ARGN})
     limpid_shader(${TARGET} ${SOURCE} ${CMAKE_CURRENT_BINARY_DIR}/shaders shader "${LIMPID_SPIRV_PASSES}" ${SUFFIX} ${MACRO})
   endforeach()
 endfunction()
 
-# limpid_shader(TARGET SOURCE GENERATED KIND PASSES [SUFFIX MACRO]): one of them. KIND names the templates (cmake/KIND.h.in).
+# limpid_shader(TARGET SOURCE GENERATED KIND PASSES [SUFFIX MACRO]): compiles and embeds one shader. KIND: the
+# templates to use (cmake/KIND.h.in and cmake/KIND.cpp.in).
 function(limpid_shader TARGET SOURCE GENERATED KIND PASSES)
   get_filename_component(FILE ${SOURCE} NAME)
   set(VARIANT "")
@@ -247,8 +252,8 @@ function(limpid_shader TARGET SOURCE GENERATED KIND PASSES)
   set_property(TARGET ${TARGET} PROPERTY LIMPID_SHADER_FOLDER ${GENERATED})
 endfunction()
 
-# limpid_shader_list(TARGET LIBRARY ...): adds to TARGET a list of all shaders of the libraries with the SPIR-V that they were
-# made of: `limpid::shaders::listed()`, in the generated header "shader_list.h". For tests.
+# limpid_shader_list(TARGET LIBRARY ...): for tests. Adds to TARGET the list of all shaders of the libraries, with the
+# SPIR-V files they were made from: `limpid::shaders::listed()` in the generated header "shader_list.h".
 function(limpid_shader_list TARGET)
   set(SHADER_INCLUDES "")
   set(SHADER_ROWS "")
@@ -290,8 +295,8 @@ if(LIMPID_TESTS)
   add_custom_target(limpid_fast_tests)
 endif()
 
-# limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): a GoogleTest program; every suite is a ctest test.
-# The target limpid_fast_tests builds all that are not slow.
+# limpid_test(NAME SOURCES a_test.cpp ... DEPS ... [LABELS slow]): adds a GoogleTest program, each of whose suites is a
+# test for ctest. The target limpid_fast_tests builds all test programs that are not slow.
 function(limpid_test NAME)
   cmake_parse_arguments(ARG "" "LABELS" "SOURCES;DEPS" ${ARGN})
   if(NOT LIMPID_TESTS)

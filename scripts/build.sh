@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build.sh PRESET[:TARGET] [CMAKE OPTION ...]: configures and builds a preset of CMakePresets.json, all or one target.
+# build.sh PRESET[:TARGET] [CMAKE OPTION ...]: configures a preset of CMakePresets.json and builds it, or one target.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1%%:*}

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# clips.sh FOLDER: makes the moving pictures of the documentation in FOLDER: one sample per pixel, SVGF and 4,096 samples
-# side by side, 60 frames, 3 seconds. For a GPU; needs ffmpeg, the font DejaVu Sans Mono, and a Release build.
+# clips.sh FOLDER: makes the documentation's animated pictures in FOLDER. They show one sample per pixel, SVGF and
+# 4,096 samples side by side, 60 frames in 3 seconds. Needs a GPU, ffmpeg, the font DejaVu Sans Mono, and a Release
+# build.
 set -euo pipefail
 limpid=$(cd "$(dirname "$0")/.." && pwd)/build/release/limpid
 mkdir -p "$1"
 cd "$1"
 
-# label TEXT: draws it into the lower left corner.
+# label TEXT: prints the ffmpeg filter that draws TEXT into the lower left corner.
 label() {
     echo "drawtext=font='DejaVu Sans Mono':text='$1':x=8:y=h-22:fontsize=14:fontcolor=white:box=1:boxcolor=black@0.5:boxborderw=4"
 }
 
-# clip NAME SCENE CAMERA_PATH
+# clip NAME SCENE CAMERA_PATH: renders the three versions of a sequence and makes NAME.webp of them.
 clip() {
     local frames=(--frames 60 --width 320 --height 180 --exposure 0 --camera-path "$3")
     "$limpid" render "$2" "${frames[@]}" --spp 1 --jitter off -o "$1.noisy.%04d.png"

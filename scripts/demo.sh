@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release, and shows the main jobs under out/: moving sequences of one sample per pixel and
-# frame, denoised, beside their references, with PSNR and FLIP; a frame of 32 samples that the network denoises; and stills
-# noisy and converged, with samples, seconds and PSNR.
+# Installs what is missing, builds Release, and demonstrates the main uses of Limpid. Results are under out/:
+# - moving sequences of one sample per pixel and frame, denoised, with references, PSNR and FLIP;
+# - a frame of 32 samples per pixel, denoised by the network;
+# - stills, noisy and converged, with samples, seconds and PSNR.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the diagrams of the documentation as SVG, on white, so that light and dark pages show them alike:
+"""Draws the documentation's diagrams as SVG. The background is white, so that they are readable on dark pages, too.
 
     scripts/diagrams.py docs/images"""
 
@@ -19,7 +19,7 @@ class Sheet:
                           f'fill="{fill}">{words}</text>')
 
     def box(self, x, y, width, height, kind, *lines):
-        """Lines of text in a box; the first one is bold."""
+        """Draws a box with lines of text; the first one is bold."""
         radius = 14 if kind in ("image", "history") else 3
         self.parts.append(f'<rect x="{x}" y="{y}" width="{width}" height="{height}" rx="{radius}" fill="{FILLS[kind]}" '
                           f'stroke="{LINE}"/>')
@@ -45,7 +45,7 @@ class Sheet:
 
 
 def frame():
-    """One frame with SVGF: which pass reads what, and what stays for the next frame."""
+    """Draws one frame with SVGF: what each pass reads and writes, and what is kept for the next frame."""
     s = Sheet(984, 462)
     s.text(24, 30, "One frame with SVGF", 16, "start", "bold")
     s.box(24, 60, 154, 56, "plain", "scene", "moved by deform")
@@ -84,7 +84,7 @@ def frame():
 
 
 def atrous():
-    """Which pixels the taps of each level read, along one row."""
+    """Draws which pixels the taps of each level of the a-trous filter read, along one row."""
     s = Sheet(940, 330)
     s.text(24, 30, "The levels of the a-trous filter: 5 taps along each axis, ever further apart", 16, "start", "bold")
     middle, unit = 512, 10.5
@@ -108,7 +108,7 @@ def atrous():
 
 
 def networks():
-    """Both sides of KPCN."""
+    """Draws KPCN: the networks for both sides, and the steps after them."""
     s = Sheet(948, 392)
     s.text(24, 30, "KPCN: one network for each kind of light", 16, "start", "bold")
     for side, top in (("diffuse", 60), ("specular", 200)):

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # fuzz.sh TARGET SECONDS [LIBFUZZER OPTION ...]: builds and runs one fuzzer: gltf, obj, hdr, exr, png or
 # checkpoint.
-# fuzz.sh TARGET merge: reduces what earlier runs found to what covers the code. See docs/fuzzing.md.
+# fuzz.sh TARGET merge: reduces the inputs that earlier runs found to those that add coverage. See docs/fuzzing.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# package.sh [CMAKE OPTION ...]: builds the Debian packages limpid, liblimpid0, liblimpid-dev and python3-limpid into
-# build/packages; for the network liblimpid-neural0, liblimpid-neural-dev and limpid-weights, too.
-# With -DLIMPID_APPS=OFF only the library's two; with -DLIMPID_NEURAL=ON besides, the network's three.
+# package.sh [CMAKE OPTION ...]: builds the Debian packages into build/packages: limpid, liblimpid0, liblimpid-dev and
+# python3-limpid, and for the network liblimpid-neural0, liblimpid-neural-dev and limpid-weights. With
+# -DLIMPID_APPS=OFF it builds only liblimpid0 and liblimpid-dev; if -DLIMPID_NEURAL=ON is given, too, also the three
+# packages of the network.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh dpkg-dev
 cmake -S . -B build/package -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DLIMPID_TESTS=OFF "$@"
 cmake --build build/package
-# Packages of an earlier version must not lie beside the new ones.
+# Remove packages of earlier versions.
 rm -rf build/packages build/package/packages
 (cd build/package && cpack)
 mkdir -p build/packages

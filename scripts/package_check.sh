@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# package_check.sh [CHROOT]: whether the packages in build/packages (scripts/package.sh) do in a bare Debian 12 what
-# the documentation says. As root. CHROOT: a folder with a bare system; without it, or if it is empty, debootstrap
-# makes one. Without it the folder is temporary and removed at the end. MIRROR: another mirror than debootstrap's own.
+# package_check.sh [CHROOT]: tests the packages in build/packages (made by scripts/package.sh) in a bare Debian 12:
+# that they install and work as documented. Run it as root. CHROOT is a folder with a bare system; if it is empty or
+# does not exist, debootstrap creates the system. Without CHROOT, a temporary folder is used and removed at the end.
+# The variable MIRROR sets a mirror for debootstrap.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ "$(id -u)" -eq 0 ] || { echo "package_check.sh: run as root" >&2; exit 1; }
 ls build/packages/*.deb >/dev/null || { echo "package_check.sh: run scripts/package.sh first" >&2; exit 1; }
-# In a mount namespace of its own, so that nothing stays mounted.
+# Use a separate mount namespace, so that nothing stays mounted.
 [ -n "${LIMPID_PACKAGE_CHECK:-}" ] ||
     LIMPID_PACKAGE_CHECK=1 exec unshare --mount --propagation private bash "scripts/$(basename "$0")" "$@"
 
@@ -26,9 +27,9 @@ step() { echo "== $*"; }
 inside() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 "$@"; }
 get() { inside DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"; }
 fail() { echo "package_check.sh: $*" >&2; exit 1; }
-# refused COMMAND ...: it fails.
+# refused COMMAND ...: checks that the command fails.
 refused() { if inside "$@"; then fail "should have failed: $*"; fi; }
-# pictures FOLDER NAME ...: each is a PPM, and no two are the same.
+# pictures FOLDER NAME ...: checks that all files are PPM pictures and differ from each other.
 pictures() {
     local folder=$root/$1 name
     shift
@@ -49,7 +50,7 @@ for file in bin/limpid lib/python3/dist-packages/limpid/__init__.py share/limpid
     inside dpkg -S "/usr/$file" >/dev/null || fail "/usr/$file is in no package"
 done
 for package in limpid liblimpid0 liblimpid-dev python3-limpid; do
-    # A bare system may be told to unpack no documentation; the package has it in any case.
+    # A bare system may be configured not to unpack documentation, so check the package itself.
     list=$(dpkg-deb --contents build/packages/${package}_*.deb)
     for file in copyright changelog.gz changelog.Debian.gz; do
         grep -qF "./usr/share/doc/$package/$file" <<<"$list" || fail "$package has no $file"
@@ -86,7 +87,7 @@ for folder in examples/c examples/c/build; do
     inside sh -c "cd /check/$folder && ./limpid-c cpu"
     pictures check/$folder noisy.ppm clean.ppm
 done
-# 32 frames, three in flight, with another size from the 16th on.
+# The example denoises 32 frames, with three in flight, and changes their size half-way.
 for folder in examples/vulkan examples/vulkan/build; do
     inside $sync sh -c "cd /check/$folder && ./limpid-vulkan --validate && ./limpid-vulkan --validate --two"
     pictures check/$folder noisy.ppm clean.ppm clean2.ppm

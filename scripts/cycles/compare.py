@@ -1,4 +1,4 @@
-"""Builds the scenes in Blender, renders them with Cycles and with Limpid, compares. scripts/cycles.sh runs it."""
+"""Builds test scenes in Blender, renders them with Cycles and with Limpid, and compares. Run by scripts/cycles.sh."""
 
 import argparse
 import json
@@ -17,17 +17,18 @@ import scenes  # noqa: E402
 import sheet  # noqa: E402
 import stage  # noqa: E402
 
-SEEDS = (0x1F123BB5, 0x6C078965)  # many bits differ: Cycles mixes its seed weakly, and 1 and 2 share their noise
+SEEDS = (0x1F123BB5, 0x6C078965)  # Cycles mixes its seed weakly: with 1 and 2, the noise is correlated
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="scripts/cycles.sh", description=__doc__)
-    parser.add_argument("--limpid", default="build/release/limpid", help="the program")
-    parser.add_argument("--out", default="out/cycles", help="a folder for scenes, pictures and the table")
-    parser.add_argument("--only", action="append", default=[], metavar="SCENE", help="this scene; may be repeated")
-    parser.add_argument("--quality", type=float, default=1.0, help="times as many samples")
+    parser.add_argument("--limpid", default="build/release/limpid", help="path of the program limpid")
+    parser.add_argument("--out", default="out/cycles", help="folder for scenes, pictures and the table")
+    parser.add_argument("--only", action="append", default=[], metavar="SCENE",
+                        help="run only this scene; may be repeated")
+    parser.add_argument("--quality", type=float, default=1.0, help="factor for the number of samples")
     parser.add_argument("--check", action="store_true",
-                        help="exit 1 if a scene in which nothing is known to differ is off by more than 1 %%")
+                        help="exit with 1 if a scene without known differences deviates by more than 1 %%")
     given = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     unknown = [name for name in given.only if name not in scenes.SCENES]
     if unknown:
@@ -36,7 +37,7 @@ def arguments():
 
 
 def aside(path):
-    """What Blender prints goes to a file from now on; what is to be read goes to the stream returned."""
+    """Redirects standard output, and so what Blender prints, to a file. Returns a stream to the original one."""
     report = os.fdopen(os.dup(1), "w")
     with open(path, "wb") as log:
         os.dup2(log.fileno(), 1)
@@ -52,7 +53,8 @@ def merge(target, fields):
 
 
 def export(folder):
-    """scene.gltf by Blender's exporter; W/sr as candela, W/m^2 as lux, and what materials.GLTF adds."""
+    """Exports scene.gltf and adds the fields of materials.GLTF. Light is exported with W/sr as candela and W/m^2 as
+    lux."""
     path = os.path.join(folder, "scene.gltf")
     bpy.ops.export_scene.gltf(filepath=path, export_format="GLTF_SEPARATE", export_cameras=True, export_lights=True,
                               convert_lighting_mode="COMPAT", export_animations=False, export_yup=True)
@@ -81,7 +83,7 @@ def render_cycles(path, settings, samples, seed):
 
 
 def limpid(command):
-    """Runs it; its standard output."""
+    """Runs a command and returns its standard output."""
     result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode != 0:
         sys.exit(f"{' '.join(command)}: exit {result.returncode}\n{result.stderr}")
@@ -98,7 +100,7 @@ def render_limpid(given, path, gltf, settings, samples, seed):
 
 
 def compared(given, folder, name, test, reference):
-    """relMSE and FLIP of two pictures, by `limpid compare`."""
+    """Returns relMSE and FLIP of two pictures, computed by `limpid compare`."""
     paths = [os.path.join(folder, f"{name}.{which}.exr") for which in ("limpid", "cycles")]
     for path, picture in zip(paths, (test, reference)):
         images.save_picture(path, picture)
@@ -107,7 +109,7 @@ def compared(given, folder, name, test, reference):
 
 
 def run(given, name):
-    """Renders one scene by both, with both seeds."""
+    """Renders one scene with both renderers, each with both seeds."""
     folder = os.path.abspath(os.path.join(given.out, name))
     os.makedirs(folder, exist_ok=True)
     stage.empty()
@@ -131,7 +133,7 @@ def run(given, name):
 
 
 def measure(given, name):
-    """Renders and compares a scene; what was found also goes to result.json in its folder."""
+    """Renders and compares a scene. Returns the result, and writes it to result.json in the scene's folder."""
     settings, samples, test, reference = run(given, name)
     folder = os.path.join(given.out, name)
     relmse, flip = compared(given, folder, "mean", *figures.mean_pictures(test, reference))
@@ -144,7 +146,7 @@ def measure(given, name):
 
 
 def assemble(out):
-    """The table and the picture of all scenes that `out` holds, of this run or an earlier one."""
+    """Writes the table and the picture of all scenes with results in `out`, from this run or an earlier one."""
     results, tiles = [], []
     for number, name in enumerate(scenes.SCENES, 1):
         folder = os.path.join(os.path.abspath(out), name)

@@ -1,7 +1,7 @@
-"""What two renderers' pictures say of each other. Needs numpy only.
+"""Statistics of the difference between two renderers' pictures. Needs only numpy.
 
-Each renderer renders a scene twice, with two seeds. The pictures that are compared are the means of the two. What
-differs between the two is noise, and says how much of a deviation noise alone would make.
+Each renderer renders a scene twice, with two seeds. The means of the two pictures are compared. The difference of the
+two is noise, and shows how large a deviation noise alone would cause.
 
 Pictures are height x width x 3, linear.
 """
@@ -14,28 +14,29 @@ import numpy
 
 @dataclasses.dataclass
 class Ratio:
-    """The test's mean over the reference's, and the standard error of that which noise makes."""
+    """The ratio of the test's mean to the reference's, and its standard error due to noise."""
 
     value: float
     error: float
 
     def deviates(self, tolerance=0.01):
-        """True if it is off by more than the tolerance, and surely (three standard errors)."""
+        """Returns whether the ratio differs from 1 by more than the tolerance plus three standard errors."""
         return abs(self.value - 1) > tolerance and abs(self.value - 1) > tolerance + 3 * self.error
 
 
 def mean_pictures(test, reference):
-    """The two pictures that are compared, of each renderer's pair."""
+    """Returns the mean picture of each renderer. `test` and `reference` are pairs of pictures."""
     return (test[0] + test[1]) / 2, (reference[0] + reference[1]) / 2
 
 
 def noise_pictures(test, reference):
-    """Two pictures whose difference has the noise that the difference of mean_pictures() has, and nothing else."""
+    """Returns two pictures whose difference has the same noise as that of mean_pictures(), but no systematic part."""
     return (test[0] + reference[0]) / 2, (test[1] + reference[1]) / 2
 
 
 def ratio(test, reference):
-    """Of two pairs of pictures. Pixels are taken as independent, the components of one pixel are not."""
+    """Returns the Ratio of two pairs of pictures. Assumes that pixels are independent, but not the components of
+    one."""
     mean_test, mean_reference = mean_pictures(test, reference)
     noise_a, noise_b = noise_pictures(test, reference)
     denominator = mean_reference.sum()
@@ -44,20 +45,20 @@ def ratio(test, reference):
 
 
 def strips(picture, count):
-    """The picture cut into `count` upright strips of the same width, from left to right."""
+    """Cuts a picture into `count` vertical strips of equal width, from left to right."""
     edges = [round(picture.shape[1] * i / count) for i in range(count + 1)]
     return [picture[:, a:b] for a, b in zip(edges, edges[1:])]
 
 
 def strip_ratios(test, reference, count):
-    """ratio() of each strip."""
+    """Returns the ratio() of each strip."""
     cut = [strips(picture, count) for picture in (*test, *reference)]
     return [ratio((a, b), (c, d)) for a, b, c, d in zip(*cut)]
 
 
 @dataclasses.dataclass
 class Result:
-    """Of one scene."""
+    """The result of one scene. The fields ending in _noise are the same metrics of noise_pictures()."""
 
     name: str
     samples: int
@@ -85,7 +86,7 @@ class Result:
 
 
 def line(number, result):
-    """A row of the table."""
+    """Returns a row of the Markdown table."""
     off = abs(result.mean.value - 1) > 0.01
     mean = f"**{result.mean.value:.4f}**" if off else f"{result.mean.value:.4f}"
     return (f"| {number} | `{result.name}` | {result.samples} | {mean} ± {result.mean.error:.4f} | "
@@ -98,7 +99,7 @@ def strip_line(result):
 
 
 def table(results):
-    """Markdown of numbered results: the table, then a line for each scene with strips."""
+    """Returns numbered results as Markdown: the table, then a line for each scene with strips."""
     lines = ["| # | scene | samples | mean ratio | relMSE (of noise) | FLIP (of noise) |", "|---|---|---|---|---|---|"]
     lines += [line(number, result) for number, result in results] + [""]
     lines += [strip_line(result) for _, result in results if result.strips]

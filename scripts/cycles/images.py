@@ -1,4 +1,4 @@
-"""Images made by formula: textures as 8-bit PNG files, whose first row is the bottom; an environment as EXR."""
+"""Creates images: textures as 8-bit PNG files, with the bottom row first; an environment as EXR."""
 
 import os
 
@@ -7,13 +7,14 @@ import numpy
 
 
 def save_png(folder, name, rgba, data=False):
-    """`rgba`: height x width x 4, 0 to 1, as the file stores it; `data`: not sRGB."""
+    """Saves an image as PNG and loads it. `rgba`: height x width x 4, values from 0 to 1 as stored in the file.
+    `data`: the values are not sRGB."""
     image = new(name, rgba, False)
     image.filepath_raw, image.file_format = os.path.join(folder, name + ".png"), "PNG"
     image.save()
     loaded = bpy.data.images.load(image.filepath_raw)
     loaded.colorspace_settings.name = "Non-Color" if data else "sRGB"
-    loaded.alpha_mode = "CHANNEL_PACKED"  # else Cycles multiplies the 8-bit colours by alpha and rounds them
+    loaded.alpha_mode = "CHANNEL_PACKED"  # otherwise Cycles multiplies colours by alpha in 8 bits
     bpy.data.images.remove(image)
     return loaded
 
@@ -26,7 +27,7 @@ def new(name, rgba, is_float):
 
 
 def save_picture(path, rgb, kind="OPEN_EXR"):
-    """A 32-bit EXR of linear values, or a JPEG of what is to be shown; the first row is the top."""
+    """Saves linear values as 32-bit EXR, or display values as JPEG. The top row is first."""
     rgba = numpy.concatenate([rgb[::-1], numpy.ones_like(rgb[..., :1])], axis=2)
     image = new("saved", rgba, True)
     scene = bpy.context.scene
@@ -42,7 +43,7 @@ def save_picture(path, rgb, kind="OPEN_EXR"):
 
 
 def read_picture(path):
-    """height x width x 3, the first row is the top."""
+    """Returns an image file as height x width x 3, with the top row first."""
     image = bpy.data.images.load(path, check_existing=False)
     pixels = numpy.empty(image.size[0] * image.size[1] * 4, numpy.float32)
     image.pixels.foreach_get(pixels)
@@ -52,7 +53,7 @@ def read_picture(path):
 
 
 def decoded(folder, image):
-    """The same image as floats, decoded from sRGB: filtered after decoding instead of before."""
+    """Returns the image as floats, decoded from sRGB, so that Cycles filters it after decoding, not before."""
     pixels = numpy.empty(image.size[0] * image.size[1] * 4, numpy.float32)
     image.pixels.foreach_get(pixels)
     rgba = pixels.reshape(image.size[1], image.size[0], 4)
@@ -64,7 +65,7 @@ def decoded(folder, image):
 
 
 def checker(cells, size, dark, light, alpha=(1, 1)):
-    """Colours and alphas of the two kinds of cells."""
+    """Returns a checkerboard. `dark` and `light` are the cells' colours, `alpha` their alphas."""
     at = numpy.arange(size) * cells // size
     odd = (at[:, None] + at[None, :]) % 2
     values = numpy.array([(*dark, alpha[0]), (*light, alpha[1])])
@@ -78,7 +79,7 @@ def random_texels(size, seed):
 
 
 def waves(size, count, height):
-    """A normal map of crossing waves; `height`: the steepest slope."""
+    """Returns a normal map of crossing waves. `height`: the steepest slope."""
     t = (numpy.arange(size) + 0.5) / size * 2 * numpy.pi * count
     x, y = height * numpy.cos(t)[None, :], height * numpy.cos(t)[:, None]
     normal = numpy.stack(numpy.broadcast_arrays(-x, -y, numpy.ones((size, size))), axis=2)
@@ -87,7 +88,7 @@ def waves(size, count, height):
 
 
 def sky(height):
-    """A gradient with a soft sun, 2:1; the first row is the top."""
+    """Returns an environment, twice as wide as high: a gradient with a soft sun. The top row is first."""
     row, column = numpy.mgrid[0:height, 0:2 * height]
     theta, phi = (row + 0.5) / height * numpy.pi, ((column + 0.5) / height - 1) * numpy.pi
     ring = numpy.sin(theta)

@@ -1,8 +1,8 @@
-"""Materials twice over: a Principled node, which Blender's exporter reads, and what Cycles renders in its place.
+"""Creates each material twice: as a Principled node for Blender's glTF exporter, and as simple nodes for Cycles.
 
-The Principled node of Cycles 3.4 is not glTF's material (its diffuse part is not Lambert's, its parts together reflect
-more than they receive), so what is to be compared is made of plain nodes. `GLTF` says what the exporter cannot: fields
-that are merged into the material of that name.
+The Principled node of Cycles 3.4 differs from glTF's material: its diffuse part is not Lambert's, and its parts
+together reflect more light than they receive. So Cycles renders simple nodes instead. `GLTF` has glTF fields that the
+exporter does not write; they are merged into the exported material of the same name.
 """
 
 import math
@@ -10,7 +10,7 @@ import math
 import bpy
 
 GLTF = {}  # material name -> glTF fields
-_for_cycles = []  # (material, socket of its plain nodes)
+_for_cycles = []  # (material, output socket of its simple nodes)
 
 
 def clear():
@@ -19,14 +19,15 @@ def clear():
 
 
 def use_cycles_nodes():
-    """After the export: materials show their plain nodes."""
+    """Switches all materials to their simple nodes. Call it after the export."""
     for material, socket in _for_cycles:
         tree = material.node_tree
         tree.links.new(socket, tree.nodes["Material Output"].inputs["Surface"])
 
 
 def principled(name, **inputs):
-    """A Principled material; `Base_Color=(r, g, b)` and so on, underscores for spaces. An image node is linked."""
+    """Creates a Principled material. `inputs` name the node's inputs with underscores for spaces, such as
+    Base_Color=(r, g, b). A node as value is linked."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     node = material.node_tree.nodes["Principled BSDF"]
@@ -40,7 +41,7 @@ def principled(name, **inputs):
 
 
 def picture(material, image, interpolation="Closest"):
-    """An image node in the material."""
+    """Adds an image node to the material."""
     node = material.node_tree.nodes.new("ShaderNodeTexImage")
     node.image, node.interpolation = image, interpolation
     return node
@@ -55,7 +56,7 @@ def base(material):
 
 
 def plain(material, kind, color=None, **inputs):
-    """A node that Cycles shows in place of the Principled one; `color`: a tuple or an image node."""
+    """Adds a node that Cycles renders instead of the Principled one. `color`: a tuple or an image node."""
     node = material.node_tree.nodes.new("ShaderNode" + kind)
     if isinstance(color, bpy.types.Node):
         link(material, color.outputs["Color"], node.inputs["Color"])
@@ -75,7 +76,7 @@ NO_COAT = {"extensions": {"KHR_materials_specular": {"specularFactor": 0.0}}}
 
 
 def diffuse(name, color):
-    """Lambert's: glTF's dielectric without its specular coat."""
+    """Creates a Lambertian material: glTF's dielectric without its specular coat."""
     material = principled(name, Base_Color=color, Roughness=1.0, Specular=0.0)
     GLTF[name] = NO_COAT
     plain(material, "BsdfDiffuse", color)
@@ -83,7 +84,7 @@ def diffuse(name, color):
 
 
 def textured(name, image, interpolation="Closest", cycles_image=None):
-    """diffuse() with an image; Cycles may be given another one."""
+    """Like diffuse(), with an image. `cycles_image`: another image for Cycles."""
     material = principled(name, Roughness=1.0, Specular=0.0)
     node = picture(material, image, interpolation)
     link(material, node.outputs["Color"], base(material).inputs["Base Color"])
@@ -100,14 +101,15 @@ def emitter(name, color, strength):
 
 
 def metal(name, color, roughness, distribution):
-    """A Glossy node, whose reflectance is `color` at all angles; that is glTF's metal where the colour is white."""
+    """Creates a metal. Cycles renders a Glossy node, which reflects `color` at all angles; this equals glTF's metal if
+    the colour is white."""
     material = principled(name, Base_Color=color, Metallic=1.0, Roughness=roughness)
     plain(material, "BsdfGlossy", color, Roughness=roughness).distribution = distribution
     return material
 
 
 def glass(name, ior, roughness, distribution, absorption=None):
-    """A closed body that refracts. `absorption`: per unit of length, a colour."""
+    """Creates glass for closed bodies. `absorption`: absorption per unit of length, as a colour."""
     material = principled(name, Base_Color=(1, 1, 1), Transmission=1.0, Roughness=roughness, IOR=ior)
     volume = {"thicknessFactor": 1.0}
     if absorption:
@@ -124,7 +126,7 @@ def glass(name, ior, roughness, distribution, absorption=None):
 
 
 def see_through(name, color, alpha, method):
-    """Diffuse with an alpha channel: `alpha` is an image's, `method` BLEND, or CLIP at a half."""
+    """Creates a diffuse material with an alpha channel. `alpha`: an image. `method`: BLEND, or CLIP at 0.5."""
     material = principled(name, Base_Color=color, Roughness=1.0, Specular=0.0)
     material.blend_method, material.alpha_threshold = method, 0.5
     node = picture(material, alpha)

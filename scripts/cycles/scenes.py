@@ -1,4 +1,4 @@
-"""The scenes: each shows one thing. SCENES lists them in the order of the table."""
+"""The test scenes. Each tests one feature. SCENES has them in the order of the table."""
 
 import dataclasses
 import math
@@ -16,16 +16,16 @@ WIDTH, HEIGHT = 160, 96
 
 @dataclasses.dataclass
 class Settings:
-    """How a scene is rendered, by both."""
+    """How both renderers render a scene."""
 
-    samples: int = 512  # per pixel and seed, times the script's --quality
+    samples: int = 512  # per pixel and seed; multiplied by --quality
     bounces: int = 8  # scattering events of a path
     background: tuple = (0, 0, 0)
     environment: str = ""  # an EXR that replaces the background
     strips: tuple = ()  # names of vertical strips of the picture that are measured separately
     height: int = HEIGHT
-    for_cycles: object = None  # called after the export
-    exact: bool = True  # False if there is a known difference between the two
+    for_cycles: object = None  # called after the export, before Cycles renders
+    exact: bool = True  # False if the two renderers are known to differ
 
 
 SCENES = {}
@@ -60,7 +60,7 @@ def cornell_box():
 
 
 def still_life(perspective=True):
-    """Two diffuse spheres and a block on a floor."""
+    """Builds two diffuse spheres and a block on a floor."""
     stage.floor(materials.diffuse("floor", (0.6, 0.6, 0.6)))
     ball = materials.diffuse("ball", (0.8, 0.3, 0.2))
     stage.sphere("left", (-0.9, 0, 0.6), 0.6, ball)
@@ -71,7 +71,7 @@ def still_life(perspective=True):
 
 
 def row(make, names, **settings):
-    """Spheres side by side, make(i), seen by an orthographic camera: one per strip."""
+    """Builds spheres side by side with the materials make(i), seen by an orthographic camera, one per strip."""
     count = len(names)
     for i in range(count):
         stage.sphere(f"ball{i}", (i - (count - 1) / 2, 0, 0), 0.48, make(i))
@@ -123,7 +123,7 @@ def spot_light(folder):
 
 @scene
 def spot_light_of_khr(folder):
-    """Cycles is given a point light whose brightness nodes compute by KHR_lights_punctual's formula."""
+    """In Cycles, a point light whose nodes compute the cone by the formula of KHR_lights_punctual."""
     lamp = spot(0.5)
 
     def replace():
@@ -137,7 +137,8 @@ def spot_light_of_khr(folder):
 
 
 def cone_by_nodes(lamp, outer, inner):
-    """clamp((cosine - outer) / (inner - outer))^2, the cosine of the axis and the direction in which light leaves."""
+    """Multiplies a lamp's light by clamp((cosine - outer) / (inner - outer))^2. `outer` and `inner` are cosines, and
+    `cosine` is that between the lamp's axis and the direction of the light."""
     lamp.use_nodes = True
     nodes, links = lamp.node_tree.nodes, lamp.node_tree.links
     bpy.context.view_layer.update()
@@ -212,7 +213,7 @@ def texture_linear(folder):
 
 @scene
 def texture_linear_decoded(folder):
-    """Cycles is given the same texels as floats that need no decoding."""
+    """In Cycles, the texture has the same texels as floats that are already decoded from sRGB."""
     image = images.save_png(folder, "texels", images.random_texels(16, 1))
     textured_floor(materials.textured("texels", image, "Linear", images.decoded(folder, image)))
     return Settings(background=(0.5, 0.5, 0.5))
@@ -268,7 +269,7 @@ def alpha_mask(folder):
 
 
 def bumpy(folder, surface, slope=0.3, eye=(0, -2.5, 3.5)):
-    """`surface(material)`: the plain node; the normal map is put into both."""
+    """`surface(name)` creates the material. The normal map is linked to its Principled and its simple node."""
     image = images.save_png(folder, "waves", images.waves(64, 4, slope), data=True)
     bumps = surface("bumps")
     tree = bumps.node_tree
@@ -307,7 +308,7 @@ def metal_white(folder):
 
 @scene
 def metal_gold(folder):
-    """The Principled node itself: its Fresnel term follows a dielectric's curve, glTF's Schlick's."""
+    """Cycles' Principled node, whose Fresnel term follows a dielectric's curve. glTF uses Schlick's approximation."""
     def gold(i):
         material = materials.principled(f"gold{i}", Base_Color=(1, 0.72, 0.3), Metallic=1.0, Roughness=ROUGHNESSES[i])
         materials.base(material).distribution = "MULTI_GGX"
@@ -358,5 +359,5 @@ def plastic(folder):
 
 @scene
 def plastic_furnace(folder):
-    """White plastic under a white sky: what is not 1 is energy made or lost."""
+    """White plastic under a white sky: a result other than 1 means that energy is created or lost."""
     return plastics((1, 1, 1), background=(1, 1, 1))

@@ -1,8 +1,8 @@
-"""The picture of all scenes: Limpid, Cycles, and eight times their difference, grey where they are equal."""
+"""Assembles the picture of all scenes. For each: Limpid, Cycles, and their difference times eight (grey: equal)."""
 
 import numpy
 
-# 3x5 pixels, one octal digit per row
+# A bitmap font: 3x5 pixels per digit, one octal digit per row.
 DIGITS = {"0": 0o75557, "1": 0o26227, "2": 0o71747, "3": 0o71717, "4": 0o55711,
           "5": 0o74717, "6": 0o74757, "7": 0o71111, "8": 0o75757, "9": 0o75717}
 
@@ -13,7 +13,7 @@ def encoded(linear):
 
 
 def tile(number, test, reference):
-    """One scene, numbered, both exposed as the reference asks for."""
+    """Returns the pictures of one scene side by side, with its number. The exposure is chosen for the reference."""
     exposure = 0.18 / max((reference @ [0.2126, 0.7152, 0.0722]).mean(), 1e-9)
     shown, wanted = encoded(test * exposure), encoded(reference * exposure)
     picture = numpy.concatenate([shown, wanted, numpy.clip(0.5 + 8 * (shown - wanted), 0, 1)], axis=1)
@@ -22,7 +22,7 @@ def tile(number, test, reference):
 
 
 def write(picture, digits, scale=2):
-    """White digits on black in the upper left corner."""
+    """Draws white digits on black into the upper left corner."""
     picture[: 7 * scale, : (4 * len(digits) + 1) * scale] = 0
     for i, digit in enumerate(digits):
         bits = numpy.array([int(b) for b in f"{DIGITS[digit]:015b}"]).reshape(5, 3)
@@ -32,7 +32,7 @@ def write(picture, digits, scale=2):
 
 
 def contact(tiles, columns=2, gap=4):
-    """The tiles in rows of `columns`, on white. A row is as high as its highest tile."""
+    """Arranges tiles in rows of `columns` on white. A row is as high as its highest tile."""
     rows = [tiles[i:i + columns] for i in range(0, len(tiles), columns)]
     heights = [max(picture.shape[0] for picture in row) + gap for row in rows]
     width = tiles[0].shape[1] + gap

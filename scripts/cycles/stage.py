@@ -1,4 +1,4 @@
-"""What scenes are made of, in Blender: objects, materials that glTF and Cycles read alike, lights, a camera."""
+"""Building blocks of scenes in Blender: objects, lights, camera, background."""
 
 import math
 
@@ -8,8 +8,8 @@ import mathutils
 
 
 def empty():
-    """A new Blender file with nothing in it, set to render as Limpid does: no filter wider than a pixel, no clamping,
-    no denoising, no adaptive sampling, caustics on."""
+    """Starts an empty Blender file with settings that match Limpid: a pixel filter one pixel wide, caustics, and no
+    clamping, denoising or adaptive sampling."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -33,7 +33,7 @@ def size(width, height):
 
 
 def background(color, image=None):
-    """The world: one colour, or an equirectangular image whose centre lies towards +Y (glTF's -Z)."""
+    """Sets the world: one colour, or an equirectangular image with its centre towards +Y (glTF's -Z)."""
     scene = bpy.context.scene
     scene.world = bpy.data.worlds.new("world")
     scene.world.use_nodes = True
@@ -53,7 +53,8 @@ def background(color, image=None):
 
 
 def camera(eye, target, fov=None, width=None):
-    """Perspective with a field of view (degrees, over the picture's width), or orthographic of a width."""
+    """Adds a perspective camera with the horizontal field of view `fov` (degrees), or an orthographic one that sees
+    `width` units."""
     data = bpy.data.cameras.new("camera")
     if width is None:
         data.sensor_fit = "HORIZONTAL"
@@ -65,7 +66,7 @@ def camera(eye, target, fov=None, width=None):
 
 
 def lamp(kind, eye, target, energy, color=(1, 1, 1)):
-    """A POINT, SPOT or SUN of no size."""
+    """Adds a light of zero size. `kind`: POINT, SPOT or SUN."""
     data = bpy.data.lights.new(kind.lower(), kind)
     data.energy, data.color = energy, color
     if kind == "SUN":
@@ -86,7 +87,8 @@ def aimed(name, data, eye, target):
 
 
 def mesh(name, points, faces, material, uvs=None, smooth=False):
-    """Triangles, so that the exporter has none to choose. `uvs`: one per corner of each face."""
+    """Adds a triangulated mesh, so that Cycles and the exporter use the same triangles. `uvs`: one per corner of each
+    face."""
     data = bpy.data.meshes.new(name)
     data.from_pydata(points, [], faces)
     if uvs:
@@ -111,7 +113,8 @@ def place(name, data, material, smooth):
 
 
 def quad(name, corners, material, repeat=1):
-    """Counter-clockwise from the front; texture coordinates run from (0, 0) at the first corner to `repeat`."""
+    """Adds a quadrangle. Corners are counter-clockwise seen from the front. Texture coordinates run from (0, 0) at the
+    first corner to `repeat`."""
     uvs = [(0, 0), (repeat, 0), (repeat, repeat), (0, repeat)]
     return mesh(name, corners, [(0, 1, 2, 3)], material, uvs)
 
