@@ -3,6 +3,7 @@
 // follows NVIDIA's reference program. The inner loops are in image/metrics/flip/flip_rows.h.
 #include "image/metrics/flip/flip.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -33,6 +34,9 @@ constexpr Sensitivity achromatic{1.0, 0.0047, 0.0, 1e-5};
 constexpr Sensitivity redGreen{1.0, 0.0053, 0.0, 1e-5};
 constexpr Sensitivity blueYellow{34.1, 0.04, 13.5, 0.025};
 constexpr double widestB = 0.04;
+
+constexpr size_t tileWidth = 4 * flipGroup;
+constexpr size_t tileHeight = 128;
 
 Image decode(const Image& encoded) {
     Image linear(encoded.width, encoded.height, encoded.components);
@@ -107,15 +111,14 @@ struct LinearFlip::Band {
     float* row(int plane, int64_t y) const {
         return &values[(static_cast<size_t>(plane) * rows + static_cast<size_t>(y - first)) * stride];
     }
-    int64_t first;
-    size_t rows, stride;
+    size_t rows;
     std::unique_ptr<float[]> values;
 };
 
 /// One row of one picture, filtered along rows and columns.
 struct LinearFlip::RowBuffers {
-    explicit RowBuffers(size_t width) : values(8 * flipPadded(width)) {
-        const auto at = [&](size_t i) { return &values[i * flipPadded(width)]; };
+    RowBuffers() : values(8 * tileWidth) {
+        const auto at = [&](size_t i) { return &values[i * tileWidth]; };
         row = {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
         second = at(7);
     }
@@ -124,8 +127,21 @@ struct LinearFlip::RowBuffers {
     float* second;
 };
 
+/// What one thread needs, for one tile after the other.
+struct LinearFlip::Workspace {
+    explicit Workspace(size_t margin)
+        : testPlanes(margin),
+          referencePlanes(margin),
+          padded(3 * (tileWidth + 2 * margin)),
+          errors(tileWidth) {}
+    Planes testPlanes, referencePlanes;
+    RowBuffers test, reference;
+    std::vector<float> padded;  ///< Y, Cx and Cz of a row, and of `margin` pixels on either side of it
+    std::vector<float> errors;
+};
+
 LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
-    : width_(width), height_(height), stride_(flipPadded(width)), margin_(radiusOf(pixelsPerDegree)) {
+    : width_(width), height_(height), margin_(radiusOf(pixelsPerDegree)) {
     const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widestB / (2.0 * pi2)) * pixelsPerDegree));
     const auto gaussian = [&](double b) {
         return zeroPadded(gaussianWeights(radius, std::sqrt(b / (2.0 * pi2)) * pixelsPerDegree));
@@ -155,34 +171,37 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
     largest_ = largestColorDistance();
 }
 
-void LinearFlip::filterRow(const float* rgb, std::vector<float>& padded, const Band& band, int64_t y) const {
+void LinearFlip::filterRow(const float* rgb, const Tile& tile, std::vector<float>& padded, Planes& planes,
+                           size_t row) const {
     const FlipRows& loops = flipRows();
     // Rows of Y, Cx and Cz; their first and last values are repeated as far as the filters read.
     const size_t length = stride_ + 2 * margin_;
     std::array<float*, 3> values{};
-    for (size_t c = 0; c < 3; ++c) values[c] = &padded[c * length + margin_];
-    loops.toYcxcz(rgb, width_, values[0], values[1], values[2]);
-    for (float* v : values) {
-        std::fill_n(v - margin_, margin_, v[0]);
-        std::fill_n(v + width_, stride_ - width_ + margin_, v[width_ - 1]);
+    for (size_t c = 0; c < 3; ++c) values[c] = &padded[c * length];
+    loops.toYcxcz(rgb + 3 * begin, end - begin, values[0] + first, values[1] + first, values[2] + first);
+    for (float*& v : values) {
+        // The picture's first and last pixel are repeated beyond its ends.
+        std::fill_n(v, first, v[first]);
+        std::fill(v + last, v + count + 2 * margin_, v[last - 1]);
+        v += margin_;
     }
     const auto even = [&](const Weights& weights, int plane, float middle = 1.0f) {
-        return FlipEven{weights.values.data(), middle, band.row(plane, y)};
+        return FlipEven{weights.values.data(), middle, planes.row(plane, row)};
     };
     const size_t features = std::max({smooth_.reach, edge_.reach, point_.reach, luma_.reach});
     loops.filter(values[0], 1,
                  {features,
                   3,
                   {even(smooth_, Smooth), even(point_, Point, 0.0f), even(luma_, Luma)},
-                  {edge_.values.data(), band.row(Edge, y)}},
-                 stride_);
-    loops.filter(values[1], 1, {redGreen_.reach, 1, {even(redGreen_, RedGreen)}, {}}, stride_);
+                  {edge_.values.data(), planes.row(Edge, row)}},
+                 count);
+    loops.filter(values[1], 1, {redGreen_.reach, 1, {even(redGreen_, RedGreen)}, {}}, count);
     loops.filter(values[2], 1,
                  {std::max(blueYellow_.reach, blueYellowSecond_.reach),
                   2,
                   {even(blueYellow_, BlueYellow), even(blueYellowSecond_, BlueYellowSecond)},
                   {}},
-                 stride_);
+                 count);
 }
 
 LinearFlip::Weights LinearFlip::zeroPadded(std::vector<float> values) const {
@@ -201,26 +220,25 @@ LinearFlip::Band LinearFlip::filterRows(const Image& picture, size_t begin, size
         const int64_t inside = std::clamp<int64_t>(y, 0, last);
         if (inside == filtered) {
             for (int plane = 0; plane < PlaneCount; ++plane)
-                std::copy_n(band.row(plane, y - 1), stride_, band.row(plane, y));
+                std::copy_n(planes.row(plane, row - 1), tileWidth, planes.row(plane, row));
         } else {
-            filterRow(&picture.pixels[3 * width_ * static_cast<size_t>(inside)], padded, band, y);
+            filterRow(&picture.pixels[3 * width_ * y], tile, padded, planes, row);
         }
-        filtered = inside;
+        filtered = y;
     }
-    return band;
 }
 
-void LinearFlip::smoothColumn(const Band& band, int plane, const Weights& weights, int64_t y,
+void LinearFlip::smoothColumn(const float* column, const Weights& weights, size_t count,
                               float* result) const {
-    flipRows().filter(band.row(plane, y), static_cast<ptrdiff_t>(stride_),
-                      {weights.reach, 1, {{weights.values.data(), 1.0f, result}}, {}}, stride_);
+    flipRows().filter(column, tileWidth, {weights.reach, 1, {{weights.values.data(), 1.0f, result}}, {}},
+                      count);
 }
 
-void LinearFlip::filterColumns(const Band& band, int64_t y, RowBuffers& buffers) const {
+void LinearFlip::filterColumns(const Planes& planes, size_t row, size_t count, RowBuffers& buffers) const {
     const FlipRow& out = buffers.row;
-    smoothColumn(band, Edge, smooth_, y, out.edgeX);
-    smoothColumn(band, Point, smooth_, y, out.pointX);
-    flipRows().filter(band.row(Smooth, y), static_cast<ptrdiff_t>(stride_),
+    smoothColumn(planes.row(Edge, row), smooth_, count, out.edgeX);
+    smoothColumn(planes.row(Point, row), smooth_, count, out.pointX);
+    flipRows().filter(planes.row(Smooth, row), tileWidth,
                       {std::max(edge_.reach, point_.reach),
                        1,
                        {{point_.values.data(), 0.0f, out.pointY}},
@@ -235,16 +253,17 @@ void LinearFlip::filterColumns(const Band& band, int64_t y, RowBuffers& buffers)
         out.cz[x] = buffers.second[x] + blueYellowShare_ * (out.cz[x] - buffers.second[x]);
 }
 
-void LinearFlip::compareBand(const Image& test, const Image& reference, size_t begin, size_t end,
+void LinearFlip::compareTile(const Image& test, const Image& reference, const Tile& tile, Workspace& work,
                              Image& map) const {
-    const Band testBand = filterRows(test, begin, end), referenceBand = filterRows(reference, begin, end);
-    RowBuffers a(width_), b(width_);
-    std::vector<float> errors(stride_);
-    for (size_t y = begin; y != end; ++y) {
-        filterColumns(testBand, static_cast<int64_t>(y), a);
-        filterColumns(referenceBand, static_cast<int64_t>(y), b);
-        flipRows().errors(a.row, b.row, largest_, stride_, errors.data());
-        std::copy_n(errors.begin(), width_, &map.pixels[y * width_]);
+    filterRows(test, tile, work.padded, work.testPlanes);
+    filterRows(reference, tile, work.padded, work.referencePlanes);
+    const size_t count = flipPadded(tile.width);
+    for (size_t y = 0; y < tile.height; ++y) {
+        filterColumns(work.testPlanes, y + margin_, count, work.test);
+        filterColumns(work.referencePlanes, y + margin_, count, work.reference);
+        flipRows().errors(work.test.row, work.reference.row, largest_, count, work.errors.data());
+        float* const to = &map.pixels[(tile.top + y) * width_ + tile.left];
+        for (size_t x = 0; x < tile.width; ++x) to[x] = std::max(to[x], work.errors[x]);
     }
 }
 
@@ -259,7 +278,7 @@ void LinearFlip::compare(const Image& test, const Image& reference, Image& map) 
 
 Image flip(const Image& test, const Image& reference, double pixelsPerDegree) {
     checkComparable(test, reference);
-    Image map(test.width, test.height, 1);
+    Image map(test.width, test.height, 1, 0.0f);
     LinearFlip(test.width, test.height, pixelsPerDegree).compare(decode(test), decode(reference), map);
     return map;
 }

@@ -16,7 +16,7 @@ class LinearFlip {
     /// All images must have this size.
     LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree);
 
-    /// Sets `map`, an image of one component, to the error of each pixel.
+    /// Raises each pixel of `map`, an image of one component, to its error where that is larger.
     void compare(const Image& test, const Image& reference, Image& map) const;
 
   private:
@@ -27,14 +27,22 @@ class LinearFlip {
     };
     /// The results of filtering along rows, which are then filtered along columns.
     enum Plane { Edge, Smooth, Point, Luma, RedGreen, BlueYellow, BlueYellowSecond, PlaneCount };
-    struct Band;
+    /// The part of the pictures that is compared at once.
+    struct Tile {
+        size_t left, top;
+        size_t width, height;  ///< inside the picture
+    };
+    struct Planes;
     struct RowBuffers;
+    struct Workspace;
 
-    void compareBand(const Image& test, const Image& reference, size_t begin, size_t end, Image& map) const;
-    Band filterRows(const Image& picture, size_t begin, size_t end) const;
-    void filterRow(const float* rgb, std::vector<float>& padded, const Band& band, int64_t y) const;
-    void filterColumns(const Band& band, int64_t y, RowBuffers& buffers) const;
-    void smoothColumn(const Band& band, int plane, const Weights& weights, int64_t y, float* result) const;
+    void compareTile(const Image& test, const Image& reference, const Tile& tile, Workspace& work,
+                     Image& map) const;
+    void filterRows(const Image& picture, const Tile& tile, std::vector<float>& padded, Planes& planes) const;
+    void filterRow(const float* rgb, const Tile& tile, std::vector<float>& padded, Planes& planes,
+                   size_t row) const;
+    void filterColumns(const Planes& planes, size_t row, size_t count, RowBuffers& buffers) const;
+    void smoothColumn(const float* column, const Weights& weights, size_t count, float* result) const;
     Weights zeroPadded(std::vector<float> values) const;
 
     size_t width_, height_;

@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "image/filmic.h"
+
 namespace limpid::image {
 namespace {
 

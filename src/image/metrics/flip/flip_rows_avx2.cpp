@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "image/filmic.h"
 #include "image/metrics/flip/flip_rows.h"
 
 namespace limpid::image {

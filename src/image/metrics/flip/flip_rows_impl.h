@@ -9,6 +9,14 @@ constexpr float colorKneeValue = 0.95f;  // pt: ... maps to this error
 /// The reference white of all colour spaces: linear RGB (1,1,1).
 constexpr float whiteX = 23359437.0f / 24577794.0f, whiteZ = 80288407.0f / 73733382.0f;
 
+void toneMap(const float* radiance, double scale, size_t count, float* __restrict mapped) {
+    for (size_t i = 0; i < count; ++i) {
+        const double exposed = scale * static_cast<double>(radiance[i]);
+        // The curve is 1 long before the bound, which keeps the product a float.
+        mapped[i] = filmicCurve(static_cast<float>(exposed < 1e30 ? exposed : 1e30));
+    }
+}
+
 void toYcxcz(const float* rgb, size_t count, float* y, float* cx, float* cz) {
     for (size_t i = 0; i < count; ++i) {
         const float r = rgb[3 * i], g = rgb[3 * i + 1], b = rgb[3 * i + 2];
@@ -105,5 +113,5 @@ void errors(const FlipRow& test, const FlipRow& reference, float largest, size_t
 }
 
 constexpr FlipRows tableWith(decltype(FlipRows::filter) filter) {
-    return {toYcxcz, filter, errors, distances};
+    return {toneMap, toYcxcz, filter, errors, distances};
 }

@@ -62,6 +62,27 @@ TEST(Flip, AgreesWithTheFormulas) {
     }
 }
 
+/// Pictures are compared tile by tile. Cut out of a larger picture, the same pixels lie elsewhere in the
+/// tiles.
+TEST(Flip, HasNoSeams) {
+    constexpr uint32_t left = 37, top = 45, reach = 12, size = 150;
+    const auto part = [](const Image& whole) {
+        Image image(size, size, 3);
+        for (uint32_t y = 0; y < size; ++y) {
+            for (uint32_t x = 0; x < size; ++x) {
+                for (uint32_t c = 0; c < 3; ++c) image.at(x, y, c) = whole.at(x + left, y + top, c);
+            }
+        }
+        return image;
+    };
+    const Image a = busyImage(220, 210, 1), b = busyImage(220, 210, 2);
+    const Image map = flip(a, b), ofPart = flip(part(a), part(b));
+    for (uint32_t y = reach; y < size - reach; ++y) {
+        for (uint32_t x = reach; x < size - reach; ++x)
+            ASSERT_EQ(ofPart.at(x, y, 0), map.at(x + left, y + top, 0)) << x << ' ' << y;
+    }
+}
+
 TEST(Flip, WorksOnImagesSmallerThanItsFilters) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {2u, 9u}, {25u, 1u}}) {
         const Image a = busyImage(width, height, 3), b = busyImage(width, height, 4);

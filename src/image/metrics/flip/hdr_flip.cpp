@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/color.h"
 #include "image/metrics/flip/flip.h"
+#include "image/metrics/flip/flip_rows.h"
 #include "image/metrics/metrics.h"
 #include "image/metrics/metrics_check.h"
 #include "image/tonemap.h"
@@ -35,7 +35,7 @@ std::vector<double> luminances(const Image& radiance) {
     return values;
 }
 
-/// Sets `mapped` to linear display values in [0,1].
+/// Sets `mapped` to linear display values in [0,1]; those of pixels that are not finite may be anything.
 void toneMap(const Image& radiance, double stops, Image& mapped) {
     const double scale = std::exp2(stops);
     const size_t rowValues = size_t{radiance.width} * 3;
@@ -78,7 +78,7 @@ HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegre
     HdrFlip result;
     result.exposures = hdrFlipExposures(reference);
     result.map = Image(test.width, test.height, 1, 0.0f);
-    Image shownTest(test.width, test.height, 3), shownReference = shownTest, map(test.width, test.height, 1);
+    Image shownTest(test.width, test.height, 3), shownReference = shownTest;
     LinearFlip flip(test.width, test.height, pixelsPerDegree);
     const double step = (result.exposures.stop - result.exposures.start) / (result.exposures.count - 1);
     for (int k = 0; k < result.exposures.count; ++k) {
@@ -87,9 +87,7 @@ HdrFlip hdrFlip(const Image& test, const Image& reference, double pixelsPerDegre
         toneMap(reference, stops, shownReference);
         toneMap(test, stops, shownTest);
         showAsWorst(bad, shownReference, shownTest);
-        flip.compare(shownTest, shownReference, map);
-        for (size_t i = 0; i < map.pixels.size(); ++i)
-            result.map.pixels[i] = std::max(result.map.pixels[i], map.pixels[i]);
+        flip.compare(shownTest, shownReference, result.map);
     }
     for (const size_t pixel : bad) result.map.pixels[pixel] = 1.0f;
     result.value = mean(result.map);
