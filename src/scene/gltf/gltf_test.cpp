@@ -1,4 +1,4 @@
-// Tests that the Scene contains what a glTF file describes. bad_input_test.cpp tests malformed files.
+// Tests that the Scene contains what a glTF file describes. gltf_bad_input_test.cpp tests malformed files.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Tests that the Scene contains what OBJ and MTL files describe. bad_input_test.cpp tests malformed files.
+// Tests that the Scene contains what OBJ and MTL files describe. obj_bad_input_test.cpp tests malformed
+// files.
 #include <gmock/gmock.h>
 
 #include <cmath>
