@@ -109,11 +109,17 @@ TEST_F(VulkanFramesTest, WarmUpsChangeNothing) {
     EXPECT_NE(limpid_device_load_pipeline_cache(adopted_, bytes.data(), size), LIMPID_OK);
     const SyntheticScene scene({});
     const auto f = upload(scene, 0);
-    run([&](VkCommandBuffer commands) {
-        EXPECT_EQ(limpid_warm_up(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
-    });
-    const std::vector<float> warm = denoiseSequence(denoiser, scene, 1);
-    EXPECT_EQ(warm, denoiseSequence(create(), scene, 1));
+    const auto warmUp = [&] {
+        run([&](VkCommandBuffer commands) {
+            EXPECT_EQ(limpid_warm_up(denoiser, commands, &f->frame), LIMPID_OK) << limpid_last_error();
+        });
+    };
+    warmUp();
+    EXPECT_EQ(denoiseSequence(denoiser, scene, 1), denoiseSequence(create(), scene, 1));
+    // Once more when the histories hold a frame, and before a cut.
+    warmUp();
+    ASSERT_EQ(limpid_denoiser_reset(denoiser), LIMPID_OK);
+    EXPECT_EQ(denoiseSequence(denoiser, scene, 3), denoiseSequence(create(), scene, 3));
 }
 
 TEST_F(VulkanFramesTest, DamagedPipelineCachesAreIgnored) {

@@ -97,6 +97,59 @@ TEST_F(GpuTest, HistoriesStartAnewFromZeroAfterResetAndResize) {
     EXPECT_THAT(frame({1, 1}), Each(1.0f));
 }
 
+TEST_F(GpuTest, HistoriesStartFromZeroAfterAWarmUp) {
+    FrameGraph graph;
+    const auto warmUp = [&] {
+        graph.beginFrame();
+        accumulate(graph, odd);
+        device().impl().transfer().run(
+            [&](VkCommandBuffer commands) { graph.clearImages(device(), commands); });
+    };
+    const auto frame = [&] {
+        graph.beginFrame();
+        const History history = accumulate(graph, odd);
+        graph.execute(device());
+        return graph.downloadFloat(device(), history.current);
+    };
+    warmUp();
+    EXPECT_THAT(frame(), Each(1.0f));
+    EXPECT_THAT(frame(), Each(2.0f));
+    warmUp();
+    EXPECT_THAT(frame(), Each(3.0f)) << "a later warm-up leaves histories alone";
+    graph.resetHistories();
+    EXPECT_THAT(frame(), Each(1.0f)) << "they hold frames, and must be zeroed again";
+    EXPECT_THAT(frame(), Each(2.0f));
+}
+
+/// Clearing what is zero already would make the first frame after a warm-up slower than later ones.
+TEST_F(GpuTest, InvalidHistoriesAreClearedOnlyIfTheyAreNotZero) {
+    using Role = RecordedImage::Role;
+    RecordedFrame frame;
+    frame.images.push_back(
+        {.name = "a (previous)", .key = {"a", 0, rgba, 4, 4}, .role = Role::Previous, .clear = true});
+    frame.images.push_back(
+        {.name = "a", .key = {"a", 1, rgba, 4, 4}, .role = Role::Current, .clear = true, .written = true});
+    const auto executorOf = [&] {
+        return FrameExecutor(device().impl().context, device().impl().pipelines, {});
+    };
+    FrameExecutor warm = executorOf(), cold = executorOf();
+    const auto warmUp = [&] {
+        device().impl().transfer().run([&](VkCommandBuffer commands) { warm.clear(frame, commands); });
+    };
+    warmUp();
+    EXPECT_EQ(warm.clearedImages(), 2u);
+    warm.execute(frame);
+    EXPECT_EQ(warm.clearedImages(), 2u) << "nothing has written them since";
+    warm.execute(frame);
+    EXPECT_EQ(warm.clearedImages(), 3u) << "the frame before wrote one of the two";
+    warmUp();
+    EXPECT_EQ(warm.clearedImages(), 3u) << "a warm-up clears only what no frame has used";
+    cold.execute(frame);
+    EXPECT_EQ(cold.clearedImages(), 2u);
+    cold.execute(frame);
+    EXPECT_EQ(cold.clearedImages(), 3u);
+}
+
 TEST_F(GpuTest, AFrameThatIsNotExecutedLeavesHistoriesAlone) {
     FrameGraph graph;
     graph.beginFrame();

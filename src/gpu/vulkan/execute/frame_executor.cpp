@@ -73,7 +73,7 @@ void FrameExecutor::execute(const RecordedFrame& frame) {
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT);
     slot.submit(frame);
-    finish();
+    finish(frame);
 }
 
 void FrameExecutor::record(const RecordedFrame& frame, VkCommandBuffer commands) {
@@ -93,7 +93,7 @@ void FrameExecutor::record(const RecordedFrame& frame, VkCommandBuffer commands)
     recordFrame(frame, slot, ours);
     releaseForeign(frame, commands);
     slot.endForeign(frame);
-    finish();
+    finish(frame);
 }
 
 void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope) {
@@ -108,10 +108,14 @@ void FrameExecutor::recordFrame(const RecordedFrame& frame, FrameSlot& slot, con
     }
 }
 
-void FrameExecutor::finish() {
+void FrameExecutor::finish(const RecordedFrame& frame) {
     ++submitted_;
-    for (const FrameImage& image : frameImages_)
-        if (image.pooled) image.pooled->initialised = true;
+    for (size_t i = 0; i < frameImages_.size(); ++i) {
+        ImagePool::Entry* const entry = frameImages_[i].pooled;
+        if (!entry) continue;
+        entry->initialised = true;
+        if (frame.images[i].clear && !frame.images[i].written) entry->zero = true;
+    }
 }
 
 /// One barrier orders this frame after earlier work, and moves new images and written foreign images to
@@ -176,13 +180,18 @@ void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer c
     context_->vk().CmdPipelineBarrier2(commands, &dependency);
 }
 
-/// Shaders may read an invalid history's previous image before they check the flag, so clear it to zero.
+/// Shaders may read an invalid history's previous image before they check the flag, so clear it to zero. What
+/// is zero already, as after a warm-up, stays: on a CPU, clearing takes half as long as a frame.
 void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer commands) {
     bool any = false;
     for (size_t i = 0; i < frame.images.size(); ++i) {
-        if (!frame.images[i].clear) continue;
-        clearImage(frameImages_[i].pooled->image, commands);
-        any = true;
+        ImagePool::Entry* const entry = frameImages_[i].pooled;
+        if (!entry) continue;
+        if (frame.images[i].clear && !entry->zero) {
+            clearImage(entry->image, commands);
+            any = true;
+        }
+        if (frame.images[i].written) entry->zero = false;
     }
     if (!any) return;
     memoryBarrier(*context_, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -190,7 +199,8 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
                   VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
-void FrameExecutor::clearImage(const Image& image, VkCommandBuffer commands) const {
+void FrameExecutor::clearImage(const Image& image, VkCommandBuffer commands) {
+    ++cleared_;
     const VkClearColorValue zero{};
     const VkImageSubresourceRange range = wholeImage();
     if (image.buffer)
@@ -208,6 +218,7 @@ void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) 
         ImagePool::Entry& entry = images_.acquire(recorded.key, prefix_, submitted_);
         if (entry.initialised) continue;
         entry.initialised = true;
+        entry.zero = true;
         fresh.push_back(&entry);
         if (entry.image.buffer) continue;
         VkImageMemoryBarrier2& barrier = barriers.emplace_back(wholeImageBarrier(entry.image.image.get()));

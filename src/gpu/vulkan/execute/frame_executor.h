@@ -32,6 +32,8 @@ class FrameExecutor {
     const Image& image(const RecordedImage& recorded) const;
     std::vector<PassTime> passTimes();
     size_t pooledImages() const { return images_.size(); }
+    /// The number of images whose clearing was recorded so far.
+    size_t clearedImages() const { return cleared_; }
 
   private:
     /// The device side of a recorded image.
@@ -49,10 +51,10 @@ class FrameExecutor {
     FrameSlot& nextSlot() { return slots_[submitted_ % slots_.size()]; }
     void recordFrame(const RecordedFrame& frame, FrameSlot& slot, const Scope& scope);
     void releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const;
-    void finish();
+    void finish(const RecordedFrame& frame);
     void prepareImages(const RecordedFrame& frame, VkCommandBuffer commands, const Scope& scope);
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
-    void clearImage(const Image& image, VkCommandBuffer commands) const;
+    void clearImage(const Image& image, VkCommandBuffer commands);
     void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot);
@@ -72,6 +74,7 @@ class FrameExecutor {
     bool foreign_ = false;                 ///< frames are recorded into the caller's commands
     std::vector<PassTime> foreignTimes_;   ///< of the latest frame known to be finished
     uint64_t submitted_ = 0;               ///< number of frames so far
+    size_t cleared_ = 0;
 };
 
 }  // namespace limpid::gpu

@@ -13,6 +13,7 @@ class ImagePool {
     struct Entry {
         Image image;
         bool initialised = false;  ///< it is in GENERAL layout
+        bool zero = false;         ///< it was cleared, and no frame has written it since
         uint64_t lastFrame = 0;
     };
 
