@@ -181,7 +181,7 @@ void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer c
 }
 
 /// Shaders may read an invalid history's previous image before they check the flag, so clear it to zero. What
-/// is zero already, as after a warm-up, stays: on a CPU, clearing takes half as long as a frame.
+/// is zero already, as after a warm-up, stays as it is.
 void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer commands) {
     bool any = false;
     for (size_t i = 0; i < frame.images.size(); ++i) {
