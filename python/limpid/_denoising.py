@@ -109,8 +109,8 @@ class Denoiser:
 
     width, height: size of all images in pixels, 1 to 32768.
     method: "svgf" (spatiotemporal variance-guided filtering: the best), "atrous" (temporal accumulation, then the
-        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone),
-        "bilateral" (a joint bilateral filter of one frame, without history: the simplest).
+        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone), or "bilateral" (a joint bilateral
+        filter of one frame, without history: the simplest).
     device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
     signals: 1: radiance is all light that is to be filtered; 2: radiance is diffuse light, and specular light is given
         separately.
@@ -196,7 +196,7 @@ class Denoiser:
                 motion=None, previous_normal=None, reflection_motion=None, roughness=None, hit_distance=None, id=None,
                 view=None, projection=None, previous_view=None, previous_projection=None, jitter=(0.0, 0.0),
                 reset=False, outputs="color"):
-        """Denoises the next frame of the sequence and returns the clean picture, (height, width, 3) float32.
+        """Denoises the next frame of the sequence and returns the denoised picture, (height, width, 3) float32.
 
         All images are arrays (height, width, components) of float16, float32 or float64; row 0 is the top. float32
         arrays, and slices of them, are not copied if a pixel's components are adjacent in memory and no axis is
@@ -209,22 +209,22 @@ class Denoiser:
         emission: (h, w, 3), light of emitters and sky that the camera sees directly. It is added unfiltered.
         albedo: (h, w, 3), diffuse albedo from 0 to 1 including textures, which then stay sharp.
         albedo_specular: (h, w, 3), pre-integrated reflectance of the specular lobe, 0 to 1.
-        motion: (h, w, 2 or 3), as the denoiser was told. Without it only the camera moves.
-        previous_normal: as normal: of the same surface point in the previous frame.
-        reflection_motion: like motion, for the reflection that the surface shows.
-        roughness: (h, w), of the specular lobe, 0 to 1.
+        motion: (h, w, 2 or 3), in the denoiser's motion_unit and so on. Without it, only the camera moves.
+        previous_normal: like normal, of the same surface point in the previous frame.
+        reflection_motion: like motion, of the image that the surface reflects.
+        roughness: (h, w), roughness of the specular lobe, 0 to 1.
         hit_distance: (h, w), length of the ray that found the specular light, from the surface to its first hit, world
             units; 1e9 or more: it hit nothing; 0: unknown. Needs roughness. Without reflection_motion, the motion of
             reflections is computed from it.
-        id: (h, w), integers from 0 to 2^24: a number for each object.
-        view, projection: (4, 4), from world to view and from view to clip space (depth 0 to 1), without jitter; points
-            are columns, as look_at() and perspective() make them. Without view the camera stands at the origin and
-            looks along -z; without projection its field of view is taken to be 60 degrees.
-        previous_view, previous_projection: of the previous frame; default: what the previous call was given.
-        jitter: where in their pixels the rays go, from the centres, pixels, -0.5 to 0.5: (x, y).
-        reset: a cut: history starts with this frame.
-        outputs: "color": the picture with emission and albedo in it. A sequence of names gives a dict of arrays
-            instead: "color", "radiance" and "specular" (what the inputs of these names have become; SVGF only).
+        id: (h, w), integers from 0 to 2^24, one for each object.
+        view, projection: (4, 4), from world to view space and from view to clip space (depth 0 to 1), without jitter.
+            Points are column vectors; look_at() and perspective() return such matrices. Without view, the camera is at
+            the origin and looks along -z; without projection, a field of view of 60 degrees is assumed.
+        previous_view, previous_projection: those of the previous frame; default: the previous call's matrices.
+        jitter: (x, y), offset of the rays from the pixels' centres, -0.5 to 0.5 pixels.
+        reset: True after a cut: ignores the history.
+        outputs: "color" for the picture including emission and albedo. A sequence of names gives a dict of arrays
+            instead: "color", and for SVGF "radiance" and "specular", the filtered inputs of these names.
 
         Raises ValueError, naming the argument, if a shape or type is wrong; limpid.Error if the library fails.
         """

@@ -78,28 +78,34 @@ def render(scene, width, height, spp=64, **options):
     asset_root: files that the scene refers to must lie in this folder or in the scene's own; default: the parent of
         the scene's folder.
 
-    The arrays are float32 unless said otherwise, row 0 at the top:
-    color: (h, w, 3), linear radiance, clean if there is a denoiser. diffuse, specular, emission: (h, w, 3): without a
-    denoiser, color is their sum. albedo, albedo_specular: (h, w, 3). normal, previous_normal: (h, w, 3), world space,
-    0 where nothing is seen. depth: (h, w), distance from the eye, world units, 1e10 where nothing is seen.
-    motion, reflection_motion: (h, w, 3): x and y in pixels and z in world units, previous minus now, 1e10 where there
-    is none. roughness: (h, w). hit_distance: (h, w), world units, of reflected rays: 1e9: the sky, 0: unknown.
-    id: (h, w) uint32: number of the object plus one; 0: nothing. diffuse_variance and so on, of specular,
-    albedo, normal and depth: (h, w), variance of the mean, 0 for one sample. view, projection: (4, 4) float64, of
-    the camera.
-    They go into Denoiser.denoise() as they are, with motion_depth="distance".
+    Arrays are float32 unless stated otherwise, with row 0 at the top:
+    color: (h, w, 3), linear radiance, denoised if there is a denoiser.
+    diffuse, specular, emission: (h, w, 3). Without a denoiser, color is their sum.
+    albedo, albedo_specular: (h, w, 3).
+    normal, previous_normal: (h, w, 3), world space, 0 where nothing is hit.
+    depth: (h, w), distance from the eye, world units, 1e10 where nothing is hit.
+    motion, reflection_motion: (h, w, 3), previous minus current position: x and y in pixels, z in world units. 1e10
+        where there is none.
+    roughness: (h, w). hit_distance: (h, w), length of reflected rays, world units; 1e9: to the sky, 0: unknown.
+    id: (h, w) uint32, the object's number plus one; 0 where nothing is hit.
+    diffuse_variance, specular_variance, albedo_variance, normal_variance, depth_variance: (h, w), variance of the
+        mean, 0 for one sample.
+    view, projection: (4, 4) float64, the camera's matrices.
+
+    Denoiser.denoise() accepts these arrays as they are, with motion_depth="distance".
     """
     return _Renderer(scene, width, height, spp, default_jitter="pixel", **options).render(0)
 
 
 def render_sequence(scene, width, height, frames, spp=1, *, first=0, fps=30.0, animation=None, camera_path=None,
                     **options):
-    """Path-traces the frames of a moving scene: a generator of what render() returns.
+    """Path-traces the frames of a moving scene. A generator that yields for each frame what render() returns.
 
-    frames: how many. first: the first of them that is rendered. fps: frames per second. animation: a clip of the scene, by name or number, or "all"; default:
-    the first, if there is one; "none": at rest. camera_path: "orbit", "dolly", "shake", or a JSON file
-    (docs/animation.md).
-    options: those of render(). Frames of denoisers build on each other.
+    frames: number of frames. first: the first of them that is rendered. fps: frames per second.
+    animation: name or number of one of the scene's clips, "all", or "none" for a static scene; default: the first
+        clip, if there is one.
+    camera_path: "orbit", "dolly", "shake", or a JSON file (docs/animation.md).
+    options: those of render(). A denoiser with a history keeps it from frame to frame.
     """
     renderer = _Renderer(scene, width, height, spp, default_jitter="off", fps=fps, frames=frames, animation=animation,
                          camera_path=camera_path, **options)

@@ -1,6 +1,6 @@
-// FLIP for images of low dynamic range. Equation numbers are those of the paper cited in
-// image/metrics/metrics.h. What the paper leaves open (repeated borders, filter radii, the colour matrix)
-// follows NVIDIA's reference program. The inner loops are in image/metrics/flip/flip_rows.h.
+// FLIP for images of low dynamic range. Equation numbers are those of the paper that image/metrics/metrics.h
+// names; what the paper leaves open (repeated borders, filter radii, the colour matrix) is as in NVIDIA's
+// reference program. Its loops are in flip_rows.h.
 #include "image/metrics/flip/flip.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -25,8 +25,8 @@ namespace {
 constexpr double featureWidth = 0.082;  // w: width of a feature, degrees
 constexpr double pi2 = std::numbers::pi * std::numbers::pi;
 
-/// A contrast sensitivity function: in the spatial domain a sum of two Gaussians
-/// a * sqrt(pi/b) * exp(-pi^2 x^2 / b), with x in degrees.
+/// Contrast sensitivity as a sum of two Gaussians of frequency, a * sqrt(pi/b) * exp(-pi^2 x^2 / b) in
+/// degrees.
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
@@ -48,7 +48,7 @@ Image decode(const Image& encoded) {
     return linear;
 }
 
-/// Returns `function` at 1 .. radius, divided by `sum`. Weights too small to change a float sum are left out.
+/// Values of `function` at 1 .. radius, divided by `sum`. What a float cannot add to the middle is left out.
 template <typename Function>
 std::vector<float> weightsOf(int radius, double sum, const Function& function) {
     std::vector<float> weights;
@@ -64,7 +64,7 @@ std::vector<float> gaussianWeights(int radius, double sigma) {
     return weightsOf(radius, sum, gaussian);
 }
 
-/// Returns the first Gaussian's fraction of the sum of all weights in the square window.
+/// The share of the first Gaussian in the sum of all weights of the square window.
 float firstShare(const Sensitivity& s, int radius, double pixelsPerDegree) {
     const auto volume = [&](double a, double b) {
         double sum = 0.0;
@@ -76,7 +76,7 @@ float firstShare(const Sensitivity& s, int radius, double pixelsPerDegree) {
     return static_cast<float>(first / (first + volume(s.a2, s.b2)));
 }
 
-/// Returns the distance between green and blue, computed by the same loops as the pixels' distances.
+/// The distance of green to blue, as the loops compute it.
 float largestColorDistance() {
     const std::array<float, 3> green{0, 1, 0}, blue{0, 0, 1};
     std::array<std::array<float, flipGroup>, 6> rows{};
@@ -93,29 +93,28 @@ float largestColorDistance() {
     return distance[0];
 }
 
-/// Returns a radius that is larger than that of every filter.
+/// Beyond every filter's reach.
 constexpr size_t radiusOf(double pixelsPerDegree) {
     return static_cast<size_t>(3.0 * std::max(0.0450160, 0.5 * featureWidth) * pixelsPerDegree) + 2;
 }
 
 }  // namespace
 
-/// Some rows of one picture, filtered along the rows, with as many rows above and below as the column filters
-/// read. A band fits in a processor's cache, which a whole picture would not.
-struct LinearFlip::Band {
-    Band(const LinearFlip& flip, size_t begin, size_t end)
-        : first(static_cast<int64_t>(begin) - static_cast<int64_t>(flip.margin_)),
-          rows(end - begin + 2 * flip.margin_),
-          stride(flip.stride_),
-          values(std::make_unique_for_overwrite<float[]>(PlaneCount * rows * stride)) {}
-    float* row(int plane, int64_t y) const {
-        return &values[(static_cast<size_t>(plane) * rows + static_cast<size_t>(y - first)) * stride];
+/// A tile of one picture, filtered along the rows, with as many rows above and below as filters of columns
+/// reach. Both pictures' tiles stay in a core's own cache, and the rows that a filter of columns looks at in
+/// the fastest one.
+struct LinearFlip::Planes {
+    explicit Planes(size_t margin)
+        : rows(tileHeight + 2 * margin),
+          values(std::make_unique_for_overwrite<float[]>(PlaneCount * rows * tileWidth)) {}
+    float* row(int plane, size_t y) const {
+        return &values[(static_cast<size_t>(plane) * rows + y) * tileWidth];
     }
     size_t rows;
     std::unique_ptr<float[]> values;
 };
 
-/// One row of one picture, filtered along rows and columns.
+/// One row of a tile, filtered both ways.
 struct LinearFlip::RowBuffers {
     RowBuffers() : values(8 * tileWidth) {
         const auto at = [&](size_t i) { return &values[i * tileWidth]; };
@@ -152,7 +151,7 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
     blueYellowSecond_ = gaussian(blueYellow.b2);
     blueYellowShare_ = firstShare(blueYellow, radius, pixelsPerDegree);
 
-    // First and second derivatives of a Gaussian. Positive weights are scaled to a sum of 1, negative to -1.
+    // First and second derivatives of a Gaussian; positive weights have the sum 1, negative ones -1.
     const double sigma = 0.5 * featureWidth * pixelsPerDegree;
     const int featureRadius = static_cast<int>(std::ceil(3.0 * sigma));
     const auto slope = [&](int x) { return x * std::exp(-x * x / (2.0 * sigma * sigma)); };
@@ -174,8 +173,11 @@ LinearFlip::LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree)
 void LinearFlip::filterRow(const float* rgb, const Tile& tile, std::vector<float>& padded, Planes& planes,
                            size_t row) const {
     const FlipRows& loops = flipRows();
-    // Rows of Y, Cx and Cz; their first and last values are repeated as far as the filters read.
-    const size_t length = stride_ + 2 * margin_;
+    const size_t count = flipPadded(tile.width), length = padded.size() / 3;
+    // What is inside the picture, of the pixels from `margin_` before the tile to as many behind it.
+    const size_t begin = tile.left - std::min(tile.left, margin_);
+    const size_t end = std::min(tile.left + count + margin_, width_);
+    const size_t first = begin + margin_ - tile.left, last = end + margin_ - tile.left;
     std::array<float*, 3> values{};
     for (size_t c = 0; c < 3; ++c) values[c] = &padded[c * length];
     loops.toYcxcz(rgb + 3 * begin, end - begin, values[0] + first, values[1] + first, values[2] + first);
@@ -210,15 +212,14 @@ LinearFlip::Weights LinearFlip::zeroPadded(std::vector<float> values) const {
     return {std::move(values), reach};
 }
 
-LinearFlip::Band LinearFlip::filterRows(const Image& picture, size_t begin, size_t end) const {
-    Band band(*this, begin, end);
-    std::vector<float> padded(3 * (stride_ + 2 * margin_));
-    const auto last = static_cast<int64_t>(height_) - 1;
-    int64_t filtered = -1;
-    for (int64_t y = band.first; y < band.first + static_cast<int64_t>(band.rows); ++y) {
-        // Rows outside the picture repeat its first and last row.
-        const int64_t inside = std::clamp<int64_t>(y, 0, last);
-        if (inside == filtered) {
+void LinearFlip::filterRows(const Image& picture, const Tile& tile, std::vector<float>& padded,
+                            Planes& planes) const {
+    size_t filtered = height_;
+    for (size_t row = 0; row < tile.height + 2 * margin_; ++row) {
+        // The picture's first and last row are repeated beyond its ends.
+        const size_t above = tile.top + row;
+        const size_t y = std::min(above - std::min(above, margin_), height_ - 1);
+        if (y == filtered) {
             for (int plane = 0; plane < PlaneCount; ++plane)
                 std::copy_n(planes.row(plane, row - 1), tileWidth, planes.row(plane, row));
         } else {
@@ -243,13 +244,13 @@ void LinearFlip::filterColumns(const Planes& planes, size_t row, size_t count, R
                        1,
                        {{point_.values.data(), 0.0f, out.pointY}},
                        {edge_.values.data(), out.edgeY}},
-                      stride_);
-    smoothColumn(band, Luma, luma_, y, out.y);
-    smoothColumn(band, RedGreen, redGreen_, y, out.cx);
-    // The sum of two Gaussians is not separable, but each of them is.
-    smoothColumn(band, BlueYellow, blueYellow_, y, out.cz);
-    smoothColumn(band, BlueYellowSecond, blueYellowSecond_, y, buffers.second);
-    for (size_t x = 0; x < stride_; ++x)
+                      count);
+    smoothColumn(planes.row(Luma, row), luma_, count, out.y);
+    smoothColumn(planes.row(RedGreen, row), redGreen_, count, out.cx);
+    // A sum of two Gaussians; each of them is separable, their sum is not.
+    smoothColumn(planes.row(BlueYellow, row), blueYellow_, count, out.cz);
+    smoothColumn(planes.row(BlueYellowSecond, row), blueYellowSecond_, count, buffers.second);
+    for (size_t x = 0; x < count; ++x)
         out.cz[x] = buffers.second[x] + blueYellowShare_ * (out.cz[x] - buffers.second[x]);
 }
 
@@ -269,10 +270,14 @@ void LinearFlip::compareTile(const Image& test, const Image& reference, const Ti
 
 void LinearFlip::compare(const Image& test, const Image& reference, Image& map) const {
     checkComparable(test, reference);
-    constexpr size_t bandRows =
-        64;  // more would not fit in a cache; fewer would filter the margins more often
-    tbb::parallel_for(size_t{0}, (height_ + bandRows - 1) / bandRows, [&](size_t band) {
-        compareBand(test, reference, band * bandRows, std::min((band + 1) * bandRows, height_), map);
+    const size_t across = (width_ + tileWidth - 1) / tileWidth,
+                 down = (height_ + tileHeight - 1) / tileHeight;
+    tbb::enumerable_thread_specific<Workspace> workspaces(margin_);
+    tbb::parallel_for(size_t{0}, across * down, [&](size_t i) {
+        const size_t left = i % across * tileWidth, top = i / across * tileHeight;
+        compareTile(test, reference,
+                    {left, top, std::min(tileWidth, width_ - left), std::min(tileHeight, height_ - top)},
+                    workspaces.local(), map);
     });
 }
 

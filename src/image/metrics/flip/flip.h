@@ -1,5 +1,4 @@
-// LDR-FLIP on linear display values, shared by flip() and hdrFlip(). Private to src/image; the public
-// functions are in image/metrics/metrics.h.
+// LDR-FLIP where it meets HDR-FLIP. Private to src/image; image/metrics/metrics.h is the public face.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +8,24 @@
 
 namespace limpid::image {
 
-/// Computes LDR-FLIP maps of linear display values in [0,1]. HDR-FLIP tone-maps to such values directly,
-/// without the sRGB encoding that flip() would have to undo.
+/// flip() of images that are not encoded: linear display values in [0,1]. Saves HDR-FLIP an encoding that
+/// LDR-FLIP would undo at once.
 class LinearFlip {
   public:
-    /// All images must have this size.
+    /// For images of this size.
     LinearFlip(uint32_t width, uint32_t height, double pixelsPerDegree);
 
     /// Raises each pixel of `map`, an image of one component, to its error where that is larger.
     void compare(const Image& test, const Image& reference, Image& map) const;
 
   private:
-    /// Weights at 1, 2, .. of a symmetric or antisymmetric filter; the middle weight follows from their sum.
+    /// The weights at 1, 2 .. of filters that are symmetric or antisymmetric; their middle follows from their
+    /// sum.
     struct Weights {
-        std::vector<float> values;  ///< zero-padded after `reach` to the length of the longest filter
+        std::vector<float> values;  ///< zeros behind `reach`, as many as the longest filter needs
         size_t reach;
     };
-    /// The results of filtering along rows, which are then filtered along columns.
+    /// What rows are filtered to before columns are: filters, and the plane that they look at.
     enum Plane { Edge, Smooth, Point, Luma, RedGreen, BlueYellow, BlueYellowSecond, PlaneCount };
     /// The part of the pictures that is compared at once.
     struct Tile {
@@ -46,11 +46,10 @@ class LinearFlip {
     Weights zeroPadded(std::vector<float> values) const;
 
     size_t width_, height_;
-    size_t stride_;  ///< distance of rows, in values
-    size_t margin_;  ///< pixels added around the picture, at least the radius of the longest filter
+    size_t margin_;  ///< of pixels around the picture, at least as many as filters reach
     Weights smooth_, edge_, point_, luma_, redGreen_, blueYellow_, blueYellowSecond_;
-    float blueYellowShare_ = 1.0f;  ///< weight of the first of the two blue-yellow Gaussians
-    float largest_ = 1.0f;          ///< the largest distance of two colours: green to blue
+    float blueYellowShare_ = 1.0f;  ///< of the first of the two
+    float largest_ = 1.0f;          ///< distance of two colours: green to blue
 };
 
 }  // namespace limpid::image

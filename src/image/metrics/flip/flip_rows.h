@@ -1,20 +1,20 @@
-// The loops of FLIP over rows of pixels, in single precision. They are compiled for the baseline instruction
-// set and, on x86-64, again for AVX2. All values must be finite. Private to src/image.
+// The loops of FLIP over rows of pixels, in single precision: compiled once for any processor and, on x86-64,
+// once more for AVX2. They ask for values that are finite. Private to src/image.
 #pragma once
 
 #include <cstddef>
 
 namespace limpid::image {
 
-/// Rows are processed in whole groups of this many values. So every pixel goes through the same vector code,
-/// and equal pixels have equal errors regardless of their position.
+/// Rows are processed in whole groups of this many values, so that every pixel goes through the same vector
+/// code: equal pixels have equal errors, wherever they are.
 inline constexpr size_t flipGroup = 16;
 
 constexpr size_t flipPadded(size_t count) {
     return (count + flipGroup - 1) / flipGroup * flipGroup;
 }
 
-/// One row of one picture after FLIP's spatial filters. Each array has flipPadded(width) values.
+/// One row of one picture as the eye filters it. Each has flipPadded(width) values.
 struct FlipRow {
     float* y;  ///< YCxCz, filtered by contrast sensitivity
     float* cx;
@@ -25,10 +25,9 @@ struct FlipRow {
     float* pointY;
 };
 
-/// A symmetric filter: middle * in[x] + sum of weights[k] * (in[x + s] + in[x - s] - 2 in[x]) with s = (k +
-/// 1)
-/// * step. `middle` is the sum of the filter's weights: 1 for smoothing, 0 for a second derivative. In this
-/// form a constant input gives exactly the constant, or 0.
+/// A symmetric filter, sum of weights[k] * (in[x + s] + in[x - s] - 2 in[x]) for s = (k + 1) * step, which
+/// starts from `middle` * in[x]: 1 for a filter whose weights add up to 1, 0 for one whose weights add up to
+/// 0. On a constant it gives exactly the constant, or 0.
 struct FlipEven {
     const float* weights;
     float middle;
@@ -41,34 +40,34 @@ struct FlipOdd {
     float* result;
 };
 
-/// Filters of the same input, computed together so that each value is loaded once.
+/// Filters of the same values, computed together so that each value is loaded once.
 struct FlipFilters {
     static constexpr size_t maxEvens = 3;
-    size_t reach;  ///< number of weights of each filter; shorter ones are zero-padded
+    size_t reach;  ///< number of weights of each; shorter filters have zeros behind theirs
     size_t evens;  ///< at least 1
     FlipEven even[maxEvens];
     FlipOdd odd;  ///< none if its weights are null
 };
 
 struct FlipRows {
-    /// Converts interleaved linear RGB to YCxCz, a linearised CIELAB space in which FLIP filters. `count`
-    /// need not be a multiple of the group size.
+    /// filmicCurve() of radiance * scale. Values that are not finite may give anything.
+    void (*toneMap)(const float* radiance, double scale, size_t count, float* mapped);
+    /// Linear RGB, interleaved, to the linearised CIELAB in which filtering is fair. `count` is any number.
     void (*toYcxcz)(const float* rgb, size_t count, float* y, float* cx, float* cz);
-    /// Applies the filters at in[0] .. in[count - 1], rounded up to whole groups. `step` is the distance of
-    /// neighbouring values. Reads up to `reach` steps beyond both ends.
+    /// The filters' results at in[0] .. in[count - 1], rounded up to whole groups; `step` is the distance of
+    /// neighbours. They look up to `reach` steps past both ends.
     void (*filter)(const float* in, ptrdiff_t step, const FlipFilters& filters, size_t count);
-    /// Computes the FLIP error of each pixel. `largest` is the result of `distances` for the two colours that
-    /// differ most.
+    /// FLIP of each pixel; `largest` is what `distances` gives for the two colours that differ most.
     void (*errors)(const FlipRow& test, const FlipRow& reference, float largest, size_t count, float* error);
-    /// Computes the HyAB distances between filtered colours, raised to the power qc.
+    /// HyAB distances, raised to qc, of what the eye makes of filtered colours.
     void (*distances)(const FlipRow& test, const FlipRow& reference, size_t count, float* distance);
 };
 
-/// FlipRows::filter for the baseline instruction set, and for AVX2 with fused multiply-add.
+/// FlipRows::filter for any processor, and for AVX2 with fused multiply-add.
 void flipFilter(const float* in, ptrdiff_t step, const FlipFilters& filters, size_t count);
 void flipFilterAvx2(const float* in, ptrdiff_t step, const FlipFilters& filters, size_t count);
 
-/// Returns the fastest variant that this processor supports.
+/// The fastest that this processor runs.
 const FlipRows& flipRows();
 
 }  // namespace limpid::image

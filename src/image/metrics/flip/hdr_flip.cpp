@@ -1,4 +1,4 @@
-// HDR-FLIP, by the paper cited in image/metrics/metrics.h.
+// HDR-FLIP. Section and formulas are those of the paper that image/metrics/metrics.h names.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -13,11 +13,10 @@
 namespace limpid::image {
 namespace {
 
-/// The tone-mapped value of the brightest pixel at the first exposure, and of the median pixel at the last.
+/// Where the brightest pixel lands at the first exposure and the median one at the last.
 constexpr double displayTarget = 0.85;
 
-/// Returns the median; the mean of the two middle values if their number is even. `values` must not be empty
-/// and is reordered.
+/// Mean of the two middle values where their number is even. `values` is not empty and is reordered.
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -40,13 +39,7 @@ void toneMap(const Image& radiance, double stops, Image& mapped) {
     const double scale = std::exp2(stops);
     const size_t rowValues = size_t{radiance.width} * 3;
     tbb::parallel_for(size_t{0}, size_t{radiance.height}, [&](size_t y) {
-        const float* const from = &radiance.pixels[y * rowValues];
-        float* const to = &mapped.pixels[y * rowValues];
-        for (size_t i = 0; i < rowValues; ++i) {
-            // The bound keeps the product in the range of a float. The curve reaches 1 far below it.
-            const double exposed = std::min(scale * static_cast<double>(from[i]), 1e30);
-            to[i] = filmicCurve(static_cast<float>(exposed));
-        }
+        flipRows().toneMap(&radiance.pixels[y * rowValues], scale, rowValues, &mapped.pixels[y * rowValues]);
     });
 }
 
