@@ -151,7 +151,7 @@ Scene labDisocclusionScene() {
     addMesh(scene, std::move(roomMesh), 0);
     const int bars = addNode(scene, addMesh(scene, grille(), 5));
     constexpr float z = 0.7f;
-    addClip(scene, {"to and fro",
+    addClip(scene, {"back and forth",
                     {{bars,
                       AnimatedValue::Translation,
                       Interpolation::Linear,
