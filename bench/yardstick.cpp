@@ -12,7 +12,7 @@
 #include "base/log.h"
 #include "embree_tracer.h"
 #include "image/metrics/metrics.h"
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/camera.h"
 #include "scene/model/prepare.h"
@@ -93,17 +93,14 @@ class EmbreeSide {
 class OurSide {
   public:
     OurSide(gpu::Device& device, const scene::Scene& scene, const scene::SceneData& data, const Options& o)
-        : gpuScene_(device, data), still_(device, gpuScene_, UINT64_MAX) {
-        RenderSettings settings;
-        settings.extent = {o.width, o.height};
-        settings.pathtrace.maxDepth = static_cast<int>(o.maxDepth);
-        still_.update(scene::cameraParams(scene.cameras.front(), o.width, o.height), settings);
+        : device_(device), gpuScene_(device, data), still_(device, gpuScene_, settingsOf(o), UINT64_MAX) {
+        still_.begin({.camera = scene::cameraParams(scene.cameras.front(), o.width, o.height)});
     }
 
     /// Returns the device time of the path-tracing pass, as `limpid bench trace` reports it.
     double frame() {
         still_.launch();
-        still_.finish();
+        device_.waitIdle();
         for (const gpu::PassTime& pass : still_.passTimes()) {
             if (pass.name == "pathtrace") return pass.milliseconds;
         }
@@ -114,8 +111,16 @@ class OurSide {
     image::Image mean() { return beautyOf(still_.download()); }
 
   private:
+    static RenderSettings settingsOf(const Options& o) {
+        RenderSettings settings;
+        settings.extent = {o.width, o.height};
+        settings.pathtrace.maxDepth = static_cast<int>(o.maxDepth);
+        return settings;
+    }
+
+    gpu::Device& device_;
     scene::GpuScene gpuScene_;
-    ProgressiveStill still_;
+    FrameRenderer still_;
 };
 
 void checkRays(const std::string& scene, double embree, double ours) {

@@ -114,8 +114,8 @@ class YardstickTest : public RenderTest {
         EmbreeLaunch launch = launchOf(scene, theirSettings);
         BlockMoments theirs(theirSettings.extent), ours(ourSettings.extent);
         scene::GpuScene gpuScene(device(), data);
-        ProgressiveStill still(device(), gpuScene, samples);
-        still.update(launch.camera, ourSettings);
+        FrameRenderer still(device(), gpuScene, ourSettings, samples);
+        still.begin({.camera = launch.camera});
         std::vector<float> before(size_t{launch.width} * launch.height * 4, 0.0f);
         for (launch.frame = 0; launch.frame < samples; ++launch.frame) {
             std::vector<vec4> sum(size_t{launch.width} * launch.height);

@@ -19,6 +19,7 @@
 #include "image/tonemap.h"
 #include "json_text.h"
 #include "progress.h"
+#include "renderer/frame/frame_download.h"
 #include "renderer/frame/network_file.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"

@@ -18,7 +18,7 @@
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "lab/svg_plot.h"
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "scene/model/camera.h"
 
 namespace limpid::cli {
@@ -75,10 +75,10 @@ RenderSettings settingsOf(const BenchOptions& o) {
 /// Measures one sample per launch: the device time of the path-tracing pass alone.
 json traceBench(gpu::Device& device, const BenchOptions& o, const std::string& name) {
     const LoadedScene loaded = load(device, o.device, name);
-    ProgressiveStill still(device, *loaded.gpu, uint64_t{o.frames} + o.warmup);
-    still.update(scene::cameraParams(loaded.scene.cameras.front(), o.width, o.height), settingsOf(o));
+    FrameRenderer still(device, *loaded.gpu, settingsOf(o), uint64_t{o.frames} + o.warmup);
+    still.begin({.camera = scene::cameraParams(loaded.scene.cameras.front(), o.width, o.height)});
     for (uint32_t i = 0; i < o.warmup; ++i) still.launch();
-    still.finish();
+    device.waitIdle();
     const uint64_t raysBefore = still.counters().rays;
     std::vector<double> times;
     for (uint32_t i = 0; i < o.frames; ++i) {
@@ -136,17 +136,18 @@ struct Picture {
     RenderedLayers layers;
 };
 
-Picture renderPicture(ProgressiveStill& still, const CameraParams& camera, RenderSettings settings,
-                      uint64_t samples) {
+Picture renderPicture(gpu::Device& device, scene::GpuScene& scene, const CameraParams& camera,
+                      RenderSettings settings, uint64_t samples) {
     Picture picture;
     settings.samplesPerLaunch = static_cast<uint32_t>(std::min<uint64_t>(samples, 4));
-    still.update(camera, settings);
+    FrameRenderer still(device, scene, settings, samples);
+    still.begin({.camera = camera});
     const Clock::time_point start = Clock::now();
     Progress progress("samples", samples);
-    while (still.samples() < samples && still.launch()) progress.show(still.samples());
-    still.finish();
+    while (still.launch()) progress.show(still.samplesInMean());
+    device.waitIdle();
     picture.seconds = since(start);
-    picture.samples = still.samples();
+    picture.samples = still.samplesInMean();
     picture.rays = still.counters().rays;
     picture.layers = still.download();
     return picture;
@@ -166,13 +167,11 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     settings.pathtrace.maxDepth = 8;
     {
         // Compile the pipelines first, so that this does not count as rendering time.
-        ProgressiveStill warmup(device, *loaded.gpu, 1);
-        warmup.update(camera, settings);
-        warmup.launch();
+        FrameRenderer warmup(device, *loaded.gpu, settings, 1);
+        warmup.render({.camera = camera});
     }
-    ProgressiveStill reference(device, *loaded.gpu, o.referenceSamples);
     settings.seed = 1;  // a noise seed different from the reference's
-    const Picture converged = renderPicture(reference, camera, settings, o.referenceSamples);
+    const Picture converged = renderPicture(device, *loaded.gpu, camera, settings, o.referenceSamples);
     const image::Image truth = beautyOf(converged.layers);
     const float stops = image::autoExposure(truth);
     writePicture(o, sceneStem(name), converged, stops);
@@ -188,8 +187,7 @@ json convergence(gpu::Device& device, const BenchOptions& o, const std::string& 
     // With more than a quarter of the reference's samples, the reference's own noise would dominate.
     const uint64_t maxSamples = std::max<uint64_t>(o.referenceSamples / 4, 1);
     for (uint64_t samples = 1; samples <= maxSamples; samples *= 4) {
-        ProgressiveStill still(device, *loaded.gpu, samples);
-        const Picture noisy = renderPicture(still, camera, settings, samples);
+        const Picture noisy = renderPicture(device, *loaded.gpu, camera, settings, samples);
         add(noisy, image::compare(beautyOf(noisy.layers), truth, stops).psnr);
         writePicture(o, sceneStem(name), noisy, stops);
     }

@@ -14,7 +14,7 @@
 #include "image/tonemap.h"
 #include "lab/bench.h"
 #include "lab/svg_plot.h"
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "scene/model/camera.h"
 
 namespace limpid::cli {
@@ -52,16 +52,13 @@ class Still {
         settings.samplesPerLaunch = perLaunch;
         settings.seed = seed;
         const CameraParams camera = scene::cameraParams(scene_.cameras.front(), o_.width, o_.height);
-        ProgressiveStill warmup(device_, *gpu_, perLaunch);
-        warmup.update(camera, settings);
-        warmup.launch();
-        warmup.finish();
-        ProgressiveStill still(device_, *gpu_, samples);
-        still.update(camera, settings);
+        FrameRenderer warmup(device_, *gpu_, settings, perLaunch);
+        warmup.render({.camera = camera});
+        device_.waitIdle();
+        FrameRenderer still(device_, *gpu_, settings, samples);
         const Clock::time_point start = Clock::now();
-        while (still.launch()) {
-        }
-        still.finish();
+        still.render({.camera = camera});
+        device_.waitIdle();
         const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
         return {beautyOf(still.download()), elapsed.count()};
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "renderer/layers/layers.h"
 #include "scene/model/camera.h"
 
@@ -38,11 +38,11 @@ Image distances(const LayeredImage& layers) {
     return depth;
 }
 
-LayeredImage layersOf(ProgressiveStill& still) {
+LayeredImage layersOf(FrameRenderer& still) {
     return toLayeredImage(still.download(), layerNames(), image::Storage::Float);
 }
 
-void addInputs(ProgressiveStill& still, const std::string& prefix, neural::TensorFile& file) {
+void addInputs(FrameRenderer& still, const std::string& prefix, neural::TensorFile& file) {
     const LayeredImage layers = layersOf(still);
     for (const char* name : {"diffuse", "specular", "albedo"})
         file.tensors[prefix + name] = tensorOf(layers.get(name, "RGB"));
@@ -65,18 +65,17 @@ void addExample(gpu::Device& device, scene::GpuScene& scene, const scene::Camera
     render.seed = settings.seed;
     render.jitter = settings.jitter;
     render.layers = true;
-    ProgressiveStill noisy(device, scene, settings.samples.back());
-    noisy.update(view, render);
+    FrameRenderer noisy(device, scene, render, settings.samples.back());
+    noisy.begin({.camera = view});
     for (const uint32_t count : settings.samples) {
-        while (noisy.samples() < count) noisy.launch();
+        while (noisy.samplesInMean() < count) noisy.launch();
         addInputs(noisy, name + "/" + std::to_string(count) + "/", file);
     }
     render.seed ^= referenceSeed;
     render.samplesPerLaunch = 8;
     render.samplesPerLaunch = samplesPerLaunch(device, render);
-    ProgressiveStill reference(device, scene, settings.referenceSamples);
-    reference.update(view, render);
-    while (reference.launch()) continue;
+    FrameRenderer reference(device, scene, render, settings.referenceSamples);
+    reference.render({.camera = view});
     const LayeredImage layers = layersOf(reference);
     for (const char* side : {"diffuse", "specular"})
         file.tensors[name + "/reference/" + side] = tensorOf(layers.get(side, "RGB"));

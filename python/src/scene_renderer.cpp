@@ -96,7 +96,7 @@ RenderDevice::RenderDevice(const std::string& select)
       }()) {}
 
 SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderOptions& o)
-    : device_(std::move(device)), samples_(o.samples), settings_(settingsOf(o)), scene_(sceneOf(o)) {
+    : device_(std::move(device)), settings_(settingsOf(o)), scene_(sceneOf(o)) {
     if (!(o.timing.framesPerSecond >= 1e-3 && o.timing.framesPerSecond <= 1e6))
         throw UsageError("fps: 0.001 to 1000000 frames per second are possible");
     const std::lock_guard lock(device_->mutex);
@@ -107,28 +107,24 @@ SceneRenderer::SceneRenderer(std::shared_ptr<RenderDevice> device, const RenderO
     const scene::Camera camera = cameraOf(o, scene_);
     sequence_.emplace(scene_, data, camera, pathOf(o, scene_, camera), o.timing);
     scene_.textures.clear();  // they are on the device now
-    if (settings_.pipeline.accumulates()) {
-        accumulated_.emplace(on, *gpuScene_, samples_);
-    } else {
-        denoised_.emplace(on, *gpuScene_, settings_, samples_);
-    }
+    renderer_.emplace(on, *gpuScene_, settings_, o.samples);
 }
 
 SceneRenderer::~SceneRenderer() {
     const std::lock_guard lock(device_->mutex);
-    denoised_.reset();
-    accumulated_.reset();
+    renderer_.reset();
     gpuScene_.reset();
 }
 
 RenderedLayers SceneRenderer::renderLayers(Moment moment) {
-    if (denoised_) {
-        denoised_->render(std::move(moment));
-        return denoised_->download();
+    if (settings_.pipeline.accumulates()) {
+        // Frames may come in any order, so each has a mean of its own.
+        renderer_->begin(std::move(moment));
+        while (renderer_->launch()) continue;
+    } else {
+        renderer_->render(std::move(moment));
     }
-    accumulated_->update(std::move(moment), settings_);
-    while (accumulated_->launch()) continue;
-    return accumulated_->download();
+    return renderer_->download();
 }
 
 std::pair<image::LayeredImage, CameraParams> SceneRenderer::render(uint64_t frame) {

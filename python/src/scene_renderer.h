@@ -57,13 +57,11 @@ class SceneRenderer {
     RenderedLayers renderLayers(Moment moment);
 
     std::shared_ptr<RenderDevice> device_;
-    uint32_t samples_;
     RenderSettings settings_;
     scene::Scene scene_;
     std::optional<scene::GpuScene> gpuScene_;
     std::optional<Sequence> sequence_;
-    std::optional<FrameRenderer> denoised_;
-    std::optional<ProgressiveStill> accumulated_;
+    std::optional<FrameRenderer> renderer_;
 };
 
 }  // namespace limpid::python

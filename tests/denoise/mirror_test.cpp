@@ -94,9 +94,8 @@ class MirrorTest : public RenderTest {
         RenderSettings settings = centred(extent.width, extent.height, 4);
         settings.layers = true;
         settings.pathtrace.throughMirrors = throughMirrors;
-        ProgressiveStill still(device(), gpuScene, 1);
-        still.update(moment_, settings);
-        still.launch();
+        FrameRenderer still(device(), gpuScene, settings, 1);
+        still.render(moment_);
         return still.download();
     }
 

@@ -34,9 +34,8 @@ class SequenceTest : public RenderTest {
         settings.pipeline = {};
         settings.seed = 1000;
         settings.samplesPerLaunch = 4;
-        ProgressiveStill still(device(), *gpuScene_, samples);
-        still.update(sequence_->moment(frame, settings.extent), settings);
-        while (still.launch()) continue;
+        FrameRenderer still(device(), *gpuScene_, settings, samples);
+        still.render(sequence_->moment(frame, settings.extent));
         return beautyOf(still.download());
     }
 

@@ -43,17 +43,16 @@ TEST_F(BlockRendererTest, SumsAreTheRunningMeansOfTheSameSamples) {
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     // The blocks' launches equal those of the running mean: 48 samples are 16 launches of 3.
     const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
-    BlockRenderer renderer(device(), gpuScene, settings, plan);
+    FrameRenderer frames(device(), gpuScene, settings, plan.samples);
+    BlockRenderer renderer(frames, plan);
     renderer.begin({.camera = camera(scene, settings)});
     FrameSums sums(settings.extent, plan, layerNames());
     for (const uint32_t block : {2u, 0u, 1u}) {
         EXPECT_EQ(renderer.render(block, always), plan.samplesOf(block));
         renderer.addTo(sums);
     }
-    ProgressiveStill still(device(), gpuScene, 120);
-    still.update(camera(scene, settings), settings);
-    while (still.launch()) {
-    }
+    FrameRenderer still(device(), gpuScene, settings, 120);
+    still.render({.camera = camera(scene, settings)});
     const RenderedLayers expected = still.download(), got = sums.means();
     EXPECT_EQ(got.samples, 120u);
     EXPECT_EQ(got.ids, expected.ids);
@@ -71,7 +70,9 @@ TEST_F(BlockRendererTest, APartOfABlockIsItsFirstSamples) {
     const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
     const BlockPlan nine{.samples = 9, .blockSamples = 48, .launchSamples = 3};
     FrameSums part(settings.extent, plan, {"depth"}), whole(settings.extent, nine, {"depth"});
-    BlockRenderer renderer(device(), gpuScene, settings, plan), other(device(), gpuScene, settings, nine);
+    FrameRenderer frames(device(), gpuScene, settings, plan.samples);
+    FrameRenderer otherFrames(device(), gpuScene, settings, nine.samples);
+    BlockRenderer renderer(frames, plan), other(otherFrames, nine);
     renderer.begin({.camera = camera(scene, settings)});
     other.begin({.camera = camera(scene, settings)});
     EXPECT_EQ(renderer.render(0, [](uint32_t samples) { return samples < 9; }), 9u);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "renderer/frame/frame_renderer.h"
 #include "renderer/frame/sequence.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/load.h"
@@ -63,9 +64,8 @@ class MotionTest : public TraceTest {
         settings.jitter = Jitter::Off;
         settings.layers = true;
         settings.pathtrace.maxDepth = 0;
-        ProgressiveStill still(device(), gpuScene, 1);
-        still.update(moment, settings);
-        still.launch();
+        FrameRenderer still(device(), gpuScene, settings, 1);
+        still.render(moment);
         const RenderedLayers layers = still.download();
         const std::vector<TestHit> hits = hitsOf(gpuScene, moment.camera);
         const Counts counts =
@@ -187,9 +187,8 @@ TEST_P(MotionTest, WithoutAPreviousFrameMotionIsInvalid) {
     settings.extent = {32, 18};
     settings.layers = true;
     for (const uint64_t frame : {0u, 1u, 5u, 6u}) {
-        ProgressiveStill still(device(), gpuScene, 1);
-        still.update(sequence.moment(frame, settings.extent), settings);
-        still.launch();
+        FrameRenderer still(device(), gpuScene, settings, 1);
+        still.render(sequence.moment(frame, settings.extent));
         const RenderedLayers layers = still.download();
         const bool valid = frame == 1 || frame == 6;
         for (size_t p = 0; p < 32 * 18; ++p)

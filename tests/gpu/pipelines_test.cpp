@@ -76,9 +76,8 @@ TEST_F(PipelinesTest, TemporalAccumulationOfAStillCameraIsTheProgressiveMeanOfTh
     RenderSettings path = settings;
     path.pipeline = {};
     path.layers = true;
-    ProgressiveStill mean(device(), gpuScene, frames);
-    mean.update(camera(scene, path), path);
-    while (mean.launch()) continue;
+    FrameRenderer mean(device(), gpuScene, path, frames);
+    mean.render({.camera = camera(scene, path)});
     const image::Image expected = beautyOf(mean.download());
     const image::Image picture = beautyOf(renderer.download());
     for (size_t i = 0; i < expected.pixels.size(); ++i)
@@ -99,9 +98,8 @@ TEST_F(PipelinesTest, AFrameOfSeveralLaunchesHasTheMeanOfAllItsSamples) {
     RenderSettings path = settings;
     path.pipeline = {};
     path.layers = true;
-    ProgressiveStill mean(device(), gpuScene, 8);
-    mean.update(camera(scene, path), path);
-    while (mean.launch()) continue;
+    FrameRenderer mean(device(), gpuScene, path, 8);
+    mean.render({.camera = camera(scene, path)});
     const RenderedLayers expected = mean.download();
     EXPECT_EQ(layers.samples, 8u);
     EXPECT_EQ(counters.rays, mean.counters().rays);
@@ -159,10 +157,9 @@ TEST_F(PipelinesTest, AmbientOcclusionAndDirectLightAreNearerToTheTruthDenoised)
     for (const char* integrator : {"ao", "direct"}) {
         RenderSettings settings = settingsFor(parsePipeline(integrator), 96, 54);
         settings.samplesPerLaunch = 4;
-        ProgressiveStill mean(device(), gpuScene, 512);
         settings.seed = 1;
-        mean.update(camera(scene, settings), settings);
-        while (mean.launch()) continue;
+        FrameRenderer mean(device(), gpuScene, settings, 512);
+        mean.render({.camera = camera(scene, settings)});
         const image::Image truth = image::displayEncode(beautyOf(mean.download()), 0.0f);
         settings.seed = 2;
         const auto psnrOf = [&](const char* denoiser, uint64_t frames) {
@@ -268,6 +265,30 @@ TEST_F(PipelinesTest, AccumulationGoesOnUntilAnythingChanges) {
         moment.scene.emplace();
         moment.scene->params = gpuScene.params();
         EXPECT_EQ(samplesAfter(moment), 2u) << "something moved";
+    }
+}
+
+/// Unlike frames of render(), which continue the mean of a picture in which nothing changes.
+TEST_F(PipelinesTest, AFrameThatIsBegunContinuesNothing) {
+    const Scene scene = prepared(scene::cornellScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    for (const char* denoiser : {"none", "temporal"}) {
+        RenderSettings settings = settingsFor(parsePipeline("path", denoiser), 24, 16);
+        settings.samplesPerLaunch = 2;
+        FrameRenderer once(device(), gpuScene, settings, 5), renderer(device(), gpuScene, settings, 5);
+        once.render(still(scene, settings, 3));
+        const RenderedLayers expected = once.download();
+        renderer.render(still(scene, settings, 0));
+        renderer.begin(still(scene, settings, 3));
+        EXPECT_THROW(renderer.download(), Error) << "nothing of the frame has been launched";
+        int launches = 0;
+        while (renderer.launch()) ++launches;
+        EXPECT_EQ(launches, settings.pipeline.accumulates() ? 3 : 1);
+        EXPECT_EQ(renderer.download().samples, 5u);
+        EXPECT_EQ(renderer.download().beauty, expected.beauty) << denoiser;
+        EXPECT_EQ(renderer.download().ids, expected.ids);
+        renderer.render(still(scene, settings, 3));
+        EXPECT_NE(renderer.download().beauty, expected.beauty) << denoiser << " has more samples";
     }
 }
 

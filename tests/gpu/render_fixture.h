@@ -1,9 +1,9 @@
-// Renders small pictures with ProgressiveStill, and provides scenes of known brightness.
+// Renders small pictures, and provides scenes of known brightness.
 #pragma once
 
 #include <cmath>
 
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "scene/builtin/mesh_builder.h"
 #include "scene/model/camera.h"
 #include "tests/gpu/gpu_fixture.h"
@@ -61,25 +61,25 @@ class Renderer {
     Renderer(gpu::Device& device, const scene::Scene& scene, scene::Tracer tracer = scene::Tracer::Compute)
         : camera_(scene.cameras.at(0)),
           gpuScene_(device, scene::buildSceneData(scene), {tracer, {}}),
-          still_(device, gpuScene_, UINT64_MAX) {}
+          still_(device, gpuScene_, {}, UINT64_MAX) {}
 
     /// `samples` must be a multiple of the samples per launch.
     Rendered operator()(const RenderSettings& settings, uint64_t samples) {
         if (samples % settings.samplesPerLaunch != 0)
             throw Error("samples are no multiple of those per launch");
         const gpu::Extent extent = settings.extent;
-        still_.update(scene::cameraParams(camera_, extent.width, extent.height), settings, ++version_);
+        still_.setSettings(settings);
+        still_.begin({.camera = scene::cameraParams(camera_, extent.width, extent.height)});
         do {
             still_.launch();
-        } while (still_.samples() < samples);
+        } while (still_.samplesInMean() < samples);
         return {still_.download(), still_.counters()};
     }
 
   private:
     scene::Camera camera_;
     scene::GpuScene gpuScene_;
-    ProgressiveStill still_;
-    uint64_t version_ = 0;
+    FrameRenderer still_;
 };
 
 class RenderTest : public GpuTest {

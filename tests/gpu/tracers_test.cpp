@@ -38,10 +38,10 @@ class TracersTest : public RenderTest {
         const scene::SceneData data = scene::buildSceneData(scene);
         scene::GpuScene gpuScene(device(), data, {tracer, {}});
         const Sequence sequence(scene, data, scene.cameras.at(0), {}, {.framesPerSecond = 10.0});
-        ProgressiveStill still(device(), gpuScene, 1);
+        FrameRenderer still(device(), gpuScene, settings, 1);
         // The previous frame is rendered too, since the next one continues its movement.
         for (uint64_t i = frame > 0 ? frame - 1 : 0; i <= frame; ++i) {
-            still.update(sequence.moment(i, settings.extent), settings);
+            still.begin(sequence.moment(i, settings.extent));
             still.launch();
         }
         return still.download();

@@ -45,7 +45,8 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const AccumulationHeader header = headerOf(job);
     const FramePattern output(o.output);
-    BlockRenderer renderer(job.device, job.scene, job.settings, header.plan);
+    FrameRenderer frames(job.device, job.scene, job.settings, header.plan.samples);
+    BlockRenderer renderer(frames, header.plan);
     LongRender render(renderer, job.sequence, header);
     if (o.longRender.timeLimit > 0.0) {
         const std::chrono::duration<double> limit(o.longRender.timeLimit);
@@ -66,8 +67,8 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
                                   cameraText(job.sequence.camera(frame, job.settings.extent))));
         }
         if (o.dump.empty()) return;
-        if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
-        writeDump(file(frame), renderer.dump(o.dump));
+        if (!frames.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
+        writeDump(file(frame), frames.dump(o.dump));
     };
     summary.complete = render.run({.progress = [&](uint64_t samples) { progress.show(samples); },
                                    .finish = finish,
@@ -77,7 +78,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
     summary.framesToDo = render.framesToDo();
     summary.timings.renderSeconds = render.renderSeconds();
     summary.counts = renderer.counts();
-    if (renderer.hasLaunched()) summary.lastFrame = sumByName(renderer.passTimes());
+    if (frames.hasLaunched()) summary.lastFrame = sumByName(frames.passTimes());
 }
 
 }  // namespace limpid::cli

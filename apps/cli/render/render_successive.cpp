@@ -32,7 +32,7 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
     const FramePattern output(o.output);
     const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure,
                                !job.settings.pipeline.needsExposure()};
-    FrameRenderer renderer(job.device, job.scene, job.settings, static_cast<uint32_t>(samplesOf(o)));
+    FrameRenderer renderer(job.device, job.scene, job.settings, samplesOf(o));
     Progress progress("frames", static_cast<uint64_t>(job.frames));
     const Clock::time_point start = Clock::now();
     PassTimes times;

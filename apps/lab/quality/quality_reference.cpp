@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "cli/progress.h"
 #include "image/io/exr/exr.h"
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "renderer/layers/layers.h"
 #include "renderer/long/render_identity.h"
 
@@ -21,31 +21,19 @@ namespace fs = std::filesystem;
 using image::Image;
 using image::LayeredImage;
 
-RenderedLayers rendered(ProgressiveStill& still, Moment moment, const RenderSettings& settings) {
-    still.update(std::move(moment), settings);
-    while (still.launch()) continue;
-    return still.download();
-}
-
 /// Returns references as they are stored in a file, so that they do not depend on whether they were rendered
 /// or read.
 class ReferenceRenderer {
   public:
-    ReferenceRenderer(gpu::Device& device, scene::GpuScene& scene, RenderSettings settings, uint64_t samples)
-        : first_(device, scene, samples / 2),
-          second_(device, scene, samples - samples / 2),
-          settings_(settings) {
-        settings_.pipeline.denoiser = nullptr;
-        settings_.samplesPerLaunch = 64;
-        settings_.layers = true;
-        if (settings_.jitter == Jitter::Frame) settings_.jitter = Jitter::Pixel;
-    }
+    ReferenceRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
+                      uint64_t samples)
+        : first_(device, scene, settingsOf(settings, 1), samples / 2),
+          second_(device, scene, settingsOf(settings, 2), samples - samples / 2),
+          extent_(settings.extent) {}
 
     LayeredImage render(const Sequence& sequence, uint64_t frame) {
-        settings_.seed = 1;  // a noise seed different from that of the tested frames
-        const RenderedLayers first = rendered(first_, sequence.moment(frame, settings_.extent), settings_);
-        settings_.seed = 2;
-        Image difference = beautyOf(rendered(second_, sequence.moment(frame, settings_.extent), settings_));
+        const RenderedLayers first = layersOf(first_, sequence.moment(frame, extent_));
+        Image difference = beautyOf(layersOf(second_, sequence.moment(frame, extent_)));
         Image picture = beautyOf(first);
         for (size_t i = 0; i < picture.pixels.size(); ++i) {
             const float other = difference.pixels[i];
@@ -60,8 +48,24 @@ class ReferenceRenderer {
     }
 
   private:
-    ProgressiveStill first_, second_;
-    RenderSettings settings_;
+    /// `seed` must be different from that of the tested frames.
+    static RenderSettings settingsOf(RenderSettings settings, uint32_t seed) {
+        settings.seed = seed;
+        settings.pipeline.denoiser = nullptr;
+        settings.samplesPerLaunch = 64;
+        settings.layers = true;
+        if (settings.jitter == Jitter::Frame) settings.jitter = Jitter::Pixel;
+        return settings;
+    }
+
+    static RenderedLayers layersOf(FrameRenderer& renderer, Moment moment) {
+        renderer.begin(std::move(moment));
+        while (renderer.launch()) continue;
+        return renderer.download();
+    }
+
+    FrameRenderer first_, second_;
+    gpu::Extent extent_;
 };
 
 Reference referenceOf(const LayeredImage& layers) {

@@ -13,10 +13,20 @@ bool sameSamples(const RenderSettings& a, const RenderSettings& b) {
            a.pathtrace == b.pathtrace && (!occlusion || a.ambientOcclusion == b.ambientOcclusion);
 }
 
+/// lavapipe ends all loops of an invocation after 65,535 iterations in total; a path in a scene of a million
+/// triangles needs some thousands. More samples would silently lose light.
+constexpr uint32_t maxSamplesPerCpuLaunch = 4;
+
 }  // namespace
 
+uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings) {
+    if (settings.pipeline.takesOneSampleALaunch()) return 1;
+    return device.isCpu() ? std::min(settings.samplesPerLaunch, maxSamplesPerCpuLaunch)
+                          : settings.samplesPerLaunch;
+}
+
 FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
-                             uint32_t samples)
+                             uint64_t samples)
     : device_(device),
       scene_(scene),
       settings_(settings),
@@ -27,54 +37,74 @@ bool FrameRenderer::setSettings(const RenderSettings& settings) {
     const bool anew = !sameSamples(settings, settings_);
     settings_ = settings;
     if (!anew) return false;
-    graph_.resetHistories();
-    state_.reset();  // the old mean is lost, even if the settings are restored later
-    samplesInMean_ = 0;
+    restart();  // the old mean is lost, even if the settings are restored later
     return true;
 }
 
+void FrameRenderer::restart() {
+    graph_.resetHistories();
+    samplesInMean_ = 0;
+}
+
+void FrameRenderer::goTo(Moment moment) {
+    moment_ = std::move(moment);
+    if (moment_.scene) ++sceneVersion_;
+    state_ = {moment_.camera, settings_, sceneVersion_};
+    launches_ = samplesLaunched_ = 0;
+}
+
+void FrameRenderer::begin(Moment moment) {
+    goTo(std::move(moment));
+    restart();
+    images_ = {};
+}
+
 void FrameRenderer::render(Moment moment) {
-    FrameInput input{.camera = moment.camera,
-                     .previousCamera = moment.previousCamera.value_or(moment.camera)};
-    input.hasPrevious = moment.previousCamera.has_value();
-    input.moved = moment.scene ? &*moment.scene : nullptr;
+    const AccumulationState before = state_;
+    goTo(std::move(moment));
+    if (samplesInMean_ > 0 && mustReset(before, state_)) restart();
+    while (launch()) continue;
+}
+
+bool FrameRenderer::launch() {
+    if (samplesLaunched_ >= samples_) return false;
+    const uint32_t most = samplesPerLaunch(device_, settings_);
+    const uint64_t launchesOfAFrame = 1 + (samples_ - 1) / most;
+    LaunchSamples taken{.stream = moment_.number * launchesOfAFrame + launches_};
+    if (settings_.pipeline.accumulates()) {
+        taken.first = samplesInMean_;
+        taken.count = static_cast<uint32_t>(std::min<uint64_t>(most, samples_ - samplesLaunched_));
+    } else {
+        taken.first = moment_.number * samples_;
+        taken.count = static_cast<uint32_t>(samples_);
+    }
+    launch(taken);
+    return true;
+}
+
+void FrameRenderer::launch(const LaunchSamples& taken) {
+    FrameInput input{.camera = moment_.camera,
+                     .previousCamera = moment_.previousCamera.value_or(moment_.camera)};
+    input.hasPrevious = moment_.previousCamera.has_value();
+    input.moved = moment_.scene ? &*moment_.scene : nullptr;
+    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(taken.first, UINT32_MAX));
+    input.stream = taken.stream;
+    input.samplesBefore = samplesInMean_;
+    input.samples = taken.count;
     input.launchSamples = samplesPerLaunch(device_, settings_);
     input.filters = filters_;
-    if (moment.scene) ++sceneVersion_;
-    const uint64_t launches = 1 + (samples_ - 1) / input.launchSamples;
-    input.stream = moment.number * launches;
-    if (settings_.pipeline.accumulates()) return launchAccumulated(input);
-    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(moment.number * samples_, UINT32_MAX));
-    input.samples = samples_;
-    launch(input);
-}
-
-void FrameRenderer::launchAccumulated(const FrameInput& first) {
-    const AccumulationState now{first.camera, settings_, sceneVersion_};
-    if (state_ && mustReset(*state_, now)) {
-        graph_.resetHistories();
-        samplesInMean_ = 0;
-    }
-    state_ = now;
-    FrameInput input = first;
-    for (uint32_t done = 0; done < samples_; done += input.samples) {
-        input.samples = std::min(first.launchSamples, samples_ - done);
-        input.samplesBefore = samplesInMean_;
-        input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(samplesInMean_, UINT32_MAX));
-        launch(input);
-        if (samplesInMean_ == 0)
-            ids_ = images_.ids ? graph_.downloadUint(device_, images_.ids) : std::vector<uint32_t>();
-        input.moved = nullptr;
-        ++input.stream;
-        samplesInMean_ += input.samples;
-    }
-}
-
-void FrameRenderer::launch(FrameInput input) {
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
     if (display_) displayed_ = display_(graph_, images_);
     graph_.execute(device_);
+    moment_.scene.reset();  // the device keeps this state until the next frame
+    ++launches_;
+    samplesLaunched_ += taken.count;
+    if (!settings_.pipeline.accumulates()) return;
+    samplesInMean_ += taken.count;
+    // Only sample 0 goes through the pixel's centre.
+    if (taken.first == 0)
+        ids_ = images_.ids ? graph_.downloadUint(device_, images_.ids) : std::vector<uint32_t>();
 }
 
 std::vector<gpu::PassTime> FrameRenderer::denoisingTimes() {

@@ -1,29 +1,53 @@
-// Renders successive frames by a pipeline that keeps state between frames: the histories of a denoiser, or a
-// mean that continues until something changes.
+// Renders the frames of stills and sequences, launch by launch: the running means of samples, or successive
+// frames of a denoiser, which keeps histories.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/vulkan/device.h"
 #include "renderer/frame/frame.h"
+#include "renderer/frame/frame_download.h"
+#include "renderer/frame/moment.h"
 #include "renderer/frame/reset_rule.h"
-#include "renderer/frame/still.h"
 #include "renderer/layers/layers.h"
 
 namespace limpid {
+
+/// The effective settings.samplesPerLaunch: CPUs have a limit, and some integrators take one sample only.
+uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
+
+/// The samples per pixel that one launch takes.
+struct LaunchSamples {
+    uint64_t stream = 0;  ///< stream of random numbers; unique for each launch
+    uint64_t first = 0;   ///< number of the first one
+    uint32_t count = 1;
+};
 
 class FrameRenderer {
   public:
     /// `samples`: per pixel and frame, at least 1. The scene must outlive this.
     FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
-                  uint32_t samples);
+                  uint64_t samples);
 
     /// Renders the next frame, which shows `moment`. Denoising pipelines keep their histories when anything
-    /// moves. The others restart when camera, scene, size or settings change. Does not wait for the device.
+    /// moves. The others continue the mean until camera, scene, size or settings change. Does not wait for
+    /// the device.
     void render(Moment moment);
+
+    /// Goes to a frame that continues nothing: its mean and its histories are new. Launches render it.
+    void begin(Moment moment);
+    /// Launches the next samples of the frame; a denoising pipeline takes all of them at once. Returns false
+    /// if there are none left. Does not wait for the device.
+    bool launch();
+    /// Launches these samples of the frame instead, for callers with a plan of their own.
+    void launch(const LaunchSamples& taken);
+    /// Makes the next launch the first one of a new mean or of new histories.
+    void restart();
+
     /// Sets the settings of the following frames. Histories continue, unless their samples are of another
     /// kind than the new ones; in that case they restart and this returns true.
     bool setSettings(const RenderSettings& settings);
@@ -40,8 +64,15 @@ class FrameRenderer {
     void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
 
     /// Downloads the last frame; without settings.layers only the layers that make up beauty. Waits for the
-    /// device.
+    /// device. Throws Error before the frame's first launch.
     RenderedLayers download();
+    /// Downloads a layer of floats that the last launch has computed. Waits for the device.
+    std::vector<float> download(const LayerInfo& layer) {
+        return graph_.downloadFloat(device_, images_[layer]);
+    }
+    /// Ids that belong to the mean: those through the pixels' centres.
+    const std::vector<uint32_t>& ids() const { return ids_; }
+    bool hasLaunched() const { return !graph_.passes().empty(); }
     RenderCounters counters();
     /// All zero without temporal accumulation.
     denoise::DisocclusionCounts disocclusionCounts();
@@ -59,22 +90,24 @@ class FrameRenderer {
     }
 
   private:
-    void launch(FrameInput input);
-    void launchAccumulated(const FrameInput& input);
+    void goTo(Moment moment);
 
     gpu::Device& device_;
     scene::GpuScene& scene_;
     RenderSettings settings_;
-    uint32_t samples_;
+    uint64_t samples_;
     gpu::Backing filters_;
     gpu::FrameGraph graph_;
-    std::optional<AccumulationState> state_;  ///< state of the last frame
-    uint64_t sceneVersion_ = 0;               ///< counts the frames in which something moved
-    uint64_t samplesInMean_ = 0;              ///< for pipelines that accumulate
+    Moment moment_;
+    AccumulationState state_;       ///< state of the frame
+    uint64_t sceneVersion_ = 0;     ///< counts the frames in which something moved
+    uint64_t launches_ = 0;         ///< of the frame, so far
+    uint64_t samplesLaunched_ = 0;  ///< of the frame, so far
+    uint64_t samplesInMean_ = 0;    ///< for pipelines that accumulate
     FrameImages images_;
     Display display_;
     gpu::ImageHandle displayed_;
-    std::vector<uint32_t> ids_;  ///< ids of the mean's first launch, through the pixels' centres
+    std::vector<uint32_t> ids_;
 };
 
 }  // namespace limpid

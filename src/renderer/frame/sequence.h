@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "renderer/frame/still.h"
+#include "gpu/graph/frame_graph.h"
+#include "renderer/frame/moment.h"
 #include "scene/framing/camera_path.h"
 #include "scene/motion/scene_animator.h"
 

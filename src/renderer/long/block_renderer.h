@@ -3,10 +3,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
-#include <vector>
 
-#include "renderer/frame/still.h"
+#include "renderer/frame/frame_renderer.h"
 #include "renderer/long/accumulation.h"
 
 namespace limpid {
@@ -16,9 +14,8 @@ BlockPlan planBlocks(const gpu::Device& device, const RenderSettings& settings, 
 
 class BlockRenderer {
   public:
-    /// The scene must outlive this.
-    BlockRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,
-                  const BlockPlan& plan);
+    /// `frames` must outlive this. Its number of samples does not matter.
+    BlockRenderer(FrameRenderer& frames, const BlockPlan& plan) : frames_(frames), plan_(plan) {}
 
     /// Goes to a frame of a sequence, or to the one frame of a still.
     void begin(Moment moment);
@@ -30,29 +27,15 @@ class BlockRenderer {
     /// Adds the samples of the last render(), a whole block or a part of one. Waits for the device.
     void addTo(FrameSums& sums);
 
-    bool hasLaunched() const { return launched_; }
     /// Total over all blocks that were added to sums.
     const SampleCounts& counts() const { return counts_; }
-    std::vector<gpu::PassTime> passTimes() { return graph_.passTimes(device_); }
-    std::vector<std::pair<std::string, image::Image>> dump(const std::string& pass) {
-        return imagesOfPass(graph_, device_, pass);
-    }
 
   private:
-    void launch(uint32_t samples);
-    SampleCounts countsOfBlock();
-
-    gpu::Device& device_;
-    scene::GpuScene& scene_;
-    RenderSettings settings_;
+    FrameRenderer& frames_;
     BlockPlan plan_;
-    gpu::FrameGraph graph_;
-    Moment moment_;
-    FrameImages images_;
-    uint32_t block_ = 0, launchesDone_ = 0, samplesDone_ = 0;
-    std::vector<uint32_t> ids_;  ///< ids of the first launch, whose first sample goes through the centre
+    uint64_t frame_ = 0;
+    uint32_t block_ = 0;
     SampleCounts counts_;
-    bool launched_ = false;
 };
 
 }  // namespace limpid
