@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text/terminal_text.h"
-#include "cli/options/scene_options.h"
 #include "json_text.h"
+#include "scene/model/scene_source.h"
 #include "scene/motion/animation.h"
 
 namespace limpid::cli {
@@ -113,10 +113,8 @@ void printText(const scene::Scene& scene) {
 }  // namespace
 
 void printSceneInfo(const std::string& name, bool asJson) {
-    SceneChoice choice;
-    choice.scene = name;
     // Loaded like in every other command, so a scene without a camera gets one.
-    const scene::Scene scene = loadChosenScene(choice);
+    const scene::Scene scene = scene::openScene({.scene = name});
     if (!asJson) return printText(scene);
     json object{{"scene", name},
                 {"cameras", camerasJson(scene)},

@@ -45,8 +45,7 @@ std::string eyeOptions(const SceneChoice& choice) {
 
 /// Returns the saved settings, overridden by the command line.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
-    viewer::ViewSettings settings{.source = {o.scene.scene, o.scene.environment, o.scene.lights,
-                                             o.scene.background, o.scene.lightFile, o.scene.assetRoot},
+    viewer::ViewSettings settings{.source = o.scene.source,
                                   .animation = o.animation,
                                   .render = {},
                                   .preview = o.preview,
@@ -79,15 +78,9 @@ viewer::ViewSettings settingsOf(const ViewOptions& o) {
 void run([[maybe_unused]] const ViewOptions& o) {
 #ifdef LIMPID_HAVE_VIEWER
     const viewer::ViewSettings settings = settingsOf(o);
-    const auto load = [&](const viewer::SceneSource& source) {
-        SceneChoice choice = o.scene;
-        choice.scene = source.scene;
-        choice.environment = source.environment;
-        choice.lights = source.lights;
-        choice.lightFile.clear();  // the window applies these edits itself
-        choice.background = source.background;
-        choice.assetRoot = source.assetRoot;
-        return loadChosenScene(choice);
+    const auto load = [](scene::SceneSource source) {
+        source.lightFile.clear();  // the window applies these edits itself
+        return scene::openScene(source);
     };
     viewer::view(
         o.device.device, [&](const gpu::Device& device) { return chosenTracer(o.device, device); }, load,

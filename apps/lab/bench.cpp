@@ -56,7 +56,7 @@ double since(Clock::time_point start) {
 
 LoadedScene load(gpu::Device& device, const DeviceChoice& choice, const std::string& name) {
     LoadedScene loaded;
-    loaded.scene = loadChosenScene({.scene = name});
+    loaded.scene = scene::openScene({.scene = name});
     const Clock::time_point start = Clock::now();
     const scene::SceneData data = scene::buildSceneData(loaded.scene);
     loaded.treeSeconds = since(start);

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/options/device_options.h"
-#include "cli/options/scene_options.h"
 #include "cli/pass_times.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::cli {
 

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 struct DenoiseBench {
     DeviceChoice device;
-    SceneChoice scene{.scene = "builtin:cornell"};
+    scene::SceneSource source{.scene = "builtin:cornell"};
     std::string cameraPath = "shake";
     PipelineChoice pipeline;
     std::string preset;
@@ -71,7 +71,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     settings.networks = loadNetworks(device, settings.pipeline.denoiser, o.weights, settings.denoisers);
-    BenchScene scene(device, chosenTracer(o.device, device), o.scene, o.cameraPath);
+    BenchScene scene(device, chosenTracer(o.device, device), o.source, o.cameraPath);
     std::optional<gpu::Backing> filters;
     if (o.filters != "auto") filters = o.filters == "image" ? gpu::Backing::Image : gpu::Backing::Buffer;
     return scene.measure(settings, o.warmup, o.frames, filters);
@@ -102,7 +102,7 @@ void run(const DenoiseBench& o) {
     if (!o.json) return;
     const json object{{"device", device->info().name},
                       {"driver", device->info().driver},
-                      {"scene", o.scene.scene},
+                      {"scene", o.source.scene},
                       {"camera_path", o.cameraPath},
                       {"integrator", nameOf(pipelineOf(o).integrator)},
                       {"denoiser", nameOf(pipelineOf(o).denoiser)},
@@ -120,8 +120,8 @@ void addDenoiseBench(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "denoise", "Time every pass of a frame under a moving camera, and count the bytes it moves");
     auto o = std::make_shared<DenoiseBench>();
-    command->add_option("--scene", o->scene.scene, "Scene to render (builtin:cornell)");
-    command->add_option("--env", o->scene.environment, "Environment map: .hdr or .exr, latitude-longitude");
+    command->add_option("--scene", o->source.scene, "Scene to render (builtin:cornell)");
+    command->add_option("--env", o->source.environment, "Environment map: .hdr or .exr, latitude-longitude");
     command->add_option("--camera-path", o->cameraPath,
                         "Camera path: a JSON file, orbit, dolly or shake (shake)");
     addPipelineOptions(*command, o->pipeline, "path, or the preset's", "atrous, or the preset's");

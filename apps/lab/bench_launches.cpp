@@ -39,7 +39,7 @@ struct Row {
 class Still {
   public:
     Still(gpu::Device& device, const LaunchesBench& o)
-        : device_(device), o_(o), scene_(loadChosenScene({.scene = o.scene})) {
+        : device_(device), o_(o), scene_(scene::openScene({.scene = o.scene})) {
         gpu_ = std::make_unique<scene::GpuScene>(device, scene::buildSceneData(scene_),
                                                  scene::TraceOptions{chosenTracer(o.device, device), {}});
     }

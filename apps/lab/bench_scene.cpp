@@ -9,11 +9,11 @@
 
 namespace limpid::cli {
 
-BenchScene::BenchScene(gpu::Device& device, scene::Tracer tracer, const SceneChoice& choice,
+BenchScene::BenchScene(gpu::Device& device, scene::Tracer tracer, const scene::SceneSource& source,
                        std::string cameraPath)
     : device_(device),
       cameraPath_(std::move(cameraPath)),
-      scene_(loadChosenScene(choice)),
+      scene_(scene::openScene(source)),
       data_(scene::buildSceneData(scene_)),
       gpuScene_(device, data_, {tracer, {}}) {}
 

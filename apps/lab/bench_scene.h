@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/options/scene_options.h"
 #include "gpu/vulkan/device.h"
 #include "renderer/frame/settings.h"
 #include "scene/device/gpu_scene.h"
 #include "scene/model/scene.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::cli {
 
@@ -23,7 +23,7 @@ struct PassCost {
 class BenchScene {
   public:
     /// `cameraPath`: a built-in one or a file. Throws as loading a scene does. The device must outlive it.
-    BenchScene(gpu::Device& device, scene::Tracer tracer, const SceneChoice& choice,
+    BenchScene(gpu::Device& device, scene::Tracer tracer, const scene::SceneSource& source,
                std::string cameraPath = "shake");
 
     uint64_t triangleCount() const { return scene_.triangleCount(); }

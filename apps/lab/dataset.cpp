@@ -15,10 +15,10 @@
 #include "cli/commands.h"
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
-#include "cli/options/scene_options.h"
 #include "cli/progress.h"
 #include "lab/dataset_example.h"
 #include "scene/device/scene_data.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::cli {
 namespace {
@@ -105,7 +105,7 @@ class Dataset {
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
             const std::string name = fmt::format("{:06}", example);
-            const scene::Scene scene = loadChosenScene({.scene = sceneOf(example)});
+            const scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             const scene::SceneData data = scene::buildSceneData(scene);
             scene::GpuScene gpuScene(device, data, {tracer, {}});
             ExampleSettings settings = o_.example;

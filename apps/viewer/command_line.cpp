@@ -14,7 +14,7 @@ std::string triple(const vec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 
-std::string sourceOptions(const SceneSource& source) {
+std::string sourceOptions(const scene::SceneSource& source) {
     std::string text;
     if (!source.environment.empty()) text += " --env " + quoted(source.environment);
     for (const std::string& light : source.lights) text += " --light " + quoted(light);

@@ -5,13 +5,13 @@
 
 #include "playback.h"
 #include "renderer/frame/settings.h"
-#include "scene_source.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::viewer {
 
 /// What decides the frame in the window.
 struct ShownFrame {
-    SceneSource source;
+    scene::SceneSource source;
     std::string clip;     ///< name; empty: the scene moves by none
     std::string weights;  ///< of networks; empty: those that come along
     RenderSettings settings;

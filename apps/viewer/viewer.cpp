@@ -87,13 +87,13 @@ class Viewer {
     void takeOver(const Standing& standing);
 
   private:
-    void load(const SceneSource& source);
+    void load(const scene::SceneSource& source);
     void show(scene::Scene scene);
     void goTo(const scene::Camera& home);
     enum class Arrival { Named, Dropped };
     void open(const std::string& file, Arrival arrival);
     void applyLightRequests();
-    void relight(const SceneSource& source);
+    void relight(const scene::SceneSource& source);
     void startAnew();
     void handleInput(double seconds);
     void fly(float seconds);
@@ -182,7 +182,7 @@ Viewer::Viewer(const gpu::DeviceOptions& options, TracerChoice tracer, SceneLoad
 
 /// Loads a scene; leaves everything unchanged if that fails. The command line's camera and clip apply to its
 /// own scene only.
-void Viewer::load(const SceneSource& source) {
+void Viewer::load(const scene::SceneSource& source) {
     scene::Scene scene = load_(source);
     if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
     const scene::Camera home = scene.cameras.front();
@@ -222,7 +222,7 @@ void Viewer::goTo(const scene::Camera& home) {
 /// Opens an environment map around the current scene, or a scene.
 void Viewer::open(const std::string& file, Arrival arrival) {
     const std::string extension = fs::path(file).extension().string();
-    SceneSource source = settings_.source;
+    scene::SceneSource source = settings_.source;
     if (extension == ".hdr" || extension == ".exr" || extension == ".pic") {
         source.environment = file;
         source.background.clear();
@@ -239,7 +239,7 @@ void Viewer::open(const std::string& file, Arrival arrival) {
 void Viewer::applyLightRequests() {
     PanelRequests& asked = panel_.asked;
     if (!asked.relight && !asked.addPoint && !asked.addSun && asked.removeLamp < 0) return;
-    SceneSource source = settings_.source;
+    scene::SceneSource source = settings_.source;
     if (asked.addPoint || asked.addSun)
         source.lights.push_back(newLamp(asked.addSun, panel_.pose.eye, panel_.pose.target, panel_.exposure));
     if (asked.removeLamp >= 0) removeLamp(asked.removeLamp, source, panel_.lights);
@@ -250,7 +250,7 @@ void Viewer::applyLightRequests() {
 }
 
 /// Loads the scene again with other lights; everything else is kept.
-void Viewer::relight(const SceneSource& source) {
+void Viewer::relight(const scene::SceneSource& source) {
     scene::Scene scene = load_(source);
     const double time = playback_.time();
     if (stage_->moves()) scene::chooseClip(scene, scene::clipChoice(stage_->scene()));

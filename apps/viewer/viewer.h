@@ -10,12 +10,12 @@
 #include "renderer/frame/settings.h"
 #include "scene/device/tracer.h"
 #include "scene/model/scene.h"
-#include "scene_source.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::viewer {
 
 struct ViewSettings {
-    SceneSource source;
+    scene::SceneSource source;
     std::string startCamera;       ///< options of the command line that chose the camera of the first scene;
                                    ///< empty: its first
     std::string animation;         ///< clip by name or number, or "all"; empty: the first one
@@ -42,7 +42,7 @@ struct ViewSettings {
 using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
 
 /// A complete scene (scene/model/prepare.h). Throws InputError, and UsageError.
-using SceneLoader = std::function<scene::Scene(const SceneSource& source)>;
+using SceneLoader = std::function<scene::Scene(const scene::SceneSource& source)>;
 
 /// Opens the window and returns when it is closed. Throws Error where there is no display, or a device that
 /// cannot show pictures; and what the loader throws.

@@ -153,21 +153,21 @@ RenderOptions optionsOf(const py::kwargs& given) {
     const auto take = [&](const char* name, auto& member) {
         member = given[name].cast<std::remove_reference_t<decltype(member)>>();
     };
-    take("scene", o.scene);
+    take("scene", o.source.scene);
     take("width", o.width);
     take("height", o.height);
     take("samples", o.samples);
     take("seed", o.seed);
     take("denoiser", o.denoiser);
     take("assignments", o.assignments);
-    take("environment", o.environment);
+    take("environment", o.source.environment);
     take("camera", o.camera);
     take("eye", o.eye);
     take("target", o.target);
     take("fov", o.fov);
     take("jitter", o.jitter);
     take("weights", o.weights);
-    take("asset_root", o.assetRoot);
+    take("asset_root", o.source.assetRoot);
     take("fps", o.timing.framesPerSecond);
     take("frames", o.frames);
     take("animation", o.animation);

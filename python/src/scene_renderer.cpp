@@ -4,12 +4,8 @@
 #include "renderer/frame/network_file.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/layers/layers.h"
-#include "scene/builtin/builtin.h"
 #include "scene/framing/camera_path.h"
 #include "scene/model/camera.h"
-#include "scene/model/environment.h"
-#include "scene/model/load.h"
-#include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 
 namespace limpid::python {
@@ -37,37 +33,14 @@ RenderSettings settingsOf(const RenderOptions& o) {
 }
 
 scene::Scene sceneOf(const RenderOptions& o) {
-    constexpr std::string_view prefix = "builtin:";
-    const bool builtin = o.scene.starts_with(prefix);
-    scene::Scene scene;
-    if (builtin) {
-        scene = scene::builtinScene(std::string_view(o.scene).substr(prefix.size()));
-    } else {
-        scene::LoadOptions options;
-        options.assetRoot =
-            o.assetRoot.empty() ? scene::defaultAssetRoot(o.scene) : std::filesystem::path(o.assetRoot);
-        scene = scene::loadScene(o.scene, options);
-    }
-    if (!o.environment.empty()) scene.environment = scene::loadEnvironment(o.environment);
-    scene::prepare(scene, builtin ? scene::SkyRule::WithoutLights : scene::SkyRule::InTheDark);
+    scene::Scene scene = scene::openScene(o.source);
     const bool atRest = o.animation == "none" || (o.animation.empty() && scene.rig.clips.empty());
     if (!atRest) scene::chooseClip(scene, o.animation);
     return scene;
 }
 
-scene::Camera namedCamera(const scene::Scene& scene, const std::string& choice) {
-    if (choice.empty()) return scene.cameras.front();
-    std::string known;
-    for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        const scene::Camera& camera = scene.cameras[i];
-        if (camera.name == choice || std::to_string(i) == choice) return camera;
-        known += " " + std::to_string(i) + " '" + camera.name + "'";
-    }
-    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
-}
-
 scene::Camera cameraOf(const RenderOptions& o, const scene::Scene& scene) {
-    const scene::Camera camera = namedCamera(scene, o.camera);
+    const scene::Camera camera = scene::findCamera(scene, o.camera);
     if (o.eye.empty() && o.target.empty() && o.fov == 0.0f) return camera;
     if (o.eye.size() != 3 || o.target.size() != 3)
         throw UsageError("eye and target go together, and fov with them");

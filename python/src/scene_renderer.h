@@ -14,21 +14,22 @@
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/frame/sequence.h"
 #include "scene/device/gpu_scene.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::python {
 
 /// The options of render() in limpid/_rendering.py, which documents them. Empty: not given.
 struct RenderOptions {
-    std::string scene;
+    scene::SceneSource source;
     uint32_t width = 0, height = 0;
     uint32_t samples = 1;  ///< per pixel and frame
     uint32_t seed = 0;
     std::string denoiser;
     std::vector<std::string> assignments;  ///< each as for --set
-    std::string environment, camera;
+    std::string camera;
     std::vector<float> eye, target;
     float fov = 0.0f;  ///< degrees
-    std::string jitter, weights, assetRoot;
+    std::string jitter, weights;
     SequenceTiming timing;
     uint64_t frames = 1;    ///< length of a built-in camera path
     std::string animation;  ///< empty: the first clip, if there is one

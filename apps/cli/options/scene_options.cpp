@@ -1,15 +1,8 @@
 #include "cli/options/scene_options.h"
 
-#include <fmt/format.h>
-
 #include "base/error.h"
 #include "scene/builtin/builtin.h"
-#include "scene/framing/own_light.h"
 #include "scene/model/camera.h"
-#include "scene/model/environment.h"
-#include "scene/model/light_file.h"
-#include "scene/model/load.h"
-#include "scene/model/prepare.h"
 
 namespace limpid::cli {
 
@@ -18,17 +11,6 @@ namespace {
 /// Squares of coordinates must stay within the range of a float.
 constexpr double farthest = 1e18;
 
-const scene::Camera& namedCamera(const scene::Scene& scene, const std::string& choice) {
-    if (choice.empty()) return scene.cameras.front();
-    std::string known;
-    for (size_t i = 0; i < scene.cameras.size(); ++i) {
-        const scene::Camera& camera = scene.cameras[i];
-        if (camera.name == choice || std::to_string(i) == choice) return camera;
-        known += fmt::format(" {} '{}'", i, camera.name);
-    }
-    throw UsageError("the scene has no camera '" + choice + "'; its cameras are" + known);
-}
-
 }  // namespace
 
 void addSceneOptions(CLI::App& command, SceneChoice& choice) {
@@ -36,19 +18,20 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
     command
         .add_option(
-            "SCENE", choice.scene,
+            "SCENE", choice.source.scene,
             "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
         ->required();
-    command.add_option("--env", choice.environment, "Environment map: .hdr or .exr, latitude-longitude");
+    command.add_option("--env", choice.source.environment,
+                       "Environment map: .hdr or .exr, latitude-longitude");
     command
-        .add_option("--light", choice.lights,
+        .add_option("--light", choice.source.lights,
                     "Add a white light: point,X,Y,Z,INTENSITY, or sun,X,Y,Z,INTENSITY shining in that "
                     "direction (repeatable)")
         ->allow_extra_args(false);
-    command.add_option("--lights", choice.lightFile,
+    command.add_option("--lights", choice.source.lightFile,
                        "Changes to the scene's lights, as saved by the window (JSON)");
     command.add_option(
-        "--background", choice.background,
+        "--background", choice.source.background,
         "Constant radiance from all directions instead of an environment: R,G,B; 0,0,0 is black");
     command.add_option("--camera", choice.camera, "Camera by name or number; default: the first");
     const CLI::Range reachable(-farthest, farthest);
@@ -68,48 +51,19 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
         .add_option("--fov", choice.fov,
                     "Vertical field of view of your own camera, degrees; more shows more")
         ->check(CLI::Range(0.01, 179.0));
-    command.add_option("--asset-root", choice.assetRoot,
+    command.add_option("--asset-root", choice.source.assetRoot,
                        "Folder that the scene may read textures, buffers and materials from, besides its "
                        "own; default: the folder above, unless that is / or contains home folders");
     command
-        .add_option("--max-image-memory", choice.maxImageMemory,
+        .add_option("--max-image-memory", choice.source.maxImageMemory,
                     "Maximum host memory of one texture or environment map, as in 512MB or 8GB (2GB); larger "
                     "ones are scaled down")
         ->transform(CLI::AsSizeValue(false))
         ->check(CLI::Range(uint64_t{1} << 20, uint64_t{1} << 50));
 }
 
-scene::Scene loadChosenScene(const SceneChoice& choice) {
-    constexpr std::string_view prefix = "builtin:";
-    const bool builtin = choice.scene.starts_with(prefix);
-    const auto fromFile = [&] {
-        const scene::LoadOptions options{.assetRoot = choice.assetRoot.empty()
-                                                          ? scene::defaultAssetRoot(choice.scene)
-                                                          : std::filesystem::path(choice.assetRoot),
-                                         .maxImageMemory = choice.maxImageMemory};
-        return scene::loadScene(choice.scene, options);
-    };
-    scene::Scene scene = builtin ? scene::builtinScene(choice.scene.substr(prefix.size())) : fromFile();
-    if (!choice.environment.empty())
-        scene.environment = scene::loadEnvironment(choice.environment, choice.maxImageMemory);
-    scene::OwnLight own{{}, scene::parseBackground(choice.background)};
-    for (const std::string& text : choice.lights) {
-        if (const auto lamp = scene::parseLamp(text)) own.lamps.push_back(*lamp);
-    }
-    scene::addOwnLight(scene, own);
-    // Built-in scenes may be dark on purpose.
-    scene::prepare(scene, !choice.background.empty() ? scene::SkyRule::Never
-                          : builtin                  ? scene::SkyRule::WithoutLights
-                                                     : scene::SkyRule::InTheDark);
-    if (!choice.lightFile.empty()) {
-        const std::vector<scene::LightControl> before = scene::lightControlsOf(scene);
-        scene::applyLightControls(scene, scene::readLightFile(choice.lightFile, before), before);
-    }
-    return scene;
-}
-
 scene::Camera chosenCamera(const scene::Scene& scene, const SceneChoice& choice) {
-    scene::Camera camera = namedCamera(scene, choice.camera);
+    scene::Camera camera = scene::findCamera(scene, choice.camera);
     if (choice.eye.empty() && choice.target.empty() && choice.up.empty() && choice.fov == 0.0f) return camera;
     if (choice.eye.size() != 3 || choice.target.size() != 3)
         throw UsageError("--eye and --target go together, three numbers each; --fov and --up go with them");

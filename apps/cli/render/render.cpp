@@ -79,7 +79,7 @@ void render(const RenderOptions& o) {
     const FramePattern output(o.output);
     RenderSummary summary;
     const Clock::time_point started = Clock::now();
-    scene::Scene scene = loadChosenScene(o.scene);
+    scene::Scene scene = scene::openScene(o.scene.source);
     chooseAnimation(o.sequence, output, scene);
     const scene::Camera camera = chosenCamera(scene, o.scene);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);

@@ -20,7 +20,7 @@ AccumulationHeader headerOf(const RenderJob& job) {
     const auto frames = static_cast<uint64_t>(job.frames);
     AccumulationHeader header;
     const RenderIdentity identity{.version = LIMPID_VERSION,
-                                  .sceneName = fs::path(o.scene.scene).filename().string(),
+                                  .sceneName = fs::path(o.scene.source.scene).filename().string(),
                                   .scene = job.sceneContent,
                                   .cameras = cameraHash(job.sequence, frames, settings.extent),
                                   .camera = cameraText(job.sequence.camera(0, settings.extent))};

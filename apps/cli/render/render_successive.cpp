@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t frame, uint64_t samples) {
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
     return {{"limpid.version", LIMPID_VERSION},
-            {"limpid.scene", std::filesystem::path(job.options.scene.scene).filename().string()},
+            {"limpid.scene", std::filesystem::path(job.options.scene.source.scene).filename().string()},
             {"limpid.integrator", std::string(nameOf(job.settings.pipeline.integrator))},
             {"limpid.denoiser", std::string(nameOf(job.settings.pipeline.denoiser))},
             {"limpid.samples", std::to_string(samples)},

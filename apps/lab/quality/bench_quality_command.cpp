@@ -129,7 +129,7 @@ struct TooLarge : Error {
 
 LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence) {
     LoadedSequence loaded;
-    loaded.scene = loadChosenScene({.scene = sequence.scene, .environment = sequence.environment});
+    loaded.scene = scene::openScene({.scene = sequence.scene, .environment = sequence.environment});
     const uint64_t triangles = loaded.scene.triangleCount();
     if (o.quick && triangles >= quick::maxTriangles) {
         throw TooLarge(

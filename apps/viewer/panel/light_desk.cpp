@@ -18,7 +18,7 @@ bool sameLight(const LightControl& a, const LightControl& b) {
 
 }  // namespace
 
-void LightDesk::show(const std::vector<LightControl>& loaded, const SceneSource& source) {
+void LightDesk::show(const std::vector<LightControl>& loaded, const scene::SceneSource& source) {
     lights = original = loaded;
     const auto lamps =
         std::ranges::count(loaded, LightControl::Kind::Lamp, [](const LightControl& c) { return c.kind; });
@@ -46,7 +46,7 @@ std::string LightDesk::backgroundText() const {
     return hasBackground ? fmt::format("{},{},{}", background.r, background.g, background.b) : std::string();
 }
 
-void removeLamp(int index, SceneSource& source, LightDesk& desk) {
+void removeLamp(int index, scene::SceneSource& source, LightDesk& desk) {
     const auto number = static_cast<size_t>(index - desk.firstAdded);
     if (index < desk.firstAdded || number >= source.lights.size()) return;
     source.lights.erase(source.lights.begin() + static_cast<std::ptrdiff_t>(number));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/model/light_control.h"
-#include "viewer/scene_source.h"
+#include "scene/model/scene_source.h"
 
 namespace limpid::viewer {
 
@@ -17,7 +17,7 @@ struct LightDesk {
     vec3 background{0.5f};
 
     /// Of a scene just loaded from `source`.
-    void show(const std::vector<scene::LightControl>& loaded, const SceneSource& source);
+    void show(const std::vector<scene::LightControl>& loaded, const scene::SceneSource& source);
     /// Takes over what a hand did to lights that are still there. `sameSky`: the environment is one of them.
     void carry(const LightDesk& before, bool sameSky = true);
     bool isChanged() const { return lights != original; }
@@ -28,7 +28,7 @@ struct LightDesk {
 };
 
 /// An added lamp goes: its text from `source`, and `desk` as if it had never been there.
-void removeLamp(int index, SceneSource& source, LightDesk& desk);
+void removeLamp(int index, scene::SceneSource& source, LightDesk& desk);
 
 /// As for --light: a lamp where the eye is, or a sun from above, that is neither dim nor blinding at this
 /// exposure for what the camera looks at.

@@ -35,11 +35,11 @@ TEST(LightDesk, KnowsWhatWasAdded) {
 }
 
 TEST(LightDesk, KeepsChangesWhenAnotherLightComesOrGoes) {
-    SceneSource source{.scene = "a",
-                       .environment = {},
-                       .lights = {"point,0,0,0,1", "point,1,1,1,1"},
-                       .background = {},
-                       .lightFile = {}};
+    scene::SceneSource source{.scene = "a",
+                              .environment = {},
+                              .lights = {"point,0,0,0,1", "point,1,1,1,1"},
+                              .background = {},
+                              .lightFile = {}};
     LightDesk desk;
     desk.show(loaded(3), source);  // lamp 0 belongs to the scene
     desk.lights[0].on = false;
