@@ -9,8 +9,8 @@
 
 #include "accumulate.comp.h"
 #include "base/error.h"
-#include "svgf_surfaces.comp.h"
-#include "svgf_surfaces_buffers.comp.h"
+#include "surfaces.comp.h"
+#include "surfaces_buffers.comp.h"
 
 namespace limpid::viewer {
 namespace {
@@ -80,7 +80,7 @@ TEST_F(ShaderReloadInAFolder, CompilesAndReflectsWhatIsSaved) {
 /// Of two variants of one file, as CMake compiles them (limpid_shader_variants).
 TEST_F(ShaderReloadInAFolder, CompilesVariantsOfAShader) {
     const fs::path source = fs::path(LIMPID_SOURCE_DIR) / "src",
-                   file = "denoise/methods/svgf/shaders/svgf_surfaces.comp";
+                   file = "denoise/stages/surfaces/surfaces.comp";
     std::vector<fs::path> needed = includedFiles(source, source / file);
     needed.push_back(source / file);
     for (const fs::path& path : needed) {
@@ -90,7 +90,7 @@ TEST_F(ShaderReloadInAFolder, CompilesVariantsOfAShader) {
     }
     ShaderReload reload(folder);
     fs::last_write_time(folder / file, fs::file_time_type::clock::now() + std::chrono::hours(1));
-    const auto result = reload.poll({shaders::svgf_surfaces_comp, shaders::svgf_surfaces_buffers_comp});
+    const auto result = reload.poll({shaders::surfaces_comp, shaders::surfaces_buffers_comp});
     ASSERT_TRUE(result);
     EXPECT_EQ(result->fault, "");
     EXPECT_EQ(result->compiled, 2);

@@ -361,7 +361,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
             Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
             Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
-            Case{"DarkAlbedo", moving, {.minAlbedo = 0.02f}},
+            Case{"DarkAlbedo", moving, {.minAlbedo = 0.1f}},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
             Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},
             Case{"Slow", moving, {.alpha = 0.05f, .alphaMoments = 0.1f, .alphaFast = 0.3f, .levels = 1}},

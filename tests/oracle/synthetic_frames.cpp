@@ -126,6 +126,10 @@ class Moments {
         append(layer, dvec3(was->pixel - is->pixel, options_.scale * (was->distance - is->distance)), 1.0);
     }
 
+    static bool reflects(const SyntheticHit& hit) {
+        return hit.any() && hit.instance != SyntheticScene::Wall && hit.instance != SyntheticScene::Emitter;
+    }
+
     /// Appends the motion of a static point reflected behind the hit's plane: its pixel moves like the point,
     /// its distance is that of the plane in its pixel. `choice` in (0, 1) selects deliberate errors.
     void appendReflectionMotion(std::vector<float>& layer, const SyntheticHit& hit, const SyntheticRay& ray,
@@ -146,9 +150,6 @@ class Moments {
   private:
     static CameraParams cameraOf(const SyntheticOptions& o, int number, uint32_t width, uint32_t height) {
         return syntheticCamera(number, o.cameraMoves, o.orthographic, o.scale, width, height);
-    }
-    static bool reflects(const SyntheticHit& hit) {
-        return hit.any() && hit.instance != SyntheticScene::Wall && hit.instance != SyntheticScene::Emitter;
     }
     /// Returns how far behind the hit's previous plane the previous camera saw a point.
     double depthBehindPlane(const dvec3& point, const SyntheticHit& hit) const {
@@ -206,6 +207,9 @@ denoise::HostFrame SyntheticScene::frame(int number, uint32_t width, uint32_t he
         append(frame.depth, hit.any() ? dvec3(options_.scale * hit.distance, 1.0, 0.0) : dvec3(0.0));
         moments.appendMotion(frame.motion, hit, ray);
         moments.appendReflectionMotion(frame.reflectionMotion, hit, ray, noise.choice(p));
+        const bool reflects = moments.reflects(hit);
+        append(frame.roughness, dvec3(hit.any() && !reflects ? 0.6 : 0.0, 0.0, 0.0));
+        append(frame.hitDistance, reflects ? dvec3(options_.scale * reflectionDepth, 1.0, 0.0) : dvec3(0.0));
         frame.ids.insert(frame.ids.end(), {hit.instance, hit.instance});
     }
     return frame;

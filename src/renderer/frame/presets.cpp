@@ -39,6 +39,7 @@ Preset historyTrackingCourse() {
                         "atrous.sample_target=0",
                         "atrous.plane=off",
                         "atrous.demodulate=on",
+                        "atrous.min_albedo=0.1",
                         "atrous.color_factor=0",
                         "taa.frames=1",
                         "pathtrace.through_mirrors=off"}};

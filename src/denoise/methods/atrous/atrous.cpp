@@ -37,8 +37,9 @@ Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const Atro
     const Demodulated signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
-    const AtrousDemodulateParams params{input.camera, extent.width, extent.height, settings.plane ? 1u : 0u,
-                                        minAlbedo(settings)};
+    const AtrousDemodulateParams params{input.camera,        extent.width,
+                                        extent.height,       settings.plane ? 1u : 0u,
+                                        minAlbedo(settings), light.minAlbedo};
     const bool buffers = input.filters == Backing::Buffer;
     graph.dispatch(
         {.pass = "atrous/demodulate",
@@ -147,7 +148,8 @@ DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input
                 {}};
     const TemporalImages accumulated = accumulateTemporally(graph, input, settings.temporal);
     if (settings.temporal.showDisocclusion) return composeTemporal(graph, input, accumulated, settings);
-    const gpu::ImageHandle filtered = filterAtrous(graph, input, {accumulated.color, {}}, settings.atrous);
+    const gpu::ImageHandle filtered =
+        filterAtrous(graph, input, {accumulated.color, {}, accumulated.minAlbedo}, settings.atrous);
     return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion};
 }
 

@@ -15,7 +15,7 @@ struct AtrousSettings {
     float sampleTarget = 32.0f;
     bool plane = true;
     bool demodulate = true;
-    float minAlbedo = 0.1f;
+    float minAlbedo = 0.05f;
     float colorFactor = 0.0f;
     bool operator==(const AtrousSettings&) const = default;
 };
@@ -24,6 +24,7 @@ struct AtrousSettings {
 /// sum of two images of one frame.
 struct AtrousLight {
     gpu::ImageHandle first, second;
+    float minAlbedo = 0.0f;  ///< above 0: it is divided by the albedo already (TemporalImages)
 };
 
 /// The filtered beauty, rgba32f, alpha 1: `light` filtered, plus the frame's emission. Passes:

@@ -26,7 +26,9 @@ void main() {
     const ivec2 at = ivec2(pixel);
     vec4 light = imageLoad(lightA, at);
     if (SUM_OF_TWO) light = vec4(light.rgb + imageLoad(lightB, at).rgb, 1.0);
-    const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) / modulation(imageLoad(albedo, at), params.minAlbedo);
+    const vec4 a = imageLoad(albedo, at);
+    const vec3 factor = modulation(a, params.givenMinAlbedo) / modulation(a, params.minAlbedo);
+    const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) * factor;
     const float z = hitDistance(imageLoad(depth, at));
     float d = z;
     if (params.plane != 0u) {

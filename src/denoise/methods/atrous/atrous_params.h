@@ -12,8 +12,9 @@ struct AtrousDemodulateParams {
     CameraParams camera;
     uint width;
     uint height;
-    uint plane;       // depth is measured along `forward`, not along the ray
-    float minAlbedo;  // 0: light is filtered with its albedo
+    uint plane;            // depth is measured along `forward`, not along the ray
+    float minAlbedo;       // 0: light is filtered with its albedo
+    float givenMinAlbedo;  // above 0: the given light is already divided by the albedo
 };
 
 struct AtrousLevelParams {

@@ -17,7 +17,7 @@ namespace limpid::denoise {
 struct BilateralSettings {
     int radius = 6;
     float normalPower = 32.0f;
-    float minAlbedo = 0.1f;
+    float minAlbedo = 0.05f;
     float plane = 0.01f;
     bool operator==(const BilateralSettings&) const = default;
 };

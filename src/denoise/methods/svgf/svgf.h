@@ -11,7 +11,7 @@ namespace limpid::denoise {
 struct SvgfSettings {
     bool separate = true;
     bool demodulate = true;
-    float minAlbedo = 0.1f;
+    float minAlbedo = 0.01f;
     float alpha = 0.1f;
     float alphaMoments = 0.1f;
     float alphaFast = 0.5f;

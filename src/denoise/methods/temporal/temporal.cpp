@@ -92,7 +92,6 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
     using gpu::Format;
     const gpu::Extent extent = graph.extent(input.diffuse);
     const gpu::History color = graph.history("temporal/color", Format::RGBA32Float, extent);
-    const gpu::History albedo = graph.history("temporal/albedo", Format::RGBA32Float, extent);
     const Surfaces surfaces = recordSurfaces(graph, input);
     const bool buffers = input.filters == gpu::Backing::Buffer;
     const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
@@ -110,14 +109,12 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
                       {"surfacesBefore", surfaces.surfaces.previous},
                       {"instancesBefore", surfaces.instances.previous},
                       {"colorBefore", color.previous},
-                      {"albedoBefore", albedo.previous},
                       {"color", color.current},
-                      {"albedoNow", albedo.current},
                       {"disocclusion", disocclusion}},
          .params = gpu::paramsOf(params),
          .constants = {},
          .extent = extent});
-    return {color.current, disocclusion};
+    return {color.current, disocclusion, params.minAlbedo};
 }
 
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
@@ -134,9 +131,11 @@ DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
 
 DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
                                const TemporalImages& accumulated, const FilterSettings& settings) {
-    const gpu::ImageHandle beauty =
-        compose(graph, "temporal/compose",
-                {.light = accumulated.color, .albedo = input.albedo, .emission = input.emission});
+    const gpu::ImageHandle beauty = compose(graph, "temporal/compose",
+                                            {.light = accumulated.color,
+                                             .albedo = input.albedo,
+                                             .emission = input.emission,
+                                             .minAlbedo = accumulated.minAlbedo});
     const gpu::ImageHandle picture = settings.temporal.showDisocclusion
                                          ? showDisocclusion(graph, beauty, accumulated.disocclusion)
                                          : antialias(graph, input, beauty, settings.taa);

@@ -16,7 +16,7 @@ struct TemporalSettings {
     bool relative = true;
     bool search = true;
     bool demodulate = true;
-    float minAlbedo = 0.1f;
+    float minAlbedo = 0.02f;
     float maxHistory = 8.0f;
     bool greyRestart = false;
     float grey = 0.5f;
@@ -27,13 +27,15 @@ struct TemporalSettings {
 };
 
 struct TemporalImages {
-    gpu::ImageHandle color;         ///< rgba32f: mean of diffuse + specular, cd/m^2; number of frames in it
+    /// rgba32f: the mean of diffuse + specular, cd/m^2, divided by the albedo (modulation() in
+    /// stages/guides.glsl with `minAlbedo`); the number of frames in it
+    gpu::ImageHandle color;
     gpu::ImageHandle disocclusion;  ///< r32ui: DISOCCLUSION_* and SAMPLE_REJECTED of temporal_params.h
+    float minAlbedo = 0.0f;         ///< 0: `color` contains the albedo
 };
 
-/// One frame. Passes: "surfaces", "temporal/accumulate". `color` is a history of the graph, and so are
-/// "temporal/albedo" and the surfaces: the pass reads those of the previous frame. They need no clearing when
-/// the camera moves.
+/// One frame. Passes: "surfaces", "temporal/accumulate". `color` and the surfaces are histories of the graph:
+/// the pass reads those of the previous frame. They need no clearing when the camera moves.
 TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
                                     const TemporalSettings& settings);
 

@@ -20,14 +20,14 @@ layout(set = 0, binding = 6, rgba32f) uniform readonly image2D motion;
 layout(set = 0, binding = 7, rgba32f) uniform readonly image2D previousNormal;
 READ_UINT2(8, surfacesBefore);
 layout(set = 0, binding = 9, r32ui) uniform readonly uimage2D instancesBefore;
-layout(set = 0, binding = 10, rgba32f) uniform readonly image2D colorBefore;  // mean | frames
-layout(set = 0, binding = 11, rgba32f) uniform readonly image2D albedoBefore;
-layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D color;
-layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D albedoNow;
-layout(set = 0, binding = 14, r32ui) uniform writeonly uimage2D disocclusion;
+layout(set = 0, binding = 10, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
+layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D color;
+layout(set = 0, binding = 12, r32ui) uniform writeonly uimage2D disocclusion;
+
+const float MAX_FLOAT = 3.4e38;
 
 struct Past {
-    vec4 mean;  // light without albedo; frames in it
+    vec4 mean;  // without albedo; frames in it
 };
 
 const Past NO_PAST = Past(vec4(0.0));
@@ -40,9 +40,7 @@ float framesOf(Past past) {
     return past.mean.w;
 }
 
-void loadRest(inout Past there, ivec2 at) {
-    there.mean.rgb /= modulation(imageLoad(albedoBefore, at), params.minAlbedo);
-}
+void loadRest(inout Past there, ivec2 at) {}
 
 void addPast(inout Past sum, Past tap, float weight) {
     sum.mean += weight * tap.mean;
@@ -54,9 +52,9 @@ Past dividedBy(Past sum, float weight) {
 
 #include "denoise/stages/reproject/history.glsl"
 
-vec4 updated(vec4 before, vec3 radiance) {
+vec4 updated(vec4 before, vec3 x) {
     const float count = min(before.w + 1.0, params.maxHistory);
-    return vec4(before.rgb + (radiance - before.rgb) / count, count);
+    return vec4(before.rgb + (x - before.rgb) / count, count);
 }
 
 uint failureOf(bool hit, bool onScreen, Past past) {
@@ -70,7 +68,8 @@ void main() {
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
     const vec3 radiance = imageLoad(diffuse, at).rgb + imageLoad(specular, at).rgb;
-    const vec3 reflected = finiteOr(imageLoad(albedo, at).rgb, vec3(1.0));
+    const vec3 divisor = modulation(imageLoad(albedo, at), params.minAlbedo);
+    const vec3 x = clamp(radiance / divisor, -MAX_FLOAT, MAX_FLOAT);
     const vec4 moved = imageLoad(motion, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
 
@@ -78,18 +77,17 @@ void main() {
     const bool hit = uintBitsToFloat(surface.y) > 0.0;
     const uint failure =
         failureOf(hit, reprojectionOf(moved, vec2(pixel), vec2(params.width, params.height)).onScreen, past);
-    vec4 before = vec4(past.mean.rgb * modulation(vec4(reflected, 0.0), params.minAlbedo), past.mean.w);
-    vec4 now = updated(before, radiance);
+    vec4 before = past.mean;
+    vec4 now = updated(before, x);
     if (failure != DISOCCLUSION_NONE) {
         before = vec4(0.0);
         const bool grey = params.greyRestart != 0u && (failure != DISOCCLUSION_NOTHING_HIT || params.greyMisses != 0u);
-        now = grey ? updated(vec4(vec3(params.grey), 1.0), radiance) : vec4(radiance, 1.0);
+        now = grey ? updated(vec4(params.grey / divisor, 1.0), x) : vec4(x, 1.0);
     }
     // Near the end of float's range, resampling may overflow.
     if (!isFinite(before.rgb)) before = vec4(0.0);
-    if (!isFinite(now.rgb)) now = vec4(radiance, 1.0);
+    if (!isFinite(now.rgb)) now = vec4(x, 1.0);
     const bool valid = isFinite(radiance);
     imageStore(color, at, valid ? now : before);
-    imageStore(albedoNow, at, vec4(reflected, 0.0));
     imageStore(disocclusion, at, uvec4(failure | (valid ? 0u : SAMPLE_REJECTED)));
 }
