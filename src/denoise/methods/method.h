@@ -19,7 +19,7 @@ namespace limpid::denoise {
 
 struct FilterSettings;
 
-/// What a method leaves of one frame.
+/// The result of a method for one frame.
 struct DenoiserOutput {
     gpu::ImageHandle beauty;        ///< rgba32f: clean radiance with emission; alpha 1
     gpu::ImageHandle disocclusion;  ///< TemporalImages::disocclusion; empty without temporal accumulation

@@ -1,4 +1,4 @@
-// What a frame does can be listed where there is no Vulkan: this program does not link it.
+// A frame's passes can be recorded and listed without Vulkan: this program does not link it.
 #include <gmock/gmock.h>
 
 #include "base/error.h"

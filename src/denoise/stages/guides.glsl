@@ -13,12 +13,12 @@ vec3 finiteOr(vec3 value, vec3 otherwise) {
     return isFinite(value) ? value : otherwise;
 }
 
-/// From the `depth` image; 0 where nothing is seen.
+/// `depth` is a texel of the `depth` image. Returns 0 where nothing is seen.
 float hitDistance(vec4 depth) {
     return depth.y > 0.0 && depth.x > 0.0 && isFinite(depth.xyz) ? depth.x / depth.y : 0.0;
 }
 
-/// From the `normal` and `previousNormal` images; 0 where there is none.
+/// `normal` is a texel of the `normal` or `previousNormal` image. Returns 0 where there is no normal.
 vec3 unitNormal(vec4 normal) {
     const vec3 n = finiteOr(normal.xyz, vec3(0.0));
     const float length2 = dot(n, n);

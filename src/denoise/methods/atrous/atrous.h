@@ -32,7 +32,7 @@ struct AtrousLight {
 gpu::ImageHandle filterAtrous(gpu::FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                               const AtrousSettings& settings);
 
-/// As methods.h lists it.
+/// The entry in the list of methods (methods.h).
 namespace atrous {
 using Settings = AtrousSettings;
 inline constexpr std::string_view help = "temporal accumulation, then the edge-avoiding a-trous filter";

@@ -26,7 +26,7 @@ struct BilateralSettings {
 gpu::ImageHandle filterBilateral(gpu::FrameGraph& graph, const DenoiserInput& input,
                                  const BilateralSettings& settings);
 
-/// As methods.h lists it.
+/// The entry in the list of methods (methods.h).
 namespace bilateral {
 using Settings = BilateralSettings;
 inline constexpr std::string_view help =

@@ -31,7 +31,7 @@ using gpu::ImageHandle;
 /// The shaders take powers of 2.
 constexpr float log2e = 1.44269504f;
 
-/// Light that is filtered by itself: `light`, or its sum with `otherLight`.
+/// Light that is filtered separately: `light`, or the sum of `light` and `otherLight`.
 struct Signal {
     std::string name;
     ImageHandle light, otherLight, albedo, otherAlbedo;
@@ -56,8 +56,8 @@ class Svgf {
           extent_(graph.extent(input.diffuse)),
           buffers_(input.filters == Backing::Buffer) {}
 
-    /// Each pass for all signals before the next pass: those of one kind do not wait for each other, and the
-    /// device starts one while the other runs out.
+    /// Records each pass for all signals before the next pass. Passes of one kind do not wait for each other,
+    /// so the device fills up with the second while the first one ends.
     SvgfImages record(bool signalsToo) {
         const Surfaces surfaces = recordSurfaces(graph_, input_);
         const std::vector<Signal> all = signals();
@@ -102,11 +102,12 @@ class Svgf {
 
     float minAlbedo() const { return settings_.demodulate ? settings_.minAlbedo : 0.0f; }
 
-    /// Of the filter's levels; 0: none.
+    /// The number of the level whose result is fed back; 0: no level's.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
 
-    /// Of the variance of one frame's samples: what fast minus slow mean has after a long history of steady
-    /// light. 0 where the slow mean is no mean at all, and the samples' variance not known.
+    /// The variance of (fast mean - slow mean) after a long history of steady light, as a share of the
+    /// variance of one frame's samples. 0 if the slow mean consists of one frame, because that variance is
+    /// then unknown.
     float steadyShare() const {
         const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
         const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
@@ -135,7 +136,7 @@ class Svgf {
         params.alphaFast = settings_.alphaFast;
         params.lag = lagParams();
         params.stabilisationAlpha = wasStable ? settings_.stabilisationAlpha : 1.0f;
-        // Shorter ones would stay young for ever.
+        // With a shorter limit, all pixels would stay young for ever.
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
     }
@@ -149,7 +150,7 @@ class Svgf {
         return graph_.history(name + " stable", Format::RGBA16Float, extent_, input_.filters);
     }
 
-    /// What svgf_signal.glsl has.
+    /// Adds the images that svgf_signal.glsl declares.
     static std::vector<gpu::Binding> withLight(const Signal& signal, std::vector<gpu::Binding> others) {
         others.insert(others.end(), {{"lightA", signal.light},
                                      {"lightB", signal.otherLight},

@@ -54,7 +54,7 @@ struct SvgfImages {
 SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const SvgfSettings& settings);
 
-/// As methods.h lists it.
+/// The entry in the list of methods (methods.h).
 namespace svgf {
 using Settings = SvgfSettings;
 inline constexpr std::string_view help =

@@ -51,7 +51,7 @@ DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion);
 DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& input,
                                const TemporalImages& accumulated, const FilterSettings& settings);
 
-/// As methods.h lists it.
+/// The entry in the list of methods (methods.h).
 namespace temporal {
 using Settings = TemporalSettings;
 inline constexpr std::string_view help =

@@ -21,7 +21,7 @@ LIMPID_CONST uint DISOCCLUSION_NO_VALID_TAP = 3u;
 LIMPID_CONST uint DISOCCLUSION_MASK = 3u;
 LIMPID_CONST uint SAMPLE_REJECTED = 4u;
 
-/// Of the debug view that shows the causes of disocclusion.
+/// For the debug view that shows the causes of disocclusion.
 struct TemporalShowParams {
     uint width;
     uint height;

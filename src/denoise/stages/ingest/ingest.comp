@@ -43,7 +43,7 @@ vec3 colorOr(uint what, texture2D image, ivec2 at, vec3 otherwise) {
     return has(what) ? texelFetch(image, at, 0).rgb : otherwise;
 }
 
-/// Of octahedral coordinates, -1 to 1: Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit
+/// Decodes octahedral coordinates, -1 to 1: Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit
 /// Vectors", JCGT 2014.
 vec3 fromOctahedral(vec2 e) {
     const vec3 v = vec3(e, 1.0 - abs(e.x) - abs(e.y));

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The caller's numbers of objects, as the denoisers read them.
+// Converts the caller's object numbers to those that the denoisers read.
 #include "denoise/stages/ingest/ingest_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,4 +1,4 @@
-// A denoiser's picture into an image of the caller's, whose format the including shader names as OUTPUT_FORMAT.
+// Writes a denoiser's picture to an image of the caller. The including shader defines its format as OUTPUT_FORMAT.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {

@@ -17,10 +17,10 @@ READ_HALF4(4, before);  // mean, frames in it
 WRITE_HALF4(5, after);
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
 
-/// Of the 3x3 pixels around: what the past may differ from their mean by.
+/// How far the past may differ from the mean of the 3x3 pixels, in their standard deviations.
 const float MAX_DEVIATIONS = 1.25;
 
-/// Bright pixels weigh less, as a screen will show them; luma and two chromas.
+/// Luma and two chromas of a compressed colour: bright pixels weigh less, as they will on a screen.
 vec3 encode(vec3 c) {
     const vec3 shown = c / (1.0 + luminance(c));
     return vec3(dot(shown, vec3(0.25, 0.5, 0.25)), dot(shown, vec3(0.5, 0.0, -0.5)), dot(shown, vec3(-0.25, 0.5, -0.25)));
@@ -37,10 +37,10 @@ ivec2 inside(ivec2 at) {
 
 struct Neighbourhood {
     vec3 mean, deviation;
-    ivec2 nearest;  // to the eye: edges move with what is before them
+    ivec2 nearest;  // the pixel nearest to the eye: an edge moves with the surface in front
 };
 
-/// `now` is what p has: differences from it keep their digits where the picture is flat.
+/// `now` is the pixel's own colour. Sums of differences from it are accurate where the picture is flat.
 Neighbourhood around(ivec2 at, vec3 now) {
     vec3 sum = vec3(0.0), squares = vec3(0.0);
     float minDepth = 1e30;
@@ -62,7 +62,7 @@ Neighbourhood around(ivec2 at, vec3 now) {
     return Neighbourhood(now + mean, sqrt(max(squares / 9.0 - mean * mean, vec3(0.0))), nearest);
 }
 
-/// Catmull and Rom's cubic, of the four pixels around `t` in [0, 1).
+/// Weights of the four pixels around `t` in [0, 1): the Catmull-Rom cubic.
 vec4 cubicWeights(float t) {
     return vec4(t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (-2.5 + 1.5 * t), t * (0.5 + t * (2.0 - 1.5 * t)),
                 t * t * (-0.5 + 0.5 * t));
@@ -80,7 +80,7 @@ vec4 pastAt(vec2 position) {
     return vec4(sum, LOAD_HALF4(before, inside(ivec2(floor(position + 0.5)))).w);
 }
 
-/// Moved towards the mean until it is as near as neighbours are.
+/// Moves the past towards the neighbourhood's mean until it is within the allowed deviations.
 vec3 clipped(vec3 past, Neighbourhood near) {
     const vec3 off = past - near.mean;
     const vec3 excess = abs(off) / max(MAX_DEVIATIONS * near.deviation, vec3(1e-6));

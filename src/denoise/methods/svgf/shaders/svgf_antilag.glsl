@@ -1,5 +1,5 @@
-// Anti-lag: where light has changed, most of the history is taken out of what this frame accumulated. docs/denoising.md,
-// SVGF, step 4.
+// Anti-lag: where the light has changed, removes most of the history from the accumulated mean. docs/denoising.md, SVGF,
+// step 4.
 #include "denoise/methods/svgf/svgf_params.h"
 
 layout(set = 0, binding = 0, scalar) uniform Params {
@@ -12,10 +12,10 @@ layout(set = 0, binding = 5, r32f) uniform readonly image2D tiles;
 layout(set = 0, binding = 6, rgba32f) uniform image2D moments;
 UPDATE_HALF4(7, color);
 
-/// Where a pixel's centre lies between the middles of tiles.
+/// The position of a pixel's centre between the centres of 2x2 tiles.
 struct Between {
     ivec2 first;  // of 2x2 tiles
-    vec2 share;   // of the other ones
+    vec2 share;   // interpolation weights of the right and the lower tiles
 };
 
 Between tilesAround(ivec2 at) {
@@ -27,7 +27,7 @@ float tileAt(ivec2 tile) {
     return imageLoad(tiles, clamp(tile, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE)).x;
 }
 
-/// Of 2x2 tiles, row by row.
+/// Interpolates the lags of 2x2 tiles, given row by row.
 float lagBetween(vec4 corners, vec2 share) {
     return mix(mix(corners.x, corners.y, share.x), mix(corners.z, corners.w, share.x), share.y);
 }

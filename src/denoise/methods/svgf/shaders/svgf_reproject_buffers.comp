@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_reproject.glsl with gpu::Backing::Buffer, for GPUs. A group is a tile (svgf_tiles.glsl), whose moments it has at hand.
+// svgf_reproject.glsl with gpu::Backing::Buffer, for GPUs. A group of invocations is a tile (svgf_tiles.glsl), so it also
+// sums up the tile's moments.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/methods/svgf/shaders/svgf_reproject.glsl"
 #include "denoise/methods/svgf/shaders/svgf_tiles.glsl"
@@ -14,7 +15,7 @@ layout(set = 0, binding = 17, r32f) uniform writeonly image2D tiles;
 shared TileSums pixelSums[SVGF_TILE * SVGF_TILE];
 shared TileSums rowSums[SVGF_TILE];
 
-/// `own`: of the invocation's pixel. Every invocation calls this.
+/// `own` is the sum of the invocation's own pixel. Every invocation of the group must call this.
 void storeTile(TileSums own) {
     const uint number = gl_LocalInvocationIndex;
     pixelSums[number] = own;

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_tiles.glsl for CPUs, where barriers within a group cost more than a pass; GPUs do it in svgf_reproject_buffers.comp.
+// svgf_tiles.glsl for CPUs, on which barriers within a group cost more than another pass. GPUs do the same in
+// svgf_reproject_buffers.comp.
 #include "denoise/methods/svgf/shaders/svgf_tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

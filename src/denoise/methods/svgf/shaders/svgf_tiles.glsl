@@ -1,4 +1,4 @@
-// What 8x8 pixels together say of one signal: how far the slow mean of the luminance lags behind the fast one.
+// How far the slow mean of a signal's luminance lags behind the fast mean, estimated from 8x8 pixels.
 // docs/denoising.md, SVGF, step 4.
 #include "denoise/methods/svgf/svgf_params.h"
 
@@ -6,8 +6,8 @@ struct TileSums {
     float lag, noise, light;
 };
 
-/// Of a pixel of the image of moments. It is taken at its word only as far as its own noise reaches: a bright sample makes
-/// no change of light.
+/// The contribution of one pixel; `m` is its texel in the image of moments. Its lag is limited to a multiple of its own
+/// noise, so that a single bright sample does not look like a change of light.
 TileSums tileSumsOf(vec4 m, SvgfLagParams lag) {
     if (m.w < SVGF_MIN_FRAMES) return TileSums(0.0, 0.0, 0.0);
     const float noise = lag.steadyShare * max(m.y - m.x * m.x, 0.0), limit = lag.antilagPixel * sqrt(noise);

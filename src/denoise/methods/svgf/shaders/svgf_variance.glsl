@@ -1,5 +1,5 @@
-// The deviation of pixels that have too little history for one of their own: from their neighbours' moments.
-// docs/denoising.md, SVGF, step 5.
+// Estimates the deviation of pixels with a short history from the moments of their neighbours. docs/denoising.md, SVGF,
+// step 5.
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
@@ -29,7 +29,7 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-/// Weighted moments and weights of the taps in every `step`-th of the 7 rows from `first` on.
+/// Sums weighted moments and weights over the taps of every `step`-th of the 7 rows, from row `first` on.
 vec3 rowsSum(ivec2 at, int first, int step) {
     const SurfaceCentre centre = centreOf(surfaceAt(at), at);
     vec3 sum = vec3(0.0);
@@ -39,7 +39,7 @@ vec3 rowsSum(ivec2 at, int first, int step) {
     return sum;
 }
 
-/// `sum`: over all rows.
+/// `sum` is the sum over all rows.
 void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
     const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are few and scattered, or many in one place: a group
-// collects its own, and shares out their rows among all of its invocations.
+// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are either few and scattered, or many in one place.
+// So a group collects its young pixels and distributes the rows of their taps over all of its invocations.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/methods/svgf/shaders/svgf_variance.glsl"
 
@@ -16,7 +16,7 @@ ivec2 youngAt(uint number) {
     return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
 }
 
-/// So many invocations work on each young pixel, if there are any; more than it has rows would idle.
+/// The number of invocations per young pixel; more than there are rows would be idle. There must be a young pixel.
 uint sharers() {
     return min(GROUP * GROUP / count, 2u * uint(RADIUS) + 1u);
 }

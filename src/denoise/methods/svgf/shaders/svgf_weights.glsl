@@ -1,24 +1,24 @@
-// Which pixels show the same surface: the edge-stopping functions of normals and depth. docs/denoising.md, SVGF, step 6. The
-// including shader has `SvgfFilterParams params` and READ_UINT2 `surfaces`.
+// The edge-stopping functions of normals and depth: how far two pixels show the same surface. docs/denoising.md, SVGF,
+// step 6. The including shader declares `SvgfFilterParams params` and READ_UINT2 `surfaces` beforehand.
 #ifndef LIMPID_SVGF_WEIGHTS_GLSL
 #define LIMPID_SVGF_WEIGHTS_GLSL
 
 #include "denoise/stages/guides.glsl"
 
-layout(constant_id = 1) const bool POSITION = false;  // distances of points instead of depths and slopes
+layout(constant_id = 1) const bool POSITION = false;  // compare distances of points instead of depths and slopes
 layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
 
 struct Surface {
     vec3 normal;
     float depth;  // 0: nothing seen
-    vec3 point;   // relative to the eye; of POSITION alone
+    vec3 point;   // relative to the eye; only with POSITION
 };
 
-/// What a pixel compares others with; `scale` and `slope` are for exponents of 2.
+/// A pixel that others are compared with. Values are scaled so that weights are powers of 2.
 struct SurfaceCentre {
     Surface surface;
     vec3 scaledNormal;
-    vec2 slope;  // of the depth, to the right and down, by one tap
+    vec2 slope;  // change of the depth from tap to tap, to the right and down
     float floor;
 };
 
@@ -61,12 +61,12 @@ SurfaceCentre centreOf(Surface surface, ivec2 at) {
     return centre;
 }
 
-/// Per distance; the same for opposite taps. `from` is where the other one is, in taps.
+/// The factor for a difference of depths; equal for opposite taps. `from` is the other tap's offset in taps.
 float perDepthOf(SurfaceCentre centre, ivec2 from) {
     return POSITION ? 0.0 : 1.0 / (abs(dot(vec2(from), centre.slope)) + centre.floor);
 }
 
-/// The exponent of 2.
+/// The weight's exponent to base 2.
 float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
     if (POSITION)
         return -distance(centre.surface.normal, other.normal) * params.normalScale -
