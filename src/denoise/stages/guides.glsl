@@ -1,5 +1,5 @@
-// How denoisers read a frame's images (docs/denoising.md, "What a frame gives"): other renderers' files may contain NaN
-// and infinity, which are replaced here.
+// How denoisers read a frame's images (docs/denoising.md, "What a frame gives"): other renderers' files may contain
+// NaN and infinity, which are replaced here.
 #ifndef LIMPID_GUIDES_GLSL
 #define LIMPID_GUIDES_GLSL
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// One level of an edge-avoiding a-trous filter that removes the noise left by the network's kernels: docs/kpcn.md, "Beyond
-// the kernel".
+// One level of an edge-avoiding a-trous filter that removes the noise left by the network's kernels: docs/kpcn.md,
+// "Beyond the kernel".
 #include "denoise/stages/guides.glsl"
 #include "denoise/kpcn/kpcn_params.h"
 
@@ -65,8 +65,8 @@ Surface surfaceAt(ivec2 at) {
     return Surface(unitNormal(imageLoad(normal, at)), reflected, distanceAt(at));
 }
 
-/// How much the distance grows by a pixel along `axis`: the smaller of the differences to both sides, because the other one
-/// may lead to another surface.
+/// How much the distance grows by a pixel along `axis`: the smaller of the differences to both sides, because the
+/// other one may lead to another surface.
 float slopeAlong(ivec2 at, ivec2 axis, float here) {
     const bool hasAfter = isInside(at + axis), hasBefore = isInside(at - axis);
     const float after = hasAfter ? distanceAt(at + axis) - here : 0.0, before = hasBefore ? here - distanceAt(at - axis) : 0.0;
@@ -86,8 +86,8 @@ float surfaceExponent(Surface own, vec2 slope, Surface other, ivec2 from) {
     return -away * away - dot(colors, colors) - KPCN_LEVEL_NORMAL * bend;
 }
 
-/// The weights of light's components in its luminance. Diffuse light is without albedo: its luminance and deviation are those
-/// of the reflected light, relative to the albedo's luminance.
+/// The weights of light's components in its luminance. Diffuse light is without albedo: its luminance and deviation
+/// are those of the reflected light, relative to the albedo's luminance.
 vec3 luminanceWeights(Surface own) {
     const vec3 weights = vec3(0.2126, 0.7152, 0.0722);
     return params.specular != 0u ? weights : weights * own.albedo / luminance(own.albedo);

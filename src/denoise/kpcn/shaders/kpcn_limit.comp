@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Scattered radiance from the two filtered sides. Where a filtered luminance is further from the noisy one than its standard
-// error explains, it is moved towards the noisy one: docs/kpcn.md.
+// Scattered radiance from the two filtered sides. Where a filtered luminance is further from the noisy one than its
+// standard error explains, it is moved towards the noisy one: docs/kpcn.md.
 #include "denoise/stages/guides.glsl"
 #include "denoise/kpcn/kpcn_params.h"
 #include "shaders/common/filter_image.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// One level of the edge-avoiding a-trous transform: H. Dammertz, D. Sewtz, J. Hanika, H. Lensch, "Edge-Avoiding A-Trous
-// Wavelet Transform for fast Global Illumination Filtering", HPG 2010. docs/denoising.md has the weights.
+// One level of the edge-avoiding a-trous transform: H. Dammertz, D. Sewtz, J. Hanika, H. Lensch, "Edge-Avoiding
+// A-Trous Wavelet Transform for fast Global Illumination Filtering", HPG 2010. docs/denoising.md has the weights.
 #include "denoise/methods/atrous/atrous_params.h"
 #include "denoise/stages/guides.glsl"
 #include "shaders/common/filter_image.glsl"
@@ -19,8 +19,8 @@ WRITE_HALF4(3, filtered);
 
 #include "denoise/stages/atrous/kernel.glsl"
 
-// GPUs decode taps at some cost, and more pixels would need more registers than there are. CPUs mainly wait for loads, of
-// which a larger block shares more. As in atrous.cpp.
+// GPUs decode taps at some cost, and more pixels would need more registers than there are. CPUs mainly wait for
+// loads, of which a larger block shares more. As in atrous.cpp.
 #ifdef LIMPID_FILTER_BUFFERS
 layout(local_size_x = 32, local_size_y = 4) in;
 const ivec2 BLOCK = ivec2(2, 2);
@@ -39,8 +39,8 @@ struct Tap {
 
 struct Centre {
     vec3 normal;   // times normalScale
-    // The distance from the pixel's plane of a point of depth 1 on the ray through this pixel; its change from tap to tap to
-    // the right, and down. Times `depth` that is the distance of any point.
+    // The distance from the pixel's plane of a point of depth 1 on the ray through this pixel; its change from tap to
+    // tap to the right, and down. Times `depth` that is the distance of any point.
     vec3 towards;
     float here;  // the pixel's own point
     vec4 sum;    // of weighted light, and of the weights

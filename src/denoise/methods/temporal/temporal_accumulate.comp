@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Temporal accumulation: each pixel's running mean follows its surface point from frame to frame. docs/denoising.md has the
-// formulas; the idea is from D. Nehab et al., "Accelerating Real-Time Shading with Reverse Reprojection Caching", 2007.
+// Temporal accumulation: each pixel's running mean follows its surface point from frame to frame. docs/denoising.md
+// has the formulas; the idea is from D. Nehab et al., "Accelerating Real-Time Shading with Reverse Reprojection
+// Caching", 2007.
 #include "denoise/methods/temporal/temporal_params.h"
 #include "denoise/stages/guides.glsl"
 #include "shaders/common/filter_image.glsl"

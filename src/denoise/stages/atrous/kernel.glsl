@@ -1,5 +1,5 @@
-// The kernel of an a-trous filter: a B3 spline (H. Dammertz et al., "Edge-Avoiding A-Trous Wavelet Transform for fast Global
-// Illumination Filtering", HPG 2010).
+// The kernel of an a-trous filter: a B3 spline (H. Dammertz et al., "Edge-Avoiding A-Trous Wavelet Transform for fast
+// Global Illumination Filtering", HPG 2010).
 const float B3[3] = float[3](6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0);
 
 /// The weight of a tap, whose offset `from` is in steps.

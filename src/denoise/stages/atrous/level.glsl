@@ -1,6 +1,6 @@
-// The loop of one level of an a-trous filter: a kernel of 5x5 (or 3x3) taps that lie a step apart. Each invocation filters a
-// block of pixels that lie a step apart, too, so that they share taps: of the 3 x 25 taps of a column of three, 35 are
-// different. What a tap weighs is the including shader's; it declares beforehand:
+// The loop of one level of an a-trous filter: a kernel of 5x5 (or 3x3) taps that lie a step apart. Each invocation
+// filters a block of pixels that lie a step apart, too, so that they share taps: of the 3 x 25 taps of a column of
+// three, 35 are different. What a tap weighs is the including shader's; it declares beforehand:
 //   - `params` with width, height and step (a power of 2)
 //   - const ivec2 BLOCK: the pixels of an invocation, as given to levelInvocations()
 //   - const int REACH: 2 for 5x5 taps, 1 for 3x3
@@ -20,8 +20,8 @@ ivec2 inBlock(int number) {
     return ivec2(number % BLOCK.x, number / BLOCK.x);
 }
 
-/// The first pixel of an invocation's block. Neighbouring invocations filter neighbouring pixels, so that a row of them reads
-/// whole cache lines at any step.
+/// The first pixel of an invocation's block. Neighbouring invocations filter neighbouring pixels, so that a row of
+/// them reads whole cache lines at any step.
 ivec2 firstOfBlock(ivec2 invocation) {
     const int power = findMSB(params.step);  // shifts are cheaper than divisions
     return (invocation >> power) * (BLOCK << power) + (invocation & (params.step - 1));

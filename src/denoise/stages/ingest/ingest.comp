@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Converts another renderer's frame from its encodings to what the denoisers read (docs/denoising.md, "What a frame gives").
-// Inputs that the caller does not have are bound to another one and not read.
+// Converts another renderer's frame from its encodings to what the denoisers read (docs/denoising.md, "What a frame
+// gives"). Inputs that the caller does not have are bound to another one and not read.
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
 
@@ -43,8 +43,8 @@ vec3 colorOr(uint what, texture2D image, ivec2 at, vec3 otherwise) {
     return has(what) ? texelFetch(image, at, 0).rgb : otherwise;
 }
 
-/// Decodes octahedral coordinates, -1 to 1: Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-/// Vectors", JCGT 2014.
+/// Decodes octahedral coordinates, -1 to 1: Z. H. Cigolle et al., "A Survey of Efficient Representations for
+/// Independent Unit Vectors", JCGT 2014.
 vec3 fromOctahedral(vec2 e) {
     const vec3 v = vec3(e, 1.0 - abs(e.x) - abs(e.y));
     const vec2 folded = (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The motion of reflections, from the distance at which the reflected ray hit something: a reflection moves like an object
-// behind the surface. docs/embedding.md, "Reflections".
+// The motion of reflections, from the distance at which the reflected ray hit something: a reflection moves like an
+// object behind the surface. docs/embedding.md, "Reflections".
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
 
@@ -44,8 +44,8 @@ Point pointAt(ivec2 at) {
                  z > 0.0 && at == inside);
 }
 
-/// The surface's curvature along one axis of the screen, 1 / radius; positive if it is convex. False if the pixels around
-/// show another surface.
+/// The surface's curvature along one axis of the screen, 1 / radius; positive if it is convex. False if the pixels
+/// around show another surface.
 bool curvatureAlong(ivec2 at, ivec2 axis, Point own, out float curvature) {
     const Point a = pointAt(at - BASELINE * axis), b = pointAt(at + BASELINE * axis);
     const vec3 along = b.position - a.position, turn = b.normal - a.normal;
@@ -54,17 +54,18 @@ bool curvatureAlong(ivec2 at, ivec2 axis, Point own, out float curvature) {
     return a.seen && b.seen && dot(a.normal, own.normal) > SAME_SURFACE && dot(b.normal, own.normal) > SAME_SURFACE;
 }
 
-/// Where the reflected point appears to be: w 0 if it is a direction. A curved mirror's image is nearer to it than a flat
-/// one's, by the mirror equation 1 / image = 1 / distance + 2 / radius (its use here: A. Hirvonen et al., "Accurate Real-Time
-/// Specular Reflections with Radiance Caching", Ray Tracing Gems, 2019). Returns false for images before the mirror.
+/// Where the reflected point appears to be: w 0 if it is a direction. A curved mirror's image is nearer to it than a
+/// flat one's, by the mirror equation 1 / image = 1 / distance + 2 / radius (its use here: A. Hirvonen et al.,
+/// "Accurate Real-Time Specular Reflections with Radiance Caching", Ray Tracing Gems, 2019). Returns false for images
+/// before the mirror.
 bool imageOf(Point own, vec3 view, float hit, float curvature, float share, out vec4 image) {
     const float inverse = (hit < FARTHEST ? 1.0 / hit : 0.0) + 2.0 * curvature;
     image = inverse > 1.0 / FARTHEST ? vec4(own.position + view * (share / inverse), 1.0) : vec4(view, 0.0);
     return inverse >= 0.0;
 }
 
-/// The distance from the previous eye at which its ray through a pixel meets the surface's tangent plane; not above 0 if it
-/// does not.
+/// The distance from the previous eye at which its ray through a pixel meets the surface's tangent plane; not above 0
+/// if it does not.
 float previousReflector(Point own, vec2 pixel) {
     const CameraParams before = params.previousCamera;
     const vec2 onScreen = pixelOnScreen(pixel, vec2(params.width, params.height));

@@ -1,4 +1,5 @@
-// Positions, and the motion of points that stand still. The including shader declares `IngestParams params` beforehand.
+// Positions, and the motion of points that stand still. The including shader declares `IngestParams params`
+// beforehand.
 
 vec3 positionOf(float distance, vec3 v, vec2 onScreen) {
     const CameraParams c = params.camera;
@@ -11,7 +12,8 @@ float previousDistance(vec3 position) {
     return params.previousCamera.orthographic != 0u ? dot(toPoint, params.previousCamera.forward) : length(toPoint);
 }
 
-/// The motion in pixels of a point, or of a direction (w 0: the sky), that stands still; 0 if it was behind the previous eye.
+/// The motion in pixels of a point, or of a direction (w 0: the sky), that stands still; 0 if it was behind the
+/// previous eye.
 vec4 motionOfStill(vec4 point, vec2 pixel) {
     const float w = dot(params.previousClipW, point);
     if (!(w > 0.0)) return vec4(0.0);

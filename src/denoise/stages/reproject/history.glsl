@@ -30,17 +30,17 @@ struct Taps {
     float weight;
 };
 
-// On GPUs, all loads of a tap are issued at once, so that their latencies overlap. CPUs load as little as they can, and first
-// what decides whether the tap counts. (With images, lavapipe of Mesa 22.3 also computed wrong means if everything was
-// loaded at once and the moments last. The cause is unknown.)
+// On GPUs, all loads of a tap are issued at once, so that their latencies overlap. CPUs load as little as they can,
+// and first what decides whether the tap counts. (With images, lavapipe of Mesa 22.3 also computed wrong means if
+// everything was loaded at once and the moments last. The cause is unknown.)
 #ifdef LIMPID_FILTER_BUFFERS
 const bool LOAD_AT_ONCE = true;
 #else
 const bool LOAD_AT_ONCE = false;
 #endif
 
-/// Tolerated difference of distances. Neighbouring pixels of a tilted plane differ in distance; the tolerance leaves room
-/// for that.
+/// Tolerated difference of distances. Neighbouring pixels of a tilted plane differ in distance; the tolerance leaves
+/// room for that.
 float depthTolerance(CameraParams camera, float expectedDepth, vec3 n, vec2 pixel, vec2 size, ReprojectTests tests) {
     if (tests.relative == 0u) return tests.depth;
     const vec3 v = viewVector(camera, pixelOnScreen(pixel, size));
@@ -85,8 +85,8 @@ Past pastAt(vec2 position, Expected expected) {
             addTap(taps, nearest + ivec2(i % 3, i / 3) - 1, 1.0, expected);
     }
 #else
-    // The fourth tap and the search share one loop: lavapipe runs the body of a loop at least once for every pixel, so that a
-    // loop of its own would cost a tap even where nothing is searched.
+    // The fourth tap and the search share one loop: lavapipe runs the body of a loop at least once for every pixel,
+    // so that a loop of its own would cost a tap even where nothing is searched.
     ivec2 at = first + 1;
     float weight = share.x * share.y;
     int searched = 0;

@@ -1,5 +1,5 @@
-// Anti-lag: where the light has changed, removes most of the history from the accumulated mean. docs/denoising.md, SVGF,
-// step 4.
+// Anti-lag: where the light has changed, removes most of the history from the accumulated mean. docs/denoising.md,
+// SVGF, step 4.
 #include "denoise/methods/svgf/svgf_params.h"
 
 layout(set = 0, binding = 0, scalar) uniform Params {

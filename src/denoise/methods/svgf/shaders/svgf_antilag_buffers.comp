@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_antilag.glsl with gpu::Backing::Buffer, for GPUs. Light changes in few places, so a group first looks at its tiles
-// and their neighbours; most groups are then done.
+// svgf_antilag.glsl with gpu::Backing::Buffer, for GPUs. Light changes in few places, so a group first looks at its
+// tiles and their neighbours; most groups are then done.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/methods/svgf/shaders/svgf_antilag.glsl"
 

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// One level of the variance-guided a-trous filter: docs/denoising.md, SVGF, step 6. The last level also stabilises: step 7.
+// One level of the variance-guided a-trous filter: docs/denoising.md, SVGF, step 6. The last level also stabilises:
+// step 7.
 #extension GL_EXT_control_flow_attributes : require
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"

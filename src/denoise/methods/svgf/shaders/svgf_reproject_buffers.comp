@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_reproject.glsl with gpu::Backing::Buffer, for GPUs. A group of invocations is a tile (svgf_tiles.glsl), so it also
-// sums up the tile's moments.
+// svgf_reproject.glsl with gpu::Backing::Buffer, for GPUs. A group of invocations is a tile (svgf_tiles.glsl), so it
+// also sums up the tile's moments.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/methods/svgf/shaders/svgf_reproject.glsl"
 #include "denoise/methods/svgf/shaders/svgf_tiles.glsl"

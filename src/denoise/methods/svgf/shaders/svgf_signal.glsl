@@ -1,6 +1,6 @@
-// This frame's light of one signal, and the deviation that follows from its moments. Used by reprojection and anti-lag.
-// The including shader declares `params` beforehand, with width, height and minAlbedo; bindings 1 to 4 and constants 0 and
-// 2 are used here. docs/denoising.md, SVGF, steps 3 and 4.
+// This frame's light of one signal, and the deviation that follows from its moments. Used by reprojection and
+// anti-lag. The including shader declares `params` beforehand, with width, height and minAlbedo; bindings 1 to 4 and
+// constants 0 and 2 are used here. docs/denoising.md, SVGF, steps 3 and 4.
 #include "denoise/stages/guides.glsl"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"

@@ -6,8 +6,8 @@ struct TileSums {
     float lag, noise, light;
 };
 
-/// The contribution of one pixel; `m` is its texel in the image of moments. Its lag is limited to a multiple of its own
-/// noise, so that a single bright sample does not look like a change of light.
+/// The contribution of one pixel; `m` is its texel in the image of moments. Its lag is limited to a multiple of its
+/// own noise, so that a single bright sample does not look like a change of light.
 TileSums tileSumsOf(vec4 m, SvgfLagParams lag) {
     if (m.w < SVGF_MIN_FRAMES) return TileSums(0.0, 0.0, 0.0);
     const float noise = lag.steadyShare * max(m.y - m.x * m.x, 0.0), limit = lag.antilagPixel * sqrt(noise);

@@ -1,5 +1,5 @@
-// Estimates the deviation of pixels with a short history from the moments of their neighbours. docs/denoising.md, SVGF,
-// step 5.
+// Estimates the deviation of pixels with a short history from the moments of their neighbours. docs/denoising.md,
+// SVGF, step 5.
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 

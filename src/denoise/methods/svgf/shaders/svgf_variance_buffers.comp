@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are either few and scattered, or many in one place.
-// So a group collects its young pixels and distributes the rows of their taps over all of its invocations.
+// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are either few and scattered, or many in one
+// place. So a group collects its young pixels and distributes the rows of their taps over all of its invocations.
 #define LIMPID_FILTER_BUFFERS
 #include "denoise/methods/svgf/shaders/svgf_variance.glsl"
 
