@@ -20,6 +20,7 @@ struct Case {
     int resizeAt = -1;     ///< from this frame on the picture is smaller
     float light = 1.0f;    ///< factor of the scene's light
     bool hasNans = false;  ///< and infinities, in distance and motion
+    gpu::Backing filters = gpu::Backing::Image;
 };
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
@@ -87,7 +88,8 @@ HostFrame TaaPassTest::frameOf(int number) {
 
 void TaaPassTest::antialias(const HostFrame& frame, const std::vector<float>& beauty) {
     graph_.beginFrame();
-    const denoise::DenoiserInput input = denoise::upload(graph_, frame);
+    denoise::DenoiserInput input = denoise::upload(graph_, frame);
+    input.filters = GetParam().filters;
     const gpu::ImageHandle picture =
         graph_.transient("picture", gpu::Format::RGBA32Float, {frame.width, frame.height});
     graph_.upload(picture, gpu::bytesOf(beauty));
@@ -165,7 +167,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{.name = "Resize", .options = moving, .resizeAt = 6},
                     Case{.name = "Bright", .options = moving, .light = 1e4f},
                     Case{.name = "Dark", .options = moving, .light = 1e-3f},
-                    Case{.name = "Nans", .options = moving, .hasNans = true}),
+                    Case{.name = "Nans", .options = moving, .hasNans = true},
+                    Case{.name = "Buffers", .options = moving, .filters = gpu::Backing::Buffer},
+                    Case{"TinyBuffers", moving, 4.0f, 3, 2, -1, 1.0f, false, gpu::Backing::Buffer}),
     nameOf);
 
 /// Recording needs no device.

@@ -104,6 +104,7 @@ void measure(gpu::Device& device, gpu::Extent extent, bool warmUp) {
     const auto adopted = adopt(program.instance(), program.physicalDevice(), program.device(),
                                program.queueFamily(), gpu::systemLoader());
     DenoiserDesc desc(extent.width, extent.height, LIMPID_METHOD_SVGF);
+    desc.timings = 1;
     std::optional<Denoiser> denoiser;
     std::printf("%s, %u x %u\n", device.info().name.c_str(), extent.width, extent.height);
     print("limpid_denoiser_create", timeOf([&] { denoiser.emplace(adopted, desc); }));
@@ -128,6 +129,8 @@ void measure(gpu::Device& device, gpu::Extent extent, bool warmUp) {
         return values[laterFrames / 2];
     };
     print("later frames, median", {median(&Time::wall), median(&Time::user), median(&Time::system)});
+    for (const limpid_timing& pass : denoiser->timings())
+        std::printf("    %-22s %8.3f ms on the device\n", pass.pass, pass.milliseconds);
     wall.frame.reset = 1;
     print("frame after a cut", timeOf([&] {
               queue.run([&](VkCommandBuffer commands) { limpid::record(*denoiser, commands, wall.frame); });

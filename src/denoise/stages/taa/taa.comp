@@ -5,7 +5,12 @@
 #include "denoise/stages/taa/taa_params.h"
 #include "shaders/common/filter_image.glsl"
 
+// GPUs share the 3x3 pixels around each through shared memory. On CPUs, a barrier would cost more than loads.
+#ifdef LIMPID_FILTER_BUFFERS
+layout(local_size_x = 16, local_size_y = 16) in;
+#else
 layout(local_size_x = 8, local_size_y = 8) in;
+#endif
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     TaaParams params;
@@ -35,6 +40,38 @@ ivec2 inside(ivec2 at) {
     return clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
 }
 
+/// The pixel's encoded beauty; the distance of its surface, or 0.
+vec4 loadTexel(ivec2 at) {
+    return vec4(encode(imageLoad(beauty, inside(at)).rgb), hitDistance(imageLoad(depth, inside(at))));
+}
+
+#ifdef LIMPID_FILTER_BUFFERS
+const int GROUP = 16, EDGE = GROUP + 2;
+shared vec4 texels[EDGE * EDGE];  // of the group's pixels and those around it
+
+ivec2 firstTexel() {
+    return ivec2(gl_WorkGroupID.xy) * GROUP - 1;
+}
+
+/// Every invocation of the group must call this.
+void shareTexels() {
+    for (int i = int(gl_LocalInvocationIndex); i < EDGE * EDGE; i += GROUP * GROUP)
+        texels[i] = loadTexel(firstTexel() + ivec2(i % EDGE, i / EDGE));
+    barrier();
+}
+
+vec4 texelAt(ivec2 at) {
+    const ivec2 inTile = at - firstTexel();
+    return texels[inTile.y * EDGE + inTile.x];
+}
+#else
+void shareTexels() {}
+
+vec4 texelAt(ivec2 at) {
+    return loadTexel(at);
+}
+#endif
+
 struct Neighbourhood {
     vec3 mean, deviation;
     ivec2 nearest;  // the pixel nearest to the eye: an edge moves with the surface in front
@@ -47,14 +84,13 @@ Neighbourhood around(ivec2 at, vec3 now) {
     ivec2 nearest = at;
     for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
-            const ivec2 there = inside(at + ivec2(i, j));
-            const vec3 v = encode(imageLoad(beauty, there).rgb) - now;
+            const vec4 texel = texelAt(at + ivec2(i, j));
+            const vec3 v = texel.rgb - now;
             sum += v;
             squares += v * v;
-            const float z = hitDistance(imageLoad(depth, there));
-            if (z > 0.0 && z < minDepth) {
-                minDepth = z;
-                nearest = there;
+            if (texel.a > 0.0 && texel.a < minDepth) {
+                minDepth = texel.a;
+                nearest = inside(at + ivec2(i, j));
             }
         }
     }
@@ -89,8 +125,9 @@ vec3 clipped(vec3 past, Neighbourhood near) {
 
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    shareTexels();
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    const vec3 now = encode(imageLoad(beauty, at).rgb);
+    const vec3 now = texelAt(at).rgb;
     const Neighbourhood near = around(at, now);
     const Reprojection was =
         reprojectionOf(imageLoad(motion, near.nearest), vec2(at), vec2(params.width, params.height));

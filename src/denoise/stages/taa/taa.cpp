@@ -2,6 +2,7 @@
 
 #include "denoise/stages/taa/taa_params.h"
 #include "taa.comp.h"
+#include "taa_buffers.comp.h"
 
 namespace limpid::denoise {
 
@@ -24,11 +25,12 @@ ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageH
                       const TaaSettings& settings) {
     if (settings.frames <= 1.0f) return beauty;
     const gpu::Extent extent = graph.extent(beauty);
-    const gpu::History history = graph.history("taa", Format::RGBA16Float, extent);
+    const gpu::History history = graph.history("taa", Format::RGBA16Float, extent, input.filters);
     const ImageHandle result = graph.transient("taa/beauty", Format::RGBA32Float, extent);
+    const bool buffers = input.filters == gpu::Backing::Buffer;
     const TaaParams params{extent.width, extent.height, settings.frames};
     graph.dispatch({.pass = "taa",
-                    .shader = shaders::taa_comp,
+                    .shader = buffers ? shaders::taa_buffers_comp : shaders::taa_comp,
                     .bindings = {{"beauty", beauty},
                                  {"depth", input.depth},
                                  {"motion", input.motion},
