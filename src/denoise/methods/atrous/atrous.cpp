@@ -144,13 +144,14 @@ DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input
     if (!settings.atrous.temporal)
         return {antialias(graph, input,
                           filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous),
-                          settings.taa),
+                          settings.taa, DenoiserKind::PerFrame),
                 {}};
     const TemporalImages accumulated = accumulateTemporally(graph, input, settings.temporal);
     if (settings.temporal.showDisocclusion) return composeTemporal(graph, input, accumulated, settings);
     const gpu::ImageHandle filtered =
         filterAtrous(graph, input, {accumulated.color, {}, accumulated.minAlbedo}, settings.atrous);
-    return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion};
+    return {antialias(graph, input, filtered, settings.taa, DenoiserKind::Temporal),
+            accumulated.disocclusion};
 }
 
 }  // namespace limpid::denoise

@@ -58,7 +58,9 @@ const ParamTable<BilateralSettings>& bilateral::params() {
 
 DenoiserOutput bilateral::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                                  const FilterSettings& settings) {
-    return {antialias(graph, input, filterBilateral(graph, input, settings.bilateral), settings.taa), {}};
+    return {antialias(graph, input, filterBilateral(graph, input, settings.bilateral), settings.taa,
+                      DenoiserKind::PerFrame),
+            {}};
 }
 
 }  // namespace limpid::denoise

@@ -415,7 +415,9 @@ SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, cons
 
 DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const FilterSettings& settings) {
-    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
+    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa,
+                      DenoiserKind::Temporal),
+            {}};
 }
 
 }  // namespace limpid::denoise

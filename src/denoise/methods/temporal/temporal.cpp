@@ -136,9 +136,10 @@ DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& inpu
                                              .albedo = input.albedo,
                                              .emission = input.emission,
                                              .minAlbedo = accumulated.minAlbedo});
-    const gpu::ImageHandle picture = settings.temporal.showDisocclusion
-                                         ? showDisocclusion(graph, beauty, accumulated.disocclusion)
-                                         : antialias(graph, input, beauty, settings.taa);
+    const gpu::ImageHandle picture =
+        settings.temporal.showDisocclusion
+            ? showDisocclusion(graph, beauty, accumulated.disocclusion)
+            : antialias(graph, input, beauty, settings.taa, DenoiserKind::Temporal);
     return {picture, accumulated.disocclusion};
 }
 
