@@ -22,7 +22,7 @@ class CliDenoiseTest : public CliTest {
     void renderNoisy(const std::string& layers, const std::string& more = "") {
         const Result result =
             run("render builtin:cornell-moving -o " + path("noisy.%02d.exr") + small +
-                "--spp 1 --jitter off --float --frames 4 --camera-path shake --aov " + layers + more);
+                "--spp 1 --jitter frame --float --frames 4 --camera-path shake --aov " + layers + more);
         ASSERT_EQ(result.code, 0) << result.output;
     }
 };

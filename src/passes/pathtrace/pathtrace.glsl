@@ -159,14 +159,15 @@ void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf,
 }
 
 /// Records the scattering at the primary vertex, or at a mirror before it.
-void scattered(inout FirstSight sight, inout Path path, Surface surface, Bsdf bsdf, uint depth) {
+void scattered(inout FirstSight sight, inout Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
     sight.reflects = luminance(path.diffuseShare) < 0.5 && dot(path.ray.direction, surface.geometricNormal) > 0.0;
-    if (depth > 0u) return;
-    sight.mirror = Mirror(surface.position, surface.normal, sight.hit.previous);
+    if (depth > 0u || !sight.reflects) return;
+    const Shape shape = shapeAt(hit, surface);
+    sight.mirror = Mirror(surface.position, surface.normal, sight.hit.previous, shape.curvature);
     if (params.throughMirrors != 0u && path.delta && isPerfectMirror(bsdf)) {
         path.primary = 1u;
-    } else if (sight.reflects) {
-        sight.reflection = reflectionShare(surface);
+    } else {
+        sight.reflection = reflectionShare(surface, shape);
     }
 }
 
@@ -221,7 +222,7 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         if (depth == params.maxDepth + path.passages || surface.unlit) break;
         addDirectLight(path, surface, bsdf, depth, rng);
         if (!scatter(path, surface, bsdf, depth, rng)) break;
-        if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, surface, bsdf, depth);
+        if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, hit, surface, bsdf, depth);
         if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     }
     first = sight.hit;

@@ -87,7 +87,10 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
                      .previousCamera = moment_.previousCamera.value_or(moment_.camera)};
     input.hasPrevious = moment_.previousCamera.has_value();
     input.moved = moment_.scene ? &*moment_.scene : nullptr;
-    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(taken.first, UINT32_MAX));
+    // Frames whose means restart go through other points of the pixel, as those of denoisers do.
+    if (samplesInMean_ == 0 && settings_.pipeline.accumulates())
+        firstPoint_ = settings_.jitter == Jitter::Frame ? moment_.number * samples_ : 0;
+    input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(firstPoint_ + taken.first, UINT32_MAX));
     input.stream = taken.stream;
     input.samplesBefore = samplesInMean_;
     input.samples = taken.count;

@@ -3,14 +3,15 @@
 #ifndef LIMPID_REFLECTION_GLSL
 #define LIMPID_REFLECTION_GLSL
 
+#include "shaders/common/curvature.glsl"
 #include "shaders/common/mirror.glsl"
 #include "shaders/common/reflection_share.glsl"
 
-/// Minimum cosine between shading and geometric normal: on rounder surfaces, reflections are elsewhere.
-const float FLAT = 0.9999;
+/// Minimum cosine between the normals with and without a normal map: on bumps, reflections are elsewhere.
+const float SMOOTH = 0.9999;
 
-float reflectionShare(Surface surface) {
-    return abs(dot(surface.normal, surface.geometricNormal)) < FLAT ? 0.0 : reflectionShare(surface.roughness);
+float reflectionShare(Surface surface, Shape shape) {
+    return dot(surface.normal, shape.normal) < SMOOTH ? 0.0 : reflectionShare(surface.roughness);
 }
 
 /// `seen` is the reflected ray's hit. Returns the previous pixel at which the reflector showed the same point
