@@ -107,7 +107,7 @@ inline constexpr float noValue = 1e10f;
           .help = "previous pixel position (X Y, pixels) and distance (Z) minus this frame's; 1e10: none")        \
     LAYER(reflectionMotion,                                                                                       \
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid,                                      \
-          .help = "likewise, of what flat smooth surfaces reflect; 1e10: unknown")                                \
+          .help = "likewise, of what smooth surfaces reflect; 1e10: unknown")                                \
     LAYER(roughness,                                                                                              \
           .suffixes = "R", .ofFirstHit = true,                                                                    \
           .help = "roughness of the specular lobe; 0 where nothing is hit")                                       \

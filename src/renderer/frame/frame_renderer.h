@@ -103,9 +103,8 @@ class FrameRenderer {
     uint64_t sceneVersion_ = 0;     ///< counts the frames in which something moved
     uint64_t launches_ = 0;         ///< of the frame, so far
     uint64_t samplesLaunched_ = 0;  ///< of the frame, so far
-    uint64_t samplesInMean_ = 0;
-    uint64_t firstPoint_ = 0;  ///< added to sample numbers where they choose points of the pixel    ///< for
-                               ///< pipelines that accumulate
+    uint64_t samplesInMean_ = 0;    ///< for pipelines that accumulate
+    uint64_t firstPoint_ = 0;       ///< added to sample numbers where they choose points of the pixel
     FrameImages images_;
     Display display_;
     gpu::ImageHandle displayed_;
