@@ -17,7 +17,7 @@ clip() {
     local frames=(--frames 60 --width 320 --height 180 --exposure 0 --camera-path "$3")
     "$limpid" render "$2" "${frames[@]}" --spp 1 --jitter off -o "$1.noisy.%04d.png"
     "$limpid" render "$2" "${frames[@]}" --denoiser svgf -o "$1.svgf.%04d.png"
-    "$limpid" render "$2" "${frames[@]}" --spp 4096 --samples-per-launch 64 --jitter off -o "$1.reference.%04d.png"
+    "$limpid" render "$2" "${frames[@]}" --spp 4096 --samples-per-launch 64 --jitter pixel -o "$1.reference.%04d.png"
     ffmpeg -y -v error -framerate 20 -i "$1.noisy.%04d.png" -framerate 20 -i "$1.svgf.%04d.png" \
         -framerate 20 -i "$1.reference.%04d.png" -loop 0 -c:v libwebp_anim -quality 70 -filter_complex \
         "[0]$(label '1 sample per pixel')[a];[1]$(label SVGF)[b];[2]$(label '4,096 samples')[c];[a][b][c]hstack=3" \

@@ -72,8 +72,8 @@ def render(scene, width, height, spp=64, **options):
     eye, target, fov: a camera instead of the scene's: two points of three numbers each, and the vertical field of view
         in degrees.
     jitter: where rays go through their pixels: "pixel" (anywhere), "frame" (at one point, the same for all pixels) or
-        "off" (the centre). Default with a denoiser: "frame" if it keeps a history, "pixel" for "kpcn". Default without
-        one: "off" for sequences, else "pixel".
+        "off" (the centre). Default with a denoiser: "pixel" for "kpcn", else "off". Default without one: "off" for
+        sequences, else "pixel".
     weights: weight file for "kpcn", instead of the one that comes with Limpid.
     asset_root: files that the scene refers to must lie in this folder or in the scene's own; default: the parent of
         the scene's folder.

@@ -30,8 +30,9 @@ class CliDenoiseTest : public CliTest {
 TEST_F(CliDenoiseTest, GivesExactlyWhatTheRenderersOwnPipelineGives) {
     renderNoisy("all");
     for (const std::string method : {"temporal", "atrous"}) {
-        const Result rendered = run("render builtin:cornell-moving -o " + path("own.%02d.exr") + small +
-                                    "--float --frames 4 " + "--camera-path shake --denoiser " + method);
+        const Result rendered =
+            run("render builtin:cornell-moving -o " + path("own.%02d.exr") + small +
+                "--float --frames 4 --jitter frame --camera-path shake --denoiser " + method);
         ASSERT_EQ(rendered.code, 0) << rendered.output;
         const Result denoised = run("denoise " + path("noisy.%02d.exr") + " -o " + path("clean.%02d.exr") +
                                     " --device cpu --denoiser " + method);

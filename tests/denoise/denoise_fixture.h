@@ -39,15 +39,13 @@ class DenoiseTest : public GpuTest {
     }
 
     /// Runs one frame of a method; the next call is the next frame. Returns the beauty, four floats per
-    /// pixel; without anti-aliasing unless the settings ask for it.
+    /// pixel.
     std::vector<float> denoise(const denoise::Denoiser& method, const HostFrame& frame,
                                const DenoiserSettings& settings = {}) {
         graph_.beginFrame();
         denoise::DenoiserInput input = denoise::upload(graph_, frame);
         input.filters = filters_;
-        DenoiserSettings used = settings;
-        if (used.taa.frames == 0.0f) used.taa.frames = 1.0f;
-        output_ = method.record(graph_, input, used, networks_);
+        output_ = method.record(graph_, input, settings, networks_);
         graph_.execute(device());
         return graph_.downloadFloat(device(), output_.beauty);
     }

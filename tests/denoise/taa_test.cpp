@@ -93,8 +93,7 @@ void TaaPassTest::antialias(const HostFrame& frame, const std::vector<float>& be
     const gpu::ImageHandle picture =
         graph_.transient("picture", gpu::Format::RGBA32Float, {frame.width, frame.height});
     graph_.upload(picture, gpu::bytesOf(beauty));
-    result_ = denoise::antialias(graph_, input, picture, {.frames = GetParam().frames},
-                                 denoise::DenoiserKind::Temporal);
+    result_ = denoise::antialias(graph_, input, picture, {.frames = GetParam().frames});
     graph_.execute(device());
 }
 
@@ -180,23 +179,11 @@ TEST(Taa, OneFrameIsThePictureItself) {
     const HostFrame frame = SyntheticScene({}).frame(0, 16, 9, 1);
     const denoise::DenoiserInput input = denoise::upload(graph, frame);
     const size_t before = graph.passes().size();
-    using enum denoise::DenoiserKind;
-    EXPECT_EQ(denoise::antialias(graph, input, input.emission, {}, PerFrame), input.emission);
-    EXPECT_EQ(denoise::antialias(graph, input, input.emission, {.frames = 1.0f}, Temporal), input.emission);
+    EXPECT_EQ(denoise::antialias(graph, input, input.emission, {}), input.emission);
+    EXPECT_EQ(denoise::antialias(graph, input, input.emission, {.frames = 1.0f}), input.emission);
     EXPECT_EQ(graph.passes().size(), before);
-    EXPECT_NE(denoise::antialias(graph, input, input.emission, {.frames = 2.0f}, PerFrame), input.emission);
+    EXPECT_NE(denoise::antialias(graph, input, input.emission, {.frames = 2.0f}), input.emission);
     EXPECT_EQ(graph.passes().size(), before + 1);
-}
-
-TEST(Taa, IsTheDefaultOfDenoisersWithAHistory) {
-    gpu::FrameGraph graph;
-    const HostFrame frame = SyntheticScene({}).frame(0, 16, 9, 1);
-    for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        if (denoiser.network) continue;
-        graph.beginFrame();
-        denoiser.record(graph, denoise::upload(graph, frame), {}, {});
-        EXPECT_EQ(graph.passes().back().name == "taa", denoiser.keepsHistory) << denoiser.name;
-    }
 }
 
 }  // namespace

@@ -101,9 +101,7 @@ TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
         const limpid_host_frame given = hostFrame(frame, depths, ids, result);
         ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
         filters_ = gpu::filterBacking(device());
-        DenoiserSettings settings;
-        settings.taa.frames = 4.0f;  // the default
-        inside = denoise(*denoise::findDenoiser("svgf"), frame, settings);
+        inside = denoise(*denoise::findDenoiser("svgf"), frame);
     }
     // Not equal bit for bit: cameras are converted to matrices and back, which rounds, and pixels without a
     // hit hold other values.

@@ -99,7 +99,7 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--jitter", o.jitter,
                     "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
-                    "default: frame with denoisers that keep a history, else pixel")
+                    "default: pixel, but off with denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
     addPipelineOptions(command, o.pipeline, "path, or the preset's", "none, or the preset's");
     command.add_option("--preset", o.preset,

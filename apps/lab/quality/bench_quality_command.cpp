@@ -42,7 +42,7 @@ struct QualityOptions {
     uint32_t width = 640, height = 360, samples = 1;
     std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
     std::optional<uint64_t> first, frames;     ///< likewise
-    bool lab = false, quick = false, json = false, aliased = false;
+    bool lab = false, quick = false, json = false, smoothEdges = false;
 };
 
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
@@ -53,9 +53,7 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
         common.pipeline.integrator =
             pipelineFor(o.preset, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
     applyPreset(common, o.preset);
-    // Like the references.
-    common.jitter = o.aliased ? Jitter::Off : Jitter::Frame;
-    if (o.aliased) common.denoisers.taa.frames = 1.0f;
+    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // like the references
     for (const std::string& text : o.assignments) assign(common, text);
     return methodsOf(o.methods, common);
 }
@@ -292,10 +290,9 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
             "--reference-spp", o->referenceSamples,
             "Samples per pixel of the references; more is more accurate and slower (4096; --lab has its own)")
         ->check(CLI::Range(2, 1 << 24));
-    command.add_flag(
-        "--aliased", o->aliased,
-        "All rays go through pixel centres, without anti-aliasing; default: rays are jittered from "
-        "frame to frame, and references are means over the pixels");
+    command.add_flag("--smooth-edges", o->smoothEdges,
+                     "Jitter rays from frame to frame, and average references over pixels; default: all rays "
+                     "go through pixel centres");
     command.add_option("--reference-folder", o->referenceFolder,
                        "Folder that keeps references; existing ones are read instead of rendered");
     command.add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));

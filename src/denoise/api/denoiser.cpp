@@ -18,18 +18,16 @@ DenoiserOutput recordFilter(gpu::FrameGraph& graph, const DenoiserInput& input,
 DenoiserOutput recordKpcn(gpu::FrameGraph& graph, const DenoiserInput& input,
                           const DenoiserSettings& settings, const DenoiserNetworks& networks) {
     if (!networks.kpcn) throw Error("kpcn has no network: DenoiserNetworks::kpcn must be set");
-    return {antialias(graph, input, filterKpcn(graph, input, settings.kpcn, *networks.kpcn), settings.taa,
-                      DenoiserKind::PerFrame),
+    return {antialias(graph, input, filterKpcn(graph, input, settings.kpcn, *networks.kpcn), settings.taa),
             {}};
 }
 
 constexpr std::array<std::string_view, 2> kpcnGroups{"kpcn", "taa"};
 
-#define LIMPID_ROW(method) \
-    Denoiser{#method, method::help, recordFilter<method::record>, method::groups, method::keepsHistory},
+#define LIMPID_ROW(method) Denoiser{#method, method::help, recordFilter<method::record>, method::groups},
 constexpr std::array all{LIMPID_METHODS(LIMPID_ROW) Denoiser{
     "kpcn", "kernels predicted by a trained network: each frame by itself, of about 32 samples", recordKpcn,
-    kpcnGroups, false, true}};
+    kpcnGroups, true}};
 #undef LIMPID_ROW
 
 }  // namespace

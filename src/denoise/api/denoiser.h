@@ -40,7 +40,6 @@ struct Denoiser {
                              const DenoiserNetworks&);
     /// The parameter groups that it uses.
     std::span<const std::string_view> groups;
-    bool keepsHistory = false;  ///< earlier frames of a sequence contribute to a picture
     bool network = false;  ///< needs one of DenoiserNetworks, and frames with variances of several samples
 };
 

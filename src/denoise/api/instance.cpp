@@ -149,8 +149,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {methods()[static_cast<size_t>(desc.method)].record(graph, input, used).beauty, {}, {}};
     const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);
-    return {antialias(graph, input, filtered.beauty, used.taa, DenoiserKind::Temporal), filtered.diffuse,
-            filtered.specular};
+    return {antialias(graph, input, filtered.beauty, used.taa), filtered.diffuse, filtered.specular};
 }
 
 const char* inputName(size_t input) {

@@ -5,7 +5,6 @@
 //     const ParamTable<Settings>& params();           their names, ranges and descriptions
 //     inline constexpr std::string_view help = ...;   one sentence, for `limpid info`
 //     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
-//     inline constexpr bool keepsHistory = ...;       earlier frames contribute
 //     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 #pragma once
 

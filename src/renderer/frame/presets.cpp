@@ -22,16 +22,26 @@ Preset historyTrackingCourse() {
         .integrators = lightIntegrators,
         .denoisers = {"atrous", "temporal"},
         .jitter = Jitter::Off,
-        .assignments = {"temporal.normal=0.95",         "temporal.depth=0.15",
-                        "temporal.relative=off",        "temporal.search=off",
-                        "temporal.demodulate=off",      "temporal.max_history=0",
-                        "temporal.grey_restart=on",     "temporal.grey=0.5",
-                        "temporal.grey_misses=on",      "temporal.identity=off",
-                        "atrous.temporal=on",           "atrous.levels=5",
-                        "atrous.normal_factor=0.003",   "atrous.depth_factor=0.007",
-                        "atrous.sample_target=0",       "atrous.plane=off",
-                        "atrous.demodulate=on",         "atrous.min_albedo=0.1",
-                        "atrous.color_factor=0",        "taa.frames=1",
+        .assignments = {"temporal.normal=0.95",
+                        "temporal.depth=0.15",
+                        "temporal.relative=off",
+                        "temporal.search=off",
+                        "temporal.demodulate=off",
+                        "temporal.max_history=0",
+                        "temporal.grey_restart=on",
+                        "temporal.grey=0.5",
+                        "temporal.grey_misses=on",
+                        "temporal.identity=off",
+                        "atrous.temporal=on",
+                        "atrous.levels=5",
+                        "atrous.normal_factor=0.003",
+                        "atrous.depth_factor=0.007",
+                        "atrous.sample_target=0",
+                        "atrous.plane=off",
+                        "atrous.demodulate=on",
+                        "atrous.min_albedo=0.1",
+                        "atrous.color_factor=0",
+                        "taa.frames=1",
                         "pathtrace.through_mirrors=off"}};
 }
 
@@ -44,7 +54,7 @@ Preset ambientOcclusionTutorial() {
             .integrators = {"ao"},
             .denoisers = {"none", "temporal", "atrous", "svgf", "kpcn"},
             .jitter = Jitter::Off,
-            .assignments = {"ao.rays=1", "ao.radius=0.05", "taa.frames=1"}};
+            .assignments = {"ao.rays=1", "ao.radius=0.05"}};
 }
 
 Preset svgfOfCis565() {

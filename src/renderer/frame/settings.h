@@ -13,13 +13,12 @@
 
 namespace limpid {
 
-/// Means of many samples need jitter to cover the pixel; so does a network, whose guides are means. Denoisers
-/// with a history get the same jitter for all pixels of a frame, which anti-aliasing averages
-/// (denoise/stages/taa): with jitter per pixel, neighbours at silhouettes would see other surfaces in each
-/// frame.
+/// Means of many samples need jitter to cover the pixel. Histories follow one point of it: with jitter per
+/// pixel, pixels at silhouettes would see another surface in each frame. A network keeps no history, and its
+/// guides are means.
 inline Jitter defaultJitter(const Pipeline& pipeline) {
-    if (pipeline.accumulates() || pipeline.usesNetwork()) return Jitter::Pixel;
-    return pipeline.denoiser->keepsHistory ? Jitter::Frame : Jitter::Off;
+    const bool means = pipeline.accumulates() || pipeline.usesNetwork();
+    return means ? Jitter::Pixel : Jitter::Off;
 }
 
 /// The value for --jitter.

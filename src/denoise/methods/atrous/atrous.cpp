@@ -144,14 +144,13 @@ DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input
     if (!settings.atrous.temporal)
         return {antialias(graph, input,
                           filterAtrous(graph, input, {input.diffuse, input.specular}, settings.atrous),
-                          settings.taa, DenoiserKind::PerFrame),
+                          settings.taa),
                 {}};
     const TemporalImages accumulated = accumulateTemporally(graph, input, settings.temporal);
     if (settings.temporal.showDisocclusion) return composeTemporal(graph, input, accumulated, settings);
     const gpu::ImageHandle filtered =
         filterAtrous(graph, input, {accumulated.color, {}, accumulated.minAlbedo}, settings.atrous);
-    return {antialias(graph, input, filtered, settings.taa, DenoiserKind::Temporal),
-            accumulated.disocclusion};
+    return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion};
 }
 
 }  // namespace limpid::denoise

@@ -37,7 +37,6 @@ namespace atrous {
 using Settings = AtrousSettings;
 inline constexpr std::string_view help = "temporal accumulation, then the edge-avoiding a-trous filter";
 inline constexpr std::array<std::string_view, 3> groups{"temporal", "atrous", "taa"};
-inline constexpr bool keepsHistory = true;
 const ParamTable<Settings>& params();
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace atrous

@@ -58,9 +58,7 @@ const ParamTable<BilateralSettings>& bilateral::params() {
 
 DenoiserOutput bilateral::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                                  const FilterSettings& settings) {
-    return {antialias(graph, input, filterBilateral(graph, input, settings.bilateral), settings.taa,
-                      DenoiserKind::PerFrame),
-            {}};
+    return {antialias(graph, input, filterBilateral(graph, input, settings.bilateral), settings.taa), {}};
 }
 
 }  // namespace limpid::denoise

@@ -32,7 +32,6 @@ using Settings = BilateralSettings;
 inline constexpr std::string_view help =
     "a joint bilateral filter of one frame: the simplest method, an example";
 inline constexpr std::array<std::string_view, 2> groups{"bilateral", "taa"};
-inline constexpr bool keepsHistory = false;
 const ParamTable<Settings>& params();
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace bilateral

@@ -415,9 +415,7 @@ SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, cons
 
 DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const FilterSettings& settings) {
-    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa,
-                      DenoiserKind::Temporal),
-            {}};
+    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
 }
 
 }  // namespace limpid::denoise

@@ -60,7 +60,6 @@ using Settings = SvgfSettings;
 inline constexpr std::string_view help =
     "spatiotemporal variance-guided filtering: blurs where and as much as there is noise";
 inline constexpr std::array<std::string_view, 2> groups{"svgf", "taa"};
-inline constexpr bool keepsHistory = true;
 const ParamTable<Settings>& params();
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace svgf

@@ -136,10 +136,9 @@ DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& inpu
                                              .albedo = input.albedo,
                                              .emission = input.emission,
                                              .minAlbedo = accumulated.minAlbedo});
-    const gpu::ImageHandle picture =
-        settings.temporal.showDisocclusion
-            ? showDisocclusion(graph, beauty, accumulated.disocclusion)
-            : antialias(graph, input, beauty, settings.taa, DenoiserKind::Temporal);
+    const gpu::ImageHandle picture = settings.temporal.showDisocclusion
+                                         ? showDisocclusion(graph, beauty, accumulated.disocclusion)
+                                         : antialias(graph, input, beauty, settings.taa);
     return {picture, accumulated.disocclusion};
 }
 

@@ -57,7 +57,6 @@ using Settings = TemporalSettings;
 inline constexpr std::string_view help =
     "each pixel's running mean follows its surface through camera and object motion";
 inline constexpr std::array<std::string_view, 2> groups{"temporal", "taa"};
-inline constexpr bool keepsHistory = true;
 const ParamTable<Settings>& params();
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace temporal

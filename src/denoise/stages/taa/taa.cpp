@@ -12,26 +12,23 @@ using gpu::ImageHandle;
 const ParamTable<TaaSettings>& taaParams() {
     static const auto table = [] {
         ParamTable<TaaSettings> t("taa");
-        t.add(
-             "frames", &TaaSettings::frames, 0.0, 1000.0, "frames",
-             "Frames that are averaged to smooth edges (with --jitter frame); more is smoother and softer; 1 "
-             "is off; 0 is 4 for methods that keep a history, else 1")
-            .slider(0, 64, SliderScale::Logarithmic, 1);
+        t.add("frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
+              "Frames that are averaged to smooth edges (with --jitter frame); more is smoother and softer, "
+              "1 is off")
+            .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();
     return table;
 }
 
 ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageHandle beauty,
-                      const TaaSettings& settings, DenoiserKind kind) {
-    const float automatic = kind == DenoiserKind::Temporal ? 4.0f : 1.0f;
-    const float frames = settings.frames > 0.0f ? settings.frames : automatic;
-    if (frames <= 1.0f) return beauty;
+                      const TaaSettings& settings) {
+    if (settings.frames <= 1.0f) return beauty;
     const gpu::Extent extent = graph.extent(beauty);
     const gpu::History history = graph.history("taa", Format::RGBA16Float, extent, input.filters);
     const ImageHandle result = graph.transient("taa/beauty", Format::RGBA32Float, extent);
     const bool buffers = input.filters == gpu::Backing::Buffer;
-    const TaaParams params{extent.width, extent.height, frames};
+    const TaaParams params{extent.width, extent.height, settings.frames};
     graph.dispatch({.pass = "taa",
                     .shader = buffers ? shaders::taa_buffers_comp : shaders::taa_comp,
                     .bindings = {{"beauty", beauty},

@@ -12,17 +12,14 @@ namespace limpid::denoise {
 
 /// User settings; taaParams() gives ranges and descriptions.
 struct TaaSettings {
-    float frames = 0.0f;  ///< 0: as many as suit the method
+    float frames = 1.0f;
     bool operator==(const TaaSettings&) const = default;
 };
 const ParamTable<TaaSettings>& taaParams();
 
-/// Whether a denoiser builds on earlier frames.
-enum class DenoiserKind { Temporal, PerFrame };
-
-/// Anti-aliases `beauty` (rgba32f, not negative), by default if the denoiser is temporal. Returns it
-/// unchanged if the number of frames is 1. The pass and its history are called "taa".
+/// Anti-aliases `beauty` (rgba32f, not negative); returns it unchanged if settings.frames is 1. The pass and
+/// its history are called "taa".
 gpu::ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, gpu::ImageHandle beauty,
-                           const TaaSettings& settings, DenoiserKind kind);
+                           const TaaSettings& settings);
 
 }  // namespace limpid::denoise
