@@ -28,8 +28,8 @@ vec3 unitNormal(vec4 normal) {
 /// What light is divided by before filtering, and multiplied by afterwards. Albedos below `minAlbedo` count as that:
 /// dividing by less would amplify the noise of dark texels. 0: light is not demodulated.
 vec3 modulation(vec4 albedo, float minAlbedo) {
-    if (minAlbedo == 0.0) return vec3(1.0);
-    return clamp(finiteOr(albedo.rgb, vec3(1.0)), vec3(minAlbedo), vec3(MAX_ALBEDO));
+    const vec3 divisor = clamp(finiteOr(albedo.rgb, vec3(1.0)), vec3(minAlbedo), vec3(MAX_ALBEDO));
+    return minAlbedo == 0.0 ? vec3(1.0) : divisor;
 }
 
 /// The centre of a pixel in [-1, 1]^2, y up.

@@ -128,8 +128,7 @@ class Svgf {
         params.tests = {.normal = settings_.normalTest,
                         .depth = settings_.depthTest,
                         .relative = settings_.relative,
-                        .search = settings_.search,
-                        .identity = 1};
+                        .search = settings_.search};
         params.minAlbedo = minAlbedo();
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;

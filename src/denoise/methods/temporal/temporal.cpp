@@ -20,8 +20,8 @@ TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const 
     params.tests = {.normal = settings.normal,
                     .depth = settings.depth,
                     .relative = settings.relative,
-                    .search = settings.search,
-                    .identity = settings.identity};
+                    .search = settings.search};
+    params.identity = settings.identity;
     params.minAlbedo = settings.demodulate ? settings.minAlbedo : 0.0f;
     params.greyRestart = settings.greyRestart;
     params.greyMisses = settings.greyMisses;

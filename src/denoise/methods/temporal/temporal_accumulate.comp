@@ -33,6 +33,10 @@ struct Past {
 
 const Past NO_PAST = Past(vec4(0.0));
 
+bool comparesInstances() {
+    return params.identity != 0u;
+}
+
 Past loadFirst(ivec2 at) {
     return Past(imageLoad(colorBefore, at));
 }

@@ -32,6 +32,7 @@ struct TemporalParams {
     uint width;
     uint height;
     ReprojectTests tests;
+    uint identity;    // 0: instances are not compared
     float minAlbedo;  // 0: means are resampled without demodulation
     uint greyRestart;
     uint greyMisses;

@@ -5,6 +5,7 @@
 //   - `params` with camera, width, height and `ReprojectTests tests`
 //   - READ_UINT2 `surfacesBefore`, and the images `instances`, `instancesBefore`, `previousNormal`
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
+//   - bool comparesInstances(): whether the instances must be equal
 //   - Past loadFirst(ivec2 at): a texel with at least what framesOf() needs
 //   - float framesOf(Past): 0 if there is no history
 //   - void loadRest(inout Past, ivec2 at): what loadFirst() left out
@@ -61,7 +62,7 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
                         dot(expected.normal, decodeOctahedral(surface.x)) > params.tests.normal &&
                         abs(expected.depth - depth) < expected.tolerance &&
-                        (params.tests.identity == 0u ||
+                        (!comparesInstances() ||
                          (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);

@@ -13,7 +13,6 @@ struct ReprojectTests {
     float depth;    // maximum deviation from the expected distance
     uint relative;  // 1: `depth` is a share of the distance, with more room on tilted planes; 0: world units
     uint search;    // 1: search 3x3 pixels if all four bilinear taps are rejected
-    uint identity;  // 1: the instances must be equal
 };
 
 #ifdef __cplusplus

@@ -33,6 +33,10 @@ struct Past {
 
 const Past NO_PAST = Past(vec3(0.0), vec3(0.0), vec4(0.0));
 
+bool comparesInstances() {
+    return true;
+}
+
 Past loadFirst(ivec2 at) {
     Past there = NO_PAST;
     there.moments = imageLoad(momentsBefore, at);
