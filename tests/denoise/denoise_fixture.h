@@ -38,6 +38,13 @@ class DenoiseTest : public GpuTest {
         return download(written(pass, nameEnd));
     }
 
+    /// Four floats per pixel, as an image of the frame that is being recorded.
+    gpu::ImageHandle uploaded(const char* name, const std::vector<float>& pixels, gpu::Extent extent) {
+        const gpu::ImageHandle image = graph_.transient(name, gpu::Format::RGBA32Float, extent);
+        graph_.upload(image, gpu::bytesOf(pixels));
+        return image;
+    }
+
     /// Runs one frame of a method; the next call is the next frame. Returns the beauty, four floats per
     /// pixel.
     std::vector<float> denoise(const denoise::Denoiser& method, const HostFrame& frame,

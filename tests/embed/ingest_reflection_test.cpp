@@ -120,9 +120,7 @@ class IngestReflectionTest : public DenoiseTest {
     Motions run(const Frame& frame, const CameraParams& now, const CameraParams& before) {
         graph_.beginFrame();
         const auto image = [&](const char* name, const std::vector<float>& pixels) {
-            const gpu::ImageHandle handle = graph_.transient(name, gpu::Format::RGBA32Float, extent);
-            graph_.upload(handle, gpu::bytesOf(pixels));
-            return handle;
+            return uploaded(name, pixels, extent);
         };
         denoise::IngestImages images;
         images.radiance = images.normal = image("normal", frame.normal);

@@ -45,9 +45,7 @@ class IngestTest : public DenoiseTest {
         desc.height = height;
         graph_.beginFrame();
         const auto image = [&](const char* name, const std::vector<float>& pixels) {
-            const gpu::ImageHandle handle = graph_.transient(name, gpu::Format::RGBA32Float, extent);
-            graph_.upload(handle, gpu::bytesOf(pixels));
-            return handle;
+            return uploaded(name, pixels, extent);
         };
         denoise::IngestImages images;
         images.radiance = image("radiance", given.frame.diffuse);

@@ -52,10 +52,6 @@ struct Centre {
     float squares;  // sum of squared weighted deviations
 };
 
-bool isInside(ivec2 at) {
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(params.width, params.height)));
-}
-
 float distanceAt(ivec2 at) {
     return min(hitDistance(imageLoad(depth, at)), FARTHEST);
 }
@@ -68,7 +64,7 @@ Surface surfaceAt(ivec2 at) {
 /// How much the distance grows by a pixel along `axis`: the smaller of the differences to both sides, because the
 /// other one may lead to another surface.
 float slopeAlong(ivec2 at, ivec2 axis, float here) {
-    const bool hasAfter = isInside(at + axis), hasBefore = isInside(at - axis);
+    const bool hasAfter = inPicture(at + axis), hasBefore = inPicture(at - axis);
     const float after = hasAfter ? distanceAt(at + axis) - here : 0.0, before = hasBefore ? here - distanceAt(at - axis) : 0.0;
     if (hasAfter != hasBefore) return hasAfter ? after : before;
     return abs(after) < abs(before) ? after : before;

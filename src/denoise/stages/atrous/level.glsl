@@ -54,8 +54,4 @@ void filterBlock(ivec2 first) {
         store(first + params.step * inBlock(number), centres[number]);
 }
 
-bool inPicture(ivec2 at) {
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(params.width, params.height)));
-}
-
 #endif
