@@ -263,7 +263,7 @@ class Svgf {
                                       {"color", accumulated.color}},
                          .params = gpu::paramsOf(params),
                          .constants = constants,
-                         .extent = extent_});
+                         .extent = buffers_ ? extent_ : levelInvocations(extent_, 1, {1, SVGF_COLUMN})});
     }
 
     ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,

@@ -16,30 +16,30 @@ layout(constant_id = 3) const bool BOOST = true;
 
 const int RADIUS = 3;
 
-void addTap(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
-    const ivec2 there = at + from;
-    const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
-    const Surface other = surfaceAt(inside);
-    const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other, perDepthOf(centre, from)));
+/// A neighbour: its surface and its first and second moment. It counts if it lies in the picture and has light.
+struct Neighbour {
+    Surface surface;
+    vec2 moments;
+    bool counts;
+};
+
+Neighbour neighbourAt(ivec2 at) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const vec4 m = imageLoad(moments, inside);
-    if (inside == there && m.w > 0.0) sum += weight * vec3(m.xy, 1.0);
+    return Neighbour(surfaceAt(inside), m.xy, at == inside && m.w > 0.0);
+}
+
+/// Adds weighted moments and the weight. `from` is the neighbour's offset.
+void add(inout vec3 sum, SurfaceCentre centre, Neighbour other, ivec2 from) {
+    const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other.surface, perDepthOf(centre, from)));
+    if (other.counts) sum += weight * vec3(other.moments, 1.0);
 }
 
 bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-/// Sums weighted moments and weights over the taps of every `step`-th of the 7 rows, from row `first` on.
-vec3 rowsSum(ivec2 at, int first, int step) {
-    const SurfaceCentre centre = centreOf(surfaceAt(at), at);
-    vec3 sum = vec3(0.0);
-    for (int j = first - RADIUS; j <= RADIUS; j += step) {
-        for (int i = -RADIUS; i <= RADIUS; ++i) addTap(sum, centre, at, ivec2(i, j));
-    }
-    return sum;
-}
-
-/// `sum` is the sum over all rows.
+/// `sum` is the sum over all neighbours.
 void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
     const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);

@@ -16,6 +16,16 @@ ivec2 youngAt(uint number) {
     return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
 }
 
+/// Sums weighted moments and weights over the neighbours in every `step`-th of the 7 rows, from row `first` on.
+vec3 rowsSum(ivec2 at, int first, int step) {
+    const SurfaceCentre centre = centreOf(surfaceAt(at), at);
+    vec3 sum = vec3(0.0);
+    for (int j = first - RADIUS; j <= RADIUS; j += step) {
+        for (int i = -RADIUS; i <= RADIUS; ++i) add(sum, centre, neighbourAt(at + ivec2(i, j)), ivec2(i, j));
+    }
+    return sum;
+}
+
 /// The number of invocations per young pixel; more than there are rows would be idle. There must be a young pixel.
 uint sharers() {
     return min(GROUP * GROUP / count, 2u * uint(RADIUS) + 1u);
