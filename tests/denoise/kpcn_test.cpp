@@ -27,6 +27,7 @@ KpcnWeights weightsOf(const std::string& network) {
         network == "shipped" ? std::string(LIMPID_SOURCE_DIR) + "/weights/kpcn.safetensors"
                              : dataFolder + "kpcn_small.safetensors");
     if (network == "anywhere") weights.facing = -2.0f;
+    if (network == "linear") weights.logarithmicDiffuse = false;
     return weights;
 }
 
@@ -157,7 +158,7 @@ class KpcnTest : public DenoiseTest {
 
 TEST_F(KpcnTest, IsWhatPyTorchComputes) {
     const TensorFile cases = neural::readTensorFile(dataFolder + "kpcn_cases.safetensors");
-    for (const std::string name : {"small", "shipped", "anywhere"}) {
+    for (const std::string name : {"small", "shipped", "anywhere", "linear"}) {
         const HostFrame frame = frameOf(cases, name);
         const std::vector<float> truth = pixelsOf(cases, name + "/clean", "");
         for (const KpcnPrecision precision : precisions()) {

@@ -91,10 +91,9 @@ def varied(frame, generator):
     return result
 
 
-def patches(frame, size, count, generator):
-    """Yields `count` random patches of features.prepare(frame), with centres drawn by importance(). They have `size` x
+def patches(prepared, frame, size, count, generator):
+    """Yields `count` random patches of Kpcn.prepare(frame), with centres drawn by importance(). They have `size` x
     `size` pixels, or fewer if the picture is smaller."""
-    prepared = features.prepare(frame)
     rows, columns = frame["depth"].shape[2:]
     height, width = min(size, rows), min(size, columns)
     centres = importance(frame).cpu()[height // 2 : rows - (height - 1) // 2, width // 2 : columns - (width - 1) // 2]

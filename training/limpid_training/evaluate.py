@@ -29,7 +29,7 @@ def evaluate(run, folder, device="cpu"):
     examples = data.Dataset(folder, options["samples"], device)
     for index in range(len(examples)):
         frame = examples[index]
-        prepared = features.prepare(frame)
+        prepared = net.prepare(frame)
         noisy = rel_mse(frame["diffuse"] + frame["specular"], prepared["target"])
         yield examples.examples[index][2], noisy, rel_mse(net(prepared), prepared["target"])
 

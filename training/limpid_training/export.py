@@ -25,7 +25,7 @@ def export(run, output):
         weights[side + ".hidden.0.weight"][:, unseen] = 0.0  # inputs not used in training
     metadata = {
         "limpid.network": "kpcn",
-        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing")}),
+        "limpid.shape": json.dumps({key: options[key] for key in ("hidden", "channels", "width", "facing", "diffuse_input")}),
         "limpid.training": json.dumps(
             {
                 "dataset": state["dataset"],

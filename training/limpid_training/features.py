@@ -2,8 +2,9 @@
 al., "Kernel-Predicting Convolutional Networks for Denoising Monte Carlo Renderings", SIGGRAPH 2017, section 5. The
 shader src/denoise/kpcn/shaders/kpcn_features.comp does the same.
 
-One thing differs from the paper: the network's input is the logarithm of diffuse light, too, so that it is bounded and
-fits in half precision. The kernels still average diffuse light itself.
+One thing differs from the paper by default: the network's input is the logarithm of diffuse light, too, so that it is
+bounded. The kernels still average diffuse light itself. With `diffuse_input` "linear", the network's input is diffuse
+light itself, as in the paper.
 
 A frame is a dict of float32 tensors (batch, channels, rows, columns): "diffuse", "specular", "albedo" and "normal" (3
 channels), and "depth" (1 channel, 0 where the ray hit nothing). Each comes with the variance of its mean in one
@@ -22,6 +23,12 @@ INPUT_CHANNELS = 34
 INPUTS = {"all": range(INPUT_CHANNELS), "gradients": (*range(10), *range(13, 19), *range(23, 29), 31, 32)}
 
 SIDES = ("diffuse", "specular")
+
+#: What the network for diffuse light sees: log(1 + light), or the light itself.
+DIFFUSE_INPUTS = ("logarithmic", "linear")
+
+#: The largest number in half precision. Inputs are stored so.
+MAX_HALF = 65504.0
 
 
 def gradients(image):
@@ -53,13 +60,15 @@ def recombined(sides, albedo):
     return sum(from_network(side, light, albedo) for side, light in sides.items())
 
 
-def seen(side, frame):
+def seen(side, frame, diffuse_input="logarithmic"):
     """Returns the light as the network's input has it, and the variance of that: to first order, the light's variance
-    times the squared derivative of the transform."""
+    times the squared derivative of the transform. `diffuse_input` is one of DIFFUSE_INPUTS."""
     light, variance = frame[side].clamp(min=0.0), frame[side + ".variance"]
     if side == "diffuse":
         light = light / (frame["albedo"] + EPSILON)
         variance = variance / (luminance(frame["albedo"]) + EPSILON) ** 2
+        if diffuse_input == "linear":
+            return light.clamp(max=MAX_HALF), variance.clamp(max=MAX_HALF)
     return torch.log1p(light), variance / (1.0 + luminance(light)) ** 2
 
 
@@ -79,12 +88,12 @@ def depth_scale(frame):
     return torch.where(largest > 0, 1.0 / largest.clamp(min=1e-30), torch.ones_like(largest))
 
 
-def inputs(side, frame):
-    """Returns the 34 input channels for `side`, "diffuse" or "specular"."""
+def inputs(side, frame, diffuse_input="logarithmic"):
+    """Returns the 34 input channels for `side`, "diffuse" or "specular". `diffuse_input` is as for seen()."""
     scale = depth_scale(frame)
     parts = []
     for image, variance in (
-        seen(side, frame),
+        seen(side, frame, diffuse_input),
         (frame["albedo"], frame["albedo.variance"]),
         (frame["normal"], frame["normal.variance"]),
         (frame["depth"] * scale, frame["depth.variance"] * scale**2),
@@ -93,15 +102,15 @@ def inputs(side, frame):
     return torch.cat(parts, dim=1)
 
 
-def prepare(frame):
+def prepare(frame, diffuse_input="logarithmic"):
     """Returns what Kpcn needs: for each side "SIDE.input" and "SIDE.light" (the light that its kernels average), and
     "albedo" and "faces" for both. If the frame has "reference.SIDE", also "SIDE.target", the reference in network
-    space, and "target", the reference picture without emission.
+    space, and "target", the reference picture without emission. `diffuse_input` is as for seen().
 
     Call this with whole frames and cut patches from the result: at the edges of a patch, gradients would be 0."""
     prepared = {"albedo": frame["albedo"], "faces": faces(frame["normal"])}
     for side in SIDES:
-        prepared[side + ".input"] = inputs(side, frame)
+        prepared[side + ".input"] = inputs(side, frame, diffuse_input)
         prepared[side + ".light"] = to_network(side, frame[side], frame["albedo"])
         if "reference." + side in frame:
             prepared[side + ".target"] = to_network(side, frame["reference." + side], frame["albedo"])

@@ -19,7 +19,7 @@ from . import features, tensor_file
 from .network import ANY_FACING, Kpcn
 
 #: name: rows, columns
-CASES = {"small": (37, 45), "shipped": (23, 30), "anywhere": (19, 26)}
+CASES = {"small": (37, 45), "shipped": (23, 30), "anywhere": (19, 26), "linear": (21, 24)}
 SMALL = {"hidden": 2, "channels": 20, "width": 7}
 
 
@@ -100,7 +100,7 @@ def cases(networks):
     for name, (rows, columns) in CASES.items():
         layers = frame(rows, columns, generator)
         exact = {layer: image.double() for layer, image in layers.items()}
-        prepared, variance = features.prepare(exact), variances(exact)
+        prepared, variance = networks[name].prepare(exact), variances(exact)
         net = networks[name].double()
         clean = {}
         for side in features.SIDES:
@@ -113,10 +113,12 @@ def cases(networks):
 
 
 def networks(data, weights):
-    """Returns the network of each case. "anywhere" is "small" without the condition on normals."""
+    """Returns the network of each case. "anywhere" is "small" without the condition on normals, and
+    "linear" is "small" with diffuse light itself as its input."""
     small = os.path.join(data, "kpcn_small.safetensors")
-    result = {"small": load(small), "shipped": load(weights), "anywhere": load(small)}
+    result = {"small": load(small), "shipped": load(weights), "anywhere": load(small), "linear": load(small)}
     result["anywhere"].facing = ANY_FACING
+    result["linear"].diffuse_input = "linear"
     return result
 
 

@@ -97,15 +97,22 @@ class Kpcn(nn.Module):
     """The networks of both sides; computes the denoised picture without emission. If `direct`, the networks predict
     colours instead of kernels. This is only for comparison: Limpid's denoiser cannot use such a network."""
 
-    def __init__(self, hidden=8, channels=100, width=21, facing=FACING, inputs="all", direct=False):
+    def __init__(self, hidden=8, channels=100, width=21, facing=FACING, inputs="all", direct=False,
+                 diffuse_input="logarithmic"):
         super().__init__()
-        self.facing, self.direct = facing, direct
+        if diffuse_input not in features.DIFFUSE_INPUTS:
+            raise ValueError(f"diffuse_input is '{diffuse_input}', not one of {', '.join(features.DIFFUSE_INPUTS)}")
+        self.facing, self.direct, self.diffuse_input = facing, direct, diffuse_input
         self.diffuse = KernelPredictor(hidden, channels, width, direct, inputs)
         self.specular = KernelPredictor(hidden, channels, width, direct, inputs)
 
+    def prepare(self, frame):
+        """Returns features.prepare() of a frame with the inputs that this network takes."""
+        return features.prepare(frame, self.diffuse_input)
+
     def side(self, side, prepared):
         """Returns the denoised light of one side in network space (features.to_network()). `prepared` comes from
-        features.prepare()."""
+        prepare()."""
         return self.side_and_logits(side, prepared)[0]
 
     def side_and_logits(self, side, prepared):
@@ -121,4 +128,5 @@ class Kpcn(nn.Module):
 
 def network_of(options):
     """Creates the network that a training run's options describe."""
-    return Kpcn(**{name: options[name] for name in ("hidden", "channels", "width", "facing", "inputs", "direct")})
+    names = ("hidden", "channels", "width", "facing", "inputs", "direct", "diffuse_input")
+    return Kpcn(**{name: options[name] for name in names})

@@ -27,7 +27,7 @@ from .network import ANY_FACING, FACING, network_of
 PRESETS = {
     "cis565": {
         "loss": "absolute", "warm_up": 0, "logit_decay": 0, "batch": 16, "rate_diffuse": 1e-5, "rate_specular": 1e-4, "final_rate": 1.0, "epochs": 10, "tuning_epochs": 0,
-        "inputs": "gradients", "facing": ANY_FACING}
+        "inputs": "gradients", "diffuse_input": "linear", "facing": ANY_FACING}
 }
 
 
@@ -66,6 +66,8 @@ def parse(arguments=None):
     parser.add_argument("--width", type=int, default=21, help="edge length of the kernels in pixels; odd")
     parser.add_argument("--inputs", choices=sorted(features.INPUTS), default="all",
                         help="input channels to use: all 34, or only the gradients of albedo, normal and depth")
+    parser.add_argument("--diffuse-input", choices=features.DIFFUSE_INPUTS, default="logarithmic",
+                        help="what the network for diffuse light sees: log(1 + light), or as in the paper the light")
     parser.add_argument("--facing", type=float, default=FACING,
                         help="minimum cosine between a pixel's normal and those of the pixels in its kernel; "
                         "-2: no condition")
@@ -202,7 +204,7 @@ class Trainer:
                 frame = self.examples[self.learnt[index]]
                 if self.options.vary:
                     frame = data.varied(frame, generator)
-                pool += data.patches(frame, self.options.patch, self.options.patches, generator)
+                pool += data.patches(self.net.prepare(frame), frame, self.options.patch, self.options.patches, generator)
             pool = data.shuffled(pool, torch.randperm(len(pool), generator=generator))
             for i in range(0, len(pool), size):
                 yield data.batch_of(pool[i : i + size])
@@ -231,7 +233,7 @@ class Trainer:
         total = 0.0
         for index in self.validated:
             frame = self.examples[index]
-            prepared = features.prepare(frame)
+            prepared = self.net.prepare(frame)
             noisy, target, result = frame["diffuse"] + frame["specular"], prepared["target"], self.net(prepared)
             total += rel_mse(result, target) / max(rel_mse(noisy, target), 1e-12)
         self.losses.setdefault("validation", []).append(total / len(self.validated))

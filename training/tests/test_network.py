@@ -69,6 +69,21 @@ class FeaturesTest(unittest.TestCase):
             self.assertLess(features.seen(side, frame)[0].max().item(), 20.0)
             self.assertLessEqual(features.seen(side, frame)[1].max().item(), 1.0)
 
+    def test_linear_diffuse_input(self):
+        frame = random_frame()
+        light, variance = features.seen("diffuse", frame, "linear")
+        self.assertTrue(torch.allclose(light, features.to_network("diffuse", frame["diffuse"], frame["albedo"])))
+        divisor = (features.luminance(frame["albedo"]) + features.EPSILON) ** 2
+        self.assertTrue(torch.allclose(variance, frame["diffuse.variance"] / divisor))
+        logarithmic, linear = Kpcn(1, 4, 3).prepare(frame), Kpcn(1, 4, 3, diffuse_input="linear").prepare(frame)
+        for name, image in logarithmic.items():  # only that input differs
+            self.assertEqual(torch.equal(image, linear[name]), name != "diffuse.input", name)
+        frame["diffuse"] = torch.full_like(frame["diffuse"], 6e4)
+        frame["diffuse.variance"] = torch.full_like(frame["diffuse.variance"], 6e4)
+        frame["albedo"] = torch.zeros_like(frame["albedo"])
+        for image in features.seen("diffuse", frame, "linear"):
+            self.assertEqual(image.max().item(), features.MAX_HALF)
+
     def test_a_network_of_gradients_sees_nothing_else_of_its_guides(self):
         net = KernelPredictor(hidden=1, channels=4, width=3, inputs="gradients")
         x = torch.rand(1, features.INPUT_CHANNELS, 8, 8)

@@ -62,7 +62,7 @@ class TrainingTest(unittest.TestCase):
     def test_patches_are_cut_from_the_frame(self):
         frame = data.Dataset(self.data, 4)[0]
         whole = features.prepare(frame)
-        for patch in data.patches(frame, 12, 5, torch.Generator().manual_seed(1)):
+        for patch in data.patches(whole, frame, 12, 5, torch.Generator().manual_seed(1)):
             self.assertEqual(patch["diffuse.input"].shape, (1, features.INPUT_CHANNELS, 12, 12))
             windows = whole["target"].unfold(2, 12, 1).unfold(3, 12, 1)
             self.assertTrue((windows == patch["target"].unsqueeze(2).unsqueeze(2)).all(-1).all(-1).all(1).any())

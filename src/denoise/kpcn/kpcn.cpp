@@ -305,7 +305,9 @@ class Recorder {
     float ofMean() const { return input_.samples > 1 ? 1.0f / static_cast<float>(input_.samples - 1) : 0.0f; }
 
     void features(size_t side, const Tile& tile, ImageHandle largest, const std::string& prefix) {
-        const KpcnFeaturesParams params{region(tile, margin_), ofMean(), static_cast<uint32_t>(side)};
+        const bool logarithmic = side == 1 || network_.logarithmicDiffuse();
+        const KpcnFeaturesParams params{region(tile, margin_), ofMean(), static_cast<uint32_t>(side),
+                                        logarithmic};
         graph_.dispatch({.pass = prefix + "features",
                          .shader = shaders_.features,
                          .bindings = {{"radiance", side == 0 ? input_.diffuse : input_.specular},

@@ -70,6 +70,7 @@ KpcnNetwork::KpcnNetwork(gpu::Device& device, const KpcnWeights& weights, KpcnPr
       kernelWidth_(weights.kernelWidth),
       slabs_(KPCN_INPUT_SLABS),
       facing_(weights.facing),
+      logarithmicDiffuse_(weights.logarithmicDiffuse),
       maxBytes_(largestBuffer(device)) {
     std::vector<float> packed;
     for (size_t side = 0; side < 2; ++side) {

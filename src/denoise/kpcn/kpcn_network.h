@@ -45,6 +45,8 @@ class KpcnNetwork {
     uint32_t kernelWidth() const { return kernelWidth_; }
     /// Same as KpcnWeights::facing.
     float facing() const { return facing_; }
+    /// Same as KpcnWeights::logarithmicDiffuse.
+    bool logarithmicDiffuse() const { return logarithmicDiffuse_; }
     /// Maximum over inputs and hidden layers.
     uint32_t slabs() const { return slabs_; }
     /// Maximum size of a buffer on the device, bytes.
@@ -54,6 +56,7 @@ class KpcnNetwork {
     KpcnPrecision precision_;
     uint32_t kernelWidth_, slabs_;
     float facing_;
+    bool logarithmicDiffuse_;
     uint64_t maxBytes_;
     std::array<std::vector<Layer>, 2> layers_;
     gpu::Buffer buffer_;

@@ -34,9 +34,10 @@ struct KpcnRegion {
 
 struct KpcnFeaturesParams {
     KpcnRegion region;
-    float ofMean;   // converts mean squared deviation to variance of the mean: 1 / (samples - 1); 0 for one
-                    // sample
-    uint specular;  // which side
+    float ofMean;      // converts mean squared deviation to variance of the mean: 1 / (samples - 1); 0 for
+                       // one sample
+    uint specular;     // which side
+    uint logarithmic;  // whether the network sees log(1 + light); if 0, the light itself
 };
 
 struct KpcnLayerParams {

@@ -21,6 +21,7 @@ constexpr float minFacing = -2.0f;
 struct Shape {
     uint32_t hidden, channels, width;
     float facing;
+    bool logarithmicDiffuse;
 };
 
 std::string textOf(const std::vector<uint64_t>& shape) {
@@ -38,6 +39,7 @@ class Reader {
         KpcnWeights result;
         result.kernelWidth = shape.width;
         result.facing = shape.facing;
+        result.logarithmicDiffuse = shape.logarithmicDiffuse;
         const char* names[] = {"diffuse", "specular"};
         for (size_t side = 0; side < 2; ++side) {
             uint32_t inputs = KPCN_INPUT_CHANNELS;
@@ -70,7 +72,7 @@ class Reader {
             return shape[name].get<uint32_t>();
         };
         const Shape result{number("hidden", maxHidden), number("channels", maxChannels),
-                           number("width", widestKernel), readFacing(shape)};
+                           number("width", widestKernel), readFacing(shape), readDiffuseInput(shape)};
         if (result.width % 2 == 0) fail("its kernels have no centre: limpid.shape has an even 'width'");
         return result;
     }
@@ -82,6 +84,14 @@ class Reader {
         if (!facing.is_number() || !(facing.get<float>() >= minFacing && facing.get<float>() <= 1.0f))
             fail(formatText("its metadata limpid.shape has no 'facing' from {} to 1", minFacing));
         return facing.get<float>();
+    }
+
+    /// Older files do not have this field either: their networks see logarithms.
+    bool readDiffuseInput(const json& shape) const {
+        const json input = shape.value("diffuse_input", json("logarithmic"));
+        if (input != "logarithmic" && input != "linear")
+            fail("its metadata limpid.shape has a 'diffuse_input' other than \"logarithmic\" and \"linear\"");
+        return input == "logarithmic";
     }
 
     /// Returns a tensor's values and removes it from `file_`, so that read() can detect tensors that are left

@@ -22,6 +22,8 @@ struct KpcnWeights {
     /// Minimum cosine between a pixel's normal and those of the pixels that its kernel averages; -2: no
     /// condition. It belongs to the network because it applies in training, too.
     float facing = 0.5f;
+    /// The network for diffuse light sees log(1 + light); if false, the light itself.
+    bool logarithmicDiffuse = true;
 };
 
 /// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is not such a

@@ -66,6 +66,7 @@ TEST(KpcnWeights, AreRead) {
         EXPECT_EQ(side[0].bias, std::vector<float>(2, 0.25f));
     }
     EXPECT_EQ(weights.facing, 0.5f);
+    EXPECT_TRUE(weights.logarithmicDiffuse);
 }
 
 TEST(KpcnWeights, TheNetworkSaysWhatItsKernelsTakeIn) {
@@ -74,6 +75,9 @@ TEST(KpcnWeights, TheNetworkSaysWhatItsKernelsTakeIn) {
     file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"facing":-2})";
     neural::writeTensorFile(folder / "w.safetensors", file);
     EXPECT_EQ(readKpcnWeights(folder / "w.safetensors").facing, -2.0f);
+    file.metadata["limpid.shape"] = R"({"hidden":1,"channels":2,"width":3,"diffuse_input":"linear"})";
+    neural::writeTensorFile(folder / "w.safetensors", file);
+    EXPECT_FALSE(readKpcnWeights(folder / "w.safetensors").logarithmicDiffuse);
 }
 
 TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
@@ -100,6 +104,9 @@ TEST(KpcnWeights, WhatIsWrongIsRefusedAndNamed) {
     for (const char* facing : {"-2.1", "1.5", "\"any\"", "null"})
         EXPECT_THAT(shape(fmt::format(R"({{"hidden":1,"channels":2,"width":3,"facing":{}}})", facing)),
                     HasSubstr("'facing'"));
+    for (const char* input : {"\"square\"", "1", "null"})
+        EXPECT_THAT(shape(fmt::format(R"({{"hidden":1,"channels":2,"width":3,"diffuse_input":{}}})", input)),
+                    HasSubstr("'diffuse_input'"));
     EXPECT_THAT(shape(R"({"hidden":4000000000,"channels":2,"width":3})"), HasSubstr("'hidden'"));
     EXPECT_THAT(shape(R"({"hidden":2,"channels":2,"width":3})"),
                 HasSubstr("lacks the tensor 'diffuse.hidden.1.weight'"));

@@ -84,9 +84,7 @@ Preset kpcnOfCis565() {
         .help =
             "the network of \"Path Tracing Denoising\", a final project of the course CIS 565: trained for "
             "10 epochs on 32 samples, with the inputs, rates and batches that it names, and no filter after "
-            "its kernels. Differences: its input is the logarithm of diffuse light, and it was trained on "
-            "Limpid's "
-            "random rooms and still lifes",
+            "its kernels. Difference: it was trained on Limpid's random rooms and still lifes",
         .integrators = lightIntegrators,
         .denoisers = {"kpcn"},
         .jitter = Jitter::Pixel,

@@ -46,8 +46,9 @@ Seen seenAt(ivec2 pixel) {
         variance /= divisor * divisor;
     }
     const float slope = 1.0 + luminance(linear);
-    seen.light = vec4(log(1.0 + linear), variance / (slope * slope));
-    seen.averaged = params.specular == 0u ? vec4(linear, variance) : seen.light;
+    const vec4 logarithm = vec4(log(1.0 + linear), variance / (slope * slope));
+    seen.averaged = params.specular == 0u ? vec4(linear, variance) : logarithm;
+    seen.light = params.logarithmic != 0u ? logarithm : min(vec4(linear, variance), MAX_HALF);
     const vec4 n = imageLoad(normal, pixel);
     seen.normal = vec4(clamp(finiteOr(n.xyz, vec3(0.0)), -MAX_HALF, MAX_HALF), varianceOf(n.a));
     const float farthest = imageLoad(largest, ivec2(0)).x;
