@@ -20,7 +20,8 @@ namespace limpid::denoise {
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc) {
     return {.framesInFlight = desc.frames_in_flight == 0 ? 2 : desc.frames_in_flight,
             .prefix = desc.name ? desc.name : "limpid/",
-            .timestamps = desc.timings != 0};
+            .timestamps = desc.timings != 0,
+            .shareMemory = true};
 }
 
 gpu::ImageHandle& imageOf(IngestImages& images, size_t input) {
@@ -159,7 +160,7 @@ limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t f
     return guarded([&] {
         const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
         check(d);
-        gpu::FrameGraph dry;
+        gpu::FrameGraph dry(graphOptions(d));
         recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, false, false);
         required(bytes, "bytes") = dry.imageBytes();
     });

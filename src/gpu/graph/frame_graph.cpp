@@ -256,7 +256,7 @@ void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
         throw Error(formatText("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
                                pixels.size()));
     }
-    image.written = true;
+    image.written = image.uploaded = true;
     std::vector<std::byte>& all = impl_->frame.uploadData;
     all.resize((all.size() + 15) / 16 * 16);  // copies to images start at multiples of a texel
     impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
@@ -319,9 +319,12 @@ void FrameGraph::host(HostPass pass) {
 }
 
 uint64_t FrameGraph::imageBytes() const {
+    const std::vector<uint32_t> memory = impl_->planMemory();
     uint64_t bytes = 0;
-    for (const RecordedImage& image : impl_->frame.images)
-        if (image.role != RecordedImage::Role::Foreign) bytes += image.bytes();
+    for (uint32_t i = 0; i < memory.size(); ++i) {
+        const RecordedImage& image = impl_->frame.images[i];
+        if (image.role != RecordedImage::Role::Foreign && memory[i] == i) bytes += image.bytes();
+    }
     return bytes;
 }
 
@@ -333,9 +336,11 @@ uint64_t FrameGraph::bytesOfImagesWrittenFrom(size_t first) const {
     std::set<std::string_view> written;
     for (size_t i = first; i < impl_->frame.passes.size(); ++i)
         written.insert(impl_->frame.passes[i].writes.begin(), impl_->frame.passes[i].writes.end());
+    const std::vector<uint32_t> memory = impl_->planMemory();
     uint64_t bytes = 0;
-    for (const RecordedImage& image : impl_->frame.images) {
-        if (!written.contains(image.name)) continue;
+    for (uint32_t i = 0; i < memory.size(); ++i) {
+        const RecordedImage& image = impl_->frame.images[i];
+        if (!written.contains(image.name) || memory[i] != i) continue;
         bytes += image.role == RecordedImage::Role::Current ? 2 * image.bytes() : image.bytes();
     }
     return bytes;

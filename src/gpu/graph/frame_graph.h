@@ -154,6 +154,11 @@ struct GraphOptions {
     /// Prefix of image and pass names in debuggers, such as "a/", to tell graphs apart.
     std::string prefix;
     bool timestamps = true;  ///< enables passTimes()
+    /// Lets images share memory within a frame: a transient image may take that of another transient image,
+    /// or of a history's previous one, of the same format, extent and backing, that no pass from its first
+    /// write on accesses. An image whose last access is a write is a result and keeps its memory. Others can
+    /// then not be downloaded.
+    bool shareMemory = false;
 };
 
 class FrameGraph {
@@ -223,7 +228,7 @@ class FrameGraph {
     /// The passes recorded since beginFrame().
     const std::vector<RecordedPass>& passes() const;
     /// Returns the device memory of the images written by passes() from index `first` on. Each image counts
-    /// once; a history counts as a pair.
+    /// once, a history as a pair, and images that share memory as one.
     uint64_t bytesOfImagesWrittenFrom(size_t first) const;
     /// Returns the images that the pass writes, for --dump. Empty if there is no such pass.
     std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;
@@ -243,8 +248,8 @@ class FrameGraph {
     void clearImages(Device& device, VkCommandBuffer_T* commands);
     /// Compiles the missing pipelines of all recorded passes, on several threads. Executes nothing.
     void prepare(Device& device);
-    /// Returns the device memory of the images that this frame needs. Histories count as pairs, imported
-    /// images do not count.
+    /// Returns the device memory of the images that this frame needs. Histories count as pairs, images that
+    /// share memory as one; imported images do not count.
     uint64_t imageBytes() const;
     /// Behaves as if execute() had run: lets tests follow histories over frames without a device.
     void assumeExecuted();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 
 #include "gpu/graph/frame_graph.h"
@@ -43,6 +44,11 @@ struct RecordedImage {
     ForeignImage foreign;  ///< for role Foreign
     bool clear = false;    ///< zeroed before the first pass: an invalid history
     bool written = false;
+    bool uploaded = false;  ///< written before the first pass
+    /// The earlier image whose memory this one uses (memory_sharing.cpp), an index into images. They have the
+    /// same key.
+    std::optional<uint32_t> sharesWith;
+    bool overwritten = false;  ///< another image uses its memory later in the frame
     /// For role Foreign: whether a pass samples it or binds it as a storage image. It cannot be in both
     /// layouts.
     bool sampled = false, stored = false;
@@ -81,6 +87,14 @@ struct RecordedUpload {
     size_t at = 0, size = 0;                       ///< in RecordedFrame::uploadData
 };
 
+/// One access of a pass to a resource.
+struct Access {
+    const BufferResource* buffer = nullptr;  ///< for buffers
+    uint32_t image = 0;                      ///< index into images
+    std::string name;
+    bool reads = false, writes = false;
+};
+
 /// Everything recorded for one frame.
 struct RecordedFrame {
     uint64_t number = 0;
@@ -88,7 +102,8 @@ struct RecordedFrame {
     std::vector<std::byte> uploadData;
     std::vector<RecordedImage> images;
     std::vector<RecordedPass> passes;
-    std::vector<RecordedDispatch> dispatches;  ///< one per pass
+    std::vector<RecordedDispatch> dispatches;   ///< one per pass
+    std::vector<std::vector<Access>> accesses;  ///< one per pass
     std::vector<std::byte> params;
     bool executed = false;
 };
@@ -98,14 +113,6 @@ struct ResourceUse {
     static constexpr size_t none = SIZE_MAX;
     size_t lastWriter = none;
     std::vector<size_t> readers;  ///< since the last write
-};
-
-/// One access of a pass to a resource.
-struct Access {
-    const BufferResource* buffer = nullptr;  ///< for buffers
-    uint32_t image = 0;                      ///< index into images
-    std::string name;
-    bool reads = false, writes = false;
 };
 
 /// The state of a history between frames.
@@ -126,7 +133,7 @@ struct FrameGraph::Impl {
     bool resetRequested = false;
     std::map<std::string, std::shared_ptr<const Shader>, std::less<>> shaders;
     const ShaderReplacements* replacements = nullptr;
-    std::vector<ResourceUse> imageUses;
+    std::vector<ResourceUse> imageUses;  ///< of the images' memory
     std::map<const BufferResource*, ResourceUse> bufferUses;
     size_t lastBarrier = 0;                   ///< the last pass that waits: all passes before it are finished
                                               ///< by then
@@ -147,6 +154,12 @@ struct FrameGraph::Impl {
     std::shared_ptr<const ShaderCode> replaced(const ShaderCode& code) const;
     /// Determines what the next pass must wait for, then records its accesses.
     void noteAccesses(RecordedPass& pass, std::span<const Access> accesses);
+    /// Determines what pass `number` must wait for; the passes before it have been noted.
+    void findHazards(RecordedPass& pass, size_t number, std::span<const Access> accesses);
+    /// Returns for each image the one whose memory it uses: itself, or an earlier one.
+    std::vector<uint32_t> planMemory() const;
+    /// Applies planMemory() once the frame is complete: from then on hazards are those of memory.
+    void shareMemory();
     FrameExecutor& executorFor(Device& device);
     /// Checks that everything the frame uses lies on `device`, and returns the executor that runs it.
     FrameExecutor& readyToRun(Device& device);

@@ -51,6 +51,7 @@ Buffer fakeBuffer(const std::string& name, std::optional<Format> format = {}) {
 
 class FrameGraphTest : public testing::Test {
   protected:
+    explicit FrameGraphTest(const GraphOptions& options = {}) : graph(options) {}
     void SetUp() override { graph.beginFrame(); }
 
     void fill(std::string_view pass, ImageHandle image) {
@@ -399,6 +400,67 @@ TEST_F(FrameGraphTest, UnusedVariablesMustBeBound) {
                                     .extent = small});
                 }),
                 HasSubstr("'unused': nothing is bound"));
+}
+
+class MemorySharingTest : public FrameGraphTest {
+  protected:
+    MemorySharingTest() : FrameGraphTest(GraphOptions{.shareMemory = true}) {}
+    /// Records a pass that only reads.
+    void read(std::string_view pass, ImageHandle image) {
+        scale(pass, image, graph.transient("of " + std::string(pass), rgba, small));
+    }
+    static constexpr uint64_t imageSize = uint64_t{small.width} * small.height * 16;
+};
+
+TEST_F(MemorySharingTest, AnImageTakesTheMemoryOfOneThatIsNoLongerRead) {
+    const ImageHandle a = filled("a"), b = graph.transient("b", rgba, small);
+    scale("first", a, b);
+    const ImageHandle c = graph.transient("c", rgba, small);
+    scale("second", b, c);  // b is still read, a is not
+    EXPECT_EQ(graph.imageBytes(), 2 * imageSize);
+    const ImageHandle d = graph.transient("d", rgba, small);
+    scale("third", c, d);
+    EXPECT_EQ(graph.imageBytes(), 2 * imageSize);
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(0), 2 * imageSize);
+}
+
+TEST_F(MemorySharingTest, ResultsKeepTheirMemory) {
+    const ImageHandle a = filled("a");  // written last: the frame's result
+    const ImageHandle b = filled("b");
+    filled("c");
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize);
+    read("reader of a", a);
+    read("reader of b", b);
+    EXPECT_EQ(graph.imageBytes(), 4 * imageSize) << "the second reader's result takes the memory of a";
+}
+
+TEST_F(MemorySharingTest, OnlyImagesOfOneKindShare) {
+    const ImageHandle a = filled("a");
+    read("reader of a", a);
+    const ImageHandle other = graph.transient("other", rgba, {small.width, small.height + 1});
+    fill("fill other", other);
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize + uint64_t{small.width} * 16);
+    filled("same");
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize + uint64_t{small.width} * 16);
+}
+
+TEST_F(MemorySharingTest, AHistorysPreviousImageGivesItsMemoryAndTheCurrentOneDoesNot) {
+    const History history = graph.history("history", rgba, small);
+    read("reader", history.previous);
+    writeCurrent(history);
+    read("reader of current", history.current);
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize) << "the second reader's result is where the past was";
+}
+
+TEST_F(MemorySharingTest, AnUploadedImageKeepsItsOwnMemoryUntilItWasRead) {
+    const ImageHandle a = filled("a");
+    read("reader of a", a);
+    const ImageHandle uploaded = graph.transient("uploaded", rgba, small);
+    graph.upload(uploaded, std::vector<std::byte>(imageSize));  // before the first pass
+    read("reader of uploaded", uploaded);
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize) << "a gives to the second reader's result";
+    filled("later");
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize) << "what was uploaded gives to the later one";
 }
 
 TEST(FrameGraph, NeedsABegunFrame) {

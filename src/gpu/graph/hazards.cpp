@@ -5,8 +5,8 @@ namespace limpid::gpu {
 namespace {
 
 /// The barrier before pass `lastBarrier` orders all passes before it, so only accesses since then matter.
-void findHazards(const FrameGraph::Impl& graph, const Access& access, const ResourceUse& use,
-                 std::vector<Hazard>& hazards) {
+void addHazards(const FrameGraph::Impl& graph, const Access& access, const ResourceUse& use,
+                std::vector<Hazard>& hazards) {
     const auto add = [&](Hazard::Kind kind, size_t earlier) {
         if (earlier == ResourceUse::none || earlier < graph.lastBarrier) return;
         hazards.push_back({kind, access.name, graph.frame.passes[earlier].name});
@@ -20,25 +20,32 @@ void findHazards(const FrameGraph::Impl& graph, const Access& access, const Reso
 }  // namespace
 
 ResourceUse& FrameGraph::Impl::useOf(const Access& access) {
-    return access.buffer ? bufferUses[access.buffer] : imageUses[access.image];
+    if (access.buffer) return bufferUses[access.buffer];
+    return imageUses[frame.images[access.image].sharesWith.value_or(access.image)];
 }
 
-void FrameGraph::Impl::noteAccesses(RecordedPass& pass, std::span<const Access> accesses) {
-    const size_t number = frame.passes.size();
-    for (const Access& access : accesses) findHazards(*this, access, useOf(access), pass.hazards);
+void FrameGraph::Impl::findHazards(RecordedPass& pass, size_t number, std::span<const Access> accesses) {
+    for (const Access& access : accesses) addHazards(*this, access, useOf(access), pass.hazards);
     if (!pass.hazards.empty()) lastBarrier = number;
     for (const Access& access : accesses) {
         ResourceUse& use = useOf(access);
         if (access.writes) {
             use.lastWriter = number;
             use.readers.clear();
-            if (!access.buffer) frame.images[access.image].written = true;
-            pass.writes.push_back(access.name);
         } else if (use.readers.empty() || use.readers.back() != number) {
             use.readers.push_back(number);
         }
+    }
+}
+
+void FrameGraph::Impl::noteAccesses(RecordedPass& pass, std::span<const Access> accesses) {
+    findHazards(pass, frame.passes.size(), accesses);
+    for (const Access& access : accesses) {
+        if (access.writes && !access.buffer) frame.images[access.image].written = true;
+        if (access.writes) pass.writes.push_back(access.name);
         if (access.reads) pass.reads.push_back(access.name);
     }
+    frame.accesses.emplace_back(accesses.begin(), accesses.end());
 }
 
 }  // namespace limpid::gpu

@@ -121,6 +121,52 @@ TEST_F(GpuTest, HistoriesStartFromZeroAfterAWarmUp) {
     EXPECT_THAT(frame(), Each(2.0f));
 }
 
+TEST_F(GpuTest, ImagesThatShareMemoryHoldWhatTheyWouldHoldAlone) {
+    FrameGraph alone, shared({.shareMemory = true});
+    const auto frame = [&](FrameGraph& graph) {
+        graph.beginFrame();
+        const History history = accumulate(graph, odd);
+        const ImageHandle next = graph.transient("next", Format::R32Float, odd);  // takes the past's memory
+        const uint32_t valid = 1;
+        graph.dispatch({.pass = "next",
+                        .shader = shaders::test_accumulate_comp,
+                        .bindings = {{"previous", history.current}, {"current", next}},
+                        .params = paramsOf(valid),
+                        .extent = odd});
+        ImageHandle image = graph.transient("first", rgba, odd);
+        fill(graph, "fill", image);
+        for (const char* name : {"second", "third", "fourth", "fifth"}) {  // in two images' memory
+            const ImageHandle result = graph.transient(name, rgba, odd);
+            scale(graph, name, image, result);
+            image = result;
+        }
+        graph.execute(device());
+        return std::pair(graph.downloadFloat(device(), next), graph.downloadFloat(device(), image));
+    };
+    for (int i = 0; i < 6; ++i) {
+        const auto [next, image] = frame(shared);
+        EXPECT_THAT(next, Each(static_cast<float>(i % 3 + 2)));
+        EXPECT_EQ(image, frame(alone).second);
+        if (i == 2) shared.resetHistories();  // what was in the past's memory must be zeroed again
+    }
+    const uint64_t pixels = uint64_t{odd.width} * odd.height;
+    EXPECT_EQ(alone.imageBytes() - shared.imageBytes(), pixels * (4 + 3 * 16));
+    EXPECT_EQ(shared.passes().back().hazards.size(), 2u)
+        << "reads the fourth, and writes where the third was read";
+}
+
+TEST_F(GpuTest, AnImageWhoseMemoryWasReusedCannotBeDownloaded) {
+    FrameGraph graph({.shareMemory = true});
+    graph.beginFrame();
+    const ImageHandle a = graph.transient("a", rgba, odd), b = graph.transient("b", rgba, odd);
+    fill(graph, "fill", a);
+    scale(graph, "read a", a, b);
+    fill(graph, "reuse a", graph.transient("c", rgba, odd));
+    graph.execute(device());
+    EXPECT_EQ(graph.downloadFloat(device(), b)[0], 2.0f);
+    EXPECT_THAT(faultOf([&] { graph.downloadFloat(device(), a); }), HasSubstr("its memory was reused"));
+}
+
 /// Clearing what is zero already would make the first frame after a warm-up slower than later ones.
 TEST_F(GpuTest, InvalidHistoriesAreClearedOnlyIfTheyAreNotZero) {
     using Role = RecordedImage::Role;

@@ -115,6 +115,7 @@ void FrameExecutor::finish(const RecordedFrame& frame) {
         if (!entry) continue;
         entry->initialised = true;
         if (frame.images[i].clear && !frame.images[i].written) entry->zero = true;
+        if (frame.images[i].sharesWith) entry->zero = false;
     }
 }
 
@@ -124,6 +125,10 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
     frameImages_.clear();
     std::vector<VkImageMemoryBarrier2> barriers;
     for (const RecordedImage& recorded : frame.images) {
+        if (recorded.sharesWith) {
+            frameImages_.push_back(frameImages_[*recorded.sharesWith]);
+            continue;
+        }
         if (recorded.role == RecordedImage::Role::Foreign) {
             const VkImageLayout layout = layoutDuring(recorded);
             frameImages_.push_back(

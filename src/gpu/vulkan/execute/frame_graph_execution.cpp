@@ -18,6 +18,8 @@ std::vector<std::byte> downloadPixels(FrameGraph::Impl& graph, Device& device, I
     if (!recorded.written && recorded.role != RecordedImage::Role::Previous) {
         throw Error(formatText("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
     }
+    if (recorded.overwritten)
+        throw Error(formatText("image '{}' cannot be downloaded: its memory was reused", recorded.name));
     const Image& image = executor.image(recorded);
     std::vector<std::byte> pixels(recorded.bytes());
     device.waitIdle();
@@ -73,6 +75,7 @@ FrameExecutor& FrameGraph::Impl::readyToRun(Device& device) {
         if (upload.buffer && storageOf(*upload.buffer).context.get() != &runner.context())
             throw Error(formatText("buffer '{}' belongs to another device", upload.buffer->name));
     }
+    shareMemory();
     return runner;
 }
 
