@@ -229,8 +229,9 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &one), LIMPID_OK);
     desc.signals = 2;
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &two), LIMPID_OK);
-    EXPECT_GT(one, uint64_t{640} * 360 * 100);
-    EXPECT_GT(two, one);
+    // docs/embedding.md, "Memory"
+    EXPECT_EQ(one, uint64_t{640} * 360 * 264 + uint64_t{80} * 45 * 20);
+    EXPECT_EQ(two, uint64_t{640} * 360 * 328 + uint64_t{80} * 45 * 40);
 }
 
 }  // namespace

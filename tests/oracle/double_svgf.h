@@ -21,6 +21,7 @@ struct DoubleSvgfParams {
     bool relative = true, search = true;
     bool reflections = true;
     double antilag = 2.0, antilagNoise = 3.0, antilagPixel = 1e9;
+    bool antilagAround = false;
     double stabilisationAlpha = 0.5, stabilisationNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     int blurLevels = 1;

@@ -57,6 +57,40 @@ struct TileSums {
     }
 };
 
+/// Adds sums, and bounds their rounding.
+void add(TileSums& sum, const TileSums& other) {
+    sum.lag.add(other.lag.value, other.lag.error);
+    sum.variance.add(other.variance.value, other.variance.error);
+    sum.size.add(other.size.value, other.size.error);
+    sum.doubtful = sum.doubtful || other.doubtful;
+}
+
+struct Lag {
+    double value = 0.0, error = 0.0;
+};
+
+Lag lagOf(const TileSums& s, const DoubleSvgfParams& params) {
+    const double size = s.size.value;
+    if (s.doubtful) return {0.0, std::numeric_limits<double>::infinity()};
+    if (size <= 0.0) return {};
+    const double excess = std::abs(s.lag.value) - params.antilagNoise * std::sqrt(s.variance.value);
+    const double lag = std::min(1.0, params.antilag * std::max(excess, 0.0) / size);
+    const double excessError =
+        s.lag.error + params.antilagNoise * rootError(s.variance.value, s.variance.error);
+    return {lag, (params.antilag * excessError + lag * s.size.error) / size};
+}
+
+/// The sums of the 3x3 tiles around a tile.
+TileSums sumsAround(const std::vector<TileSums>& sums, size_t columns, size_t tile) {
+    const size_t column = tile % columns, row = tile / columns, rows = sums.size() / columns;
+    TileSums around;
+    for (size_t y = row > 0 ? row - 1 : 0; y <= std::min(row + 1, rows - 1); ++y) {
+        for (size_t x = column > 0 ? column - 1 : 0; x <= std::min(column + 1, columns - 1); ++x)
+            add(around, sums[y * columns + x]);
+    }
+    return around;
+}
+
 /// Interpolates bilinearly at s / 8 - 0.5 with clamped coordinates, where s is the pixel's centre.
 double lagAt(const denoise::HostFrame& frame, const std::vector<double>& tiles, size_t p) {
     const size_t columns = tilesAlong(frame.width), rows = tilesAlong(frame.height);
@@ -135,15 +169,11 @@ SvgfTiles svgfTiles(const denoise::HostFrame& frame, const std::vector<dvec4>& m
         sums[y * columns + x].add(moments[p], errors.empty() ? dvec4(0.0) : errors[p], params);
     }
     SvgfTiles result;
-    for (const TileSums& s : sums) {
-        const double size = s.size.value;
-        const double excess = std::abs(s.lag.value) - params.antilagNoise * std::sqrt(s.variance.value);
-        const double lag = size > 0.0 ? std::min(1.0, params.antilag * std::max(excess, 0.0) / size) : 0.0;
-        const double excessError =
-            s.lag.error + params.antilagNoise * rootError(s.variance.value, s.variance.error);
-        result.tiles.push_back(lag);
-        result.error.push_back(size > 0.0 ? (params.antilag * excessError + lag * s.size.error) / size : 0.0);
-        if (s.doubtful) result.error.back() = std::numeric_limits<double>::infinity();
+    for (size_t tile = 0; tile < count; ++tile) {
+        const Lag own = lagOf(sums[tile], params);
+        const Lag around = params.antilagAround ? lagOf(sumsAround(sums, columns, tile), params) : Lag{};
+        result.tiles.push_back(std::max(own.value, around.value));
+        result.error.push_back(std::max(own.error, around.error));  // of the larger of the two
     }
     return result;
 }

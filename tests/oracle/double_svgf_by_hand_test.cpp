@@ -283,6 +283,31 @@ TEST(SvgfTilesByHand, ChangeBeyondNoise) {
     EXPECT_EQ(svgfTiles(frame, moments, params).tiles[0], 0.0);
 }
 
+TEST(SvgfTilesByHand, SmallChangesOverThreeByThreeTiles) {
+    const HostFrame frame = frontalPlane(40, 32);  // 5x4 tiles
+    // f - m1 is 0.2 with a deviation of 0.64: 64 pixels are not enough to tell it from noise, 4 x 64 are.
+    std::vector<dvec4> moments(size_t{40} * 32, dvec4(1.0, 4.2768, 1.2, 9));
+    const double v = 0.125 * 3.2768;
+    const auto lagOf = [&](double tiles) {
+        return 2.0 * std::max(tiles * 64 * 0.2 - 3.0 * std::sqrt(tiles * 64 * v), 0.0) / (tiles * 64 * 1.2);
+    };
+    SvgfTiles tiles = svgfTiles(frame, moments, {.antilagAround = true});
+    ASSERT_EQ(tiles.tiles.size(), 20u);
+    EXPECT_NEAR(tiles.tiles[0], lagOf(4), 1e-12) << "a corner";
+    EXPECT_NEAR(tiles.tiles[2], lagOf(6), 1e-12) << "an edge";
+    EXPECT_NEAR(tiles.tiles[7], lagOf(9), 1e-12) << "inside";
+    EXPECT_NEAR(tiles.tiles[19], lagOf(4), 1e-12) << "the last corner";
+    EXPECT_EQ(svgfTiles(frame, moments, {}).tiles[7], 0.0);
+    // A change of one tile alone is larger there than in the mean of nine.
+    for (dvec4& m : moments) m = {1.0, 1.0 + 1e-12, 1.0, 9};
+    for (size_t y = 8; y < 16; ++y)
+        for (size_t x = 16; x < 24; ++x) moments[y * 40 + x].z = 1.5;
+    tiles = svgfTiles(frame, moments, {.antilagAround = true});
+    EXPECT_NEAR(tiles.tiles[7], 2.0 * 0.5 / 1.5, 1e-5);
+    EXPECT_NEAR(tiles.tiles[6], 2.0 * 0.5 / 9.5, 1e-5) << "beside it";
+    EXPECT_EQ(tiles.tiles[5], 0.0);
+}
+
 TEST(SvgfTilesByHand, APixelIsTakenAtItsWordAsFarAsItsNoiseReaches) {
     const HostFrame frame = frontalPlane(8, 8);
     // 0.6, of which 0.5 sqrt(0.125 0.64) counts.

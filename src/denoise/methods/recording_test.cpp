@@ -39,10 +39,10 @@ TEST(RecordingTest, AFrameIsListedWithoutADevice) {
     FilterSettings settings;
     settings.svgf.separate = false;
     settings.svgf.levels = 2;
-    EXPECT_THAT(
-        passesOf(graph, settings),
-        ElementsAre("ingest", "surfaces", "svgf/reproject joint", "svgf/tiles joint", "svgf/antilag joint",
-                    "svgf/variance joint", "svgf/level 1 joint", "svgf/level 2 joint", "svgf/compose"));
+    EXPECT_THAT(passesOf(graph, settings),
+                ElementsAre("ingest", "surfaces", "svgf/reproject joint", "svgf/tiles joint",
+                            "svgf/lags joint", "svgf/antilag joint", "svgf/variance joint",
+                            "svgf/level 1 joint", "svgf/level 2 joint", "svgf/compose"));
     const gpu::RecordedPass& surfaces = graph.passes().at(1);
     ASSERT_FALSE(surfaces.hazards.empty());
     EXPECT_EQ(surfaces.hazards[0].earlierPass, "ingest");

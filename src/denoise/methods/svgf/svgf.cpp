@@ -10,6 +10,7 @@
 #include "denoise/stages/surfaces/surfaces.h"
 #include "svgf_antilag.comp.h"
 #include "svgf_antilag_buffers.comp.h"
+#include "svgf_lags.comp.h"
 #include "svgf_level.comp.h"
 #include "svgf_level_buffers.comp.h"
 #include "svgf_reproject.comp.h"
@@ -41,6 +42,7 @@ struct Signal {
 struct Accumulated {
     ImageHandle color;       ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
     ImageHandle moments;     ///< rgba32f: first, second, fast first, frames
+    ImageHandle tileSums;    ///< rgba32f: see svgf_tiles.glsl
     ImageHandle tiles;       ///< r32f: lag
     History feedback;        ///< of colors; `current` is what the next frame reads
     ImageHandle stable;      ///< half4: the last level's result, or as `feedback` where that is not kept
@@ -65,7 +67,8 @@ class Svgf {
         std::vector<ImageHandle> filtered;
         for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
         if (settings_.antilag > 0.0f) {
-            for (size_t i = 0; i < all.size() && !buffers_; ++i) recordTiles(all[i], accumulated[i]);
+            for (size_t i = 0; i < all.size() && !buffers_; ++i) sumTiles(all[i], accumulated[i]);
+            for (size_t i = 0; i < all.size(); ++i) recordLags(all[i], accumulated[i]);
             for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
         }
         for (size_t i = 0; i < all.size(); ++i) {
@@ -169,6 +172,7 @@ class Svgf {
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
+        const ImageHandle tileSums = graph_.transient(name + " tile sums", Format::RGBA32Float, tileExtent);
         const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
         const History stable = stableOf(name, feedback);
         const ImageHandle stablePast =
@@ -196,7 +200,7 @@ class Svgf {
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
         constants.push_back({"STABILISE", stabilises() ? 1u : 0u});
         if (buffers_) {
-            bindings.push_back({"tiles", tiles});
+            bindings.push_back({"tileSums", tileSums});
             constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});
         }
         graph_.dispatch({.pass = "svgf/reproject " + signal.name,
@@ -205,7 +209,7 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        return {color, moments.current, tiles, feedback, stable.current, stablePast};
+        return {color, moments.current, tileSums, tiles, feedback, stable.current, stablePast};
     }
 
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
@@ -225,14 +229,25 @@ class Svgf {
                          .extent = extent_});
     }
 
-    void recordTiles(const Signal& signal, const Accumulated& accumulated) {
-        const SvgfTilesParams params{extent_.width, extent_.height, lagParams()};
+    void sumTiles(const Signal& signal, const Accumulated& accumulated) {
+        const SvgfTileSumsParams params{extent_.width, extent_.height, lagParams()};
         graph_.dispatch({.pass = "svgf/tiles " + signal.name,
                          .shader = shaders::svgf_tiles_comp,
-                         .bindings = {{"moments", accumulated.moments}, {"tiles", accumulated.tiles}},
+                         .bindings = {{"moments", accumulated.moments}, {"tileSums", accumulated.tileSums}},
                          .params = gpu::paramsOf(params),
                          .constants = {},
                          .extent = graph_.extent(accumulated.tiles)});
+    }
+
+    void recordLags(const Signal& signal, const Accumulated& accumulated) {
+        const Extent tiles = graph_.extent(accumulated.tiles);
+        const SvgfTilesParams params{tiles.width, tiles.height, lagParams()};
+        graph_.dispatch({.pass = "svgf/lags " + signal.name,
+                         .shader = shaders::svgf_lags_comp,
+                         .bindings = {{"tileSums", accumulated.tileSums}, {"tiles", accumulated.tiles}},
+                         .params = gpu::paramsOf(params),
+                         .constants = {{"AROUND", settings_.antilagAround ? 1u : 0u}},
+                         .extent = tiles});
     }
 
     SvgfFilterParams filterParams(int step) const {
@@ -368,6 +383,9 @@ const ParamTable<SvgfSettings>& svgf::params() {
               "above `antilag_noise` one firefly can trigger anti-lag; below an eighth of it anti-lag never "
               "acts")
             .slider(0, 10);
+        t.add("antilag_around", &S::antilagAround,
+              "Look for changes in 3x3 tiles together, too; finds small changes over large areas, which the "
+              "noise of one tile hides");
         t.add("stabilisation_alpha", &S::stabilisationAlpha, 0.01, 1.0, "",
               "Minimum weight of a frame's filtered light in the stabilised mean; lower flickers less and "
               "follows changes later; 1 (and 0 levels) is off");

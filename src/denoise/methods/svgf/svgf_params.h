@@ -49,9 +49,15 @@ struct SvgfReprojectParams {
     SvgfLagParams lag;
 };
 
-struct SvgfTilesParams {
-    uint width;
+struct SvgfTileSumsParams {
+    uint width;  // pixels
     uint height;
+    SvgfLagParams lag;
+};
+
+struct SvgfTilesParams {
+    uint columns;  // tiles
+    uint rows;
     SvgfLagParams lag;
 };
 

@@ -10,7 +10,7 @@ layout(local_size_x = SVGF_TILE, local_size_y = SVGF_TILE) in;
 
 layout(constant_id = 4) const bool TILES = true;
 
-layout(set = 0, binding = 17, r32f) uniform writeonly image2D tiles;
+layout(set = 0, binding = 17, rgba32f) uniform writeonly image2D tileSums;
 
 shared TileSums pixelSums[SVGF_TILE * SVGF_TILE];
 shared TileSums rowSums[SVGF_TILE];
@@ -29,7 +29,7 @@ void storeTile(TileSums own) {
     if (number > 0u) return;
     TileSums all = rowSums[0];
     for (int i = 1; i < SVGF_TILE; ++i) add(all, rowSums[i]);
-    imageStore(tiles, ivec2(gl_WorkGroupID.xy), vec4(lagOf(all, params.lag)));
+    imageStore(tileSums, ivec2(gl_WorkGroupID.xy), packedSums(all));
 }
 
 void main() {

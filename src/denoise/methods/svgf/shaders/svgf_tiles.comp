@@ -7,10 +7,10 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {
-    SvgfTilesParams params;
+    SvgfTileSumsParams params;
 };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D moments;
-layout(set = 0, binding = 2, r32f) uniform writeonly image2D tiles;
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2D tileSums;
 
 void main() {
     const ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
@@ -25,5 +25,5 @@ void main() {
             add(sums, tileSumsOf(inside, params.lag));
         }
     }
-    imageStore(tiles, tile, vec4(lagOf(sums, params.lag)));
+    imageStore(tileSums, tile, packedSums(sums));
 }

@@ -1,5 +1,5 @@
-// How far the slow mean of a signal's luminance lags behind the fast mean, estimated from 8x8 pixels.
-// docs/denoising.md, SVGF, step 4.
+// How far the slow mean of a signal's luminance lags behind the fast mean, estimated from sums over 8x8 pixels or
+// more. docs/denoising.md, SVGF, step 4.
 #include "denoise/methods/svgf/svgf_params.h"
 
 struct TileSums {
@@ -16,6 +16,14 @@ TileSums tileSumsOf(vec4 m, SvgfLagParams lag) {
 
 void add(inout TileSums sums, TileSums other) {
     sums = TileSums(sums.lag + other.lag, sums.noise + other.noise, sums.light + other.light);
+}
+
+vec4 packedSums(TileSums sums) {
+    return vec4(sums.lag, sums.noise, sums.light, 0.0);
+}
+
+TileSums unpackedSums(vec4 texel) {
+    return TileSums(texel.x, texel.y, texel.z);
 }
 
 float lagOf(TileSums sums, SvgfLagParams lag) {

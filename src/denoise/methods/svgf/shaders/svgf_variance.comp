@@ -7,6 +7,25 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+/// A neighbour: its surface and its first and second moment. It counts if it lies in the picture and has light.
+struct Neighbour {
+    Surface surface;
+    vec2 moments;
+    bool counts;
+};
+
+Neighbour neighbourAt(ivec2 at) {
+    const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
+    const vec4 m = imageLoad(moments, inside);
+    return Neighbour(surfaceAt(inside), m.xy, at == inside && m.w > 0.0);
+}
+
+/// Adds weighted moments and the weight. `from` is the neighbour's offset.
+void add(inout vec3 sum, SurfaceCentre centre, Neighbour other, ivec2 from) {
+    const float weight = from == ivec2(0) ? 1.0 : exp2(surfaceExponent(centre, other.surface, perDepthOf(centre, from)));
+    if (other.counts) sum += weight * vec3(other.moments, 1.0);
+}
+
 void main() {
     const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, SVGF_COLUMN);
     SurfaceCentre centres[SVGF_COLUMN];
