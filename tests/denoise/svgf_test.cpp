@@ -118,6 +118,13 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
         DenoiseTest::SetUp();
         settings_ = std::get<0>(GetParam()).settings;
         settings_.separate = std::get<1>(GetParam());
+        // The defaults multiply the rounding errors of the tiles' sums, too, which would hide wrong lags.
+        const auto lower = [](float& value, float standard, float chosen) {
+            if (value == standard) value = chosen;
+        };
+        lower(settings_.antilag, SvgfSettings{}.antilag, 16.0f);
+        lower(settings_.antilagNoise, SvgfSettings{}.antilagNoise, 1.5f);
+        lower(settings_.antilagPixel, SvgfSettings{}.antilagPixel, 1.5f);
         filters_ = std::get<2>(GetParam());
         params_ = inDouble(settings_);
     }

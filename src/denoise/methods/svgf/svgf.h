@@ -20,9 +20,9 @@ struct SvgfSettings {
     bool relative = true;
     bool search = true;
     bool reflections = true;
-    float antilag = 16.0f;
-    float antilagNoise = 1.5f;
-    float antilagPixel = 1.5f;
+    float antilag = 64.0f;
+    float antilagNoise = 2.5f;
+    float antilagPixel = 2.5f;
     bool antilagAround = true;
     float stabilisationAlpha = 0.5f;
     float stabilisationNoise = 0.5f;
