@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderer/frame/sequence.h"
+#include "renderer/frame/settings.h"
 
 namespace limpid {
 
