@@ -103,7 +103,7 @@ struct RecordedFrame {
     std::vector<RecordedImage> images;
     std::vector<RecordedPass> passes;
     std::vector<RecordedDispatch> dispatches;   ///< one per pass
-    std::vector<std::vector<Access>> accesses;  ///< one per pass
+    std::vector<std::vector<Access>> accesses;  ///< one per pass, with GraphOptions::shareMemory
     std::vector<std::byte> params;
     bool executed = false;
 };

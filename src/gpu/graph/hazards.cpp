@@ -45,7 +45,7 @@ void FrameGraph::Impl::noteAccesses(RecordedPass& pass, std::span<const Access> 
         if (access.writes) pass.writes.push_back(access.name);
         if (access.reads) pass.reads.push_back(access.name);
     }
-    frame.accesses.emplace_back(accesses.begin(), accesses.end());
+    if (options.shareMemory) frame.accesses.emplace_back(accesses.begin(), accesses.end());
 }
 
 }  // namespace limpid::gpu
