@@ -69,7 +69,7 @@ scene::Scene veiledSpheres() {
 }
 
 /// The G-buffer does not see through mirrors.
-const PathtraceSettings ownLayers{.throughMirrors = false};
+const PathtraceSettings ownLayers{.throughMirrors = false, .throughGlass = false};
 
 class GBufferTest : public PassTest {
   protected:

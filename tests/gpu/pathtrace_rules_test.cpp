@@ -70,6 +70,7 @@ TEST_F(RulesTest, SamplesPerLaunchKeepTheMean) {
 TEST_F(RulesTest, LayersAddUpToTheBeauty) {
     Renderer renderer(device(), scene::cornellSpheresScene());
     RenderSettings settings = small(32, 4);
+    settings.pathtrace.throughGlass = false;  // which samples other paths
     const Rendered beauty = renderer(settings, 16);
     settings.layers = true;
     const Rendered layered = renderer(settings, 16);
@@ -92,6 +93,23 @@ TEST_F(RulesTest, LayersAddUpToTheBeauty) {
     EXPECT_LE(different, beauty.pixelCount() / 50) << "of " << beauty.pixelCount() << " pixels";
     fmt::print("layers: {} of {} pixels differ from the beauty by more than rounding\n", different,
                beauty.pixelCount());
+}
+
+TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
+    Renderer renderer(device(), scene::cornellSpheresScene());
+    RenderSettings settings = small(24, 64);
+    settings.layers = true;
+    const image::Image with = beautyOf(renderer(settings, 2048).layers);
+    settings.pathtrace.throughGlass = false;
+    settings.seed = 1;
+    const image::Image without = beautyOf(renderer(settings, 2048).layers);
+    double sumWith = 0.0, sumWithout = 0.0;
+    for (size_t i = 0; i < with.pixels.size(); ++i) {
+        // Less of rare bright samples, whose noise would hide a difference.
+        sumWith += std::min(with.pixels[i], 2.0f);
+        sumWithout += std::min(without.pixels[i], 2.0f);
+    }
+    EXPECT_NEAR(sumWith / sumWithout, 1.0, 0.01);
 }
 
 TEST_F(RulesTest, EveryParameterChangesThePicture) {

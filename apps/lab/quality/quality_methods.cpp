@@ -33,6 +33,7 @@ constexpr std::array svgfSteps{"preset=svgf-paper",
                                "svgf.separate=off",
                                "svgf.reflections=off",
                                "pathtrace.through_mirrors=off",
+                               "pathtrace.through_glass=off",
                                "svgf.stabilisation_alpha=1"};
 
 std::vector<std::string> wordsOf(const std::string& variant) {

@@ -26,6 +26,7 @@ PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings
     params.rouletteDepth = static_cast<uint>(settings.rouletteDepth);
     params.fireflyClamp = settings.fireflyClamp;
     params.throughMirrors = settings.throughMirrors;
+    params.throughGlass = settings.throughGlass;
     return params;
 }
 
@@ -64,6 +65,10 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         t.add("through_mirrors", &S::throughMirrors,
               "Write the layers of what a perfect mirror shows, which helps denoisers; off: the mirror's own "
               "layers");
+        t.add("through_glass", &S::throughGlass,
+              "Write the layers of what smooth glass shows, or of what it mirrors where it mirrors more, "
+              "which helps "
+              "denoisers, and trace that light for every sample; off: the glass's own layers");
         return t;
     }();
     return table;

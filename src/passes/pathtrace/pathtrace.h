@@ -18,6 +18,7 @@ struct PathtraceSettings {
     float fireflyClamp = 0.0f;
     bool samplerTea = false;
     bool throughMirrors = true;
+    bool throughGlass = true;
     bool operator==(const PathtraceSettings&) const = default;
 };
 const ParamTable<PathtraceSettings>& pathtraceParams();

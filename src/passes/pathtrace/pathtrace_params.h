@@ -19,6 +19,7 @@ struct PathtraceParams {
     uint rouletteDepth;
     float fireflyClamp;  // 0: off
     uint throughMirrors;
+    uint throughGlass;
 };
 
 #ifdef __cplusplus

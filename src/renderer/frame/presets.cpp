@@ -22,17 +22,28 @@ Preset historyTrackingCourse() {
         .integrators = lightIntegrators,
         .denoisers = {"atrous", "temporal"},
         .jitter = Jitter::Off,
-        .assignments = {"temporal.normal=0.95",         "temporal.depth=0.15",
-                        "temporal.relative=off",        "temporal.search=off",
-                        "temporal.demodulate=off",      "temporal.max_history=0",
-                        "temporal.grey_restart=on",     "temporal.grey=0.5",
-                        "temporal.grey_misses=on",      "temporal.identity=off",
-                        "atrous.temporal=on",           "atrous.levels=5",
-                        "atrous.normal_factor=0.003",   "atrous.depth_factor=0.007",
-                        "atrous.sample_target=0",       "atrous.plane=off",
-                        "atrous.demodulate=on",         "atrous.min_albedo=0.1",
-                        "atrous.color_factor=0",        "taa.frames=1",
-                        "pathtrace.through_mirrors=off"}};
+        .assignments = {"temporal.normal=0.95",
+                        "temporal.depth=0.15",
+                        "temporal.relative=off",
+                        "temporal.search=off",
+                        "temporal.demodulate=off",
+                        "temporal.max_history=0",
+                        "temporal.grey_restart=on",
+                        "temporal.grey=0.5",
+                        "temporal.grey_misses=on",
+                        "temporal.identity=off",
+                        "atrous.temporal=on",
+                        "atrous.levels=5",
+                        "atrous.normal_factor=0.003",
+                        "atrous.depth_factor=0.007",
+                        "atrous.sample_target=0",
+                        "atrous.plane=off",
+                        "atrous.demodulate=on",
+                        "atrous.min_albedo=0.1",
+                        "atrous.color_factor=0",
+                        "taa.frames=1",
+                        "pathtrace.through_mirrors=off",
+                        "pathtrace.through_glass=off"}};
 }
 
 Preset ambientOcclusionTutorial() {
@@ -75,7 +86,8 @@ Preset svgfOfCis565() {
                             "svgf.blur_levels=10",
                             "svgf.position=on",
                             "taa.frames=1",
-                            "pathtrace.through_mirrors=off"}};
+                            "pathtrace.through_mirrors=off",
+                            "pathtrace.through_glass=off"}};
 }
 
 Preset kpcnOfCis565() {
@@ -88,7 +100,8 @@ Preset kpcnOfCis565() {
         .integrators = lightIntegrators,
         .denoisers = {"kpcn"},
         .jitter = Jitter::Pixel,
-        .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off"}};
+        .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off",
+                        "pathtrace.through_glass=off"}};
 }
 
 Preset jitterCameraTutorial() {
@@ -106,18 +119,18 @@ Preset jitterCameraTutorial() {
 }
 
 Preset svgfOfThePaper() {
-    return {
-        .name = "svgf-paper",
-        .help =
-            "Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG 2017, without Limpid's "
-            "extensions",
-        .integrators = lightIntegrators,
-        .denoisers = {"svgf"},
-        .jitter = Jitter::Off,
-        .assignments = {"svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on", "svgf.alpha_moments=0.2",
-                        "svgf.antilag=0", "svgf.stabilisation_alpha=1", "svgf.levels=5",
-                        "svgf.history_level=1", "svgf.phi_normal=128", "svgf.phi_depth=1", "svgf.boost=off",
-                        "svgf.blur_levels=10", "taa.frames=1", "pathtrace.through_mirrors=off"}};
+    return {.name = "svgf-paper",
+            .help =
+                "Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG 2017, without Limpid's "
+                "extensions",
+            .integrators = lightIntegrators,
+            .denoisers = {"svgf"},
+            .jitter = Jitter::Off,
+            .assignments = {"svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on",
+                            "svgf.alpha_moments=0.2", "svgf.antilag=0", "svgf.stabilisation_alpha=1",
+                            "svgf.levels=5", "svgf.history_level=1", "svgf.phi_normal=128",
+                            "svgf.phi_depth=1", "svgf.boost=off", "svgf.blur_levels=10", "taa.frames=1",
+                            "pathtrace.through_mirrors=off", "pathtrace.through_glass=off"}};
 }
 
 std::string listed(const std::vector<std::string>& words) {

@@ -30,6 +30,7 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
         // Histories follow the first hit.
         if (const denoise::Denoiser* denoiser = preset.pipeline().denoiser) {
             EXPECT_FALSE(settings.pathtrace.throughMirrors) << preset.name;
+            EXPECT_FALSE(settings.pathtrace.throughGlass) << preset.name;
             EXPECT_EQ(settings.jitter, denoiser->network ? Jitter::Pixel : Jitter::Off);
         }
     }

@@ -139,6 +139,16 @@ bool isPerfectMirror(Bsdf b) {
     return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
 }
 
+/// True if all light is reflected in one direction or transmitted in another: smooth glass, or a smooth pane.
+bool isClearGlass(Bsdf b) {
+    if (!HAS_TRANSMISSION) return false;
+    if (HAS_CLEARCOAT) {
+        if (b.clearcoat.weight > 0.0) return false;
+    }
+    if (b.glassWeight > 0.0) return b.glassWeight == 1.0 && b.roughGlass == 0.0;
+    return b.smoothSurface && b.diffuse == vec3(0.0) && b.metal == 0.0 && b.through != vec3(0.0);
+}
+
 /// True if the surface transmits light.
 bool isTransmitting(Bsdf b) {
     return b.glassWeight > 0.0 || b.through != vec3(0.0);
@@ -283,6 +293,20 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     if (HAS_CLEARCOAT) result.value.specular *= (1.0 - b.clearcoat.albedo) / (1.0 - b.clearcoat.probability);
     result.direction = b.frame * wi;
     result.valid = sidesAgree(b, wi);
+    return result;
+}
+
+/// Returns one of the two lobes of clear glass, whole: value holds f cos / pdf without the chance to choose it.
+BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
+    const bool pane = b.glassWeight == 0.0;
+    BsdfSample result = sampleSmooth(b, pane ? (transmits ? 2u : 1u) : 3u, transmits ? 1.0 : -1.0);
+    float chance = transmits ? b.probability.z : b.probability.y;
+    if (!pane) {
+        const float reflectance = fresnelDielectric(b.wo.z, b.eta);
+        chance = transmits ? 1.0 - reflectance : reflectance;
+    }
+    result.value.specular *= chance;
+    result.valid = result.valid && result.value.specular != vec3(0.0);
     return result;
 }
 

@@ -1,0 +1,90 @@
+// Smooth glass that the layers see through: the path follows the brighter of its two lobes, whole, and the other lobes
+// start a second path.
+#ifndef LIMPID_PATHTRACE_GLASS_GLSL
+#define LIMPID_PATHTRACE_GLASS_GLSL
+
+#include "passes/pathtrace/path.glsl"
+#include "shaders/material/bsdf.glsl"
+#include "shaders/material/medium.glsl"
+
+/// The light that glass does not send where the layers look: one of the other lobes of the glasses on the way, chosen
+/// by its weight, starts a second path.
+struct Branch {
+    Ray ray;
+    vec3 throughput, medium;
+    float coneWidth;
+    uint depth, passages;
+    float weight;  // sum of the weights of all lobes; 0: none
+};
+
+const uint MAX_SEEN_THROUGH = 8u;  // surfaces of glass
+
+/// True for a passage through glass: into a transmitting body, out of it, through a pane, or an internal
+/// reflection.
+bool isPassage(Surface surface, Bsdf bsdf, vec3 direction) {
+    if (!HAS_TRANSMISSION || !isTransmitting(bsdf)) return false;
+    return !surface.front || dot(direction, surface.geometricNormal) < 0.0;
+}
+
+void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSample lobe, uint depth, inout uint rng) {
+    const vec3 throughput = path.throughput * lobe.value.specular;
+    const float weight = max(throughput.x, max(throughput.y, throughput.z));
+    if (!lobe.valid || weight <= 0.0) return;
+    branch.weight += weight;
+    if (random(rng) * branch.weight > weight) return;
+    branch.ray = Ray(leavingPoint(surface, lobe.direction), lobe.direction, INFINITE_DISTANCE);
+    branch.throughput = throughput / weight;
+    branch.depth = depth + 1u;
+    branch.passages = path.passages;
+    if (isPassage(surface, bsdf, lobe.direction))
+        branch.passages = min(branch.passages + 1u, params.maxTransmissionDepth);
+    branch.medium = HAS_VOLUME ? mediumTowards(path.medium, surface, lobe.direction) : vec3(0.0);
+    branch.coneWidth = path.coneWidth;
+}
+
+/// True if the layers may describe what a vertex shows instead of its own surface, as far as glass is concerned. Glass
+/// that is seen in a mirror is a surface.
+bool mayShow(Path path, uint depth) {
+    if (!SPLIT_LOBES || !HAS_TRANSMISSION) return false;
+    return params.throughGlass != 0u && depth == path.primary && !path.mirrored && depth < MAX_SEEN_THROUGH;
+}
+
+bool isSeenThrough(Path path, Bsdf bsdf, uint depth) {
+    return mayShow(path, depth) && isClearGlass(bsdf);
+}
+
+bool isMirrorBehindGlass(Path path, Bsdf bsdf, uint depth) {
+    return depth > 0u && mayShow(path, depth) && params.throughMirrors != 0u && isPerfectMirror(bsdf);
+}
+
+/// Follows the brighter of the two lobes of glass, whole; the other goes to `branch`.
+BsdfSample throughGlass(Path path, inout Branch branch, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+    const BsdfSample transmitted = clearGlassLobe(bsdf, true), reflected = clearGlassLobe(bsdf, false);
+    const bool transmits = transmitted.valid &&
+                           luminance(transmitted.value.specular) >= luminance(reflected.value.specular);
+    if (transmits) {
+        offer(branch, path, surface, bsdf, reflected, depth, rng);
+        return transmitted;
+    }
+    offer(branch, path, surface, bsdf, transmitted, depth, rng);
+    return reflected;
+}
+
+/// Goes on with the second path, whose light is specular. Returns false if there is none.
+bool takeBranch(inout Path path, inout Branch branch, inout uint depth, inout uint rng) {
+    const float chance = min(branch.weight, 1.0);
+    if (!(chance > 0.0) || random(rng) >= chance) return false;
+    path.ray = branch.ray;
+    path.throughput = branch.throughput * (branch.weight / chance);
+    path.diffuseShare = vec3(0.0);
+    path.delta = true;
+    path.coneWidth = branch.coneWidth;
+    path.medium = branch.medium;
+    path.passages = branch.passages;
+    path.primary = 0u;
+    depth = branch.depth;
+    branch.weight = 0.0;
+    return true;
+}
+
+#endif

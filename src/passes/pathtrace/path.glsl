@@ -1,0 +1,34 @@
+// What a path carries from vertex to vertex.
+#ifndef LIMPID_PATHTRACE_PATH_GLSL
+#define LIMPID_PATHTRACE_PATH_GLSL
+
+#include "passes/pathtrace/pathtrace_params.h"
+#include "shaders/material/lights.glsl"
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    PathtraceParams params;
+};
+
+struct PathRadiance {
+    vec3 emission;           // seen directly
+    vec3 diffuse, specular;  // by lobe of the first surface; their sum is all scattered light
+};
+
+struct Path {
+    Ray ray;
+    vec3 throughput;
+    vec3 diffuseShare;  // of the path's further light, per channel
+    float bsdfPdf;      // of the current direction
+    LightShares shares;  // at the vertex where it began: light that it hits could have been sampled from
+                         // there
+    bool delta;         // the direction can only be sampled by the BSDF
+    float coneWidth;
+    vec3 medium;  // absorption of the body around the path, per unit of length
+    PathRadiance radiance;
+    uint rays;
+    uint primary;  // index of the vertex that the layers describe: 0, or a later one behind mirrors and glass
+    uint passages;  // through glass so far, at most params.maxTransmissionDepth
+    bool mirrored;  // the vertex before the primary one is a mirror
+};
+
+#endif
