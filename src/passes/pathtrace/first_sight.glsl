@@ -56,7 +56,7 @@ void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf,
 /// Records the scattering at the primary vertex, or at a mirror or glass before it.
 void scattered(inout FirstSight sight, inout Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
     const bool reflected = dot(path.ray.direction, surface.geometricNormal) > 0.0;
-    const bool seesThrough = isSeenThrough(path, bsdf, depth) || isMirrorBehindGlass(path, bsdf, depth);
+    const bool seesThrough = isSeenThrough(path, bsdf, depth);
     sight.reflects = luminance(path.diffuseShare) < 0.5 && reflected;
     if (!seesThrough && (depth > 0u || !sight.reflects)) return;
     const Shape shape = shapeAt(hit, surface);

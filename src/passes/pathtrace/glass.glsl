@@ -26,6 +26,12 @@ bool isPassage(Surface surface, Bsdf bsdf, vec3 direction) {
     return !surface.front || dot(direction, surface.geometricNormal) < 0.0;
 }
 
+uint passagesAfter(Path path, Surface surface, Bsdf bsdf, vec3 direction) {
+    if (!isPassage(surface, bsdf, direction)) return path.passages;
+    return min(path.passages + 1u, params.maxTransmissionDepth);
+}
+
+/// Gives the lobe a chance, by its weight among all that were offered, to be the second path.
 void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSample lobe, uint depth, inout uint rng) {
     const vec3 throughput = path.throughput * lobe.value.specular;
     const float weight = max(throughput.x, max(throughput.y, throughput.z));
@@ -35,26 +41,17 @@ void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSampl
     branch.ray = Ray(leavingPoint(surface, lobe.direction), lobe.direction, INFINITE_DISTANCE);
     branch.throughput = throughput / weight;
     branch.depth = depth + 1u;
-    branch.passages = path.passages;
-    if (isPassage(surface, bsdf, lobe.direction))
-        branch.passages = min(branch.passages + 1u, params.maxTransmissionDepth);
+    branch.passages = passagesAfter(path, surface, bsdf, lobe.direction);
     branch.medium = HAS_VOLUME ? mediumTowards(path.medium, surface, lobe.direction) : vec3(0.0);
     branch.coneWidth = path.coneWidth;
 }
 
-/// True if the layers may describe what a vertex shows instead of its own surface, as far as glass is concerned. Glass
-/// that is seen in a mirror is a surface.
-bool mayShow(Path path, uint depth) {
-    if (!SPLIT_LOBES || !HAS_TRANSMISSION) return false;
-    return params.throughGlass != 0u && depth == path.primary && !path.mirrored && depth < MAX_SEEN_THROUGH;
-}
-
+/// True for glass, and a mirror behind it, if the layers describe what it shows. Glass that is seen in a mirror is a
+/// surface.
 bool isSeenThrough(Path path, Bsdf bsdf, uint depth) {
-    return mayShow(path, depth) && isClearGlass(bsdf);
-}
-
-bool isMirrorBehindGlass(Path path, Bsdf bsdf, uint depth) {
-    return depth > 0u && mayShow(path, depth) && params.throughMirrors != 0u && isPerfectMirror(bsdf);
+    if (!SPLIT_LOBES || !HAS_TRANSMISSION) return false;
+    if (params.throughGlass == 0u || depth != path.primary || path.mirrored || depth >= MAX_SEEN_THROUGH) return false;
+    return isClearGlass(bsdf) || (depth > 0u && params.throughMirrors != 0u && isPerfectMirror(bsdf));
 }
 
 /// Follows the brighter of the two lobes of glass, whole; the other goes to `branch`.

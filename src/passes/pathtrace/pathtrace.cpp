@@ -67,8 +67,7 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
               "layers");
         t.add("through_glass", &S::throughGlass,
               "Write the layers of what smooth glass shows, or of what it mirrors where it mirrors more, "
-              "which helps "
-              "denoisers, and trace that light for every sample; off: the glass's own layers");
+              "which helps denoisers, and trace that light for every sample; off: the glass's own layers");
         return t;
     }();
     return table;

@@ -70,7 +70,7 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
 bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     BsdfSample next;
     const bool seesThrough = isSeenThrough(path, bsdf, depth);
-    if (seesThrough) {
+    if (seesThrough && isClearGlass(bsdf)) {
         next = throughGlass(path, branch, surface, bsdf, depth, rng);
     } else {
         next = sampleBsdf(bsdf, rng);
@@ -81,12 +81,12 @@ bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, u
     path.throughput *= value / next.value.pdf;
     path.bsdfPdf = next.value.pdf;
     path.delta = next.delta;
-    if (depth >= params.rouletteDepth && !seesThrough && !isMirrorBehindGlass(path, bsdf, depth)) {
+    if (depth >= params.rouletteDepth && !seesThrough) {
         const float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), 0.95);
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
     }
-    if (isPassage(surface, bsdf, next.direction)) path.passages = min(path.passages + 1u, params.maxTransmissionDepth);
+    path.passages = passagesAfter(path, surface, bsdf, next.direction);
     if (HAS_VOLUME) path.medium = mediumTowards(path.medium, surface, next.direction);
     path.ray = Ray(leavingPoint(surface, next.direction), next.direction, INFINITE_DISTANCE);
     return path.throughput != vec3(0.0);
