@@ -42,7 +42,6 @@ scene::Scene wallBehind(std::optional<bool> pane) {
         scene::addMesh(scene, shape.take(), glass);
     }
     scene::addCamera(scene, {0.6f, 0.4f, 6.0f}, {0.0f, 0.0f, 0.0f}, 0.5f);
-    scene::prepare(scene);
     return scene;
 }
 
@@ -83,21 +82,17 @@ std::optional<dvec2> pixelOf(const CameraParams& camera, gpu::Extent extent, dve
     return pixel;
 }
 
-class GlassLayersTest : public RenderTest {
+class GlassLayersTest : public SequenceTest {
   protected:
     static constexpr gpu::Extent extent{160, 90};
 
-    RenderedLayers layersOf(const scene::Scene& scene, bool through) {
-        const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data);
-        const scene::Camera camera = scene.cameras.at(0);
-        const Sequence sequence(scene, data, camera, scene::builtinCameraPath("shake", scene, camera, 2.0),
-                                {.framesPerSecond = 24.0});
-        moment_ = sequence.moment(5, extent);
+    RenderedLayers layersOf(scene::Scene scene, bool through) {
+        load(std::move(scene), {.framesPerSecond = 24.0}, "shake");
+        moment_ = sequence_->moment(5, extent);
         RenderSettings settings = centred(extent.width, extent.height, 1);
         settings.layers = true;
         settings.pathtrace.throughGlass = through;
-        FrameRenderer still(device(), gpuScene, settings, 1);
+        FrameRenderer still(device(), *gpuScene_, settings, 1);
         still.render(moment_);
         return still.download();
     }

@@ -73,28 +73,22 @@ scene::Scene mirrorScene(float roughness) {
     moveSteadily(scene, clip, mirror, mirrorVelocity);
     moveSteadily(scene, clip, block, blockVelocity);
     scene::addClip(scene, std::move(clip));
-    scene::prepare(scene);
-    scene::chooseClip(scene, "");
     return scene;
 }
 
-class MirrorTest : public RenderTest {
+class MirrorTest : public SequenceTest {
   protected:
     static constexpr gpu::Extent extent{160, 90};
     static constexpr uint64_t frame = 5;
 
     /// Renders the layers of `frame`, with the camera on the path `shake`.
     RenderedLayers layersOf(const scene::Scene& scene, bool throughMirrors) {
-        const scene::SceneData data = scene::buildSceneData(scene);
-        scene::GpuScene gpuScene(device(), data);
-        const scene::Camera camera = scene.cameras.at(0);
-        const Sequence sequence(scene, data, camera, scene::builtinCameraPath("shake", scene, camera, 2.0),
-                                {.framesPerSecond = framesPerSecond});
-        moment_ = sequence.moment(frame, extent);
+        load(scene, {.framesPerSecond = framesPerSecond}, "shake");
+        moment_ = sequence_->moment(frame, extent);
         RenderSettings settings = centred(extent.width, extent.height, 4);
         settings.layers = true;
         settings.pathtrace.throughMirrors = throughMirrors;
-        FrameRenderer still(device(), gpuScene, settings, 1);
+        FrameRenderer still(device(), *gpuScene_, settings, 1);
         still.render(moment_);
         return still.download();
     }
