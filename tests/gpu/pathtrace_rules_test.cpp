@@ -1,5 +1,6 @@
 // Tests properties of any picture: repeatability, seeds, launches, layers, parameters, counters.
 #include "scene/builtin/builtin.h"
+#include "scene/builtin/builtin_parts.h"
 #include "tests/gpu/render_fixture.h"
 #include "tests/reference/statistics.h"
 
@@ -14,6 +15,13 @@ class RulesTest : public RenderTest {
         settings.samplesPerLaunch = samplesPerLaunch;
         return settings;
     }
+
+    /// The means of what the glass sphere shows, seen through and not.
+    struct GlassMeans {
+        double with = 0.0, without = 0.0;
+        size_t pixels = 0;
+    };
+    GlassMeans meansOfGlass(float transmission);
 };
 
 TEST_F(RulesTest, TheSameSeedGivesTheSameBits) {
@@ -95,9 +103,14 @@ TEST_F(RulesTest, LayersAddUpToTheBeauty) {
                beauty.pixelCount());
 }
 
-TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
-    Renderer renderer(device(), scene::cornellSpheresScene());
-    RenderSettings settings = small(48, 64);
+RulesTest::GlassMeans RulesTest::meansOfGlass(float transmission) {
+    scene::Scene scene = scene::cornellSpheresScene();
+    for (scene::Material& material : scene.materials)
+        if (material.transmission > 0.0f) material.transmission = transmission;
+    scene.cameras.clear();
+    scene::addCamera(scene, {0.13f, 0.14f, 0.9f}, {0.13f, 0.1f, 0.1f}, 0.24f);
+    Renderer renderer(device(), scene);
+    RenderSettings settings = small(20, 64);
     settings.layers = true;
     settings.jitter = Jitter::Off;  // a pixel sees glass in every sample or in none
     const image::Image with = beautyOf(renderer(settings, 2048).layers);
@@ -106,19 +119,26 @@ TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
     const RenderedLayers own = renderer(settings, 2048).layers;
     const image::Image without = beautyOf(own);
     constexpr uint32_t glass = 1;  // the instances are the room and the three spheres
-    double sumWith = 0.0, sumWithout = 0.0;
-    size_t count = 0;
+    GlassMeans means;
     for (size_t i = 0; i < own.ids.size() / 2; ++i) {
         if (own.ids[2 * i] != glass) continue;
-        ++count;
+        ++means.pixels;
         for (size_t c = 0; c < 3; ++c) {
-            sumWith += with.pixels[3 * i + c];
-            sumWithout += without.pixels[3 * i + c];
+            means.with += with.pixels[3 * i + c];
+            means.without += without.pixels[3 * i + c];
         }
     }
-    fmt::print("glass: mean {:.4f} of that without seeing through, {} pixels\n", sumWith / sumWithout, count);
-    EXPECT_GT(count, 40u) << "proves little";
-    EXPECT_NEAR(sumWith / sumWithout, 1.0, 0.01);
+    return means;
+}
+
+TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
+    for (const float transmission : {1.0f, 0.8f}) {
+        const GlassMeans means = meansOfGlass(transmission);
+        fmt::print("glass that transmits {}: mean {:.4f} of that without seeing through, {} pixels\n",
+                   transmission, means.with / means.without, means.pixels);
+        EXPECT_GT(means.pixels, 250u) << "proves little";
+        EXPECT_NEAR(means.with / means.without, 1.0, 0.01);
+    }
 }
 
 TEST_F(RulesTest, EveryParameterChangesThePicture) {

@@ -54,9 +54,9 @@ void met(inout FirstSight sight, Path path, Hit hit, Surface surface, Bsdf bsdf,
 }
 
 /// Records the scattering at the primary vertex, or at a mirror or glass before it.
-void scattered(inout FirstSight sight, inout Path path, Hit hit, Surface surface, Bsdf bsdf, uint depth) {
+void scattered(inout FirstSight sight, inout Path path, Hit hit, Surface surface, Bsdf bsdf, bool seesThrough,
+               uint depth) {
     const bool reflected = dot(path.ray.direction, surface.geometricNormal) > 0.0;
-    const bool seesThrough = isSeenThrough(path, bsdf, depth);
     sight.reflects = luminance(path.diffuseShare) < 0.5 && reflected;
     if (!seesThrough && (depth > 0u || !sight.reflects)) return;
     const Shape shape = shapeAt(hit, surface);

@@ -1,5 +1,5 @@
-// Smooth glass that the layers see through: the path follows the brighter of its two lobes, whole, and the other lobes
-// start a second path.
+// Smooth glass that the layers see through: the path follows the brighter of its two smooth lobes, whole, and the other
+// lobes start a second path.
 #ifndef LIMPID_PATHTRACE_GLASS_GLSL
 #define LIMPID_PATHTRACE_GLASS_GLSL
 
@@ -12,7 +12,9 @@
 struct Branch {
     Ray ray;
     vec3 throughput, medium;
-    float coneWidth;
+    float coneWidth, bsdfPdf;
+    bool delta;
+    LightShares shares;
     uint depth, passages;
     float weight;  // sum of the weights of all lobes; 0: none
 };
@@ -31,9 +33,10 @@ uint passagesAfter(Path path, Surface surface, Bsdf bsdf, vec3 direction) {
     return min(path.passages + 1u, params.maxTransmissionDepth);
 }
 
-/// Gives the lobe a chance, by its weight among all that were offered, to be the second path.
+/// Gives the lobe (whole: its value is f cos / pdf) a chance, by its weight among all that were offered, to be the
+/// second path.
 void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSample lobe, uint depth, inout uint rng) {
-    const vec3 throughput = path.throughput * lobe.value.specular;
+    const vec3 throughput = path.throughput * (lobe.value.diffuse + lobe.value.specular);
     const float weight = max(throughput.x, max(throughput.y, throughput.z));
     if (!lobe.valid || weight <= 0.0) return;
     branch.weight += weight;
@@ -44,6 +47,9 @@ void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSampl
     branch.passages = passagesAfter(path, surface, bsdf, lobe.direction);
     branch.medium = HAS_VOLUME ? mediumTowards(path.medium, surface, lobe.direction) : vec3(0.0);
     branch.coneWidth = path.coneWidth;
+    branch.bsdfPdf = lobe.value.pdf;
+    branch.delta = lobe.delta;
+    branch.shares = path.shares;
 }
 
 /// True for glass, and a mirror behind it, if the layers describe what it shows. Glass that is seen in a mirror is a
@@ -54,34 +60,39 @@ bool isSeenThrough(Path path, Bsdf bsdf, uint depth) {
     return isClearGlass(bsdf) || (depth > 0u && params.throughMirrors != 0u && isPerfectMirror(bsdf));
 }
 
-/// Follows the brighter of the two lobes of glass, whole; the other goes to `branch`.
+/// Follows the brighter of the two smooth lobes of glass, whole; the others go to `branch`.
 BsdfSample throughGlass(Path path, inout Branch branch, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const BsdfSample transmitted = clearGlassLobe(bsdf, true), reflected = clearGlassLobe(bsdf, false);
     const bool transmits = transmitted.valid &&
                            luminance(transmitted.value.specular) >= luminance(reflected.value.specular);
+    BsdfSample followed = reflected, other = transmitted;
     if (transmits) {
-        offer(branch, path, surface, bsdf, reflected, depth, rng);
-        return transmitted;
+        followed = transmitted;
+        other = reflected;
     }
-    offer(branch, path, surface, bsdf, transmitted, depth, rng);
-    return reflected;
+    offer(branch, path, surface, bsdf, other, depth, rng);
+    if (bsdf.probability.x > 0.0) {
+        offer(branch, path, surface, bsdf, clearGlassRest(bsdf, random2(rng)), depth, rng);
+    }
+    return followed;
 }
 
-/// Goes on with the second path, whose light is specular. Returns false if there is none.
-bool takeBranch(inout Path path, inout Branch branch, inout uint depth, inout uint rng) {
-    const float chance = min(branch.weight, 1.0);
-    if (!(chance > 0.0) || random(rng) >= chance) return false;
+/// Goes on with the second path, whose light is specular. Its first ray is always traced, because it may find a lamp;
+/// from there on, its weight decides.
+void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.ray = branch.ray;
-    path.throughput = branch.throughput * (branch.weight / chance);
+    path.throughput = branch.throughput * branch.weight;
     path.diffuseShare = vec3(0.0);
-    path.delta = true;
+    path.bsdfPdf = branch.bsdfPdf;
+    path.delta = branch.delta;
+    path.shares = branch.shares;
+    path.second = true;
     path.coneWidth = branch.coneWidth;
     path.medium = branch.medium;
     path.passages = branch.passages;
     path.primary = 0u;
     depth = branch.depth;
     branch.weight = 0.0;
-    return true;
 }
 
 #endif

@@ -29,6 +29,7 @@ struct Path {
     uint primary;  // index of the vertex that the layers describe: 0, or a later one behind mirrors and glass
     uint passages;  // through glass so far, at most params.maxTransmissionDepth
     bool mirrored;  // the vertex before the primary one is a mirror
+    bool second;    // what glass does not send where the layers look
 };
 
 #endif

@@ -38,7 +38,8 @@ void addEnvironment(inout Path path, uint depth) {
     addEmission(path, environmentRadiance(uv, params.scene), environmentLightPdf(uv, path.shares, params.scene), depth);
 }
 
-void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+/// Light from glass that the layers see through is specular.
+void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThrough, uint depth, inout uint rng) {
     const LightSample light = sampleLight(receiverAt(surface), params.scene, rng, path.shares);
     const BsdfValue value = evaluateBsdf(bsdf, light.direction);
     const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
@@ -52,9 +53,9 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
     if (!SPLIT_LOBES) {
         diffuse += specular;
         specular = vec3(0.0);
-    } else if (depth > path.primary) {
+    } else if (depth > path.primary || seesThrough) {
         const vec3 sum = diffuse + specular;
-        diffuse = sum * path.diffuseShare;
+        diffuse = seesThrough ? vec3(0.0) : sum * path.diffuseShare;
         specular = sum - diffuse;
     }
     if (light.pdf > 0.0 && luminance(diffuse) + luminance(specular) > 0.0) {
@@ -67,9 +68,9 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, uint depth, ino
 }
 
 /// Samples the material and continues in that direction. Returns false if the path ends.
-bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, bool seesThrough, uint depth,
+             inout uint rng) {
     BsdfSample next;
-    const bool seesThrough = isSeenThrough(path, bsdf, depth);
     if (seesThrough && isClearGlass(bsdf)) {
         next = throughGlass(path, branch, surface, bsdf, depth, rng);
     } else {
@@ -81,7 +82,7 @@ bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, u
     path.throughput *= value / next.value.pdf;
     path.bsdfPdf = next.value.pdf;
     path.delta = next.delta;
-    if (depth >= params.rouletteDepth && !seesThrough) {
+    if ((depth >= params.rouletteDepth || path.second) && !seesThrough) {
         const float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), 0.95);
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
@@ -128,9 +129,10 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
         addEmission(path, surface.emission, density, depth);
     }
     if (depth == params.maxDepth + path.passages || surface.unlit) return false;
-    addDirectLight(path, surface, bsdf, depth, rng);
-    if (!scatter(path, branch, surface, bsdf, depth, rng)) return false;
-    if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, hit, surface, bsdf, depth);
+    const bool seesThrough = isSeenThrough(path, bsdf, depth);
+    addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
+    if (!scatter(path, branch, surface, bsdf, seesThrough, depth, rng)) return false;
+    if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, hit, surface, bsdf, seesThrough, depth);
     if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     ++depth;
     return depth <= params.maxDepth + path.passages;
@@ -139,7 +141,7 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, LightShares(0.0, 0.0), true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false);
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);
@@ -155,8 +157,8 @@ PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint ray
         if (!SPLIT_LOBES || !HAS_TRANSMISSION || branch.weight == 0.0) break;
         branches = branch.weight;
         sight.reflects = false;
-        spread = cone.spread;
-        if (!takeBranch(path, branch, depth, rng)) break;
+        takeBranch(path, branch, depth);
+        spread = spreadAfter(path, cone.spread, rayNumber(params.view, sampleIndex));
     }
     first = sight.hit;
     first.albedoSpecular += branches;

@@ -139,19 +139,21 @@ bool isPerfectMirror(Bsdf b) {
     return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
 }
 
-/// True if all light is reflected in one direction or transmitted in another: smooth glass, or a smooth pane.
+/// True if the surface transmits light.
+bool isTransmitting(Bsdf b) {
+    return b.glassWeight > 0.0 || b.through != vec3(0.0);
+}
+
+const float CLEAR_GLASS_DIFFUSE = 0.25;  // the rest of clear glass's light is in its two smooth lobes
+
+/// True if nearly all light is reflected in one direction or transmitted in another: smooth glass, or a smooth pane.
 bool isClearGlass(Bsdf b) {
     if (!HAS_TRANSMISSION) return false;
     if (HAS_CLEARCOAT) {
         if (b.clearcoat.weight > 0.0) return false;
     }
-    if (b.glassWeight > 0.0) return b.glassWeight == 1.0 && b.roughGlass == 0.0;
-    return b.smoothSurface && b.diffuse == vec3(0.0) && b.metal == 0.0 && b.through != vec3(0.0);
-}
-
-/// True if the surface transmits light.
-bool isTransmitting(Bsdf b) {
-    return b.glassWeight > 0.0 || b.through != vec3(0.0);
+    const bool smoothLobes = b.roughGlass == 0.0 && (b.smoothSurface || b.glassWeight == 1.0);
+    return isTransmitting(b) && smoothLobes && b.probability.x <= CLEAR_GLASS_DIFFUSE;
 }
 
 /// True if wi is on the same side of the geometric normal as of the shading normal.
@@ -296,17 +298,29 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     return result;
 }
 
-/// Returns one of the two lobes of clear glass, whole: value holds f cos / pdf without the chance to choose it.
+/// Returns one of the two smooth lobes of clear glass, whole: value holds f cos / pdf without the chance to choose it.
 BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
     const bool pane = b.glassWeight == 0.0;
-    BsdfSample result = sampleSmooth(b, pane ? (transmits ? 2u : 1u) : 3u, transmits ? 1.0 : -1.0);
-    float chance = transmits ? b.probability.z : b.probability.y;
-    if (!pane) {
-        const float reflectance = fresnelDielectric(b.wo.z, b.eta);
-        chance = transmits ? 1.0 - reflectance : reflectance;
+    BsdfSample result = sampleSmooth(b, pane ? 2u : 3u, 1.0);
+    const float reflectance = pane ? 0.0 : fresnelDielectric(b.wo.z, b.eta);
+    if (transmits) {
+        result.value.specular *= pane ? b.probability.z : b.probability.w * (1.0 - reflectance);
+    } else {
+        result = sampleSmooth(b, 3u, -1.0);
+        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) + b.glassWeight * reflectance;
     }
-    result.value.specular *= chance;
     result.valid = result.valid && result.value.specular != vec3(0.0);
+    return result;
+}
+
+/// Samples what the two smooth lobes of clear glass leave, which is diffuse. value holds f cos / pdf; its pdf is that
+/// of evaluateBsdf().
+BsdfSample clearGlassRest(Bsdf b, vec2 u) {
+    const vec3 wi = sampleCosineHemisphere(u);
+    BsdfSample result = BsdfSample(b.frame * wi, evaluateLocal(b, wi), false, wi.z > 0.0 && sidesAgree(b, wi));
+    const float scale = PI / max(wi.z, 1e-20);
+    result.value.diffuse *= scale;
+    result.value.specular *= scale;
     return result;
 }
 
