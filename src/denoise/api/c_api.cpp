@@ -1,4 +1,6 @@
 // The C interface (limpid/denoise.h): devices, denoisers, parameters.
+#include <algorithm>
+
 #include "denoise/api/c_device.h"
 #include "denoise/api/c_guard.h"
 #include "denoise/api/c_handles.h"
@@ -53,24 +55,38 @@ void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images)
     if (images.hitDistance) require(images.roughness, LIMPID_INPUT_ROUGHNESS);
 }
 
+std::vector<DryFrame> dryFrames() {
+    const std::vector<limpid_input> optional{
+        LIMPID_INPUT_EMISSION,        LIMPID_INPUT_ALBEDO, LIMPID_INPUT_ALBEDO_SPECULAR,  LIMPID_INPUT_MOTION,
+        LIMPID_INPUT_PREVIOUS_NORMAL, LIMPID_INPUT_ID,     LIMPID_INPUT_REFLECTION_MOTION};
+    return {
+        {},
+        {.orthographic = true},
+        {.without = {LIMPID_INPUT_ALBEDO_SPECULAR, LIMPID_INPUT_SPECULAR, LIMPID_INPUT_REFLECTION_MOTION}},
+        {.without = {LIMPID_INPUT_EMISSION, LIMPID_INPUT_HIT_DISTANCE}},
+        {.without = optional}};
+}
+
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters, bool orthographic, bool signalsToo) {
+                    gpu::Backing filters, const DryFrame& frame, bool signalsToo) {
     const gpu::Extent extent{desc.width, desc.height};
     constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
     graph.beginFrame();
     IngestImages images;
     for (size_t input = 0; input <= LIMPID_INPUT_HIT_DISTANCE; ++input) {
+        const bool needed = input == LIMPID_INPUT_SPECULAR && desc.signals == 2;
+        if (!needed &&
+            std::ranges::find(frame.without, static_cast<limpid_input>(input)) != frame.without.end())
+            continue;
         const bool unsignedInput = input == LIMPID_INPUT_ID;
         imageOf(images, input) =
             graph.import(formatText("input/{}", inputName(input)),
                          unsignedInput ? gpu::Format::RGBA32Uint : gpu::Format::RGBA32Float, extent, nowhere);
     }
-    // The two dry frames together contain every pass: the motion of reflections is either given or computed.
-    if (orthographic) images.reflectionMotion = {};
     limpid_camera camera{};
     for (auto* view : {&camera.view, &camera.previous_view}) std::ranges::copy(identity, *view);
     for (auto* projection : {&camera.projection, &camera.previous_projection})
-        std::ranges::copy(orthographic ? identity : perspective, *projection);
+        std::ranges::copy(frame.orthographic ? identity : perspective, *projection);
     const InstanceOutputs outputs =
         recordFrame(graph, desc, settings, images, ingestParams(desc, camera, true), filters, signalsToo);
     for (const gpu::Format format : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float}) {
@@ -85,9 +101,9 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
 limpid_denoiser::limpid_denoiser(const limpid_device& on, const limpid_denoiser_desc& wanted)
     : device(on.device), adopted(on.adopted), desc(wanted), graph(graphOptions(wanted)) {
     desc.name = nullptr;  // a string of the caller's; the graph has its own copy
-    for (const bool orthographic : {false, true}) {
+    for (const DryFrame& frame : dryFrames()) {
         gpu::FrameGraph dry;
-        recordDryFrame(dry, desc, settings, gpu::filterBacking(*device), orthographic, true);
+        recordDryFrame(dry, desc, settings, gpu::filterBacking(*device), frame, true);
         dry.prepare(*device);
     }
 }
@@ -160,9 +176,12 @@ limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t f
     return guarded([&] {
         const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
         check(d);
-        gpu::FrameGraph dry(graphOptions(d));
-        recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, false, false);
-        required(bytes, "bytes") = dry.imageBytes();
+        uint64_t& most = required(bytes, "bytes") = 0;
+        for (const DryFrame& frame : {DryFrame{}, DryFrame{.without = {LIMPID_INPUT_ALBEDO}}}) {
+            gpu::FrameGraph dry(graphOptions(d));
+            recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, frame, false);
+            most = std::max(most, dry.imageBytes());
+        }
     });
 }
 

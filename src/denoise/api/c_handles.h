@@ -37,9 +37,18 @@ namespace limpid::denoise {
 /// Returns the options of a denoiser's graph.
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 
-/// Records a frame with placeholder inputs, to find out what prepare() and memory need.
+/// A frame with placeholder inputs.
+struct DryFrame {
+    std::vector<limpid_input> without;  ///< of all inputs
+    bool orthographic = false;
+};
+
+/// Frames that together contain every pass, in the variants of shaders that usual inputs need.
+std::vector<DryFrame> dryFrames();
+
+/// Records the frame to find out what prepare() and memory need.
 void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const FilterSettings& settings,
-                    gpu::Backing filters, bool orthographic, bool signalsToo);
+                    gpu::Backing filters, const DryFrame& frame, bool signalsToo);
 
 /// Throws UsageError if an input that the method requires is missing.
 void requireInputs(const limpid_denoiser_desc& desc, const IngestImages& images);

@@ -149,6 +149,13 @@ bool wantsSignals(const limpid_vulkan_frame& frame) {
            frame.outputs[LIMPID_OUTPUT_SPECULAR].image != VK_NULL_HANDLE;
 }
 
+std::vector<limpid_input> missingInputs(const limpid_vulkan_frame& frame) {
+    std::vector<limpid_input> missing;
+    for (int input = 0; input < LIMPID_INPUT_MAX; ++input)
+        if (frame.inputs[input].image == VK_NULL_HANDLE) missing.push_back(static_cast<limpid_input>(input));
+    return missing;
+}
+
 /// What a warm-up has of a side of the picture. lavapipe compiles a shader anew for images whose sides are
 /// powers of two where before they were not.
 uint32_t fewPixels(uint32_t size) {
@@ -233,7 +240,8 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
         // Memory is given when it is first written, which takes a CPU longer than a frame.
         const IngestParams params = ingestParams(d.desc, frame.camera, true);
         recordDryFrame(d.graph, d.desc, d.settings, gpu::filterBacking(*d.device),
-                       params.camera.orthographic != 0, wantsSignals(frame));
+                       {.without = missingInputs(frame), .orthographic = params.camera.orthographic != 0},
+                       wantsSignals(frame));
         d.graph.clearImages(*d.device, commands);
     });
 }

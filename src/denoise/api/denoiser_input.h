@@ -8,10 +8,12 @@
 
 namespace limpid::denoise {
 
-/// One frame: an image for each layer of base/layers/layer_table.h, all of one size, rgba32f; `ids` is
-/// rg32ui: instance and material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives",
-/// describes the components. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance
-/// is rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
+/// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
+/// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
+/// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
+/// components. Filters that find specular, albedoSpecular, emission, reflectionMotion or ids empty do
+/// without. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance is rejected;
+/// such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean

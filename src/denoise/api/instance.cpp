@@ -133,7 +133,6 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
     params.depthKind = static_cast<uint>(desc.depth);
     params.reversed = now.reversed ? 1u : 0u;
     params.hasPrevious = hasPrevious ? 1u : 0u;
-    params.twoSignals = desc.signals == 2 ? 1u : 0u;
     return params;
 }
 
@@ -142,7 +141,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                             const IngestParams& params, gpu::Backing filters, bool signalsToo) {
     IngestImages taken = images;
     if (desc.demodulated) taken.albedo = taken.albedoSpecular = {};
-    DenoiserInput input = ingest(graph, taken, params);
+    DenoiserInput input = ingest(graph, taken, params, desc.signals == 2);
     input.filters = filters;
     FilterSettings used = settings;
     used.svgf.separate = desc.signals == 2;

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "denoise/methods/methods.h"
 #include "denoise/stages/ingest/ingest.h"
+#include "denoise/stages/output/output.h"
 
 namespace limpid::denoise {
 namespace {
@@ -23,12 +24,14 @@ std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& 
     };
     IngestImages images;
     images.radiance = import("radiance");
+    images.specular = import("specular");
+    images.albedo = import("albedo");
     images.normal = import("normal");
     images.depth = import("depth");
     IngestParams params{};
     params.width = extent.width;
     params.height = extent.height;
-    svgf::record(graph, ingest(graph, images, params), settings);
+    svgf::record(graph, ingest(graph, images, params, settings.svgf.separate), settings);
     std::vector<std::string> names;
     for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
     return names;
@@ -46,7 +49,7 @@ TEST(RecordingTest, AFrameIsListedWithoutADevice) {
     const gpu::RecordedPass& surfaces = graph.passes().at(1);
     ASSERT_FALSE(surfaces.hazards.empty());
     EXPECT_EQ(surfaces.hazards[0].earlierPass, "ingest");
-    EXPECT_GT(graph.imageBytes(), uint64_t{extent.width} * extent.height * 100);
+    EXPECT_GT(graph.imageBytes(), uint64_t{extent.width} * extent.height * 50);
 }
 
 TEST(RecordingTest, HistoriesLiveFromFrameToFrame) {
@@ -72,9 +75,11 @@ TEST(RecordingTest, AnImageIsSampledOrStoredNotBoth) {
     IngestParams params{};
     params.width = extent.width;
     params.height = extent.height;
-    DenoiserInput input = ingest(graph, images, params);
-    input.emission = image;  // bound as a storage image
-    EXPECT_THROW(svgf::record(graph, input, {}), Error);
+    FilterSettings settings;
+    settings.svgf.separate = false;
+    const gpu::ImageHandle beauty =
+        svgf::record(graph, ingest(graph, images, params, false), settings).beauty;
+    EXPECT_THROW(output(graph, "color", beauty, image), Error);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #ifndef LIMPID_GUIDES_GLSL
 #define LIMPID_GUIDES_GLSL
 
+#include "denoise/stages/layer.glsl"
 #include "shaders/common/camera.h"
 #include "shaders/common/sampling.glsl"
 

@@ -140,6 +140,7 @@ void DispatchRecorder::bindImage(Bound& bound, ImageHandle handle) const {
              formatText("reads image '{}', which no pass of this frame has written{}", image.name,
                         variable.writable ? " (declare the variable writeonly if it only writes)" : ""));
     }
+    image.stored = image.role == RecordedImage::Role::Foreign;
 }
 
 /// Texels of any format are read as four floats or four unsigned integers.

@@ -52,7 +52,7 @@ Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const Atro
                       {"signal", signal.light},
                       {"geometry", signal.geometry}},
          .params = gpu::paramsOf(params),
-         .constants = {{"SUM_OF_TWO", light.second ? 1u : 0u}},
+         .constants = {{"TWO_LIGHTS", light.second ? 1u : 0u}, {"MEAN", light.isMean ? 1u : 0u}},
          .extent = extent});
     return signal;
 }
@@ -148,8 +148,9 @@ DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input
                 {}};
     const TemporalImages accumulated = accumulateTemporally(graph, input, settings.temporal);
     if (settings.temporal.showDisocclusion) return composeTemporal(graph, input, accumulated, settings);
-    const gpu::ImageHandle filtered =
-        filterAtrous(graph, input, {accumulated.color, {}, accumulated.minAlbedo}, settings.atrous);
+    const gpu::ImageHandle filtered = filterAtrous(
+        graph, input, {.first = accumulated.color, .minAlbedo = accumulated.minAlbedo, .isMean = true},
+        settings.atrous);
     return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion};
 }
 

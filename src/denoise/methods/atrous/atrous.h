@@ -20,11 +20,11 @@ struct AtrousSettings {
     bool operator==(const AtrousSettings&) const = default;
 };
 
-/// Scattered light, rgba32f: either a mean over frames with their number in alpha (`second` is empty), or the
-/// sum of two images of one frame.
+/// Scattered light: `first`, plus `second` if there is one.
 struct AtrousLight {
     gpu::ImageHandle first, second;
     float minAlbedo = 0.0f;  ///< above 0: it is divided by the albedo already (TemporalImages)
+    bool isMean = false;     ///< over frames, with their number in alpha of `first`
 };
 
 /// The filtered beauty, rgba32f, alpha 1: `light` filtered, plus the frame's emission. Passes:

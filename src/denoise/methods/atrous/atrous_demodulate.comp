@@ -7,16 +7,17 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool SUM_OF_TWO = false;  // one frame's light in two images; else a mean over frames in lightA
+layout(constant_id = 0) const bool TWO_LIGHTS = false;  // light is lightA + lightB, else lightA alone
+layout(constant_id = 1) const bool MEAN = false;        // over frames, with their number in alpha
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     AtrousDemodulateParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D lightA;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D lightB;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D normal;
-layout(set = 0, binding = 5, rgba32f) uniform readonly image2D depth;
+READ_LAYER(1, lightA);
+READ_LAYER(2, lightB);
+READ_LAYER(3, albedo);
+READ_LAYER(4, normal);
+READ_LAYER(5, depth);
 WRITE_HALF4(6, signal);    // light / max(albedo, min_albedo) | frames in the mean
 WRITE_UINT2(7, geometry);  // octahedral normal | depth
 
@@ -24,17 +25,18 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    vec4 light = imageLoad(lightA, at);
-    if (SUM_OF_TWO) light = vec4(light.rgb + imageLoad(lightB, at).rgb, 1.0);
-    const vec4 a = imageLoad(albedo, at);
+    vec4 light = LOAD_LAYER(lightA, at);
+    if (TWO_LIGHTS) light.rgb += LOAD_LAYER(lightB, at).rgb;
+    if (!MEAN) light.a = 1.0;
+    const vec4 a = LOAD_LAYER(albedo, at);
     const vec3 factor = modulation(a, params.givenMinAlbedo) / modulation(a, params.minAlbedo);
     const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) * factor;
-    const float z = hitDistance(imageLoad(depth, at));
+    const float z = hitDistance(LOAD_LAYER(depth, at));
     float d = z;
     if (params.plane != 0u) {
         const vec3 v = viewVector(params.camera, pixelOnScreen(vec2(pixel), vec2(params.width, params.height)));
         d *= inversesqrt(max(dot(v, v), 1e-30));
     }
     STORE_HALF4(signal, at, vec4(clamp(demodulated, -MAX_HALF, MAX_HALF), min(light.a, MAX_HALF)));
-    STORE_UINT2(geometry, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(d)));
+    STORE_UINT2(geometry, at, uvec2(encodeOctahedral(unitNormal(LOAD_LAYER(normal, at))), floatBitsToUint(d)));
 }

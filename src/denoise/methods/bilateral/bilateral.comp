@@ -9,12 +9,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     BilateralParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D diffuse;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D specular;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D emission;
-layout(set = 0, binding = 5, rgba32f) uniform readonly image2D normal;
-layout(set = 0, binding = 6, rgba32f) uniform readonly image2D depth;
+layout(constant_id = 0) const bool TWO_LIGHTS = true;  // light is diffuse + specular, else diffuse alone
+layout(constant_id = 1) const bool EMISSION = true;
+READ_LAYER(1, diffuse);
+READ_LAYER(2, specular);
+READ_LAYER(3, albedo);
+READ_LAYER(4, emission);
+READ_LAYER(5, normal);
+READ_LAYER(6, depth);
 layout(set = 0, binding = 7, rgba32f) uniform writeonly image2D beauty;
 
 struct Tap {
@@ -25,7 +27,9 @@ struct Tap {
 };
 
 vec3 lightAt(ivec2 at) {
-    return imageLoad(diffuse, at).rgb + imageLoad(specular, at).rgb;
+    vec3 light = LOAD_LAYER(diffuse, at).rgb;
+    if (TWO_LIGHTS) light += LOAD_LAYER(specular, at).rgb;
+    return light;
 }
 
 vec3 pointAt(ivec2 at, float distance) {
@@ -37,10 +41,10 @@ vec3 pointAt(ivec2 at, float distance) {
 }
 
 Tap tapAt(ivec2 at) {
-    const float distance = hitDistance(imageLoad(depth, at));
-    const vec3 light = lightAt(at) / modulation(imageLoad(albedo, at), params.minAlbedo);
+    const float distance = hitDistance(LOAD_LAYER(depth, at));
+    const vec3 light = lightAt(at) / modulation(LOAD_LAYER(albedo, at), params.minAlbedo);
     const bool counts = distance > 0.0 && isFinite(light);
-    return Tap(light, unitNormal(imageLoad(normal, at)), pointAt(at, distance), counts);
+    return Tap(light, unitNormal(LOAD_LAYER(normal, at)), pointAt(at, distance), counts);
 }
 
 float weightOf(Tap centre, Tap tap, ivec2 offset) {
@@ -70,7 +74,9 @@ void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     // Where no surface is seen, there is nothing to filter.
-    const bool seen = hitDistance(imageLoad(depth, pixel)) > 0.0;
-    const vec3 light = seen ? filtered(pixel) * modulation(imageLoad(albedo, pixel), params.minAlbedo) : finiteOr(lightAt(pixel), vec3(0.0));
-    imageStore(beauty, pixel, vec4(light + finiteOr(imageLoad(emission, pixel).rgb, vec3(0.0)), 1.0));
+    const bool seen = hitDistance(LOAD_LAYER(depth, pixel)) > 0.0;
+    vec3 light = seen ? filtered(pixel) * modulation(LOAD_LAYER(albedo, pixel), params.minAlbedo)
+                      : finiteOr(lightAt(pixel), vec3(0.0));
+    if (EMISSION) light += finiteOr(LOAD_LAYER(emission, pixel).rgb, vec3(0.0));
+    imageStore(beauty, pixel, vec4(light, 1.0));
 }

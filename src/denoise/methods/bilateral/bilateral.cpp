@@ -21,18 +21,19 @@ gpu::ImageHandle filterBilateral(gpu::FrameGraph& graph, const DenoiserInput& in
                                  .normalPower = settings.normalPower,
                                  .minAlbedo = settings.minAlbedo,
                                  .plane = settings.plane};
-    graph.dispatch({.pass = "bilateral",
-                    .shader = shaders::bilateral_comp,
-                    .bindings = {{"diffuse", input.diffuse},
-                                 {"specular", input.specular},
-                                 {"albedo", input.albedo},
-                                 {"emission", input.emission},
-                                 {"normal", input.normal},
-                                 {"depth", input.depth},
-                                 {"beauty", beauty}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = extent});
+    graph.dispatch(
+        {.pass = "bilateral",
+         .shader = shaders::bilateral_comp,
+         .bindings = {{"diffuse", input.diffuse},
+                      {"specular", input.specular ? input.specular : input.diffuse},
+                      {"albedo", input.albedo},
+                      {"emission", input.emission ? input.emission : input.diffuse},
+                      {"normal", input.normal},
+                      {"depth", input.depth},
+                      {"beauty", beauty}},
+         .params = gpu::paramsOf(params),
+         .constants = {{"TWO_LIGHTS", input.specular ? 1u : 0u}, {"EMISSION", input.emission ? 1u : 0u}},
+         .extent = extent});
     return beauty;
 }
 

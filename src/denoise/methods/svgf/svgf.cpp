@@ -32,11 +32,12 @@ using gpu::ImageHandle;
 /// The shaders take powers of 2.
 constexpr float log2e = 1.44269504f;
 
-/// Light that is filtered separately: `light`, or the sum of `light` and `otherLight`.
+/// Light that is filtered separately: `light` plus `otherLight`, reflected by `albedo` plus `otherAlbedo`, if
+/// there are others.
 struct Signal {
     std::string name;
-    ImageHandle light, otherLight, albedo, otherAlbedo;
-    bool isSum = false, reflects = false;
+    ImageHandle light, albedo, otherLight, otherAlbedo;
+    bool reflects = false;
 };
 
 struct Accumulated {
@@ -93,10 +94,13 @@ class Svgf {
   private:
     std::vector<Signal> signals() const {
         if (!settings_.separate)
-            return {{"joint", input_.diffuse, input_.specular, input_.albedo, input_.albedoSpecular, true}};
-        return {{"diffuse", input_.diffuse, input_.diffuse, input_.albedo, input_.albedo},
-                {"specular", input_.specular, input_.specular, input_.albedoSpecular, input_.albedoSpecular,
-                 false, settings_.reflections}};
+            return {{"joint", input_.diffuse, input_.albedo, input_.specular, input_.albedoSpecular}};
+        const bool reflects = settings_.reflections && input_.reflectionMotion;
+        return {{.name = "diffuse", .light = input_.diffuse, .albedo = input_.albedo},
+                {.name = "specular",
+                 .light = input_.specular,
+                 .albedo = input_.albedoSpecular,
+                 .reflects = reflects}};
     }
 
     const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
@@ -155,14 +159,16 @@ class Svgf {
     /// Adds the images that svgf_signal.glsl declares.
     static std::vector<gpu::Binding> withLight(const Signal& signal, std::vector<gpu::Binding> others) {
         others.insert(others.end(), {{"lightA", signal.light},
-                                     {"lightB", signal.otherLight},
+                                     {"lightB", signal.otherLight ? signal.otherLight : signal.light},
                                      {"albedoA", signal.albedo},
-                                     {"albedoB", signal.otherAlbedo}});
+                                     {"albedoB", signal.otherAlbedo ? signal.otherAlbedo : signal.albedo}});
         return others;
     }
 
     std::vector<gpu::ConstantValue> constantsOf(const Signal& signal) const {
-        return {{"SUM_OF_TWO", signal.isSum ? 1u : 0u}, {"BOOST", settings_.boost ? 1u : 0u}};
+        return {{"TWO_LIGHTS", signal.otherLight ? 1u : 0u},
+                {"TWO_ALBEDOS", signal.otherAlbedo ? 1u : 0u},
+                {"BOOST", settings_.boost ? 1u : 0u}};
     }
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
@@ -183,19 +189,20 @@ class Svgf {
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
         const SvgfReprojectParams params = reprojectParams(stable.valid);
-        std::vector<gpu::Binding> bindings{{"motion", input_.motion},
-                                           {"reflectionMotion", input_.reflectionMotion},
-                                           {"previousNormal", input_.previousNormal},
-                                           {"surfaces", surfaces.surfaces.current},
-                                           {"instances", surfaces.instances.current},
-                                           {"surfacesBefore", surfaces.surfaces.previous},
-                                           {"instancesBefore", surfaces.instances.previous},
-                                           {"colorBefore", feedback.previous},
-                                           {"momentsBefore", moments.previous},
-                                           {"color", color},
-                                           {"moments", moments.current},
-                                           {"stableBefore", stable.previous},
-                                           {"stablePast", stablePast}};
+        std::vector<gpu::Binding> bindings{
+            {"motion", input_.motion},
+            {"reflectionMotion", signal.reflects ? input_.reflectionMotion : input_.motion},
+            {"previousNormal", input_.previousNormal},
+            {"surfaces", surfaces.surfaces.current},
+            {"instances", surfaces.instances.current},
+            {"surfacesBefore", surfaces.surfaces.previous},
+            {"instancesBefore", surfaces.instances.previous},
+            {"colorBefore", feedback.previous},
+            {"momentsBefore", moments.previous},
+            {"color", color},
+            {"moments", moments.current},
+            {"stableBefore", stable.previous},
+            {"stablePast", stablePast}};
         std::vector<gpu::ConstantValue> constants = constantsOf(signal);
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
         constants.push_back({"STABILISE", stabilises() ? 1u : 0u});

@@ -100,7 +100,7 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
         {.pass = "temporal/accumulate",
          .shader = buffers ? shaders::temporal_accumulate_buffers_comp : shaders::temporal_accumulate_comp,
          .bindings = {{"diffuse", input.diffuse},
-                      {"specular", input.specular},
+                      {"specular", input.specular ? input.specular : input.diffuse},
                       {"albedo", input.albedo},
                       {"surfaces", surfaces.surfaces.current},
                       {"instances", surfaces.instances.current},
@@ -112,7 +112,7 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
                       {"color", color.current},
                       {"disocclusion", disocclusion}},
          .params = gpu::paramsOf(params),
-         .constants = {},
+         .constants = {{"TWO_LIGHTS", input.specular ? 1u : 0u}},
          .extent = extent});
     return {color.current, disocclusion, params.minAlbedo};
 }

@@ -12,13 +12,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     TemporalParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D diffuse;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D specular;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedo;
+layout(constant_id = 0) const bool TWO_LIGHTS = true;  // light is diffuse + specular, else diffuse alone
+READ_LAYER(1, diffuse);
+READ_LAYER(2, specular);
+READ_LAYER(3, albedo);
 READ_UINT2(4, surfaces);
 layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D instances;
-layout(set = 0, binding = 6, rgba32f) uniform readonly image2D motion;
-layout(set = 0, binding = 7, rgba32f) uniform readonly image2D previousNormal;
+READ_LAYER(6, motion);
+READ_LAYER(7, previousNormal);
 READ_UINT2(8, surfacesBefore);
 layout(set = 0, binding = 9, r32ui) uniform readonly uimage2D instancesBefore;
 layout(set = 0, binding = 10, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
@@ -72,10 +73,11 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    const vec3 radiance = imageLoad(diffuse, at).rgb + imageLoad(specular, at).rgb;
-    const vec3 divisor = modulation(imageLoad(albedo, at), params.minAlbedo);
+    vec3 radiance = LOAD_LAYER(diffuse, at).rgb;
+    if (TWO_LIGHTS) radiance += LOAD_LAYER(specular, at).rgb;
+    const vec3 divisor = modulation(LOAD_LAYER(albedo, at), params.minAlbedo);
     const vec3 x = clamp(radiance / divisor, -MAX_FLOAT, MAX_FLOAT);
-    const vec4 moved = imageLoad(motion, at);
+    const vec4 moved = LOAD_LAYER(motion, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
 
     const Past past = pastOf(at, surface, moved);

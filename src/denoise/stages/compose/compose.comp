@@ -24,19 +24,19 @@ READ_HALF4(1, lightA);
 READ_HALF4(2, lightB);
 #define LOAD_LIGHT(name, at) LOAD_HALF4(name, at).rgb
 #endif
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D albedoA;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D albedoB;
-layout(set = 0, binding = 5, rgba32f) uniform readonly image2D emission;
+READ_LAYER(3, albedoA);
+READ_LAYER(4, albedoB);
+READ_LAYER(5, emission);
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D beauty;
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    vec4 albedo = imageLoad(albedoA, at);
-    if (ALBEDOS == 2u) albedo += imageLoad(albedoB, at);
+    vec4 albedo = LOAD_LAYER(albedoA, at);
+    if (ALBEDOS == 2u) albedo += LOAD_LAYER(albedoB, at);
     vec3 light = LOAD_LIGHT(lightA, at) * modulation(albedo, params.minAlbedo);
-    if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(imageLoad(albedoB, at), params.minAlbedo);
-    if (EMISSION) light += finiteOr(imageLoad(emission, at).rgb, vec3(0.0));
+    if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(LOAD_LAYER(albedoB, at), params.minAlbedo);
+    if (EMISSION) light += finiteOr(LOAD_LAYER(emission, at).rgb, vec3(0.0));
     imageStore(beauty, at, vec4(light, 1.0));
 }

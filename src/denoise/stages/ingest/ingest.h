@@ -1,4 +1,4 @@
-// The ingest pass: converts another renderer's images from its encodings to those that the denoisers read.
+// The ingest passes: convert another renderer's images from their encodings to those that the denoisers read.
 #pragma once
 
 #include <array>
@@ -17,9 +17,12 @@ struct IngestImages {
     gpu::ImageHandle id;                      ///< unsigned integers
 };
 
-/// Passes: "ingest"; "ingest/reflection" if there are hit distances but no motion of reflections;
-/// "ingest/ids" if there are ids. `params.present` is ignored; it is derived from the images. Radiance,
-/// normal and depth are required.
-DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestParams params);
+/// What filters read of the frame. Light, albedo and ids are the caller's images themselves; normals,
+/// distances and motion are converted, in halves and (distances) floats. Passes: "ingest";
+/// "ingest/reflection" if there are two signals and the motion of reflections or hit distances;
+/// "ingest/white" if an albedo is missing. Radiance, normal and depth are required. `params.hasMotion` is
+/// ignored; it is derived from the images.
+DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestParams params,
+                     bool twoSignals);
 
 }  // namespace limpid::denoise

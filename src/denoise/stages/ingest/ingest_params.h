@@ -11,15 +11,6 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-// Bits of IngestParams::present, one for each input that the caller has.
-LIMPID_CONST uint INGEST_SPECULAR = 1u << 1;
-LIMPID_CONST uint INGEST_EMISSION = 1u << 2;
-LIMPID_CONST uint INGEST_ALBEDO = 1u << 3;
-LIMPID_CONST uint INGEST_ALBEDO_SPECULAR = 1u << 4;
-LIMPID_CONST uint INGEST_MOTION = 1u << 7;
-LIMPID_CONST uint INGEST_PREVIOUS_NORMAL = 1u << 8;
-LIMPID_CONST uint INGEST_REFLECTION_MOTION = 1u << 9;
-
 LIMPID_CONST uint NORMAL_SIGNED = 0u;
 LIMPID_CONST uint NORMAL_UNORM = 1u;
 LIMPID_CONST uint NORMAL_OCTAHEDRAL_SIGNED = 2u;
@@ -45,13 +36,12 @@ struct IngestParams {
     vec2 jitter;  // pixels
     uint width;
     uint height;
-    uint present;         // INGEST_*
+    uint hasMotion;       // 0: everything stands still
     uint normalEncoding;  // NORMAL_*
     uint normalInView;
     uint depthKind;    // DEPTH_*
     uint reversed;     // device depth: 0 is far
     uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
-    uint twoSignals;
 };
 
 #undef LIMPID_CONST

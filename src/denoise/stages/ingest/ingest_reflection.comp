@@ -1,6 +1,5 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-#extension GL_EXT_samplerless_texture_functions : require
 // The motion of reflections, from the distance at which the reflected ray hit something: a reflection moves like an
 // object behind the surface. docs/embedding.md, "Reflections".
 #include "denoise/stages/guides.glsl"
@@ -11,12 +10,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     IngestParams params;
 };
-layout(set = 0, binding = 1) uniform texture2D roughnessIn;
-layout(set = 0, binding = 2) uniform texture2D hitDistanceIn;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D normal;
-layout(set = 0, binding = 4, rgba32f) uniform readonly image2D depth;
-layout(set = 0, binding = 5, rgba32f) uniform readonly image2D motion;
-layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D reflectionMotion;
+READ_LAYER(1, roughnessIn);
+READ_LAYER(2, hitDistanceIn);
+READ_LAYER(3, normal);
+READ_LAYER(4, depth);
+READ_LAYER(5, motion);
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D reflectionMotion;
 
 #include "denoise/stages/ingest/still.glsl"
 #include "shaders/common/reflection_share.glsl"
@@ -38,9 +37,9 @@ vec2 onScreenAt(ivec2 at) {
 
 Point pointAt(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
-    const float z = hitDistance(imageLoad(depth, inside));
+    const float z = hitDistance(LOAD_LAYER(depth, inside));
     const vec2 onScreen = onScreenAt(inside);
-    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), unitNormal(imageLoad(normal, inside)),
+    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), unitNormal(LOAD_LAYER(normal, inside)),
                  z > 0.0 && at == inside);
 }
 
@@ -78,7 +77,7 @@ float previousReflector(Point own, vec2 pixel) {
 
 vec4 reflectionMotionAt(ivec2 at) {
     const Point own = pointAt(at);
-    const float hit = texelFetch(hitDistanceIn, at, 0).r, share = reflectionShare(texelFetch(roughnessIn, at, 0).r);
+    const float hit = LOAD_LAYER(hitDistanceIn, at).r, share = reflectionShare(LOAD_LAYER(roughnessIn, at).r);
     if (!own.seen || !(hit > 0.0) || !(share > 0.0)) return vec4(0.0);
     float curvatureX, curvatureY;
     const bool knowsX = curvatureAlong(at, ivec2(1, 0), own, curvatureX);
@@ -88,16 +87,16 @@ vec4 reflectionMotionAt(ivec2 at) {
     vec4 image;
     const vec3 view = normalize(viewVector(params.camera, onScreenAt(at)));
     if (!imageOf(own, view, hit, curvature, share, image)) return vec4(0.0);
-    const vec4 ownMotion = imageLoad(motion, at), still = motionOfStill(vec4(own.position, 1.0), vec2(at));
+    const vec4 ownMotion = LOAD_LAYER(motion, at), still = motionOfStill(vec4(own.position, 1.0), vec2(at));
     const vec4 moved = motionOfStill(image, vec2(at));
     if (moved.w == 0.0 || still.w == 0.0 || distance(ownMotion.xy, still.xy) > STILL) return vec4(0.0);
     const float before = previousReflector(own, vec2(at) + moved.xy);
-    return before > 0.0 ? vec4(moved.xy, before - imageLoad(depth, at).x, 1.0) : vec4(0.0);
+    return before > 0.0 ? vec4(moved.xy, before - LOAD_LAYER(depth, at).x, 1.0) : vec4(0.0);
 }
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    imageStore(reflectionMotion, at, params.hasPrevious != 0u ? reflectionMotionAt(at) : vec4(0.0));
+    imageStore(reflectionMotion, at, params.hasPrevious != 0u ? storedMotion(reflectionMotionAt(at)) : vec4(0.0));
 }

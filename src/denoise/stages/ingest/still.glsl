@@ -1,5 +1,11 @@
-// Positions, and the motion of points that stand still. The including shader declares `IngestParams params`
-// beforehand.
+// Positions, and motion. The including shader declares `IngestParams params` beforehand.
+#include "shaders/common/filter_image.glsl"
+
+/// Motion in halves: wrong by at most 1/128 pixel up to 32 pixels, and by 1/2048 of itself beyond.
+vec4 storedMotion(vec4 moved) {
+    if (!isFinite(moved.xyz)) return vec4(0.0);
+    return nearestHalf(clamp(moved, -MAX_HALF, MAX_HALF));
+}
 
 vec3 positionOf(float distance, vec3 v, vec2 onScreen) {
     const CameraParams c = params.camera;

@@ -3,7 +3,7 @@
 //
 // The including shader declares beforehand:
 //   - `params` with camera, width, height and `ReprojectTests tests`
-//   - READ_UINT2 `surfacesBefore`, and the images `instances`, `instancesBefore`, `previousNormal`
+//   - READ_UINT2 `surfacesBefore`, READ_LAYER `previousNormal`, and the images `instances`, `instancesBefore`
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
 //   - Past loadFirst(ivec2 at): a texel with at least what framesOf() needs
@@ -116,7 +116,7 @@ Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const float tolerance =
         depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x), vec2(at), size, params.tests);
     return pastAt(was.position,
-                  Expected(unitNormal(imageLoad(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
+                  Expected(unitNormal(LOAD_LAYER(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
 }
 
 #endif

@@ -9,9 +9,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     uint width, height;
 } params;
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D normal;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D depth;
-layout(set = 0, binding = 3, rg32ui) uniform readonly uimage2D ids;
+READ_LAYER(1, normal);
+READ_LAYER(2, depth);
+READ_UINT_LAYER(3, ids);
+layout(constant_id = 0) const bool IDS = true;  // else all is one instance
 WRITE_UINT2(4, surfaces);                                              // octahedral normal | distance
 layout(set = 0, binding = 5, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
 
@@ -19,7 +20,9 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    const float z = hitDistance(imageLoad(depth, at));
-    STORE_UINT2(surfaces, at, uvec2(encodeOctahedral(unitNormal(imageLoad(normal, at))), floatBitsToUint(z)));
-    imageStore(instances, at, uvec4(z > 0.0 ? imageLoad(ids, at).x + 1u : 0u));
+    const float z = hitDistance(LOAD_LAYER(depth, at));
+    STORE_UINT2(surfaces, at, uvec2(encodeOctahedral(unitNormal(LOAD_LAYER(normal, at))), floatBitsToUint(z)));
+    uint instance = 1u;
+    if (IDS) instance += LOAD_LAYER(ids, at).x;
+    imageStore(instances, at, uvec4(z > 0.0 ? instance : 0u));
 }

@@ -15,11 +15,11 @@ Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input) {
                     .shader = buffers ? shaders::surfaces_buffers_comp : shaders::surfaces_comp,
                     .bindings = {{"normal", input.normal},
                                  {"depth", input.depth},
-                                 {"ids", input.ids},
+                                 {"ids", input.ids ? input.ids : result.instances.previous},  // or not read
                                  {"surfaces", result.surfaces.current},
                                  {"instances", result.instances.current}},
                     .params = gpu::paramsOf(extent),
-                    .constants = {},
+                    .constants = {{"IDS", input.ids ? 1u : 0u}},
                     .extent = extent});
     return result;
 }

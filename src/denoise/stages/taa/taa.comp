@@ -16,8 +16,8 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     TaaParams params;
 };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D beauty;
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D depth;
-layout(set = 0, binding = 3, rgba32f) uniform readonly image2D motion;
+READ_LAYER(2, depth);
+READ_LAYER(3, motion);
 READ_HALF4(4, before);  // mean, frames in it
 WRITE_HALF4(5, after);
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
@@ -42,7 +42,7 @@ ivec2 inside(ivec2 at) {
 
 /// The pixel's encoded beauty; the distance of its surface, or 0.
 vec4 loadTexel(ivec2 at) {
-    return vec4(encode(imageLoad(beauty, inside(at)).rgb), hitDistance(imageLoad(depth, inside(at))));
+    return vec4(encode(imageLoad(beauty, inside(at)).rgb), hitDistance(LOAD_LAYER(depth, inside(at))));
 }
 
 #ifdef LIMPID_FILTER_BUFFERS
@@ -130,7 +130,7 @@ void main() {
     const vec3 now = texelAt(at).rgb;
     const Neighbourhood near = around(at, now);
     const Reprojection was =
-        reprojectionOf(imageLoad(motion, near.nearest), vec2(at), vec2(params.width, params.height));
+        reprojectionOf(LOAD_LAYER(motion, near.nearest), vec2(at), vec2(params.width, params.height));
     const vec4 past = was.onScreen ? pastAt(was.position) : vec4(0.0);
     const float frames = min(past.w + 1.0, params.frames);
     const vec3 mean = decode(mix(clipped(past.rgb, near), now, 1.0 / frames));

@@ -133,6 +133,7 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
             const VkImageLayout layout = layoutDuring(recorded);
             frameImages_.push_back(
                 {nullptr, reinterpret_cast<VkImageView>(recorded.foreign.view), layout, nullptr});
+            if (!recorded.sampled && !recorded.stored) continue;  // no pass uses it
             VkImageMemoryBarrier2& barrier = barriers.emplace_back(foreignBarrier(recorded));
             barrier.srcStageMask = recorded.foreign.stagesBefore;
             barrier.srcAccessMask = recorded.foreign.accessBefore;
@@ -169,7 +170,7 @@ void FrameExecutor::prepareImages(const RecordedFrame& frame, VkCommandBuffer co
 void FrameExecutor::releaseForeign(const RecordedFrame& frame, VkCommandBuffer commands) const {
     std::vector<VkImageMemoryBarrier2> barriers;
     for (const RecordedImage& recorded : frame.images) {
-        if (recorded.role != RecordedImage::Role::Foreign || recorded.sampled) continue;
+        if (recorded.role != RecordedImage::Role::Foreign || !recorded.stored) continue;
         VkImageMemoryBarrier2& barrier = barriers.emplace_back(foreignBarrier(recorded));
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;

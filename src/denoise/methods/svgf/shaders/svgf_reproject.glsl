@@ -12,9 +12,9 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 
 #include "denoise/methods/svgf/shaders/svgf_signal.glsl"
 
-layout(set = 0, binding = 5, rgba32f) uniform readonly image2D motion;
-layout(set = 0, binding = 6, rgba32f) uniform readonly image2D previousNormal;
-layout(set = 0, binding = 16, rgba32f) uniform readonly image2D reflectionMotion;
+READ_LAYER(5, motion);
+READ_LAYER(6, previousNormal);
+READ_LAYER(16, reflectionMotion);
 READ_UINT2(7, surfaces);
 layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
 READ_UINT2(9, surfacesBefore);
@@ -72,7 +72,7 @@ vec4 reflectionMotionAt(ivec2 at) {
         for (int i = -1; i <= 1; ++i) {
             const ivec2 there = at + ivec2(i, j);
             const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
-            const vec4 moved = imageLoad(reflectionMotion, inside);
+            const vec4 moved = LOAD_LAYER(reflectionMotion, inside);
             const vec3 motionThere = moved.xyz / max(moved.w, 1e-20);
             const bool valid = moved.w > 0.0 && isFinite(vec3(moved.w)) && isFinite(motionThere);
             if (inside == there && valid && imageLoad(instances, inside).x == own)
@@ -102,7 +102,7 @@ vec4 accumulate(ivec2 at) {
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     Past now = NO_PAST;
     if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
-    if (framesOf(now) <= 0.0) now = pastOf(at, surface, imageLoad(motion, at));
+    if (framesOf(now) <= 0.0) now = pastOf(at, surface, LOAD_LAYER(motion, at));
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(now.moments)) : vec4(x, SVGF_NOTHING_SEEN));
