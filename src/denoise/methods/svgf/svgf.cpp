@@ -42,7 +42,7 @@ struct Signal {
 
 struct Accumulated {
     ImageHandle color;       ///< half4: light, expected deviation of its luminance or a mark (svgf_params.h)
-    ImageHandle moments;     ///< rgba32f: first, second, fast first, frames
+    ImageHandle moments;     ///< half4: see svgf_moments.glsl
     ImageHandle tileSums;    ///< rgba32f: see svgf_tiles.glsl
     ImageHandle tiles;       ///< r32f: lag
     History feedback;        ///< of colors; `current` is what the next frame reads
@@ -177,7 +177,7 @@ class Svgf {
                                 (extent_.height + SVGF_TILE - 1) / SVGF_TILE};
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
-        const History moments = graph_.history(name + " moments", Format::RGBA32Float, extent_);
+        const History moments = graph_.history(name + " moments", Format::RGBA16Float, extent_);
         const ImageHandle tileSums = graph_.transient(name + " tile sums", Format::RGBA32Float, tileExtent);
         const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
         const History stable = stableOf(name, feedback);

@@ -9,7 +9,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 #include "denoise/methods/svgf/shaders/svgf_signal.glsl"
 
 layout(set = 0, binding = 5, r32f) uniform readonly image2D tiles;
-layout(set = 0, binding = 6, rgba32f) uniform image2D moments;
+layout(set = 0, binding = 6, rgba16f) uniform image2D moments;
 UPDATE_HALF4(7, color);
 
 /// The position of a pixel's centre between the centres of 2x2 tiles.
@@ -34,7 +34,7 @@ float lagBetween(vec4 corners, vec2 share) {
 
 void shorten(ivec2 at, float lag) {
     if (!(lag >= SVGF_MIN_LAG)) return;
-    const vec4 before = imageLoad(moments, at);
+    const vec4 before = unpackedMoments(imageLoad(moments, at));
     const vec3 light = lightAt(at);
     if (before.w <= 1.0 || !isFinite(light)) return;
     const vec3 x = demodulated(light, at);
@@ -42,7 +42,8 @@ void shorten(ivec2 at, float lag) {
     const vec4 alphas = vec4(params.alphaMoments, params.alphaMoments, params.alphaFast, params.alpha);
     const vec4 had = max(alphas, 1.0 / before.w), has = max(alphas, 1.0 / frames);
     const vec4 more = (has - had) / max(1.0 - had, 1e-6);
-    const vec4 now = vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), frames);
-    imageStore(moments, at, now);
-    STORE_HALF4(color, at, vec4(mix(LOAD_HALF4(color, at).rgb, x, more.w), deviationOf(now)));
+    const vec4 packed = packedMoments(vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), frames));
+    imageStore(moments, at, packed);
+    const vec3 mean = mix(LOAD_HALF4(color, at).rgb, x, more.w);
+    STORE_HALF4(color, at, vec4(mean, deviationOf(unpackedMoments(packed))));
 }

@@ -20,9 +20,9 @@ layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
 READ_UINT2(9, surfacesBefore);
 layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
 READ_HALF4(11, colorBefore);
-layout(set = 0, binding = 12, rgba32f) uniform readonly image2D momentsBefore;
+layout(set = 0, binding = 12, rgba16f) uniform readonly image2D momentsBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
-layout(set = 0, binding = 15, rgba32f) uniform writeonly image2D moments;  // first, second, fast first, frames
+layout(set = 0, binding = 15, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
 READ_HALF4(18, stableBefore);
 WRITE_HALF4(13, stablePast);  // stabilised light | weight of this frame in its mean
 
@@ -39,7 +39,7 @@ bool comparesInstances() {
 
 Past loadFirst(ivec2 at) {
     Past there = NO_PAST;
-    there.moments = imageLoad(momentsBefore, at);
+    there.moments = unpackedMoments(imageLoad(momentsBefore, at));
     return there;
 }
 
@@ -95,7 +95,7 @@ float stableWeight(float frames) {
     return max(params.stabilisationAlpha, 1.0 / max(frames, 1.0));
 }
 
-/// Returns the moments.
+/// Returns the moments, as they are stored.
 vec4 accumulate(ivec2 at) {
     const vec3 light = lightAt(at);
     const vec3 x = demodulated(light, at);
@@ -105,9 +105,9 @@ vec4 accumulate(ivec2 at) {
     if (framesOf(now) <= 0.0) now = pastOf(at, surface, LOAD_LAYER(motion, at));
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = uintBitsToFloat(surface.y) > 0.0;
-    STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(now.moments)) : vec4(x, SVGF_NOTHING_SEEN));
+    const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
+    imageStore(moments, at, packed);
+    STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(x, SVGF_NOTHING_SEEN));
     if (STABILISE) STORE_HALF4(stablePast, at, vec4(now.stable, stableWeight(now.moments.w)));
-    const vec4 stored = seen ? now.moments : vec4(0.0);
-    imageStore(moments, at, stored);
     return stored;
 }

@@ -2,6 +2,7 @@
 // anti-lag. The including shader declares `params` beforehand, with width, height and minAlbedo; bindings 1 to 4 and
 // constants 0, 2 and 5 are used here. docs/denoising.md, SVGF, steps 3 and 4.
 #include "denoise/stages/guides.glsl"
+#include "denoise/methods/svgf/shaders/svgf_moments.glsl"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
@@ -30,5 +31,5 @@ vec3 demodulated(vec3 light, ivec2 at) {
 /// The fourth component of `color`: the expected deviation of the luminance, or SVGF_STILL_YOUNG.
 float deviationOf(vec4 moments) {
     if (moments.w < SVGF_YOUNG) return SVGF_STILL_YOUNG;
-    return min(svgfBoost(BOOST, moments.w) * sqrt(max(moments.y - moments.x * moments.x, 0.0)), MAX_HALF);
+    return min(svgfBoost(BOOST, moments.w) * sqrt(varianceOf(moments)), MAX_HALF);
 }

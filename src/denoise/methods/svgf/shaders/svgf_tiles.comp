@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfTileSumsParams params;
 };
-layout(set = 0, binding = 1, rgba32f) uniform readonly image2D moments;
+layout(set = 0, binding = 1, rgba16f) uniform readonly image2D moments;
 layout(set = 0, binding = 2, rgba32f) uniform writeonly image2D tileSums;
 
 void main() {
@@ -20,7 +20,7 @@ void main() {
     for (int j = 0; j < SVGF_TILE; ++j) {
         for (int i = 0; i < SVGF_TILE; ++i) {
             const ivec2 at = first + ivec2(i, j);
-            const vec4 m = imageLoad(moments, min(at, size - 1));
+            const vec4 m = unpackedMoments(imageLoad(moments, min(at, size - 1)));
             const vec4 inside = all(lessThan(at, size)) ? m : vec4(0.0);
             add(sums, tileSumsOf(inside, params.lag));
         }

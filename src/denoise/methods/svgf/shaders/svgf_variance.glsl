@@ -1,5 +1,6 @@
 // Estimates the deviation of pixels with a short history from the moments of their neighbours. docs/denoising.md,
 // SVGF, step 5.
+#include "denoise/methods/svgf/shaders/svgf_moments.glsl"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
@@ -7,7 +8,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
 };
 READ_UINT2(1, surfaces);
-layout(set = 0, binding = 2, rgba32f) uniform readonly image2D moments;
+layout(set = 0, binding = 2, rgba16f) uniform readonly image2D moments;
 UPDATE_HALF4(3, color);
 
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
