@@ -87,12 +87,13 @@ void recordDryFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, co
     for (auto* view : {&camera.view, &camera.previous_view}) std::ranges::copy(identity, *view);
     for (auto* projection : {&camera.projection, &camera.previous_projection})
         std::ranges::copy(frame.orthographic ? identity : perspective, *projection);
-    const InstanceOutputs outputs =
-        recordFrame(graph, desc, settings, images, ingestParams(desc, camera, true), filters, signalsToo);
-    for (const gpu::Format format : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float}) {
-        const bool half = format == gpu::Format::RGBA16Float;
-        output(graph, half ? "half" : "float", outputs.color,
-               graph.import(half ? "output/half" : "output/float", format, extent, nowhere));
+    const gpu::ImageHandle target = graph.import("output/color", frame.color, extent, nowhere);
+    const InstanceOutputs outputs = recordFrame(
+        graph, desc, settings, images, ingestParams(desc, camera, true), filters, signalsToo, target);
+    if (outputs.color != target) output(graph, "color", outputs.color, target);
+    if (outputs.radiance) {
+        output(graph, "radiance", outputs.radiance,
+               graph.import("output/radiance", frame.color, extent, nowhere));
     }
 }
 

@@ -41,6 +41,7 @@ gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 struct DryFrame {
     std::vector<limpid_input> without;  ///< of all inputs
     bool orthographic = false;
+    gpu::Format color = gpu::Format::RGBA32Float;  ///< of the output
 };
 
 /// Frames that together contain every pass, in the variants of shaders that usual inputs need.

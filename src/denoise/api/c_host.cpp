@@ -51,7 +51,7 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
         d.graph.beginFrame();
         const IngestImages images = uploadInputs(d.graph, d.desc, frame);
         const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
-                                                    gpu::filterBacking(*d.device), signalsToo);
+                                                    gpu::filterBacking(*d.device), signalsToo, {});
         const gpu::ImageHandle made[] = {outputs.color, outputs.radiance, outputs.specular};
         const char* const names[] = {"color", "radiance", "specular"};
         for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i)

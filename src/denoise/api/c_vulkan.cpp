@@ -124,23 +124,35 @@ gpu::Format outputFormat(VkFormat format, const char* name) {
 
 constexpr std::array<const char*, 3> outputNames{"color", "radiance", "specular"};
 
-/// Copies the requested outputs to the caller's images.
-void recordOutputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc, const limpid_vulkan_frame& frame,
-                   const InstanceOutputs& made, bool forReal) {
-    const std::array<gpu::ImageHandle, 3> pictures{made.color, made.radiance, made.specular};
+using Targets = std::array<gpu::ImageHandle, 3>;
+
+/// The caller's images for the outputs, empty if they are not wanted; with `forReal` false, images that stand
+/// for them.
+Targets importOutputs(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
+                      const limpid_vulkan_frame& frame, bool forReal) {
+    Targets targets;
     for (size_t i = 0; i < LIMPID_OUTPUT_MAX; ++i) {
         const limpid_vulkan_image& image = frame.outputs[i];
         if (image.image == VK_NULL_HANDLE) continue;
-        if (i >= pictures.size() || !pictures[i])
-            throw UsageError(formatText("the method has no output {}",
-                                        i < pictures.size() ? outputNames[i] : "of this number"));
+        if (i >= targets.size()) throw UsageError("the method has no output of this number");
         const gpu::Format format = outputFormat(image.format, outputNames[i]);
         const gpu::Extent extent{desc.width, desc.height};
         gpu::ForeignImage target = foreign(image, outputNames[i]);
         if (target.layoutAfter == VK_IMAGE_LAYOUT_UNDEFINED) target.layoutAfter = VK_IMAGE_LAYOUT_GENERAL;
         const std::string name = std::string("output/") + outputNames[i];
-        output(graph, outputNames[i], pictures[i],
-               forReal ? graph.import(name, format, extent, target) : graph.transient(name, format, extent));
+        targets[i] =
+            forReal ? graph.import(name, format, extent, target) : graph.transient(name, format, extent);
+    }
+    return targets;
+}
+
+/// Copies the outputs that the method has not written to the caller's images itself.
+void recordOutputs(gpu::FrameGraph& graph, const InstanceOutputs& made, const Targets& targets) {
+    const std::array<gpu::ImageHandle, 3> pictures{made.color, made.radiance, made.specular};
+    for (size_t i = 0; i < targets.size(); ++i) {
+        if (!targets[i] || targets[i] == pictures[i]) continue;
+        if (!pictures[i]) throw UsageError(formatText("the method has no output {}", outputNames[i]));
+        output(graph, outputNames[i], pictures[i], targets[i]);
     }
 }
 
@@ -211,9 +223,11 @@ limpid_result limpid_record(limpid_denoiser* denoiser, VkCommandBuffer commands,
         const IngestParams params = ingestParams(d.desc, frame.camera, hasPrevious);
         d.graph.beginFrame();
         const IngestImages images = importInputs(d.graph, d.desc, frame);
-        const InstanceOutputs outputs = recordFrame(d.graph, d.desc, d.settings, images, params,
-                                                    gpu::filterBacking(*d.device), wantsSignals(frame));
-        recordOutputs(d.graph, d.desc, frame, outputs, true);
+        const Targets targets = importOutputs(d.graph, d.desc, frame, true);
+        recordOutputs(d.graph,
+                      recordFrame(d.graph, d.desc, d.settings, images, params, gpu::filterBacking(*d.device),
+                                  wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
+                      targets);
         d.graph.record(*d.device, commands);
         d.finish();
     });
@@ -231,10 +245,12 @@ limpid_result limpid_warm_up(limpid_denoiser* denoiser, VkCommandBuffer commands
             gpu::GraphOptions{.framesInFlight = 1, .prefix = "limpid/warm up/", .timestamps = false});
         graph->beginFrame();
         const IngestImages images = importInputs(*graph, few, frame);
-        const InstanceOutputs outputs =
+        const Targets targets = importOutputs(*graph, few, frame, false);
+        recordOutputs(
+            *graph,
             recordFrame(*graph, few, d.settings, images, ingestParams(few, frame.camera, true),
-                        gpu::filterBacking(*d.device), wantsSignals(frame));
-        recordOutputs(*graph, few, frame, outputs, false);
+                        gpu::filterBacking(*d.device), wantsSignals(frame), targets[LIMPID_OUTPUT_COLOR]),
+            targets);
         graph->record(*d.device, commands);
         d.warmUps.push_back(std::move(graph));
         // Memory is given when it is first written, which takes a CPU longer than a frame.

@@ -21,6 +21,9 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// depth its own. Only networks read it.
     uint32_t samples = 1;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
+    /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
+    /// is anti-aliased afterwards.
+    gpu::ImageHandle target;
 };
 
 /// Uploads the frame's images; optional layers that are empty become zeros. Throws Error if an image of

@@ -138,13 +138,15 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
 
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                             const FilterSettings& settings, const IngestImages& images,
-                            const IngestParams& params, gpu::Backing filters, bool signalsToo) {
+                            const IngestParams& params, gpu::Backing filters, bool signalsToo,
+                            gpu::ImageHandle target) {
     IngestImages taken = images;
     if (desc.demodulated) taken.albedo = taken.albedoSpecular = {};
     DenoiserInput input = ingest(graph, taken, params, desc.signals == 2);
     input.filters = filters;
     FilterSettings used = settings;
     used.svgf.separate = desc.signals == 2;
+    if (used.taa.frames <= 1.0f && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {methods()[static_cast<size_t>(desc.method)].record(graph, input, used).beauty, {}, {}};
     const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);

@@ -12,7 +12,7 @@
 
 namespace limpid::denoise {
 
-/// A frame's outputs, rgba32f; empty if the method does not produce them.
+/// A frame's outputs: rgba32f, or the target of recordFrame(). Empty if the method does not produce them.
 struct InstanceOutputs {
     gpu::ImageHandle color, radiance, specular;
 };
@@ -30,10 +30,12 @@ void check(const limpid_denoiser_desc& desc);
 /// previous frame.
 IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera& camera, bool hasPrevious);
 
-/// Records a frame; needs no device. `outputs`: which limpid_output images are wanted.
+/// Records a frame; needs no device. `signalsToo`: radiance and specular are wanted. `target`: the caller's
+/// image for the colour, or empty; the method may write it itself, and it is then what is returned.
 InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& desc,
                             const FilterSettings& settings, const IngestImages& images,
-                            const IngestParams& params, gpu::Backing filters, bool signalsToo);
+                            const IngestParams& params, gpu::Backing filters, bool signalsToo,
+                            gpu::ImageHandle target);
 
 /// Returns the name of an input for messages and debuggers, such as "radiance".
 const char* inputName(size_t input);

@@ -337,12 +337,15 @@ uint64_t FrameGraph::bytesOfImagesWrittenFrom(size_t first) const {
     for (size_t i = first; i < impl_->frame.passes.size(); ++i)
         written.insert(impl_->frame.passes[i].writes.begin(), impl_->frame.passes[i].writes.end());
     const std::vector<uint32_t> memory = impl_->planMemory();
-    uint64_t bytes = 0;
+    std::set<uint32_t> used;
     for (uint32_t i = 0; i < memory.size(); ++i) {
         const RecordedImage& image = impl_->frame.images[i];
-        if (!written.contains(image.name) || memory[i] != i) continue;
-        bytes += image.role == RecordedImage::Role::Current ? 2 * image.bytes() : image.bytes();
+        if (!written.contains(image.name)) continue;
+        used.insert(memory[i]);
+        if (image.role == RecordedImage::Role::Current) used.insert(i - 1);
     }
+    uint64_t bytes = 0;
+    for (const uint32_t i : used) bytes += impl_->frame.images[i].bytes();
     return bytes;
 }
 

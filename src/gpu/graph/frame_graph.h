@@ -157,7 +157,8 @@ struct GraphOptions {
     /// Lets images share memory within a frame: a transient image may take that of another transient image,
     /// or of a history's previous one, of the same format, extent and backing, that no pass from its first
     /// write on accesses. An image whose last access is a write is a result and keeps its memory. Others can
-    /// then not be downloaded.
+    /// then not be downloaded. A history takes the memory of one image, not two, if the previous one is last
+    /// read before the current one is first accessed.
     bool shareMemory = false;
 };
 
@@ -228,7 +229,7 @@ class FrameGraph {
     /// The passes recorded since beginFrame().
     const std::vector<RecordedPass>& passes() const;
     /// Returns the device memory of the images written by passes() from index `first` on. Each image counts
-    /// once, a history as a pair, and images that share memory as one.
+    /// once, a history with its past, and images that share memory as one.
     uint64_t bytesOfImagesWrittenFrom(size_t first) const;
     /// Returns the images that the pass writes, for --dump. Empty if there is no such pass.
     std::vector<ImageHandle> imagesWrittenBy(std::string_view pass) const;

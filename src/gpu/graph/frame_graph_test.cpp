@@ -446,10 +446,31 @@ TEST_F(MemorySharingTest, OnlyImagesOfOneKindShare) {
 
 TEST_F(MemorySharingTest, AHistorysPreviousImageGivesItsMemoryAndTheCurrentOneDoesNot) {
     const History history = graph.history("history", rgba, small);
-    read("reader", history.previous);
     writeCurrent(history);
+    read("reader", history.previous);
     read("reader of current", history.current);
     EXPECT_EQ(graph.imageBytes(), 3 * imageSize) << "the second reader's result is where the past was";
+}
+
+TEST_F(MemorySharingTest, AHistoryIsWrittenInPlaceIfItsPastIsNoLongerRead) {
+    const auto frame = [&](bool inPlace) {
+        graph.beginFrame();
+        const History history = graph.history("history", rgba, small);
+        const ImageHandle result = graph.transient("result", rgba, small);
+        if (!inPlace) writeCurrent(history);
+        scale("reader", history.previous, result);
+        if (inPlace) scale("writer", result, history.current);
+        read("later reader", history.current);
+        graph.assumeExecuted();
+        return history.valid;
+    };
+    EXPECT_FALSE(frame(true));
+    EXPECT_EQ(graph.imageBytes(), 2 * imageSize) << "the later reader's result is where the first's was";
+    EXPECT_EQ(graph.bytesOfImagesWrittenFrom(0), 2 * imageSize);
+    EXPECT_TRUE(frame(true)) << "the past survives";
+    EXPECT_TRUE(frame(false));
+    EXPECT_EQ(graph.imageBytes(), 3 * imageSize) << "the later reader's result is where the past was";
+    EXPECT_TRUE(frame(true));
 }
 
 TEST_F(MemorySharingTest, AnUploadedImageKeepsItsOwnMemoryUntilItWasRead) {

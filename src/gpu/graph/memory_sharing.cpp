@@ -40,6 +40,15 @@ std::vector<uint32_t> FrameGraph::Impl::planMemory() const {
     for (uint32_t i = 0; i < count; ++i) memory[i] = i;
     if (!options.shareMemory) return memory;
     std::vector<Lifetime> lifetimes = lifetimesOf(frame);
+    for (uint32_t current = 1; current < count; ++current) {
+        if (images[current].role != Role::Current) continue;
+        const uint32_t previous = current - 1;  // history() creates them together
+        if (lifetimes[previous].first == Lifetime::never ||
+            lifetimes[previous].last >= lifetimes[current].first)
+            continue;
+        memory[current] = previous;
+        lifetimes[previous].endsRead = false;  // holds the next frame's past: a result
+    }
     const auto given = [&](uint32_t giver, uint32_t taker) {
         const bool gives = images[giver].role == Role::Transient || images[giver].role == Role::Previous;
         return gives && memory[giver] == giver && lifetimes[giver].endsRead &&

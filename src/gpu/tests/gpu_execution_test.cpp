@@ -155,6 +155,36 @@ TEST_F(GpuTest, ImagesThatShareMemoryHoldWhatTheyWouldHoldAlone) {
         << "reads the fourth, and writes where the third was read";
 }
 
+TEST_F(GpuTest, AHistoryThatIsWrittenInPlaceKeepsItsPast) {
+    FrameGraph alone, shared({.shareMemory = true});
+    const auto frame = [&](FrameGraph& graph) {
+        graph.beginFrame();
+        const History history = graph.history("history", Format::R32Float, odd);
+        const ImageHandle next = graph.transient("next", Format::R32Float, odd);
+        const uint32_t valid = 1;
+        const auto addOne = [&](const char* pass, ImageHandle from, ImageHandle to) {
+            graph.dispatch({.pass = pass,
+                            .shader = shaders::test_accumulate_comp,
+                            .bindings = {{"previous", from}, {"current", to}},
+                            .params = paramsOf(valid),
+                            .extent = odd});
+        };
+        addOne("read", history.previous, next);
+        addOne("write", next, history.current);
+        graph.execute(device());
+        return graph.downloadFloat(device(), history.current);
+    };
+    for (int i = 0; i < 6; ++i) {
+        const std::vector<float> pixels = frame(shared);
+        EXPECT_THAT(pixels, Each(static_cast<float>(2 * (i % 3 + 1))));
+        EXPECT_EQ(pixels, frame(alone));
+        if (i != 2) continue;
+        shared.resetHistories();
+        alone.resetHistories();
+    }
+    EXPECT_EQ(alone.imageBytes() - shared.imageBytes(), uint64_t{odd.width} * odd.height * 4);
+}
+
 TEST_F(GpuTest, AnImageWhoseMemoryWasReusedCannotBeDownloaded) {
     FrameGraph graph({.shareMemory = true});
     graph.beginFrame();

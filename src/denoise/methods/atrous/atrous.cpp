@@ -136,6 +136,7 @@ ImageHandle filterAtrous(FrameGraph& graph, const DenoiserInput& input, const At
                    {.light = signal.light,
                     .albedo = input.albedo,
                     .emission = input.emission,
+                    .target = input.target,
                     .minAlbedo = minAlbedo(settings)});
 }
 

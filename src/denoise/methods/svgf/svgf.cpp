@@ -322,6 +322,7 @@ class Svgf {
                         .second = settings_.separate ? filtered.back() : ImageHandle{},
                         .secondAlbedo = input_.albedoSpecular,
                         .emission = input_.emission,
+                        .target = input_.target,
                         .minAlbedo = minAlbedo()});
     }
 

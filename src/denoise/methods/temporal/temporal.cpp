@@ -135,6 +135,7 @@ DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& inpu
                                             {.light = accumulated.color,
                                              .albedo = input.albedo,
                                              .emission = input.emission,
+                                             .target = input.target,
                                              .minAlbedo = accumulated.minAlbedo});
     const gpu::ImageHandle picture = settings.temporal.showDisocclusion
                                          ? showDisocclusion(graph, beauty, accumulated.disocclusion)

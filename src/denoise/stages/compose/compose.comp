@@ -2,6 +2,15 @@
 #extension GL_EXT_scalar_block_layout : require
 // The picture: filtered light times its albedo, plus emission. docs/denoising.md, SVGF, step 8.
 // LIMPID_COMPOSE_FLOAT: the light is in float images; otherwise in halves (shaders/common/filter_image.glsl).
+// LIMPID_COMPOSE_HALF, _HALF_BUFFERS and _HALF_FLOAT: the picture is in halves; with light in buffers, in float images.
+#ifdef LIMPID_COMPOSE_HALF_BUFFERS
+#define LIMPID_COMPOSE_HALF
+#define LIMPID_FILTER_BUFFERS
+#endif
+#ifdef LIMPID_COMPOSE_HALF_FLOAT
+#define LIMPID_COMPOSE_HALF
+#define LIMPID_COMPOSE_FLOAT
+#endif
 #include "denoise/stages/compose/compose_params.h"
 #include "denoise/stages/guides.glsl"
 #include "shaders/common/filter_image.glsl"
@@ -27,7 +36,13 @@ READ_HALF4(2, lightB);
 READ_LAYER(3, albedoA);
 READ_LAYER(4, albedoB);
 READ_LAYER(5, emission);
+#ifdef LIMPID_COMPOSE_HALF
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D beauty;
+#define STORED(color) nearestHalf(clamp(color, vec4(-MAX_HALF), vec4(MAX_HALF)))
+#else
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D beauty;
+#define STORED(color) (color)
+#endif
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -38,5 +53,5 @@ void main() {
     vec3 light = LOAD_LIGHT(lightA, at) * modulation(albedo, params.minAlbedo);
     if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(LOAD_LAYER(albedoB, at), params.minAlbedo);
     if (EMISSION) light += finiteOr(LOAD_LAYER(emission, at).rgb, vec3(0.0));
-    imageStore(beauty, at, vec4(light, 1.0));
+    imageStore(beauty, at, STORED(vec4(light, 1.0)));
 }

@@ -3,27 +3,35 @@
 #include "compose.comp.h"
 #include "compose_buffers.comp.h"
 #include "compose_float.comp.h"
+#include "compose_half.comp.h"
+#include "compose_half_buffers.comp.h"
+#include "compose_half_float.comp.h"
 #include "denoise/stages/compose/compose_params.h"
 
 namespace limpid::denoise {
 namespace {
 
-const gpu::ShaderCode& shaderFor(const gpu::FrameGraph& graph, gpu::ImageHandle light) {
-    if (graph.format(light) == gpu::Format::RGBA32Float) return shaders::compose_float_comp;
-    return graph.backing(light) == gpu::Backing::Buffer ? shaders::compose_buffers_comp
-                                                        : shaders::compose_comp;
+const gpu::ShaderCode& shaderFor(const gpu::FrameGraph& graph, gpu::ImageHandle light,
+                                 gpu::ImageHandle beauty) {
+    const bool half = graph.format(beauty) == gpu::Format::RGBA16Float;
+    if (graph.format(light) == gpu::Format::RGBA32Float)
+        return half ? shaders::compose_half_float_comp : shaders::compose_float_comp;
+    if (graph.backing(light) == gpu::Backing::Buffer)
+        return half ? shaders::compose_half_buffers_comp : shaders::compose_buffers_comp;
+    return half ? shaders::compose_half_comp : shaders::compose_comp;
 }
 
 }  // namespace
 
 gpu::ImageHandle compose(gpu::FrameGraph& graph, const std::string& pass, const ComposeInput& input) {
     const gpu::Extent extent = graph.extent(input.light);
-    const gpu::ImageHandle beauty = graph.transient(pass, gpu::Format::RGBA32Float, extent);
+    const gpu::ImageHandle beauty =
+        input.target ? input.target : graph.transient(pass, gpu::Format::RGBA32Float, extent);
     const auto orAny = [&](gpu::ImageHandle image, gpu::ImageHandle other) { return image ? image : other; };
     const ComposeParams params{extent.width, extent.height, input.minAlbedo};
     const bool both = input.secondAlbedo && !input.second;
     graph.dispatch({.pass = pass,
-                    .shader = shaderFor(graph, input.light),
+                    .shader = shaderFor(graph, input.light, beauty),
                     .bindings = {{"lightA", input.light},
                                  {"lightB", orAny(input.second, input.light)},
                                  {"albedoA", input.albedo},

@@ -7,17 +7,18 @@
 
 namespace limpid::denoise {
 
-/// Light images are halves as in filter_image.glsl (Format::RGBA16Float), or RGBA32Float images. Other images
-/// are RGBA32Float.
+/// Light images are halves as in filter_image.glsl (Format::RGBA16Float), or RGBA32Float images.
 struct ComposeInput {
     gpu::ImageHandle light, albedo;
     gpu::ImageHandle second,
         secondAlbedo;           ///< `second` empty: `light` was reflected by the sum of both albedos
     gpu::ImageHandle emission;  ///< empty: none is added
+    gpu::ImageHandle target;    ///< RGBA16Float (rounded to nearest, clamped to its range) or RGBA32Float;
+                                ///< empty: an RGBA32Float image of its own
     float minAlbedo = 0.0f;     ///< 0: light contains its albedo; the albedo images are not read
 };
 
-/// Returns radiance, rgba32f, alpha 1. Pass `pass`.
+/// Returns radiance, alpha 1: the target. Pass `pass`.
 gpu::ImageHandle compose(gpu::FrameGraph& graph, const std::string& pass, const ComposeInput& input);
 
 }  // namespace limpid::denoise

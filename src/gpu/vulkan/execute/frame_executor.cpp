@@ -193,7 +193,7 @@ void FrameExecutor::clearHistories(const RecordedFrame& frame, VkCommandBuffer c
     for (size_t i = 0; i < frame.images.size(); ++i) {
         ImagePool::Entry* const entry = frameImages_[i].pooled;
         if (!entry) continue;
-        if (frame.images[i].clear && !entry->zero) {
+        if (frame.images[i].clear && !frame.images[i].sharesWith && !entry->zero) {
             clearImage(entry->image, commands);
             any = true;
         }
