@@ -55,7 +55,7 @@ class IngestTest : public DenoiseTest {
         if (withMotion) images.motion = image("motion", given.motion);
         const limpid_camera matrices = camera ? *camera : matricesOf(given.frame.camera, given.before);
         const denoise::DenoiserInput input =
-            denoise::ingest(graph_, images, denoise::ingestParams(desc, matrices, true), false);
+            denoise::ingest(graph_, images, denoise::ingestParams(desc, matrices, true), {.layers = true});
         graph_.execute(device());
         return {graph_.downloadFloat(device(), input.normal), graph_.downloadFloat(device(), input.depth),
                 graph_.downloadFloat(device(), input.motion)};

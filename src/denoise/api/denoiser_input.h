@@ -8,12 +8,19 @@
 
 namespace limpid::denoise {
 
+/// What the surfaces stage makes of a frame's layers. Histories of the graph; `previous` holds the previous
+/// frame's surfaces.
+struct Surfaces {
+    gpu::History surfaces;   ///< two words: octahedral normal, distance from the eye (0: nothing seen)
+    gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
+};
+
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
 /// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
 /// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
-/// components. Filters that find specular, albedoSpecular, emission, reflectionMotion or ids empty do
-/// without. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance is rejected;
-/// such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
+/// components. Filters that find specular, albedoSpecular, emission, previousNormal, reflectionMotion or ids
+/// empty do without. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance is
+/// rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
@@ -21,6 +28,9 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// depth its own. Only networks read it.
     uint32_t samples = 1;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
+    /// Made by the ingest pass, or empty. With them, methods whose `readsLayers` is false find normal, depth
+    /// and ids empty.
+    Surfaces surfaces;
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;

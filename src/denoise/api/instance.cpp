@@ -142,13 +142,16 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                             gpu::ImageHandle target) {
     IngestImages taken = images;
     if (desc.demodulated) taken.albedo = taken.albedoSpecular = {};
-    DenoiserInput input = ingest(graph, taken, params, desc.signals == 2);
-    input.filters = filters;
     FilterSettings used = settings;
     used.svgf.separate = desc.signals == 2;
-    if (used.taa.frames <= 1.0f && !used.temporal.showDisocclusion) input.target = target;
+    const Method& method = methods()[static_cast<size_t>(desc.method)];
+    const bool antialiases = used.taa.frames > 1.0f;
+    DenoiserInput input = ingest(
+        graph, taken, params,
+        {.twoSignals = desc.signals == 2, .layers = method.readsLayers || antialiases, .filters = filters});
+    if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
-        return {methods()[static_cast<size_t>(desc.method)].record(graph, input, used).beauty, {}, {}};
+        return {method.record(graph, input, used).beauty, {}, {}};
     const SvgfImages filtered = filterSvgfSignals(graph, input, used.svgf);
     return {antialias(graph, input, filtered.beauty, used.taa), filtered.diffuse, filtered.specular};
 }

@@ -5,6 +5,7 @@
 //     const ParamTable<Settings>& params();           their names, ranges and descriptions
 //     inline constexpr std::string_view help = ...;   one sentence, for `limpid info`
 //     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
+//     inline constexpr bool readsLayers = ...;        record() reads normal or depth, not only the surfaces
 //     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 #pragma once
 

@@ -3,7 +3,7 @@
 namespace limpid::denoise {
 
 std::span<const Method> methods() {
-#define LIMPID_ROW(method) Method{#method, method::help, method::groups, method::record},
+#define LIMPID_ROW(method) Method{#method, method::help, method::groups, method::readsLayers, method::record},
     static constexpr std::array all{LIMPID_METHODS(LIMPID_ROW)};
 #undef LIMPID_ROW
     return all;

@@ -22,6 +22,7 @@ struct FilterSettings {
 struct Method {
     std::string_view name, help;
     std::span<const std::string_view> groups;
+    bool readsLayers;  ///< normal or depth, not only the surfaces
     /// Records one frame.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 };

@@ -38,6 +38,7 @@ using Settings = AtrousSettings;
 inline constexpr std::string_view help = "temporal accumulation, then the edge-avoiding a-trous filter";
 inline constexpr std::array<std::string_view, 3> groups{"temporal", "atrous", "taa"};
 const ParamTable<Settings>& params();
+inline constexpr bool readsLayers = true;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace atrous
 

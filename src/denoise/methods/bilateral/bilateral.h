@@ -33,6 +33,7 @@ inline constexpr std::string_view help =
     "a joint bilateral filter of one frame: the simplest method, an example";
 inline constexpr std::array<std::string_view, 2> groups{"bilateral", "taa"};
 const ParamTable<Settings>& params();
+inline constexpr bool readsLayers = true;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace bilateral
 

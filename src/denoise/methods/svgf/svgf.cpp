@@ -192,7 +192,7 @@ class Svgf {
         std::vector<gpu::Binding> bindings{
             {"motion", input_.motion},
             {"reflectionMotion", signal.reflects ? input_.reflectionMotion : input_.motion},
-            {"previousNormal", input_.previousNormal},
+            {"previousNormal", input_.previousNormal ? input_.previousNormal : input_.motion},
             {"surfaces", surfaces.surfaces.current},
             {"instances", surfaces.instances.current},
             {"surfacesBefore", surfaces.surfaces.previous},
@@ -206,6 +206,7 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = constantsOf(signal);
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
         constants.push_back({"STABILISE", stabilises() ? 1u : 0u});
+        constants.push_back({"TURNS", input_.previousNormal ? 1u : 0u});
         if (buffers_) {
             bindings.push_back({"tileSums", tileSums});
             constants.push_back({"TILES", settings_.antilag > 0.0f ? 1u : 0u});

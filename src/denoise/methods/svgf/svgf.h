@@ -62,6 +62,7 @@ inline constexpr std::string_view help =
     "spatiotemporal variance-guided filtering: blurs where and as much as there is noise";
 inline constexpr std::array<std::string_view, 2> groups{"svgf", "taa"};
 const ParamTable<Settings>& params();
+inline constexpr bool readsLayers = false;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace svgf
 

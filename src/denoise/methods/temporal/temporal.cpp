@@ -105,14 +105,14 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
                       {"surfaces", surfaces.surfaces.current},
                       {"instances", surfaces.instances.current},
                       {"motion", input.motion},
-                      {"previousNormal", input.previousNormal},
+                      {"previousNormal", input.previousNormal ? input.previousNormal : input.motion},
                       {"surfacesBefore", surfaces.surfaces.previous},
                       {"instancesBefore", surfaces.instances.previous},
                       {"colorBefore", color.previous},
                       {"color", color.current},
                       {"disocclusion", disocclusion}},
          .params = gpu::paramsOf(params),
-         .constants = {{"TWO_LIGHTS", input.specular ? 1u : 0u}},
+         .constants = {{"TWO_LIGHTS", input.specular ? 1u : 0u}, {"TURNS", input.previousNormal ? 1u : 0u}},
          .extent = extent});
     return {color.current, disocclusion, params.minAlbedo};
 }

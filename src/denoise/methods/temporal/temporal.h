@@ -58,6 +58,7 @@ inline constexpr std::string_view help =
     "each pixel's running mean follows its surface through camera and object motion";
 inline constexpr std::array<std::string_view, 2> groups{"temporal", "taa"};
 const ParamTable<Settings>& params();
+inline constexpr bool readsLayers = false;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace temporal
 

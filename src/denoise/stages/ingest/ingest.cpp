@@ -1,9 +1,14 @@
 #include "denoise/stages/ingest/ingest.h"
 
+#include "denoise/stages/surfaces/surfaces.h"
 #include "ingest.comp.h"
+#include "ingest_buffers.comp.h"
 #include "ingest_given_reflection.comp.h"
-#include "ingest_moving.comp.h"
+#include "ingest_layers.comp.h"
+#include "ingest_layers_buffers.comp.h"
+#include "ingest_previous_normal.comp.h"
 #include "ingest_reflection.comp.h"
+#include "ingest_reflection_buffers.comp.h"
 #include "ingest_white.comp.h"
 
 namespace limpid::denoise {
@@ -18,42 +23,64 @@ ImageHandle make(FrameGraph& graph, const IngestParams& params, const std::strin
     return graph.transient("ingest/" + name, format, {params.width, params.height});
 }
 
+bool inBuffers(const DenoiserInput& input) {
+    return input.filters == gpu::Backing::Buffer;
+}
+
 void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
                    DenoiserInput& input) {
-    input.normal = make(graph, params, "normal", Format::RGBA16Float);
-    input.depth = make(graph, params, "depth", Format::RG32Float);
+    input.surfaces = makeSurfaces(graph, {params.width, params.height}, input.filters);
     input.motion = make(graph, params, "motion", Format::RGBA16Float);
-    std::vector<gpu::Binding> bindings{{"normalIn", images.normal},
-                                       {"depthIn", images.depth},
-                                       {"motionIn", images.motion ? images.motion : images.depth},
-                                       {"normal", input.normal},
-                                       {"depth", input.depth},
-                                       {"motion", input.motion}};
-    input.previousNormal = input.normal;
-    if (images.previousNormal) {
-        input.previousNormal = make(graph, params, "previousNormal", Format::RGBA16Float);
-        bindings.insert(bindings.end(), {{"previousNormalIn", images.previousNormal},
-                                         {"previousNormal", input.previousNormal}});
-    }
     graph.dispatch({.pass = "ingest",
-                    .shader = images.previousNormal ? shaders::ingest_moving_comp : shaders::ingest_comp,
-                    .bindings = bindings,
+                    .shader = inBuffers(input) ? shaders::ingest_buffers_comp : shaders::ingest_comp,
+                    .bindings = {{"normalIn", images.normal},
+                                 {"depthIn", images.depth},
+                                 {"motionIn", images.motion ? images.motion : images.depth},
+                                 {"idIn", images.id ? images.id : input.surfaces.instances.previous},
+                                 {"surfaces", input.surfaces.surfaces.current},
+                                 {"instances", input.surfaces.instances.current},
+                                 {"motion", input.motion}},
                     .params = gpu::paramsOf(params),
-                    .constants = {},
+                    .constants = {{"IDS", images.id ? 1u : 0u}, {"MOTION", images.motion ? 1u : 0u}},
                     .extent = {params.width, params.height}});
 }
 
-ImageHandle givenReflectionMotion(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
-                                  const DenoiserInput& input) {
-    const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
-    graph.dispatch({.pass = "ingest/reflection",
-                    .shader = shaders::ingest_given_reflection_comp,
-                    .bindings = {{"reflectionMotionIn", images.reflectionMotion},
-                                 {"depth", input.depth},
-                                 {"reflectionMotion", motion}},
+ImageHandle convertedPreviousNormal(FrameGraph& graph, const IngestImages& images,
+                                    const IngestParams& params) {
+    const ImageHandle normal = make(graph, params, "previousNormal", Format::RGBA16Float);
+    graph.dispatch({.pass = "ingest/previous normal",
+                    .shader = shaders::ingest_previous_normal_comp,
+                    .bindings = {{"previousNormalIn", images.previousNormal}, {"previousNormal", normal}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
                     .extent = {params.width, params.height}});
+    return normal;
+}
+
+void addLayers(FrameGraph& graph, const IngestParams& params, DenoiserInput& input) {
+    input.normal = make(graph, params, "normal", Format::RGBA16Float);
+    input.depth = make(graph, params, "depth", Format::RG32Float);
+    const gpu::Extent extent = graph.extent(input.depth);
+    graph.dispatch(
+        {.pass = "ingest/layers",
+         .shader = inBuffers(input) ? shaders::ingest_layers_buffers_comp : shaders::ingest_layers_comp,
+         .bindings = {{"surfaces", input.surfaces.surfaces.current},
+                      {"normal", input.normal},
+                      {"depth", input.depth}},
+         .params = gpu::paramsOf(extent),
+         .constants = {},
+         .extent = extent});
+}
+
+ImageHandle givenReflectionMotion(FrameGraph& graph, const IngestImages& images, const IngestParams& params) {
+    const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
+    graph.dispatch(
+        {.pass = "ingest/reflection",
+         .shader = shaders::ingest_given_reflection_comp,
+         .bindings = {{"reflectionMotionIn", images.reflectionMotion}, {"reflectionMotion", motion}},
+         .params = gpu::paramsOf(params),
+         .constants = {},
+         .extent = {params.width, params.height}});
     return motion;
 }
 
@@ -61,11 +88,11 @@ ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& imag
                                      const IngestParams& params, const DenoiserInput& input) {
     const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
     graph.dispatch({.pass = "ingest/reflection",
-                    .shader = shaders::ingest_reflection_comp,
+                    .shader = inBuffers(input) ? shaders::ingest_reflection_buffers_comp
+                                               : shaders::ingest_reflection_comp,
                     .bindings = {{"roughnessIn", images.roughness},
                                  {"hitDistanceIn", images.hitDistance},
-                                 {"normal", input.normal},
-                                 {"depth", input.depth},
+                                 {"surfaces", input.surfaces.surfaces.current},
                                  {"motion", input.motion},
                                  {"reflectionMotion", motion}},
                     .params = gpu::paramsOf(params),
@@ -88,22 +115,24 @@ ImageHandle whiteAlbedo(FrameGraph& graph, const IngestParams& params) {
 
 }  // namespace
 
-DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, IngestParams params, bool twoSignals) {
-    params.hasMotion = images.motion ? 1u : 0u;
+DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+                     const IngestNeeds& needs) {
     DenoiserInput input;
     input.camera = params.camera;
+    input.filters = needs.filters;
     convertGuides(graph, images, params, input);
-    if (twoSignals && images.reflectionMotion)
-        input.reflectionMotion = givenReflectionMotion(graph, images, params, input);
-    else if (twoSignals && images.hitDistance)
+    if (images.previousNormal) input.previousNormal = convertedPreviousNormal(graph, images, params);
+    if (needs.twoSignals && images.reflectionMotion)
+        input.reflectionMotion = givenReflectionMotion(graph, images, params);
+    else if (needs.twoSignals && images.hitDistance)
         input.reflectionMotion = computedReflectionMotion(graph, images, params, input);
-    input.ids = images.id;
+    if (needs.layers) addLayers(graph, params, input);
     input.diffuse = images.radiance;
     input.specular = images.specular;
     input.emission = images.emission;
     input.albedo = images.albedo;
     input.albedoSpecular = images.albedoSpecular;
-    const bool needsBoth = twoSignals && !input.albedoSpecular;
+    const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {
         const ImageHandle white = whiteAlbedo(graph, params);
         if (!input.albedo) input.albedo = white;

@@ -17,12 +17,18 @@ struct IngestImages {
     gpu::ImageHandle id;                      ///< unsigned integers
 };
 
+/// What the method that follows reads.
+struct IngestNeeds {
+    bool twoSignals = false;
+    bool layers = false;  ///< normal and depth, besides the surfaces
+    gpu::Backing filters = gpu::Backing::Image;
+};
+
 /// What filters read of the frame. Light, albedo and ids are the caller's images themselves; normals,
-/// distances and motion are converted, in halves and (distances) floats. Passes: "ingest";
-/// "ingest/reflection" if there are two signals and the motion of reflections or hit distances;
-/// "ingest/white" if an albedo is missing. Radiance, normal and depth are required. `params.hasMotion` is
-/// ignored; it is derived from the images.
-DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, IngestParams params,
-                     bool twoSignals);
+/// distances and motion are converted. Passes: "ingest"; "ingest/previous normal", "ingest/reflection" and
+/// "ingest/layers" if there is something to do for them; "ingest/white" if an albedo is missing. Radiance,
+/// normal and depth are required.
+DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+                     const IngestNeeds& needs);
 
 }  // namespace limpid::denoise

@@ -10,8 +10,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
     IngestParams params;
 };
 READ_LAYER(1, reflectionMotionIn);
-READ_LAYER(2, depth);
-layout(set = 0, binding = 3, rgba16f) uniform writeonly image2D reflectionMotion;
+layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D reflectionMotion;
 
 #include "denoise/stages/ingest/still.glsl"
 
@@ -19,8 +18,7 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    const bool reflects = params.hasPrevious != 0u && hitDistance(LOAD_LAYER(depth, at)) > 0.0;
-    const vec3 moved = reflects ? LOAD_LAYER(reflectionMotionIn, at).xyz : vec3(0.0);
+    const vec3 moved = params.hasPrevious != 0u ? LOAD_LAYER(reflectionMotionIn, at).xyz : vec3(0.0);
     // All zero says that there is no reflection to follow.
     const float valid = moved != vec3(0.0) ? 1.0 : 0.0;
     imageStore(reflectionMotion, at,

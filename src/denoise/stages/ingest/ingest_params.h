@@ -36,7 +36,6 @@ struct IngestParams {
     vec2 jitter;  // pixels
     uint width;
     uint height;
-    uint hasMotion;       // 0: everything stands still
     uint normalEncoding;  // NORMAL_*
     uint normalInView;
     uint depthKind;    // DEPTH_*

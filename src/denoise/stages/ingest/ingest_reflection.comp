@@ -4,6 +4,7 @@
 // object behind the surface. docs/embedding.md, "Reflections".
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
+#include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -12,10 +13,9 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 READ_LAYER(1, roughnessIn);
 READ_LAYER(2, hitDistanceIn);
-READ_LAYER(3, normal);
-READ_LAYER(4, depth);
-READ_LAYER(5, motion);
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D reflectionMotion;
+READ_UINT2(3, surfaces);
+READ_LAYER(4, motion);
+layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D reflectionMotion;
 
 #include "denoise/stages/ingest/still.glsl"
 #include "shaders/common/reflection_share.glsl"
@@ -37,9 +37,10 @@ vec2 onScreenAt(ivec2 at) {
 
 Point pointAt(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
-    const float z = hitDistance(LOAD_LAYER(depth, inside));
+    const uvec2 surface = LOAD_UINT2(surfaces, inside);
+    const float z = uintBitsToFloat(surface.y);
     const vec2 onScreen = onScreenAt(inside);
-    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), unitNormal(LOAD_LAYER(normal, inside)),
+    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), decodeOctahedral(surface.x),
                  z > 0.0 && at == inside);
 }
 
@@ -91,7 +92,7 @@ vec4 reflectionMotionAt(ivec2 at) {
     const vec4 moved = motionOfStill(image, vec2(at));
     if (moved.w == 0.0 || still.w == 0.0 || distance(ownMotion.xy, still.xy) > STILL) return vec4(0.0);
     const float before = previousReflector(own, vec2(at) + moved.xy);
-    return before > 0.0 ? vec4(moved.xy, before - LOAD_LAYER(depth, at).x, 1.0) : vec4(0.0);
+    return before > 0.0 ? vec4(moved.xy, before - uintBitsToFloat(LOAD_UINT2(surfaces, at).y), 1.0) : vec4(0.0);
 }
 
 void main() {

@@ -3,7 +3,8 @@
 //
 // The including shader declares beforehand:
 //   - `params` with camera, width, height and `ReprojectTests tests`
-//   - READ_UINT2 `surfacesBefore`, READ_LAYER `previousNormal`, and the images `instances`, `instancesBefore`
+//   - READ_UINT2 `surfacesBefore`, READ_LAYER `previousNormal`, and the images `instances`, `instancesBefore`.
+//     Constant 8 is used here.
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
 //   - Past loadFirst(ivec2 at): a texel with at least what framesOf() needs
@@ -15,6 +16,8 @@
 
 #include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/reproject/reproject_params.h"
+
+layout(constant_id = 8) const bool TURNS = true;  // else normals were what they are; previousNormal is not read
 
 /// If the accepted taps weigh less than this in total, there is no history: the other taps show another surface.
 const float MIN_SHARE = 0.01;
@@ -115,8 +118,9 @@ Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const float depthBefore = z + was.depthChange;
     const float tolerance =
         depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x), vec2(at), size, params.tests);
-    return pastAt(was.position,
-                  Expected(unitNormal(LOAD_LAYER(previousNormal, at)), depthBefore, tolerance, imageLoad(instances, at).x));
+    vec3 normalBefore = decodeOctahedral(surface.x);
+    if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
+    return pastAt(was.position, Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x));
 }
 
 #endif

@@ -5,11 +5,15 @@
 
 namespace limpid::denoise {
 
+Surfaces makeSurfaces(gpu::FrameGraph& graph, gpu::Extent extent, gpu::Backing filters) {
+    return {graph.history("surfaces/normal_distance", gpu::Format::RG32Uint, extent, filters),
+            graph.history("surfaces/instances", gpu::Format::R32Uint, extent)};
+}
+
 Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input) {
+    if (input.surfaces.surfaces.current) return input.surfaces;
     const gpu::Extent extent = graph.extent(input.depth);
-    const Surfaces result{
-        graph.history("surfaces/normal_distance", gpu::Format::RG32Uint, extent, input.filters),
-        graph.history("surfaces/instances", gpu::Format::R32Uint, extent)};
+    const Surfaces result = makeSurfaces(graph, extent, input.filters);
     const bool buffers = input.filters == gpu::Backing::Buffer;
     graph.dispatch({.pass = "surfaces",
                     .shader = buffers ? shaders::surfaces_buffers_comp : shaders::surfaces_comp,

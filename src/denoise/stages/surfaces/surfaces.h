@@ -6,13 +6,10 @@
 
 namespace limpid::denoise {
 
-/// Histories of the graph; `previous` holds the previous frame's surfaces.
-struct Surfaces {
-    gpu::History surfaces;   ///< two words: octahedral normal, distance from the eye (0: nothing seen)
-    gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
-};
+/// Surfaces that a pass has yet to write.
+Surfaces makeSurfaces(gpu::FrameGraph& graph, gpu::Extent extent, gpu::Backing filters);
 
-/// Pass "surfaces".
+/// Pass "surfaces", unless the input has surfaces.
 Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input);
 
 }  // namespace limpid::denoise
