@@ -509,7 +509,7 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         denoise(*method, frame, settings);
         const double bytes =
             static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) / double{columns} / double{rows};
-        EXPECT_EQ(bytes, separate ? 232.625 : 136.3125);
+        EXPECT_EQ(bytes, separate ? 200.625 : 120.3125);
         // With one signal, the same image is bound to both.
         const auto modulate =
             std::ranges::find(graph_.passes(), std::string("svgf/compose"), &gpu::RecordedPass::name);

@@ -230,8 +230,8 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     desc.signals = 2;
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &two), LIMPID_OK);
     // docs/embedding.md, "Memory"
-    EXPECT_EQ(one, uint64_t{640} * 360 * 100 + uint64_t{80} * 45 * 20);
-    EXPECT_EQ(two, uint64_t{640} * 360 * 156 + uint64_t{80} * 45 * 40);
+    EXPECT_EQ(one, uint64_t{640} * 360 * 92 + uint64_t{80} * 45 * 20);
+    EXPECT_EQ(two, uint64_t{640} * 360 * 148 + uint64_t{80} * 45 * 40);
 }
 
 }  // namespace

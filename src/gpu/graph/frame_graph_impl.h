@@ -48,7 +48,7 @@ struct RecordedImage {
     /// The earlier image whose memory this one uses (memory_sharing.cpp), an index into images. They have the
     /// same key.
     std::optional<uint32_t> sharesWith;
-    bool overwritten = false;  ///< another image uses its memory later in the frame
+    bool overwritten = false;  ///< another image uses its memory later in the frame, or in another format
     /// For role Foreign: whether a pass samples it or binds it as a storage image. It cannot be in both
     /// layouts.
     bool sampled = false, stored = false;

@@ -444,6 +444,18 @@ TEST_F(MemorySharingTest, OnlyImagesOfOneKindShare) {
     EXPECT_EQ(graph.imageBytes(), 3 * imageSize + uint64_t{small.width} * 16);
 }
 
+TEST_F(MemorySharingTest, BuffersNeedNotHaveOneFormat) {
+    const ImageHandle words = graph.transient("words", Format::RGBA32Uint, small, Backing::Buffer);
+    graph.host({.pass = "write words", .reads = {}, .writes = {words}, .run = {}});
+    graph.host({.pass = "read words", .reads = {words}, .writes = {}, .run = {}});
+    const ImageHandle floats = graph.transient("floats", rgba, small, Backing::Buffer);
+    graph.host({.pass = "write floats", .reads = {}, .writes = {floats}, .run = {}});
+    EXPECT_EQ(graph.imageBytes(), imageSize);
+    const ImageHandle pairs = graph.transient("pairs", Format::RG32Float, small, Backing::Buffer);
+    graph.host({.pass = "write pairs", .reads = {}, .writes = {pairs}, .run = {}});
+    EXPECT_EQ(graph.imageBytes(), imageSize + imageSize / 2);
+}
+
 TEST_F(MemorySharingTest, AHistorysPreviousImageGivesItsMemoryAndTheCurrentOneDoesNot) {
     const History history = graph.history("history", rgba, small);
     writeCurrent(history);

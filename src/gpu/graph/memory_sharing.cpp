@@ -25,8 +25,11 @@ std::vector<Lifetime> lifetimesOf(const RecordedFrame& frame) {
     return lifetimes;
 }
 
+/// Buffers have no format.
 bool sameKind(const ImageKey& a, const ImageKey& b) {
-    return a.format == b.format && a.width == b.width && a.height == b.height && a.backing == b.backing;
+    const bool sameTexels = a.backing == Backing::Buffer ? bytesPerTexel(a.format) == bytesPerTexel(b.format)
+                                                         : a.format == b.format;
+    return sameTexels && a.width == b.width && a.height == b.height && a.backing == b.backing;
 }
 
 using Role = RecordedImage::Role;
@@ -77,6 +80,7 @@ void FrameGraph::Impl::shareMemory() {
     for (uint32_t i = 0; i < memory.size(); ++i) {
         RecordedImage& image = frame.images[i];
         if (memory[i] != i) image.sharesWith = memory[i];
+        if (image.key.format != frame.images[memory[i]].key.format) image.overwritten = true;
         image.key = frame.images[memory[i]].key;
         if (users[memory[i]] != UINT32_MAX) frame.images[users[memory[i]]].overwritten = true;
         users[memory[i]] = i;
