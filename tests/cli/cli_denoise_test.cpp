@@ -1,6 +1,8 @@
 // Tests `limpid render` with pipelines that reuse frames, and `limpid denoise` on files of other renderers.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "image/io/exr/exr.h"
@@ -32,7 +34,7 @@ TEST_F(CliDenoiseTest, GivesExactlyWhatTheRenderersOwnPipelineGives) {
     for (const std::string method : {"temporal", "atrous"}) {
         const Result rendered =
             run("render builtin:cornell-moving -o " + path("own.%02d.exr") + small +
-                "--float --frames 4 --jitter frame --camera-path shake --denoiser " + method);
+                "--float --frames 4 --jitter frame --camera-path shake --aov all --denoiser " + method);
         ASSERT_EQ(rendered.code, 0) << rendered.output;
         const Result denoised = run("denoise " + path("noisy.%02d.exr") + " -o " + path("clean.%02d.exr") +
                                     " --device cpu --denoiser " + method);
@@ -46,6 +48,29 @@ TEST_F(CliDenoiseTest, GivesExactlyWhatTheRenderersOwnPipelineGives) {
             EXPECT_NE(clean.find("motion.X"), nullptr) << "the other layers stay";
             EXPECT_EQ(clean.metadata.at("limpid.denoiser"), method);
         }
+    }
+}
+
+/// What only a filter reads is stored in halves.
+TEST_F(CliDenoiseTest, PicturesWithoutTheirLayersDifferByLittle) {
+    for (const std::string method : {"temporal", "atrous", "svgf"}) {
+        for (const std::string layers : {"", " --aov all"}) {
+            const Result rendered =
+                run("render builtin:cornell-moving -o " +
+                    path(layers.empty() ? "alone.%02d.exr" : "with.%02d.exr") + small +
+                    "--float --frames 4 --camera-path shake --denoiser " + method + layers);
+            ASSERT_EQ(rendered.code, 0) << rendered.output;
+        }
+        const auto alone = image::readExr(path("alone.03.exr")).get("", "RGB").pixels;
+        const auto with = image::readExr(path("with.03.exr")).get("", "RGB").pixels;
+        double sum = 0.0, difference = 0.0;
+        for (size_t i = 0; i < with.size(); ++i) {
+            sum += double{with[i]};
+            difference += std::abs(double{alone[i]} - double{with[i]});
+        }
+        fmt::print("{}: differs by {:.2g} of the mean\n", method, difference / sum);
+        EXPECT_GT(difference, 0.0) << method << ": proves nothing";
+        EXPECT_LT(difference, 1e-3 * sum) << method;
     }
 }
 

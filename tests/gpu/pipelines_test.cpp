@@ -69,6 +69,7 @@ TEST_F(PipelinesTest, TemporalAccumulationOfAStillCameraIsTheProgressiveMeanOfTh
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
     RenderSettings settings = settingsFor(parsePipeline("path", "temporal"), 96, 54);
     assign(settings, "temporal.max_history=0");
+    settings.layers = true;  // else they are halves
     constexpr uint64_t frames = 48;
     FrameRenderer renderer(device(), gpuScene, settings, 1);
     for (uint64_t frame = 0; frame < frames; ++frame) renderer.render(still(scene, settings, frame));

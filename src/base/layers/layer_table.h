@@ -32,6 +32,9 @@ enum class Mean : uint8_t {
 /// The quantity whose mean squared deviation over the samples is stored in the layer's fourth float.
 enum class VarianceOf : uint8_t { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
+/// How a frame stores the layer if only a filter reads it.
+enum class ForFilters : uint8_t { Halves, Floats, Nothing };
+
 /// Whether denoising a file requires the layer.
 enum class Need : uint8_t {
     Always,
@@ -50,6 +53,7 @@ struct LayerInfo {
     bool varianceInFiles = false;  ///< files can contain its variance, as channel `name`.variance
     bool inBeauty = false;         ///< beauty is the sum of these layers
     bool ofFirstHit = false;       ///< depends on the first hit alone, so the G-buffer pass writes it too
+    ForFilters forFilters = ForFilters::Halves;
     Need need = Need::Optional;
     std::string_view without;  ///< what goes wrong without an advised layer
     std::string_view help;     ///< help text, as in docs/layers.md
@@ -99,7 +103,7 @@ inline constexpr float noValue = 1e10f;
     LAYER(depth,                                                                                                  \
           .suffixes = "Z", .stored = Stored::Float, .mean = Mean::OfHits,                                         \
           .varianceOf = VarianceOf::FirstComponent, .varianceInFiles = true, .ofFirstHit = true,                  \
-          .need = Need::Always,                                                                                   \
+          .forFilters = ForFilters::Floats, .need = Need::Always,                                                                                   \
           .help = "distance from the eye along the ray, world units; 1e10 where nothing is hit")                  \
     LAYER(motion,                                                                                                 \
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid, .ofFirstHit = true,                  \
@@ -109,10 +113,10 @@ inline constexpr float noValue = 1e10f;
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid,                                      \
           .help = "likewise, of what smooth surfaces reflect; 1e10: unknown")                                \
     LAYER(roughness,                                                                                              \
-          .suffixes = "R", .ofFirstHit = true,                                                                    \
+          .suffixes = "R", .ofFirstHit = true, .forFilters = ForFilters::Nothing,                                 \
           .help = "roughness of the specular lobe; 0 where nothing is hit")                                       \
     LAYER(hitDistance,                                                                                            \
-          .suffixes = "D", .stored = Stored::Float, .mean = Mean::OfValid,                                        \
+          .suffixes = "D", .stored = Stored::Float, .mean = Mean::OfValid, .forFilters = ForFilters::Nothing,     \
           .help = "length of reflected rays to what they hit, world units; 1e9: nothing; 1e10: unknown")          \
     LAYER(ids,                                                                                                    \
           .name = "id", .suffixes = "I", .stored = Stored::Uint, .mean = Mean::FirstSample, .ofFirstHit = true,   \

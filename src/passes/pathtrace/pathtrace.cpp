@@ -6,6 +6,8 @@
 #include "pathtrace.rgen.h"
 #include "pathtrace_layers.comp.h"
 #include "pathtrace_layers.rgen.h"
+#include "pathtrace_layers_filters.comp.h"
+#include "pathtrace_layers_filters.rgen.h"
 
 namespace limpid {
 namespace {
@@ -82,10 +84,14 @@ PathtraceBeauty pathtraceBeauty(FrameGraph& graph, const scene::GpuScene& scene,
     return {beauty, counters.current};
 }
 
-PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix, gpu::Extent extent) {
+PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix, gpu::Extent extent,
+                                    bool forFilters) {
     PathtraceLayers layers;
     for (const LayerInfo& layer : frameLayers) {
-        const Format format = layer.stored == Stored::Uint ? Format::RG32Uint : Format::RGBA32Float;
+        if (forFilters && layer.forFilters == ForFilters::Nothing) continue;
+        Format format = Format::RGBA32Float;
+        if (forFilters && layer.forFilters == ForFilters::Halves) format = Format::RGBA16Float;
+        if (layer.stored == Stored::Uint) format = Format::RG32Uint;
         layers[layer] = graph.transient(prefix + std::string(layer.member), format, extent);
     }
     return layers;
@@ -94,9 +100,14 @@ PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix
 void pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
                      const PathtraceLaunch& launch, ImageHandle countersBefore, const PathtraceLayers& into) {
     std::vector<Binding> images{{"countersBefore", countersBefore}, {"counters", into.counters}};
-    for (const LayerInfo& layer : frameLayers) images.push_back({layer.member, into[layer]});
-    dispatch(graph, {shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen}, scene, settings, launch,
-             images);
+    for (const LayerInfo& layer : frameLayers)
+        if (into[layer]) images.push_back({layer.member, into[layer]});
+    const bool forFilters = graph.format(into.diffuse) == Format::RGBA16Float;
+    const TracerShaders shaders =
+        forFilters
+            ? TracerShaders{shaders::pathtrace_layers_filters_comp, shaders::pathtrace_layers_filters_rgen}
+            : TracerShaders{shaders::pathtrace_layers_comp, shaders::pathtrace_layers_rgen};
+    dispatch(graph, shaders, scene, settings, launch, images);
 }
 
 PathtraceLayers pathtraceLayers(FrameGraph& graph, const scene::GpuScene& scene,

@@ -50,7 +50,9 @@ PathtraceLayers pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& s
 void pathtraceLayers(gpu::FrameGraph& graph, const scene::GpuScene& scene, const PathtraceSettings& settings,
                      const PathtraceLaunch& launch, gpu::ImageHandle countersBefore,
                      const PathtraceLayers& into);
-/// Creates all images except the counters; their names begin with `prefix`.
-PathtraceLayers makePathtraceLayers(gpu::FrameGraph& graph, const std::string& prefix, gpu::Extent extent);
+/// Creates all images except the counters; their names begin with `prefix`. `forFilters`: only what filters
+/// read, and in halves where LayerInfo::forFilters says so (the path tracer's launches alone can write that).
+PathtraceLayers makePathtraceLayers(gpu::FrameGraph& graph, const std::string& prefix, gpu::Extent extent,
+                                    bool forFilters = false);
 
 }  // namespace limpid

@@ -1,24 +1,35 @@
 // The path tracer with every layer of docs/layers.md: means and variances over this launch's samples. Used by
-// every tracer.
+// every tracer. LIMPID_FOR_FILTERS: as filters read them (ForFilters in base/layers/layer_table.h).
 const bool SPLIT_LOBES = true;
 #include "passes/pathtrace/pathtrace.glsl"
+#include "shaders/common/filter_image.glsl"
+
+#ifdef LIMPID_FOR_FILTERS
+#define HALVES rgba16f
+#define TO_HALVES(value) nearestHalf(clamp(value, vec4(-MAX_HALF), vec4(MAX_HALF)))
+#else
+#define HALVES rgba32f
+#define TO_HALVES(value) (value)
+#endif
 
 // rgb: mean; a: mean squared deviation (of luminance for colours) within this launch.
-layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D diffuse;
-layout(set = 0, binding = 22, rgba32f) uniform writeonly image2D specular;
-layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D emission;
-layout(set = 0, binding = 24, rgba32f) uniform writeonly image2D albedo;
-layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D albedoSpecular;
-layout(set = 0, binding = 26, rgba32f) uniform writeonly image2D normal;
+layout(set = 0, binding = 21, HALVES) uniform writeonly image2D diffuse;
+layout(set = 0, binding = 22, HALVES) uniform writeonly image2D specular;
+layout(set = 0, binding = 23, HALVES) uniform writeonly image2D emission;
+layout(set = 0, binding = 24, HALVES) uniform writeonly image2D albedo;
+layout(set = 0, binding = 25, HALVES) uniform writeonly image2D albedoSpecular;
+layout(set = 0, binding = 26, HALVES) uniform writeonly image2D normal;
 layout(set = 0, binding = 27, rgba32f) uniform writeonly image2D depth;   // depth of hits, 0 for misses |
                                                                           // hits | 0
-layout(set = 0, binding = 28, rgba32f) uniform writeonly image2D motion;  // sum over valid samples and their
+layout(set = 0, binding = 28, HALVES) uniform writeonly image2D motion;  // sum over valid samples and their
                                                                           // number, both divided by the
                                                                           // number of samples
-layout(set = 0, binding = 32, rgba32f) uniform writeonly image2D previousNormal;
-layout(set = 0, binding = 33, rgba32f) uniform writeonly image2D reflectionMotion;  // likewise
+layout(set = 0, binding = 32, HALVES) uniform writeonly image2D previousNormal;
+layout(set = 0, binding = 33, HALVES) uniform writeonly image2D reflectionMotion;  // likewise
+#ifndef LIMPID_FOR_FILTERS
 layout(set = 0, binding = 34, rgba32f) uniform writeonly image2D roughness;
 layout(set = 0, binding = 35, rgba32f) uniform writeonly image2D hitDistance;  // sum over valid samples | their number
+#endif
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
 layout(set = 0, binding = 30, rg32ui) uniform readonly uimage2D countersBefore;
 layout(set = 0, binding = 31, rg32ui) uniform writeonly uimage2D counters;  // rays | rejected samples
@@ -74,17 +85,19 @@ void tracePixel(uvec2 pixel) {
         if (i == 0u) imageStore(ids, at, uvec4(first.ids, 0u, 0u));
     }
     const vec4 perSample = vec4(1.0, 1.0, 1.0, 1.0 / float(params.samples));
-    imageStore(diffuse, at, diffuseMoments * perSample);
-    imageStore(specular, at, specularMoments * perSample);
-    imageStore(emission, at, emissionMoments * perSample);
-    imageStore(albedo, at, albedoMoments * perSample);
-    imageStore(albedoSpecular, at, albedoSpecularMoments * perSample);
-    imageStore(normal, at, normalMoments * perSample);
+    imageStore(diffuse, at, TO_HALVES(diffuseMoments * perSample));
+    imageStore(specular, at, TO_HALVES(specularMoments * perSample));
+    imageStore(emission, at, TO_HALVES(emissionMoments * perSample));
+    imageStore(albedo, at, TO_HALVES(albedoMoments * perSample));
+    imageStore(albedoSpecular, at, TO_HALVES(albedoSpecularMoments * perSample));
+    imageStore(normal, at, TO_HALVES(normalMoments * perSample));
     imageStore(depth, at, depthMoments * perSample);
-    imageStore(motion, at, motionSum / float(params.samples));
-    imageStore(reflectionMotion, at, reflectionMotionSum / float(params.samples));
-    imageStore(previousNormal, at, vec4(previousNormalSum / float(params.samples), 0.0));
+    imageStore(motion, at, TO_HALVES(motionSum / float(params.samples)));
+    imageStore(reflectionMotion, at, TO_HALVES(reflectionMotionSum / float(params.samples)));
+    imageStore(previousNormal, at, TO_HALVES(vec4(previousNormalSum / float(params.samples), 0.0)));
+#ifndef LIMPID_FOR_FILTERS
     imageStore(roughness, at, vec4(roughnessSum / float(params.samples), 0.0, 0.0, 0.0));
     imageStore(hitDistance, at, vec4(hitDistanceSum / float(params.samples), 0.0, 0.0));
+#endif
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));
 }

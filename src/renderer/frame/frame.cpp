@@ -155,11 +155,13 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     const bool paths = settings.pipeline.integrator != Integrator::AmbientOcclusion;
     const gpu::History counters =
         graph.history(paths ? "pathtrace/counters" : "gbuffer/counters", gpu::Format::RG32Uint, extent);
-    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent);
+    const bool once = input.samples <= input.launchSamples;
+    const bool forFilters = once && paths && !settings.layers && !settings.pipeline.usesNetwork();
+    PathtraceLayers traced = makePathtraceLayers(graph, "pathtrace/", extent, forFilters);
     traced.counters = counters.current;
     const Launch record =
         paths ? pathLaunch(graph, scene, settings) : occlusionLaunch(graph, scene, settings, traced);
-    if (input.samples <= input.launchSamples) {
+    if (once) {
         record(launch, counters.previous, traced);
         return traced;
     }
