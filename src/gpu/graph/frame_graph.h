@@ -157,8 +157,8 @@ struct GraphOptions {
     /// Lets images share memory within a frame: a transient image may take that of another transient image,
     /// or of a history's previous one, of the same extent, backing and format (in buffers, size of a texel),
     /// that no pass from its first write on accesses. An image whose last access is a write is a result and
-    /// keeps its memory. Others can then not be downloaded. A history takes the memory of one image, not two, if the previous one is last
-    /// read before the current one is first accessed.
+    /// keeps its memory. Others can then not be downloaded. A history takes the memory of one image, not two,
+    /// if the previous one is last read before the current one is first accessed.
     bool shareMemory = false;
 };
 
