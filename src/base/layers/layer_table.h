@@ -103,7 +103,7 @@ inline constexpr float noValue = 1e10f;
     LAYER(depth,                                                                                                  \
           .suffixes = "Z", .stored = Stored::Float, .mean = Mean::OfHits,                                         \
           .varianceOf = VarianceOf::FirstComponent, .varianceInFiles = true, .ofFirstHit = true,                  \
-          .forFilters = ForFilters::Floats, .need = Need::Always,                                                                                   \
+          .forFilters = ForFilters::Floats, .need = Need::Always,                                                 \
           .help = "distance from the eye along the ray, world units; 1e10 where nothing is hit")                  \
     LAYER(motion,                                                                                                 \
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid, .ofFirstHit = true,                  \

@@ -37,7 +37,7 @@ namespace limpid::denoise {
 /// Returns the options of a denoiser's graph.
 gpu::GraphOptions graphOptions(const limpid_denoiser_desc& desc);
 
-/// A frame with placeholder inputs.
+/// A frame that is recorded, but never executed.
 struct DryFrame {
     std::vector<limpid_input> without;  ///< of all inputs
     bool orthographic = false;
