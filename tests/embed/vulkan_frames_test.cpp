@@ -76,9 +76,28 @@ TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
         desc.method = method;
         limpid_denoiser* denoiser = create(desc);
         const size_t made = adopted_->device->pipelineCount();
-        for (const bool orthographic : {false, true})
-            denoiseSequence(denoiser, SyntheticScene({.orthographic = orthographic}), 2);
+        for (const gpu::Format format : {gpu::Format::RGBA32Float, gpu::Format::RGBA16Float}) {
+            colorFormat_ = format;
+            for (const bool orthographic : {false, true})
+                denoiseSequence(denoiser, SyntheticScene({.orthographic = orthographic}), 2);
+        }
         EXPECT_EQ(adopted_->device->pipelineCount(), made);
+    }
+}
+
+TEST_F(VulkanFramesTest, PicturesInHalvesAreThoseInFloatsRounded) {
+    for (const limpid_method method :
+         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_BILATERAL}) {
+        limpid_denoiser_desc desc = {};
+        desc.method = method;
+        colorFormat_ = gpu::Format::RGBA32Float;
+        const std::vector<float> floats = denoiseSequence(create(desc), SyntheticScene({}), 3);
+        colorFormat_ = gpu::Format::RGBA16Float;
+        const std::vector<float> halves = denoiseSequence(create(desc), SyntheticScene({}), 3);
+        ASSERT_EQ(halves.size(), floats.size());
+        for (size_t i = 0; i < floats.size(); ++i)
+            ASSERT_NEAR(halves[i], floats[i], 0x1p-11f * std::abs(floats[i]) + 0x1p-24f)
+                << method << ' ' << i;
     }
 }
 

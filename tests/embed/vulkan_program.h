@@ -85,15 +85,18 @@ class VulkanProgramTest : public DenoiseTest {
             images[input] = f->graph.transient("program/" + std::to_string(input), pixels.first, extent);
             f->graph.upload(images[input], pixels.second);
         }
-        constexpr auto color = gpu::Format::RGBA32Float;
-        const std::vector<float> before(size_t{4} * extent.width * extent.height, -1.0f);
-        f->color = f->graph.transient("program/color", color, extent);
-        f->graph.upload(f->color, gpu::bytesOf(before));
+        const size_t values = size_t{4} * extent.width * extent.height;
+        const bool half = colorFormat_ == gpu::Format::RGBA16Float;
+        f->color = f->graph.transient("program/color", colorFormat_, extent);
+        if (half)
+            f->graph.upload(f->color, gpu::bytesOf(std::vector<uint16_t>(values, 0xBC00)));
+        else
+            f->graph.upload(f->color, gpu::bytesOf(std::vector<float>(values, -1.0f)));
         f->graph.execute(device());
         for (const auto& [input, handle] : images)
             f->frame.inputs[input] = imageOf(*f, handle, VK_FORMAT_R32G32B32A32_SFLOAT);
         limpid_vulkan_image& output = f->frame.outputs[LIMPID_OUTPUT_COLOR];
-        output = imageOf(*f, f->color, VK_FORMAT_R32G32B32A32_SFLOAT);
+        output = imageOf(*f, f->color, half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT);
         output.layout_after = VK_IMAGE_LAYOUT_GENERAL;
         output.stages_after = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         output.access_after = VK_ACCESS_2_TRANSFER_READ_BIT;
@@ -146,6 +149,7 @@ class VulkanProgramTest : public DenoiseTest {
     inline static limpid_device* adopted_ =
         nullptr;  ///< shared by all tests, so that each shader is compiled once
     std::vector<limpid_denoiser*> denoisers_;
+    gpu::Format colorFormat_ = gpu::Format::RGBA32Float;  ///< of the program's output
 };
 
 }  // namespace limpid::test
