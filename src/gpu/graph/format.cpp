@@ -15,12 +15,13 @@ constexpr Row rows[] = {
     {Format::R32Float, "R32Float", 4, 1},        {Format::R32Uint, "R32Uint", 4, 1},
     {Format::RG32Float, "RG32Float", 8, 2},      {Format::RG32Uint, "RG32Uint", 8, 2},
     {Format::RGBA32Float, "RGBA32Float", 16, 4}, {Format::RGBA32Uint, "RGBA32Uint", 16, 4},
-    {Format::RGBA16Float, "RGBA16Float", 8, 4},  {Format::RGBA8Unorm, "RGBA8Unorm", 4, 4},
+    {Format::R16Float, "R16Float", 2, 1},        {Format::RGBA16Float, "RGBA16Float", 8, 4},
+    {Format::RGBA8Unorm, "RGBA8Unorm", 4, 4},
 };
 
-constexpr Format formats[] = {Format::R32Float,    Format::R32Uint,     Format::RG32Float,
-                              Format::RG32Uint,    Format::RGBA32Float, Format::RGBA32Uint,
-                              Format::RGBA16Float, Format::RGBA8Unorm};
+constexpr Format formats[] = {Format::R32Float, Format::R32Uint,     Format::RG32Float,
+                              Format::RG32Uint, Format::RGBA32Float, Format::RGBA32Uint,
+                              Format::R16Float, Format::RGBA16Float, Format::RGBA8Unorm};
 
 const Row& row(Format format) {
     for (const Row& r : rows) {

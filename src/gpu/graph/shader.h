@@ -35,6 +35,7 @@ enum class Format {
     RG32Uint,
     RGBA32Float,
     RGBA32Uint,
+    R16Float,
     RGBA16Float,
     RGBA8Unorm
 };

@@ -50,6 +50,8 @@ std::optional<Format> toFormat(SpvImageFormat format) {
             return Format::RGBA32Float;
         case SpvImageFormatRgba32ui:
             return Format::RGBA32Uint;
+        case SpvImageFormatR16f:
+            return Format::R16Float;
         case SpvImageFormatRgba16f:
             return Format::RGBA16Float;
         case SpvImageFormatRgba8:

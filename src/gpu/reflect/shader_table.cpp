@@ -53,6 +53,8 @@ const char* enumerator(Format format) {
             return "gpu::Format::RGBA32Float";
         case Format::RGBA32Uint:
             return "gpu::Format::RGBA32Uint";
+        case Format::R16Float:
+            return "gpu::Format::R16Float";
         case Format::RGBA16Float:
             return "gpu::Format::RGBA16Float";
         case Format::RGBA8Unorm:

@@ -253,18 +253,18 @@ TEST_F(GpuTest, UnusedImagesAreFreed) {
 TEST_F(GpuTest, DownloadsEveryFormat) {
     FrameGraph graph;
     graph.beginFrame();
-    constexpr const char* names[] = {"r32Float",    "r32Uint",    "rg32Float",   "rg32Uint",
-                                     "rgba32Float", "rgba32Uint", "rgba16Float", "rgba8Unorm"};
+    constexpr const char* names[] = {"r32Float",   "r32Uint",  "rg32Float",   "rg32Uint",  "rgba32Float",
+                                     "rgba32Uint", "r16Float", "rgba16Float", "rgba8Unorm"};
     std::vector<Binding> bindings;
     std::vector<ImageHandle> images;
-    for (size_t i = 0; i < 8; ++i) {
+    for (size_t i = 0; i < std::size(names); ++i) {
         images.push_back(graph.transient(names[i], allFormats()[i], odd));
         bindings.push_back({names[i], images.back()});
     }
     graph.dispatch(
         {.pass = "formats", .shader = shaders::test_formats_comp, .bindings = bindings, .extent = odd});
     graph.execute(device());
-    for (size_t i = 0; i < 8; ++i) {
+    for (size_t i = 0; i < std::size(names); ++i) {
         const Format format = allFormats()[i];
         const uint32_t components = componentCount(format);
         const bool isUint = toString(format).find("Uint") != std::string_view::npos;

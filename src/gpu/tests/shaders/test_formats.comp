@@ -7,8 +7,9 @@ layout(set = 0, binding = 2, rg32f) uniform writeonly image2D rg32Float;
 layout(set = 0, binding = 3, rg32ui) uniform writeonly uimage2D rg32Uint;
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D rgba32Float;
 layout(set = 0, binding = 5, rgba32ui) uniform writeonly uimage2D rgba32Uint;
-layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D rgba16Float;
-layout(set = 0, binding = 7, rgba8) uniform writeonly image2D rgba8Unorm;
+layout(set = 0, binding = 6, r16f) uniform writeonly image2D r16Float;
+layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D rgba16Float;
+layout(set = 0, binding = 8, rgba8) uniform writeonly image2D rgba8Unorm;
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -21,6 +22,7 @@ void main() {
     imageStore(rg32Uint, pixel, whole);
     imageStore(rgba32Float, pixel, value);
     imageStore(rgba32Uint, pixel, whole);
+    imageStore(r16Float, pixel, value);
     imageStore(rgba16Float, pixel, value);
     imageStore(rgba8Unorm, pixel, vec4(float(pixel.x) / 255.0, 1.0, 0.0, 2.0));
 }

@@ -108,6 +108,7 @@ std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) 
         case Format::RG32Float:
         case Format::RGBA32Float:
             return reinterpretAs<float>(downloadPixels(*impl_, device, image));
+        case Format::R16Float:
         case Format::RGBA16Float:
             return convertAll<uint16_t>(downloadPixels(*impl_, device, image), halfToFloat);
         case Format::RGBA8Unorm:

@@ -16,6 +16,8 @@ VkFormat toVulkan(Format format) {
             return VK_FORMAT_R32G32B32A32_SFLOAT;
         case Format::RGBA32Uint:
             return VK_FORMAT_R32G32B32A32_UINT;
+        case Format::R16Float:
+            return VK_FORMAT_R16_SFLOAT;
         case Format::RGBA16Float:
             return VK_FORMAT_R16G16B16A16_SFLOAT;
         case Format::RGBA8Unorm:
