@@ -34,6 +34,8 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .phiColor = double{s.phiColor},
             .phiNormal = double{s.phiNormal},
             .phiDepth = double{s.phiDepth},
+            .lobeTest = double{s.lobeTest},
+            .phiRoughness = double{s.phiRoughness},
             .blurLevels = s.blurLevels,
             .boost = s.boost,
             .wide = s.wide,
@@ -82,6 +84,8 @@ struct Stored {
     std::vector<dvec4> stablePast;  ///< none if filtered light is not stabilised
 };
 
+/// Of 12 bits per octahedral coordinate.
+constexpr double normalRounding = 1.05e-3;
 constexpr double halfRounding = 1e-3, minHalf = 1e-7, floatRounding = 1e-5;
 /// Anti-lag stores moments a second time, and the second moment is a square.
 constexpr double momentsRounding = 2.0 * halfRounding;
@@ -144,7 +148,8 @@ class SvgfPassTest : public DenoiseTest, public testing::WithParamInterface<Case
     std::vector<bool> compareAccumulated(const SvgfAccumulated& expected, const Stored& is);
     void compareTiles(const HostFrame& frame, const SvgfAccumulated& before, const SvgfAccumulated& after,
                       const std::vector<bool>& leftOut, const Stored& is);
-    void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is);
+    void compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
+                      const Stored& is);
     void compareLevels(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
                        const Stored& is, std::vector<std::vector<dvec4>>& colors);
     bool stabilises() const { return settings_.stabilisationAlpha < 1.0f && settings_.levels > 0; }
@@ -188,7 +193,8 @@ SvgfSurfaces SvgfPassTest::surfaces(const HostFrame& frame) {
         EXPECT_NEAR(is.distance[p], z, floatRounding * z) << p;
         EXPECT_EQ(is.id[p], expected.id[p]) << p;
         if (z <= 0.0) continue;
-        EXPECT_LT(glm::distance(is.normal[p], expected.normal[p]), 1e-4) << p;
+        EXPECT_LT(glm::distance(is.normal[p], expected.normal[p]), normalRounding) << p;
+        EXPECT_NEAR(is.roughness[p], expected.roughness[p], 0.5001 / 255) << p;
     }
     return is;
 }
@@ -281,8 +287,10 @@ void SvgfPassTest::compareTiles(const HostFrame& frame, const SvgfAccumulated& b
     }
 }
 
-void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Stored& is) {
-    const SvgfVariance expected = svgfYoungVariance(frame, surfaces, is.color, is.moments, params_);
+void SvgfPassTest::compareYoung(const HostFrame& frame, const SvgfSurfaces& surfaces, const Signal& signal,
+                                const Stored& is) {
+    const SvgfVariance expected =
+        svgfYoungVariance(frame, signal.signal, surfaces, is.color, is.moments, params_);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         if (surfaces.distance[p] <= 0.0 || is.moments[p].w >= 4.0) continue;
         ASSERT_PRED3(isDeviation, is.color[p].w, expected.color[p].w, expected.error[p]) << p;
@@ -298,7 +306,7 @@ void SvgfPassTest::compareLevels(const HostFrame& frame, const SvgfSurfaces& sur
         const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy(pass);
         ASSERT_EQ(images.size(), 1u) << pass;
         std::vector<dvec4> expected =
-            svgfLevel(frame, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
+            svgfLevel(frame, signal.signal, surfaces, colors.back(), static_cast<uint32_t>(i), params_);
         if (stabilises() && i + 1 == settings_.levels) {
             for (size_t p = 0; p < frame.pixelCount(); ++p)
                 expected[p] = dvec4(svgfStable(expected[p], is.stablePast[p], params_), expected[p].w);
@@ -324,7 +332,7 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         if (!is.tiles.empty()) svgfShorten(frame, signal.signal, is.tiles, params_, expected);
         const std::vector<bool> leftOut = compareAccumulated(expected, is);
         if (!is.tiles.empty()) compareTiles(frame, lagging, expected, leftOut, is);
-        compareYoung(frame, seen, is);
+        compareYoung(frame, seen, signal, is);
         std::vector<std::vector<dvec4>> colors{is.color};
         if (!HasFatalFailure()) compareLevels(frame, seen, signal, is, colors);
         if (HasFatalFailure()) return;
@@ -385,6 +393,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {.levels = 2, .historyLevel = 5, .phiNormal = 0.3f, .phiDepth = 0.5f, .position = true}},
             Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
             Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
+            Case{"NarrowLobes", moving, {.lobeTest = 1.0f, .phiRoughness = 0.03f}},
+            Case{"NoLobes", moving, {.lobeTest = 0.0f, .levels = 2, .phiRoughness = 0.0f}},
             Case{"DarkAlbedo", moving, {.minAlbedo = 0.1f}},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},
             Case{"NoLevels", moving, {.depthTest = 0.2f, .relative = false, .search = false, .levels = 0}},

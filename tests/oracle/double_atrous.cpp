@@ -144,11 +144,14 @@ std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vect
     return modulate(frame, d.light, params);
 }
 
-dvec3 decodeOctahedral(uint32_t packed) {
-    const auto snorm = [](uint32_t bits) {
-        return std::max(static_cast<int16_t>(bits & 0xffffu) / 32767.0, -1.0);
+dvec3 decodeOctahedral(uint32_t packed, int bits) {
+    const int64_t largest = (int64_t{1} << (bits - 1)) - 1;
+    const auto snorm = [&](uint32_t word) {
+        const int64_t low = word & ((int64_t{1} << bits) - 1),
+                      value = low > largest ? low - (int64_t{1} << bits) : low;
+        return std::max(static_cast<double>(value) / static_cast<double>(largest), -1.0);
     };
-    const dvec2 e(snorm(packed), snorm(packed >> 16));
+    const dvec2 e(snorm(packed), snorm(packed >> bits));
     dvec3 n(e, 1.0 - std::abs(e.x) - std::abs(e.y));
     // The lower half of the octahedron is folded over the edges of the upper one.
     const double fold = std::max(-n.z, 0.0);

@@ -50,9 +50,9 @@ std::vector<dvec4> modulate(const denoise::HostFrame& frame, const std::vector<d
 std::vector<dvec4> filterAtrous(const denoise::HostFrame& frame, const std::vector<dvec4>& mean,
                                 const DoubleAtrousParams& params);
 
-/// Decodes a unit vector from two snorm16, x in the low half, like decodeOctahedral() of
-/// src/shaders/common/sampling.glsl.
-dvec3 decodeOctahedral(uint32_t packed);
+/// Decodes a unit vector from two signed normalised numbers of `bits` bits, x in the low ones, like
+/// decodeOctahedral() of src/shaders/common/sampling.glsl.
+dvec3 decodeOctahedral(uint32_t packed, int bits = 16);
 
 /// Decodes two words per pixel: the normal, and the bits of d as a float.
 AtrousGeometry decodeGeometry(const std::vector<uint32_t>& words);

@@ -68,6 +68,10 @@ double DoubleFrame::id(size_t p) const {
     return instance == UINT32_MAX ? 0.0 : 1.0 + instance;
 }
 
+double DoubleFrame::roughness(size_t p) const {
+    return frame_.roughness.empty() ? 1.0 : double{frame_.roughness[4 * p]};
+}
+
 dvec2 DoubleFrame::screen(size_t p) const {
     const auto x = static_cast<double>(p % frame_.width), y = static_cast<double>(p / frame_.width);
     return {2.0 * (x + 0.5) / frame_.width - 1.0, 1.0 - 2.0 * (y + 0.5) / frame_.height};

@@ -33,6 +33,7 @@ struct Reprojector::Expected {
     dvec3 normal;
     double distance, id;
     double tolerance, toleranceMargin;  ///< t, and the margin for float32's error
+    double sharpness;
 };
 
 Reprojector::Reprojector(const denoise::HostFrame& frame, const std::vector<PreviousSurface>& previous,
@@ -44,7 +45,12 @@ Reprojector::Reprojector(const denoise::HostFrame& frame, const std::vector<Prev
       params_(params) {}
 
 Reprojector::Expected Reprojector::expect(size_t p, const dvec3& motion) const {
-    Expected e{frame_.previousNormal(p), frame_.distance(p) + motion.z, frame_.id(p), params_.depth, 0.0};
+    Expected e{frame_.previousNormal(p),
+               frame_.distance(p) + motion.z,
+               frame_.id(p),
+               params_.depth,
+               0.0,
+               params_.sharpness.empty() ? 0.0 : params_.sharpness[p]};
     double footprint = 0.0;
     if (params_.relative) {
         const bool orthographic = camera_.orthographic != 0;
@@ -82,7 +88,10 @@ void Reprojector::addTap(std::vector<Tap>& taps, const Expected& expected, const
                          Decision& decision) const {
     if (q.x < 0.0 || q.y < 0.0 || q.x >= size_.x || q.y >= size_.y) return;
     const size_t at = static_cast<size_t>(q.y) * static_cast<size_t>(size_.x) + static_cast<size_t>(q.x);
-    if (agrees(expected, previous_[at], decision)) taps.push_back({at, weight});
+    if (!agrees(expected, previous_[at], decision)) return;
+    const double lobe =
+        std::exp(-expected.sharpness * (1.0 - glm::dot(expected.normal, previous_[at].normal)));
+    taps.push_back({at, weight * lobe});
 }
 
 /// If rounding moves s across the centre of a pixel, other taps are used, but with a weight close to 0: the

@@ -27,6 +27,9 @@ struct ReprojectionParams {
     double normal, depth;
     bool relative, search;
     bool identity = true;  ///< off: taps on other objects count too
+    /// Taps weigh less by exp(-sharpness (1 - cosine of the normals)); by pixel of this frame. Empty: they do
+    /// not.
+    std::vector<double> sharpness{};
 };
 
 /// The surface seen by a pixel of the previous frame.

@@ -24,6 +24,7 @@ struct DoubleSvgfParams {
     bool antilagAround = false;
     double stabilisationAlpha = 0.5, stabilisationNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
+    double lobeTest = 0.0, phiRoughness = 0.0;
     int blurLevels = 1;
     bool boost = true, wide = true, position = false;
 };
@@ -34,11 +35,13 @@ enum class SvgfSignal { Joint, Diffuse, Specular };
 /// The result of step 1.
 struct SvgfSurfaces {
     std::vector<dvec3> normal;
-    std::vector<double> distance;  ///< z; 0 where the ray misses
-    std::vector<double> id;        ///< instance number + 1; 0 where the ray misses
+    std::vector<double> distance;   ///< z; 0 where the ray misses
+    std::vector<double> id;         ///< instance number + 1; 0 where the ray misses
+    std::vector<double> roughness;  ///< 1 if it is unknown
 };
 SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame);
-/// Decodes what a device stored: two words per pixel (normal, bits of z as a float) and one (id).
+/// Decodes what a device stored: two words per pixel (normal and roughness, bits of z as
+/// a float) and one (id).
 SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids);
 
 /// The history of one signal. Images of another size than the frame's (empty before the first frame) count as
@@ -117,12 +120,12 @@ struct SvgfVariance {
     std::vector<dvec4> color;
     std::vector<double> error;
 };
-SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
-                               const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
-                               const DoubleSvgfParams& params);
+SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, SvgfSignal signal,
+                               const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
+                               const std::vector<dvec4>& moments, const DoubleSvgfParams& params);
 
 /// Computes level `i` of step 6. Uses only the size and the camera of the frame.
-std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
+std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
 /// Computes step 7 for one pixel with a hit. `color`: c with sigma; `past`: h with b.

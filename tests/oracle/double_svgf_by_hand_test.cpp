@@ -81,6 +81,23 @@ TEST_F(SvgfByHand, NothingFound) {
     EXPECT_EQ(accumulate().moments[middle], dvec4(0));
 }
 
+TEST_F(SvgfByHand, TapsOfOtherBumpsWeighLess) {
+    const double turned = 1.0 - std::cos(0.1), weight = std::exp(-turned * 2.0 / (0.36 * 0.36));
+    for (const size_t right : {13, 18}) {  // of weight 1/8
+        before.surfaces.normal[right] = {std::sin(0.1), 0, std::cos(0.1)};
+        before.color[right] = dvec4(9);
+    }
+    frame.roughness.assign(4 * 25, 0.6f);
+    frame.specular[4 * middle] = std::numeric_limits<float>::quiet_NaN();  // leaves what was found
+    params.lobeTest = 2.0;
+    const auto found = [&] {
+        return svgfAccumulate(frame, SvgfSignal::Specular, before, params).color[middle].x;
+    };
+    EXPECT_NEAR(found(), (0.75 * 1 + 0.25 * weight * 9) / (0.75 + 0.25 * weight), 1e-5);
+    params.lobeTest = 0.0;
+    EXPECT_NEAR(found(), 3.0, 1e-6);
+}
+
 TEST_F(SvgfByHand, ATapNeedsALength) {
     before.moments[12].w = before.moments[17].w = 0.0;  // both of weight 3/8
     before.color[12] = before.color[17] = dvec4(100);
@@ -366,7 +383,7 @@ class SvgfRow : public testing::Test {
   protected:
     /// Checks the right neighbour's weight relative to 1, from the middle pixel; the left ray misses.
     void expectWeight(double weight) const {
-        const dvec4 result = svgfLevel(frame, surfaces, color, 0, params)[1];
+        const dvec4 result = svgfLevel(frame, signal, surfaces, color, 0, params)[1];
         const double centre = 36, right = 24 * weight, sum = centre + right;
         const dvec3 mean = (centre * dvec3(color[1]) + right * dvec3(color[2])) / sum;
         const double sigma = std::hypot(centre * color[1].w, right * color[2].w) / sum;
@@ -374,15 +391,17 @@ class SvgfRow : public testing::Test {
     }
 
     HostFrame frame = frontalPlane(3, 1);
-    SvgfSurfaces surfaces{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {0, 2, 2}, {0, 1, 1}};
+    SvgfSurfaces surfaces{{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {0, 2, 2}, {0, 1, 1}, {1, 1, 1}};
     std::vector<dvec4> color{{9, 9, 9, -1}, {1, 1, 1, 0.3}, {2, 1, 1, 0.6}};
     DoubleSvgfParams params{.phiColor = 1e9};
+    SvgfSignal signal = SvgfSignal::Diffuse;
 };
 
 TEST_F(SvgfRow, VarianceOfAWeightedMean) {
     expectWeight(1.0);
-    EXPECT_EQ(svgfLevel(frame, surfaces, color, 0, params)[0], color[0]);
-    EXPECT_LT(glm::distance(svgfLevel(frame, surfaces, color, 1, params)[1], color[1]), 1e-12)
+    EXPECT_EQ(svgfLevel(frame, SvgfSignal::Diffuse, surfaces, color, 0, params)[0], color[0]);
+    EXPECT_LT(glm::distance(svgfLevel(frame, SvgfSignal::Diffuse, surfaces, color, 1, params)[1], color[1]),
+              1e-12)
         << "both are out of reach";
 }
 
@@ -397,7 +416,7 @@ TEST_F(SvgfRow, Color) {
 
 TEST_F(SvgfRow, NarrowKernel) {
     params.wide = false;
-    const dvec4 result = svgfLevel(frame, surfaces, color, 0, params)[1];
+    const dvec4 result = svgfLevel(frame, SvgfSignal::Diffuse, surfaces, color, 0, params)[1];
     EXPECT_NEAR(result.x, (4.0 * 1 + 2.0 * 2) / 6.0, 1e-9);
     EXPECT_NEAR(result.w, std::hypot(4.0 * 0.3, 2.0 * 0.6) / 6.0, 1e-9);
 }
@@ -406,6 +425,16 @@ TEST_F(SvgfRow, Normals) {
     surfaces.normal[2] = {0.6, 0, 0.8};
     params.phiNormal = 3.0;
     expectWeight(std::exp(-3.0 * 0.2));
+}
+
+TEST_F(SvgfRow, Roughness) {
+    surfaces.roughness = {0.5, 0.5, 0.7};
+    params.phiRoughness = 0.4;
+    expectWeight(1.0);  // diffuse light has no lobe
+    signal = SvgfSignal::Specular;
+    expectWeight(std::exp(-0.5));
+    params.phiRoughness = 0.0;
+    expectWeight(1.0);
 }
 
 TEST_F(SvgfRow, Distances) {
@@ -438,7 +467,8 @@ TEST_F(SvgfRow, YoungPixels) {
     const std::vector<dvec4> moments{{7, 90, 0, 0}, {1, 2, 0, 3.5}, {2, 7, 0, 4}};
     surfaces.distance[2] = 2.003;
     const double w = std::exp(-1.5), m1 = (1 + 2 * w) / (1 + w), m2 = (2 + 7 * w) / (1 + w);
-    const std::vector<dvec4> young = svgfYoungVariance(frame, surfaces, color, moments, params).color;
+    const std::vector<dvec4> young =
+        svgfYoungVariance(frame, SvgfSignal::Diffuse, surfaces, color, moments, params).color;
     EXPECT_LT(glm::distance(young[1], dvec4(1, 1, 1, std::sqrt(m2 - m1 * m1))), 1e-9);
     EXPECT_EQ(young[0], color[0]);
     EXPECT_EQ(young[2], color[2]);
@@ -449,7 +479,7 @@ TEST_F(SvgfRow, TheYoungerTheMoreNoiseIsExpected) {
     std::vector<dvec4> moments{dvec4(0), {3, 25, 0, 0}, dvec4(0)};  // a deviation of 4
     const auto young = [&](double n) {
         moments[1].w = n;
-        return svgfYoungVariance(frame, surfaces, color, moments, params);
+        return svgfYoungVariance(frame, SvgfSignal::Diffuse, surfaces, color, moments, params);
     };
     const double error = 49 * 0x1p-24 * 25.0;
     for (const double n : {1.0, 2.0, 2.5, 3.0, 3.75}) {
@@ -474,7 +504,7 @@ TEST_F(SvgfRow, YoungPixelsLeaveOutThoseWithoutAHistory) {
     surfaces.distance[2] = 2.003;
     std::vector<dvec4> moments{dvec4(0), {3, 25, 0, 1}, {90, 9000, 0, 0}};
     const auto sigma = [&](size_t p) {
-        return svgfYoungVariance(frame, surfaces, color, moments, params).color[p].w;
+        return svgfYoungVariance(frame, SvgfSignal::Diffuse, surfaces, color, moments, params).color[p].w;
     };
     EXPECT_NEAR(sigma(1), 8.0, 1e-12) << "the centre alone";
     EXPECT_NEAR(sigma(2), 8.0, 1e-12) << "the neighbour alone, however small its weight";
@@ -491,7 +521,8 @@ TEST_F(SvgfRow, YoungPixelsLeaveOutThoseWithoutAHistory) {
 TEST_F(SvgfRow, WeightsThatFloatsMayLoseAreNotCompared) {
     surfaces.distance[2] = 2.2;  // exp(-100)
     const std::vector<dvec4> moments{dvec4(0), dvec4(0), {3, 25, 0, 1}};
-    const std::vector<double> error = svgfYoungVariance(frame, surfaces, color, moments, params).error;
+    const std::vector<double> error =
+        svgfYoungVariance(frame, SvgfSignal::Diffuse, surfaces, color, moments, params).error;
     EXPECT_TRUE(std::isinf(error[1]));
     EXPECT_FALSE(std::isinf(error[2]));
 }

@@ -18,8 +18,13 @@ constexpr double minWeights = 1e-30;
 /// Access to pixels by coordinates, and the weights of neighbours from their surfaces.
 class Neighbours {
   public:
-    Neighbours(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const DoubleSvgfParams& params)
-        : width_(frame.width), height_(frame.height), surfaces_(surfaces), params_(params) {
+    Neighbours(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
+               const DoubleSvgfParams& params)
+        : width_(frame.width),
+          height_(frame.height),
+          surfaces_(surfaces),
+          params_(params),
+          comparesRoughness_(signal == SvgfSignal::Specular && params.phiRoughness > 0.0) {
         const DoubleFrame pixels(frame);
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             const double z = surfaces.distance[p];
@@ -59,7 +64,10 @@ class Neighbours {
         }
         const double z = surfaces_.distance[p];
         const double expected = std::abs(glm::dot(offset, slopes_[p])) + 0.001 * z;
-        return std::exp(-params_.phiNormal * (1.0 - glm::dot(n, other)) -
+        double gloss = 0.0;
+        if (comparesRoughness_)
+            gloss = std::abs(surfaces_.roughness[p] - surfaces_.roughness[q]) / params_.phiRoughness;
+        return std::exp(-params_.phiNormal * (1.0 - glm::dot(n, other)) - gloss -
                         std::abs(z - surfaces_.distance[q]) / (params_.phiDepth * expected));
     }
 
@@ -67,15 +75,16 @@ class Neighbours {
     int64_t width_, height_;
     const SvgfSurfaces& surfaces_;
     const DoubleSvgfParams& params_;
+    bool comparesRoughness_;
     std::vector<dvec2> slopes_;
     std::vector<dvec3> points_;  ///< X
 };
 
 class Level {
   public:
-    Level(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
-          uint32_t i, const DoubleSvgfParams& params)
-        : neighbours_(frame, surfaces, params),
+    Level(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
+          const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params)
+        : neighbours_(frame, signal, surfaces, params),
           color_(color),
           level_(i),
           step_(int64_t{1} << i),
@@ -174,10 +183,10 @@ dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, 
     return {along(toRight), along(toBelow)};
 }
 
-SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
-                               const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
-                               const DoubleSvgfParams& params) {
-    const Neighbours neighbours(frame, surfaces, params);
+SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, SvgfSignal signal,
+                               const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
+                               const std::vector<dvec4>& moments, const DoubleSvgfParams& params) {
+    const Neighbours neighbours(frame, signal, surfaces, params);
     SvgfVariance result{color, std::vector<double>(frame.pixelCount(), 0.0)};
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double n = moments[p].w;
@@ -190,9 +199,9 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, const SvgfSurfac
     return result;
 }
 
-std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, const SvgfSurfaces& surfaces,
+std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params) {
-    const Level filter(frame, surfaces, color, i, params);
+    const Level filter(frame, signal, surfaces, color, i, params);
     std::vector<dvec4> filtered;
     for (size_t p = 0; p < frame.pixelCount(); ++p) filtered.push_back(filter.at(p));
     return filtered;

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "tests/oracle/double_atrous.h"
@@ -39,6 +40,19 @@ std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t
     return result;
 }
 
+std::vector<double> lobeSharpness(const denoise::HostFrame& frame, SvgfSignal signal,
+                                  const DoubleSvgfParams& params) {
+    std::vector<double> result;
+    if (signal != SvgfSignal::Specular || params.lobeTest == 0.0) return result;
+    const DoubleFrame pixels(frame);
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const double r = std::round(255.0 * pixels.roughness(p)) / 255.0;  // as it is stored
+        const double alpha = std::max(r * r, 0.02);
+        result.push_back(std::min(8.0 / std::pow(params.lobeTest * alpha, 2.0), 1e4 / std::numbers::log2e));
+    }
+    return result;
+}
+
 /// A value, and a bound of its change if the position s is off by one pixel.
 struct Sloped {
     double value, slope;
@@ -53,7 +67,12 @@ class Accumulator {
           previous_(previous),
           params_(params),
           surfaces_(previousSurfaces(previous, frame.pixelCount())),
-          reprojection_{params.normalTest, params.depthTest, params.relative, params.search},
+          reprojection_{params.normalTest,
+                        params.depthTest,
+                        params.relative,
+                        params.search,
+                        true,
+                        lobeSharpness(frame, signal, params)},
           reprojector_(frame, surfaces_, reprojection_) {}
     Accumulator(const Accumulator&) = delete;
     Accumulator& operator=(const Accumulator&) = delete;
@@ -196,13 +215,19 @@ SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame) {
         surfaces.normal.push_back(pixels.normal(p));
         surfaces.distance.push_back(pixels.distance(p));
         surfaces.id.push_back(pixels.id(p));
+        surfaces.roughness.push_back(pixels.roughness(p));
     }
     return surfaces;
 }
 
 SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids) {
-    AtrousGeometry geometry = decodeGeometry(words);
-    return {std::move(geometry.normal), std::move(geometry.distance), {ids.begin(), ids.end()}};
+    SvgfSurfaces surfaces{.id = {ids.begin(), ids.end()}};
+    for (size_t i = 0; i + 1 < words.size(); i += 2) {
+        surfaces.normal.push_back(decodeOctahedral(words[i], 12));
+        surfaces.distance.push_back(double{std::bit_cast<float>(words[i + 1])});
+        surfaces.roughness.push_back((words[i] >> 24) / 255.0);
+    }
+    return surfaces;
 }
 
 SvgfSample svgfSample(const denoise::HostFrame& frame, SvgfSignal signal, size_t p, double minAlbedo) {

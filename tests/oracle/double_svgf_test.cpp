@@ -33,8 +33,8 @@ class Sequence {
     SvgfAccumulated next(const HostFrame& frame) {
         SvgfAccumulated result = accumulate(frame);
         const SvgfVariance young =
-            svgfYoungVariance(frame, history.surfaces, result.color, result.moments, params_);
-        history.color = svgfLevel(frame, history.surfaces, young.color, 0, params_);
+            svgfYoungVariance(frame, signal_, history.surfaces, result.color, result.moments, params_);
+        history.color = svgfLevel(frame, signal_, history.surfaces, young.color, 0, params_);
         return result;
     }
 
@@ -130,7 +130,7 @@ TEST(DoubleSvgf, YoungPixelsHaveTheVarianceOfTheirNoise) {
     const SvgfSurfaces surfaces = svgfSurfaces(frame);
     const SvgfAccumulated first = svgfAccumulate(frame, joint, {}, {});
     const SvgfVariance young =
-        svgfYoungVariance(frame, surfaces, first.color, first.moments, {.boost = false});
+        svgfYoungVariance(frame, joint, surfaces, first.color, first.moments, {.boost = false});
     double sum = 0.0, count = 0.0;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         if (!allAround(p, 3, [](size_t) { return true; })) continue;
@@ -193,7 +193,7 @@ TEST(DoubleSvgf, APlaneAtAGrazingAngleIsFilteredAlongIt) {
             SyntheticScene({.orthographic = orthographic, .scale = 30.0}).frame(0, width, height, 1);
         std::vector<dvec4> color(frame.pixelCount(), dvec4(1, 1, 1, 1));
         const SvgfSurfaces surfaces = svgfSurfaces(frame);
-        const std::vector<dvec4> filtered = svgfLevel(frame, surfaces, color, 0, {});
+        const std::vector<dvec4> filtered = svgfLevel(frame, joint, surfaces, color, 0, {});
         size_t compared = 0;
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             if (!allAround(p, 2, [&](size_t q) { return isFloor(frame, q); })) continue;

@@ -208,7 +208,8 @@ denoise::HostFrame SyntheticScene::frame(int number, uint32_t width, uint32_t he
         moments.appendMotion(frame.motion, hit, ray);
         moments.appendReflectionMotion(frame.reflectionMotion, hit, ray, noise.choice(p));
         const bool reflects = moments.reflects(hit);
-        append(frame.roughness, dvec3(hit.any() && !reflects ? 0.6 : 0.0, 0.0, 0.0));
+        const double gloss = (p / 6 + p / width / 6) % 2 == 0 ? 0.6 : 0.35;
+        append(frame.roughness, dvec3(hit.any() && !reflects ? gloss : 0.0, 0.0, 0.0));
         append(frame.hitDistance, reflects ? dvec3(options_.scale * reflectionDepth, 1.0, 0.0) : dvec3(0.0));
         frame.ids.insert(frame.ids.end(), {hit.instance, hit.instance});
     }

@@ -32,8 +32,8 @@ enum class Mean : uint8_t {
 /// The quantity whose mean squared deviation over the samples is stored in the layer's fourth float.
 enum class VarianceOf : uint8_t { Luminance, FirstComponent, MeanOfComponents, Nothing };
 
-/// How a frame stores the layer if only a filter reads it.
-enum class ForFilters : uint8_t { Halves, Floats, Nothing };
+/// How a frame stores the layer if only a filter reads it. OneHalf: the first component alone.
+enum class ForFilters : uint8_t { Halves, OneHalf, Floats, Nothing };
 
 /// Whether denoising a file requires the layer.
 enum class Need : uint8_t {
@@ -113,7 +113,7 @@ inline constexpr float noValue = 1e10f;
           .suffixes = "XYZ", .stored = Stored::Float, .mean = Mean::OfValid,                                      \
           .help = "likewise, of what smooth surfaces reflect; 1e10: unknown")                                \
     LAYER(roughness,                                                                                              \
-          .suffixes = "R", .ofFirstHit = true, .forFilters = ForFilters::Nothing,                                 \
+          .suffixes = "R", .ofFirstHit = true, .forFilters = ForFilters::OneHalf,                                 \
           .help = "roughness of the specular lobe; 0 where nothing is hit")                                       \
     LAYER(hitDistance,                                                                                            \
           .suffixes = "D", .stored = Stored::Float, .mean = Mean::OfValid, .forFilters = ForFilters::Nothing,     \

@@ -59,11 +59,15 @@ std::vector<DryFrame> dryFrames() {
     const std::vector<limpid_input> optional{
         LIMPID_INPUT_EMISSION,        LIMPID_INPUT_ALBEDO, LIMPID_INPUT_ALBEDO_SPECULAR,  LIMPID_INPUT_MOTION,
         LIMPID_INPUT_PREVIOUS_NORMAL, LIMPID_INPUT_ID,     LIMPID_INPUT_REFLECTION_MOTION};
+    std::vector<limpid_input> all = optional;
+    all.insert(all.end(), {LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE});
     const std::vector<std::vector<limpid_input>> without{
         {},
         {LIMPID_INPUT_ALBEDO_SPECULAR, LIMPID_INPUT_SPECULAR, LIMPID_INPUT_REFLECTION_MOTION},
         {LIMPID_INPUT_EMISSION, LIMPID_INPUT_HIT_DISTANCE},
-        optional};
+        {LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE},
+        optional,
+        all};
     std::vector<DryFrame> frames{{.orthographic = true}};
     for (const gpu::Format color : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float})
         for (const auto& inputs : without) frames.push_back({.without = inputs, .color = color});

@@ -11,7 +11,7 @@ namespace limpid::denoise {
 /// What the surfaces stage makes of a frame's layers. Histories of the graph; `previous` holds the previous
 /// frame's surfaces.
 struct Surfaces {
-    gpu::History surfaces;   ///< two words: octahedral normal, distance from the eye (0: nothing seen)
+    gpu::History surfaces;   ///< two words: surface_texel.glsl
     gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
 };
 
@@ -36,8 +36,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle target;
 };
 
-/// Uploads the frame's images; optional layers that are empty become zeros. Throws Error if an image of
-/// `frame` has another size than the frame.
+/// Uploads the frame's images; optional layers that are empty become zeros, but roughness and hit distance
+/// stay empty. Throws Error if an image of `frame` has another size than the frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
 
 }  // namespace limpid::denoise

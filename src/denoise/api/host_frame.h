@@ -10,8 +10,9 @@
 namespace limpid::denoise {
 
 /// A member for each layer of base/layers/layer_table.h: four floats per pixel (two integers for `ids`), row
-/// 0 first. docs/denoising.md describes them. Optional layers may be empty, which means zeros. Only networks
-/// read the fourth float of diffuse, specular, albedo, normal and depth (DenoiserInput::samples).
+/// 0 first. docs/denoising.md describes them. Optional layers may be empty, which means zeros; roughness and
+/// hit distance are then unknown. Only networks read the fourth float of diffuse, specular, albedo, normal
+/// and depth (DenoiserInput::samples).
 struct HostFrame : LayerSet<std::vector<float>, std::vector<uint32_t>> {
     uint32_t width = 0, height = 0;
     CameraParams camera{};

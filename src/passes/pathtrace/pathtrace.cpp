@@ -91,6 +91,7 @@ PathtraceLayers makePathtraceLayers(FrameGraph& graph, const std::string& prefix
         if (forFilters && layer.forFilters == ForFilters::Nothing) continue;
         Format format = Format::RGBA32Float;
         if (forFilters && layer.forFilters == ForFilters::Halves) format = Format::RGBA16Float;
+        if (forFilters && layer.forFilters == ForFilters::OneHalf) format = Format::R16Float;
         if (layer.stored == Stored::Uint) format = Format::RG32Uint;
         layers[layer] = graph.transient(prefix + std::string(layer.member), format, extent);
     }

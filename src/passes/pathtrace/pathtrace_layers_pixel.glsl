@@ -6,9 +6,11 @@ const bool SPLIT_LOBES = true;
 
 #ifdef LIMPID_FOR_FILTERS
 #define HALVES rgba16f
+#define ONE_HALF r16f
 #define TO_HALVES(value) nearestHalf(clamp(value, vec4(-MAX_HALF), vec4(MAX_HALF)))
 #else
 #define HALVES rgba32f
+#define ONE_HALF rgba32f
 #define TO_HALVES(value) (value)
 #endif
 
@@ -26,8 +28,8 @@ layout(set = 0, binding = 28, HALVES) uniform writeonly image2D motion;  // sum 
                                                                           // number of samples
 layout(set = 0, binding = 32, HALVES) uniform writeonly image2D previousNormal;
 layout(set = 0, binding = 33, HALVES) uniform writeonly image2D reflectionMotion;  // likewise
+layout(set = 0, binding = 34, ONE_HALF) uniform writeonly image2D roughness;
 #ifndef LIMPID_FOR_FILTERS
-layout(set = 0, binding = 34, rgba32f) uniform writeonly image2D roughness;
 layout(set = 0, binding = 35, rgba32f) uniform writeonly image2D hitDistance;  // sum over valid samples | their number
 #endif
 layout(set = 0, binding = 29, rg32ui) uniform writeonly uimage2D ids;     // instance | material, of the first sample
@@ -95,8 +97,8 @@ void tracePixel(uvec2 pixel) {
     imageStore(motion, at, TO_HALVES(motionSum / float(params.samples)));
     imageStore(reflectionMotion, at, TO_HALVES(reflectionMotionSum / float(params.samples)));
     imageStore(previousNormal, at, TO_HALVES(vec4(previousNormalSum / float(params.samples), 0.0)));
+    imageStore(roughness, at, TO_HALVES(vec4(roughnessSum / float(params.samples), 0.0, 0.0, 0.0)));
 #ifndef LIMPID_FOR_FILTERS
-    imageStore(roughness, at, vec4(roughnessSum / float(params.samples), 0.0, 0.0, 0.0));
     imageStore(hitDistance, at, vec4(hitDistanceSum / float(params.samples), 0.0, 0.0));
 #endif
     imageStore(counters, at, imageLoad(countersBefore, at) + uvec4(rays, rejected, 0u, 0u));

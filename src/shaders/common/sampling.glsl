@@ -53,26 +53,37 @@ vec3 directionOfLatLong(vec2 uv) {
     return vec3(sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi));
 }
 
+/// Octahedral coordinates of a unit vector, -1 to 1. 0 becomes +Z.
+vec2 octahedralOf(vec3 n) {
+    const vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
+    const vec2 signs = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * signs;
+}
+
 /// Encodes a unit vector as 2 x snorm16: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010. 0
 /// becomes +Z.
 uint encodeOctahedral(vec3 n) {
-    const vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1e-30);
-    const vec2 signs = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
-    return packSnorm2x16(n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * signs);
+    return packSnorm2x16(octahedralOf(n));
 }
 
-/// Adds 32,768 as a bit, because GPUs convert integers at an eighth of their addition rate.
-float signed16(uint low) {
-    return uintBitsToFloat(0x4B000000u | (low ^ 0x8000u)) - (8388608.0 + 32768.0);
+/// The integer of `bits` bits. Adds half of their range as a bit, because GPUs convert integers at an eighth of their
+/// addition rate.
+float signedOf(uint low, uint bits) {
+    const uint sign = 1u << (bits - 1u);
+    return uintBitsToFloat(0x4B000000u | (low ^ sign)) - (8388608.0 + float(sign));
 }
 
-vec3 decodeOctahedral(uint packed) {
-    const vec2 e = vec2(signed16(packed & 0xFFFFu), signed16(packed >> 16));
-    vec3 n = vec3(e, 32767.0 - abs(e.x) - abs(e.y));
+/// `e` are octahedral coordinates from -`one` to `one`.
+vec3 fromOctahedral(vec2 e, float one) {
+    vec3 n = vec3(e, one - abs(e.x) - abs(e.y));
     const float t = max(-n.z, 0.0);
     n.x += n.x >= 0.0 ? -t : t;
     n.y += n.y >= 0.0 ? -t : t;
     return normalize(n);
+}
+
+vec3 decodeOctahedral(uint packed) {
+    return fromOctahedral(vec2(signedOf(packed & 0xFFFFu, 16u), signedOf(packed >> 16, 16u)), 32767.0);
 }
 
 /// Offsets the origin of a secondary ray so that rounding cannot make it hit the same surface again. `n` is

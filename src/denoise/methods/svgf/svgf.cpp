@@ -37,6 +37,7 @@ constexpr float log2e = 1.44269504f;
 struct Signal {
     std::string name;
     ImageHandle light, albedo, otherLight, otherAlbedo;
+    bool specular = false;
     bool reflects = false;
 };
 
@@ -100,12 +101,15 @@ class Svgf {
                 {.name = "specular",
                  .light = input_.specular,
                  .albedo = input_.albedoSpecular,
+                 .specular = true,
                  .reflects = reflects}};
     }
 
     const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
         return buffers_ ? buffers : images;
     }
+
+    bool hasRoughness(const Signal& signal) const { return signal.specular && input_.roughness; }
 
     float minAlbedo() const { return settings_.demodulate ? settings_.minAlbedo : 0.0f; }
 
@@ -137,6 +141,7 @@ class Svgf {
                         .relative = settings_.relative,
                         .search = settings_.search};
         params.minAlbedo = minAlbedo();
+        params.lobeScale = 8.0f * log2e / std::max(settings_.lobeTest * settings_.lobeTest, 1e-12f);
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
@@ -206,6 +211,7 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = constantsOf(signal);
         constants.push_back({"REFLECTIONS", signal.reflects ? 1u : 0u});
         constants.push_back({"STABILISE", stabilises() ? 1u : 0u});
+        constants.push_back({"LOBES", hasRoughness(signal) && settings_.lobeTest > 0.0f ? 1u : 0u});
         constants.push_back({"TURNS", input_.previousNormal ? 1u : 0u});
         if (buffers_) {
             bindings.push_back({"tileSums", tileSums});
@@ -267,17 +273,20 @@ class Svgf {
         params.phiColor = settings_.phiColor;
         params.normalScale = log2e * (settings_.position ? 1.0f / settings_.phiNormal : settings_.phiNormal);
         params.depthScale = log2e / settings_.phiDepth;
+        params.roughnessScale = log2e / (255.0f * std::max(settings_.phiRoughness, 1e-6f));
         params.stabilisationNoise = settings_.stabilisationNoise;
         return params;
     }
 
-    std::vector<gpu::ConstantValue> filterConstants() const {
-        return {{"POSITION", settings_.position ? 1u : 0u}, {"ORTHOGRAPHIC", input_.camera.orthographic}};
+    std::vector<gpu::ConstantValue> filterConstants(const Signal& signal) const {
+        return {{"POSITION", settings_.position ? 1u : 0u},
+                {"ORTHOGRAPHIC", input_.camera.orthographic},
+                {"ROUGHNESS", hasRoughness(signal) && settings_.phiRoughness > 0.0f ? 1u : 0u}};
     }
 
     void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
         const SvgfFilterParams params = filterParams(1);
-        std::vector<gpu::ConstantValue> constants = filterConstants();
+        std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
@@ -299,7 +308,7 @@ class Svgf {
                                   : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
         const int step = levelStep(number);
         const SvgfFilterParams params = filterParams(step);
-        std::vector<gpu::ConstantValue> constants = filterConstants();
+        std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
         constants.push_back({"STABILISE", mixed ? 1u : 0u});
@@ -373,6 +382,11 @@ const ParamTable<SvgfSettings>& svgf::params() {
               "Maximum deviation from the expected distance (world units without `relative`); lower ghosts "
               "less, higher loses less history")
             .slider(0, 1, SliderScale::Logarithmic, 0.001);
+        t.add("lobe_test", &S::lobeTest, 0.0, 1000.0, "lobes",
+              "Difference of mirrored directions up to which history counts, in widths of the specular lobe "
+              "(with `separate`); lower keeps bumps of glossy surfaces sharp in motion and is noisier; 0 is "
+              "off")
+            .slider(0, 10);
         t.add("relative", &S::relative,
               "Measure `depth_test` relative to the distance, and allow more on tilted planes");
         t.add("search", &S::search,
@@ -418,6 +432,10 @@ const ParamTable<SvgfSettings>& svgf::params() {
         t.add("phi_depth", &S::phiDepth, 1e-6, 1e9, "slopes",
               "Tolerated difference of distance, relative to the surface's slope (with `position`: distance "
               "of points in world units); higher smooths across steps");
+        t.add("phi_roughness", &S::phiRoughness, 0.0, 1e9, "",
+              "Tolerated difference of roughness (with `separate`); lower keeps patterns of gloss apart; 0: "
+              "any difference")
+            .slider(1e-2, 1, SliderScale::Logarithmic);
         t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
               "Number of first passes that use a variance averaged over 3x3 pixels; more is steadier and "
               "slower");

@@ -17,6 +17,7 @@ struct SvgfSettings {
     float alphaFast = 0.5f;
     float normalTest = 0.95f;
     float depthTest = 0.02f;
+    float lobeTest = 2.0f;
     bool relative = true;
     bool search = true;
     bool reflections = true;
@@ -32,6 +33,7 @@ struct SvgfSettings {
     float phiColor = 4.0f;
     float phiNormal = 64.0f;
     float phiDepth = 3.0f;
+    float phiRoughness = 0.1f;
     int blurLevels = 1;
     bool boost = true;
     bool position = false;

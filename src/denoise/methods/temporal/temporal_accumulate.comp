@@ -56,6 +56,14 @@ Past dividedBy(Past sum, float weight) {
     return Past(sum.mean / weight);
 }
 
+bool weighsNormals() {
+    return false;
+}
+
+float normalScaleOf(uvec2 surface) {
+    return 0.0;
+}
+
 #include "denoise/stages/reproject/history.glsl"
 
 vec4 updated(vec4 before, vec3 x) {

@@ -4,12 +4,14 @@
 // makes of a frame's layers, motion to the layer (docs/denoising.md, "What a frame gives").
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 #include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool IDS = true;     // else all is one instance
 layout(constant_id = 1) const bool MOTION = true;  // else everything stands still
+layout(constant_id = 2) const bool ROUGHNESS = true;  // else all is rough
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     IngestParams params;
@@ -18,7 +20,8 @@ READ_LAYER(1, normalIn);
 READ_LAYER(2, depthIn);
 READ_LAYER(3, motionIn);
 READ_UINT_LAYER(4, idIn);
-WRITE_UINT2(5, surfaces);                                                  // octahedral normal | distance
+READ_LAYER(8, roughnessIn);
+WRITE_UINT2(5, surfaces);                                                  // surface_texel.glsl
 layout(set = 0, binding = 6, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D motion;
 
@@ -63,7 +66,8 @@ void main() {
     const float distance = distanceOf(LOAD_LAYER(depthIn, at).r, v);
     const bool seen = distance > 0.0;
     const vec3 n = seen ? worldNormal(LOAD_LAYER(normalIn, at)) : vec3(0.0);
-    STORE_UINT2(surfaces, at, uvec2(encodeOctahedral(unitNormal(vec4(n, 0.0))), floatBitsToUint(distance)));
+    const float rough = ROUGHNESS ? LOAD_LAYER(roughnessIn, at).r : 1.0;
+    STORE_UINT2(surfaces, at, uvec2(packedShading(unitNormal(vec4(n, 0.0)), rough), floatBitsToUint(distance)));
     uint instance = 1u;
     if (IDS) instance += LOAD_LAYER(idIn, at).x;
     imageStore(instances, at, uvec4(seen ? instance : 0u));

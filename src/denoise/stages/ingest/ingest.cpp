@@ -37,11 +37,14 @@ void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestPa
                                  {"depthIn", images.depth},
                                  {"motionIn", images.motion ? images.motion : images.depth},
                                  {"idIn", images.id ? images.id : input.surfaces.instances.previous},
+                                 {"roughnessIn", images.roughness ? images.roughness : images.normal},
                                  {"surfaces", input.surfaces.surfaces.current},
                                  {"instances", input.surfaces.instances.current},
                                  {"motion", input.motion}},
                     .params = gpu::paramsOf(params),
-                    .constants = {{"IDS", images.id ? 1u : 0u}, {"MOTION", images.motion ? 1u : 0u}},
+                    .constants = {{"IDS", images.id ? 1u : 0u},
+                                  {"MOTION", images.motion ? 1u : 0u},
+                                  {"ROUGHNESS", images.roughness ? 1u : 0u}},
                     .extent = {params.width, params.height}});
 }
 
@@ -57,17 +60,19 @@ ImageHandle convertedPreviousNormal(FrameGraph& graph, const IngestImages& image
     return normal;
 }
 
-void addLayers(FrameGraph& graph, const IngestParams& params, DenoiserInput& input) {
+void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+               DenoiserInput& input) {
     input.normal = make(graph, params, "normal", Format::RGBA16Float);
     input.depth = make(graph, params, "depth", Format::RG32Float);
     const gpu::Extent extent = graph.extent(input.depth);
     graph.dispatch(
         {.pass = "ingest/layers",
          .shader = inBuffers(input) ? shaders::ingest_layers_buffers_comp : shaders::ingest_layers_comp,
-         .bindings = {{"surfaces", input.surfaces.surfaces.current},
+         .bindings = {{"normalIn", images.normal},
+                      {"surfaces", input.surfaces.surfaces.current},
                       {"normal", input.normal},
                       {"depth", input.depth}},
-         .params = gpu::paramsOf(extent),
+         .params = gpu::paramsOf(params),
          .constants = {},
          .extent = extent});
 }
@@ -126,12 +131,13 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
         input.reflectionMotion = givenReflectionMotion(graph, images, params);
     else if (needs.twoSignals && images.hitDistance)
         input.reflectionMotion = computedReflectionMotion(graph, images, params, input);
-    if (needs.layers) addLayers(graph, params, input);
+    if (needs.layers) addLayers(graph, images, params, input);
     input.diffuse = images.radiance;
     input.specular = images.specular;
     input.emission = images.emission;
     input.albedo = images.albedo;
     input.albedoSpecular = images.albedoSpecular;
+    input.roughness = images.roughness;
     const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {
         const ImageHandle white = whiteAlbedo(graph, params);

@@ -4,6 +4,7 @@
 // object behind the surface. docs/embedding.md, "Reflections".
 #include "denoise/stages/guides.glsl"
 #include "denoise/stages/ingest/ingest_params.h"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 #include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -40,7 +41,7 @@ Point pointAt(ivec2 at) {
     const uvec2 surface = LOAD_UINT2(surfaces, inside);
     const float z = uintBitsToFloat(surface.y);
     const vec2 onScreen = onScreenAt(inside);
-    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), decodeOctahedral(surface.x),
+    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), normalOf(surface),
                  z > 0.0 && at == inside);
 }
 

@@ -7,6 +7,8 @@
 //     Constant 8 is used here.
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
+//   - bool weighsNormals(): whether a tap weighs less by exp2(-s (1 - cosine of the normals)); s is
+//     float normalScaleOf(uvec2 surface)
 //   - Past loadFirst(ivec2 at): a texel with at least what framesOf() needs
 //   - float framesOf(Past): 0 if there is no history
 //   - void loadRest(inout Past, ivec2 at): what loadFirst() left out
@@ -16,6 +18,7 @@
 
 #include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/reproject/reproject_params.h"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 
 layout(constant_id = 8) const bool TURNS = true;  // else normals were what they are; previousNormal is not read
 
@@ -27,6 +30,7 @@ struct Expected {
     vec3 normal;
     float depth, tolerance;
     uint instance;
+    float normalScale;
 };
 
 struct Taps {
@@ -63,10 +67,11 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     Past there = loadFirst(inside);
     if (LOAD_AT_ONCE) loadRest(there, inside);
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
-                        dot(expected.normal, decodeOctahedral(surface.x)) > params.tests.normal &&
+                        dot(expected.normal, normalOf(surface)) > params.tests.normal &&
                         abs(expected.depth - depth) < expected.tolerance &&
                         (!comparesInstances() ||
                          (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
+    if (weighsNormals()) weight *= exp2(expected.normalScale * (dot(expected.normal, normalOf(surface)) - 1.0));
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);
     addPast(taps.sum, there, weight);
@@ -117,10 +122,11 @@ Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     if (z <= 0.0 || !was.onScreen) return NO_PAST;
     const float depthBefore = z + was.depthChange;
     const float tolerance =
-        depthTolerance(params.camera, depthBefore, decodeOctahedral(surface.x), vec2(at), size, params.tests);
-    vec3 normalBefore = decodeOctahedral(surface.x);
+        depthTolerance(params.camera, depthBefore, normalOf(surface), vec2(at), size, params.tests);
+    vec3 normalBefore = normalOf(surface);
     if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
-    return pastAt(was.position, Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x));
+    return pastAt(was.position, Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
+                                         weighsNormals() ? normalScaleOf(surface) : 0.0));
 }
 
 #endif

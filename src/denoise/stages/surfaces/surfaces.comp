@@ -2,6 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 // Packs what later passes, and the next frame, ask of a pixel's surface. docs/denoising.md, SVGF, step 1.
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 #include "shaders/common/filter_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -13,15 +14,19 @@ READ_LAYER(1, normal);
 READ_LAYER(2, depth);
 READ_UINT_LAYER(3, ids);
 layout(constant_id = 0) const bool IDS = true;  // else all is one instance
-WRITE_UINT2(4, surfaces);                                              // octahedral normal | distance
+WRITE_UINT2(4, surfaces);                                                  // surface_texel.glsl
 layout(set = 0, binding = 5, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
+READ_LAYER(6, roughness);
+layout(constant_id = 1) const bool ROUGHNESS = true;  // else all is rough
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
     const float z = hitDistance(LOAD_LAYER(depth, at));
-    STORE_UINT2(surfaces, at, uvec2(encodeOctahedral(unitNormal(LOAD_LAYER(normal, at))), floatBitsToUint(z)));
+    const float rough = ROUGHNESS ? LOAD_LAYER(roughness, at).r : 1.0;
+    STORE_UINT2(surfaces, at,
+                uvec2(packedShading(unitNormal(LOAD_LAYER(normal, at)), rough), floatBitsToUint(z)));
     uint instance = 1u;
     if (IDS) instance += LOAD_LAYER(ids, at).x;
     imageStore(instances, at, uvec4(z > 0.0 ? instance : 0u));

@@ -20,10 +20,11 @@ Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input) {
                     .bindings = {{"normal", input.normal},
                                  {"depth", input.depth},
                                  {"ids", input.ids ? input.ids : result.instances.previous},  // or not read
+                                 {"roughness", input.roughness ? input.roughness : input.normal},
                                  {"surfaces", result.surfaces.current},
                                  {"instances", result.instances.current}},
                     .params = gpu::paramsOf(extent),
-                    .constants = {{"IDS", input.ids ? 1u : 0u}},
+                    .constants = {{"IDS", input.ids ? 1u : 0u}, {"ROUGHNESS", input.roughness ? 1u : 0u}},
                     .extent = extent});
     return result;
 }

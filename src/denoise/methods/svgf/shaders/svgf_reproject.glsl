@@ -2,9 +2,11 @@
 // steps 2 and 3.
 #include "denoise/methods/svgf/svgf_params.h"
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // follow the reflected image instead of the surface
 layout(constant_id = 3) const bool STABILISE = false;    // reproject the stabilised light, too
+layout(constant_id = 9) const bool LOBES = false;        // the past's normals weigh, as far as the lobe is narrow
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfReprojectParams params;
@@ -60,6 +62,17 @@ void addPast(inout Past sum, Past tap, float weight) {
 
 Past dividedBy(Past sum, float weight) {
     return Past(sum.color / weight, sum.stable / weight, sum.moments / weight);
+}
+
+bool weighsNormals() {
+    return LOBES;
+}
+
+/// Normals that differ by an angle d turn the reflected ray by 2 d, and the lobe of GGX is about as wide as its alpha,
+/// the squared roughness. So the weight is exp(-(2 d / (lobe_test alpha))^2), with d^2 = 2 (1 - cosine).
+float normalScaleOf(uvec2 surface) {
+    const float roughness = roughnessOf(surface), alpha = max(roughness * roughness, SVGF_MIN_ALPHA);
+    return min(params.lobeScale / (alpha * alpha), SVGF_MAX_LOBE_SCALE);
 }
 
 #include "denoise/stages/reproject/history.glsl"

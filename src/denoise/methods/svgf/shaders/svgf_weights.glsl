@@ -1,17 +1,20 @@
-// The edge-stopping functions of normals and depth: how far two pixels show the same surface. docs/denoising.md, SVGF,
+// The edge-stopping functions of normals, depth and roughness: how far two pixels show the same surface. docs/denoising.md, SVGF,
 // step 6. The including shader declares `SvgfFilterParams params` and READ_UINT2 `surfaces` beforehand.
 #ifndef LIMPID_SVGF_WEIGHTS_GLSL
 #define LIMPID_SVGF_WEIGHTS_GLSL
 
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/surfaces/surface_texel.glsl"
 
 layout(constant_id = 1) const bool POSITION = false;  // compare distances of points instead of depths and slopes
 layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
+layout(constant_id = 7) const bool ROUGHNESS = false;  // compare roughness, too
 
 struct Surface {
     vec3 normal;
     float depth;  // 0: nothing seen
-    vec3 point;   // relative to the eye; only with POSITION
+    vec3 point;       // relative to the eye; only with POSITION
+    float roughness;  // roughnessStepsOf(); only with ROUGHNESS
 };
 
 /// A pixel that others are compared with. Values are scaled so that weights are powers of 2.
@@ -35,8 +38,9 @@ vec3 pointOf(ivec2 at, float depth) {
 
 Surface surfaceAt(ivec2 at) {
     const uvec2 packed = LOAD_UINT2(surfaces, at);
-    const float depth = uintBitsToFloat(packed.y);
-    return Surface(decodeOctahedral(packed.x), depth, POSITION ? pointOf(at, depth) : vec3(0.0));
+    const float depth = distanceOf(packed);
+    return Surface(normalOf(packed), depth, POSITION ? pointOf(at, depth) : vec3(0.0),
+                   ROUGHNESS ? roughnessStepsOf(packed) : 0.0);
 }
 
 vec2 slopeOf(Surface surface, ivec2 at) {
@@ -71,8 +75,10 @@ float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
     if (POSITION)
         return -distance(centre.surface.normal, other.normal) * params.normalScale -
                distance(centre.surface.point, other.point) * params.depthScale;
-    return dot(centre.scaledNormal, other.normal) - params.normalScale -
-           abs(centre.surface.depth - other.depth) * perDepth;
+    float exponent = dot(centre.scaledNormal, other.normal) - params.normalScale -
+                     abs(centre.surface.depth - other.depth) * perDepth;
+    if (ROUGHNESS) exponent -= abs(centre.surface.roughness - other.roughness) * params.roughnessScale;
+    return exponent;
 }
 
 #endif
