@@ -128,7 +128,8 @@ typedef enum limpid_input {
     LIMPID_INPUT_PREVIOUS_NORMAL = 8,   /* like NORMAL, for the same surface point in the previous frame */
     LIMPID_INPUT_REFLECTION_MOTION = 9, /* like MOTION, for the reflection in a flat mirror */
     LIMPID_INPUT_ID = 10,               /* r: a number for each object (Vulkan: unsigned integers) */
-    /* r: roughness of the specular lobe, 0 to 1: the square root of the microfacet distribution's alpha */
+    /* r: roughness of the specular lobe, 0 to 1: the square root of the microfacet distribution's alpha; negative or
+     * NaN: unknown. Keeps patterns of gloss and glossy bumps sharp. */
     LIMPID_INPUT_ROUGHNESS = 11,
     /* r: length of the ray that found the specular light, from the surface to its first hit, world units. 1e9 or more:
      * it hit nothing; 0, negative or NaN: unknown. Needs ROUGHNESS. If REFLECTION_MOTION is missing, the motion of

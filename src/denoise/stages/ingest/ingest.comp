@@ -9,8 +9,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool IDS = true;     // else all is one instance
-layout(constant_id = 1) const bool MOTION = true;  // else everything stands still
+layout(constant_id = 0) const bool IDS = true;        // else all is one instance
+layout(constant_id = 1) const bool MOTION = true;     // else everything stands still
 layout(constant_id = 2) const bool ROUGHNESS = true;  // else all is rough
 
 layout(set = 0, binding = 0, scalar) uniform Params {

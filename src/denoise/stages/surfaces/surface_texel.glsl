@@ -4,11 +4,11 @@
 
 #include "shaders/common/sampling.glsl"
 
-/// Octahedral coordinates of 12 bits each (an error of at most 0.05 degrees) and the roughness in 8 bits. `normal` is a
-/// unit vector or 0, which becomes +Z.
+/// Octahedral coordinates of 12 bits each (an error of at most 0.06 degrees) and the roughness in 8 bits. `normal` is a
+/// unit vector or 0, which becomes +Z. A negative roughness, or NaN, counts as 1.
 uint packedShading(vec3 normal, float roughness) {
     const ivec2 e = ivec2(round(clamp(octahedralOf(normal), -1.0, 1.0) * 2047.0));
-    const uint r = uint(clamp(roughness, 0.0, 1.0) * 255.0 + 0.5);
+    const uint r = uint((roughness >= 0.0 ? min(roughness, 1.0) : 1.0) * 255.0 + 0.5);
     return (uint(e.x) & 0xFFFu) | (uint(e.y) & 0xFFFu) << 12 | r << 24;
 }
 

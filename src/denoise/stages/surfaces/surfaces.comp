@@ -13,10 +13,10 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_LAYER(1, normal);
 READ_LAYER(2, depth);
 READ_UINT_LAYER(3, ids);
-layout(constant_id = 0) const bool IDS = true;  // else all is one instance
 WRITE_UINT2(4, surfaces);                                                  // surface_texel.glsl
 layout(set = 0, binding = 5, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
 READ_LAYER(6, roughness);
+layout(constant_id = 0) const bool IDS = true;        // else all is one instance
 layout(constant_id = 1) const bool ROUGHNESS = true;  // else all is rough
 
 void main() {

@@ -1,5 +1,6 @@
-// The edge-stopping functions of normals, depth and roughness: how far two pixels show the same surface. docs/denoising.md, SVGF,
-// step 6. The including shader declares `SvgfFilterParams params` and READ_UINT2 `surfaces` beforehand.
+// The edge-stopping functions of normals, depth and roughness: how far two pixels show the same surface.
+// docs/denoising.md, SVGF, step 6. The including shader declares `SvgfFilterParams params` and READ_UINT2 `surfaces`
+// beforehand.
 #ifndef LIMPID_SVGF_WEIGHTS_GLSL
 #define LIMPID_SVGF_WEIGHTS_GLSL
 
@@ -12,7 +13,7 @@ layout(constant_id = 7) const bool ROUGHNESS = false;  // compare roughness, too
 
 struct Surface {
     vec3 normal;
-    float depth;  // 0: nothing seen
+    float depth;      // 0: nothing seen
     vec3 point;       // relative to the eye; only with POSITION
     float roughness;  // roughnessStepsOf(); only with ROUGHNESS
 };
