@@ -64,8 +64,7 @@ std::vector<DryFrame> dryFrames() {
     const std::vector<std::vector<limpid_input>> without{
         {},
         {LIMPID_INPUT_ALBEDO_SPECULAR, LIMPID_INPUT_SPECULAR, LIMPID_INPUT_REFLECTION_MOTION},
-        {LIMPID_INPUT_EMISSION, LIMPID_INPUT_HIT_DISTANCE},
-        {LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE},
+        {LIMPID_INPUT_EMISSION, LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE},
         optional,
         all};
     std::vector<DryFrame> frames{{.orthographic = true}};

@@ -89,7 +89,7 @@ void main() {
     const uvec2 surface = LOAD_UINT2(surfaces, at);
 
     const Past past = pastOf(at, surface, moved);
-    const bool hit = uintBitsToFloat(surface.y) > 0.0;
+    const bool hit = distanceOf(surface) > 0.0;
     const uint failure =
         failureOf(hit, reprojectionOf(moved, vec2(pixel), vec2(params.width, params.height)).onScreen, past);
     vec4 before = past.mean;

@@ -39,7 +39,7 @@ vec2 onScreenAt(ivec2 at) {
 Point pointAt(ivec2 at) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const uvec2 surface = LOAD_UINT2(surfaces, inside);
-    const float z = uintBitsToFloat(surface.y);
+    const float z = distanceOf(surface);
     const vec2 onScreen = onScreenAt(inside);
     return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), normalOf(surface),
                  z > 0.0 && at == inside);
@@ -93,7 +93,7 @@ vec4 reflectionMotionAt(ivec2 at) {
     const vec4 moved = motionOfStill(image, vec2(at));
     if (moved.w == 0.0 || still.w == 0.0 || distance(ownMotion.xy, still.xy) > STILL) return vec4(0.0);
     const float before = previousReflector(own, vec2(at) + moved.xy);
-    return before > 0.0 ? vec4(moved.xy, before - uintBitsToFloat(LOAD_UINT2(surfaces, at).y), 1.0) : vec4(0.0);
+    return before > 0.0 ? vec4(moved.xy, before - distanceOf(LOAD_UINT2(surfaces, at)), 1.0) : vec4(0.0);
 }
 
 void main() {

@@ -61,17 +61,17 @@ float depthTolerance(CameraParams camera, float expectedDepth, vec3 n, vec2 pixe
 void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const uvec2 surface = LOAD_UINT2(surfacesBefore, inside);
-    const float depth = uintBitsToFloat(surface.y);
+    const float depth = distanceOf(surface), cosine = dot(expected.normal, normalOf(surface));
     uint instance = 0u;
     if (LOAD_AT_ONCE) instance = imageLoad(instancesBefore, inside).x;
     Past there = loadFirst(inside);
     if (LOAD_AT_ONCE) loadRest(there, inside);
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
-                        dot(expected.normal, normalOf(surface)) > params.tests.normal &&
+                        cosine > params.tests.normal &&
                         abs(expected.depth - depth) < expected.tolerance &&
                         (!comparesInstances() ||
                          (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
-    if (weighsNormals()) weight *= exp2(expected.normalScale * (dot(expected.normal, normalOf(surface)) - 1.0));
+    if (weighsNormals()) weight *= exp2(expected.normalScale * (cosine - 1.0));
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);
     addPast(taps.sum, there, weight);
@@ -118,12 +118,12 @@ Past pastAt(vec2 position, Expected expected) {
 Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(moved, vec2(at), size);
-    const float z = uintBitsToFloat(surface.y);
+    const float z = distanceOf(surface);
     if (z <= 0.0 || !was.onScreen) return NO_PAST;
     const float depthBefore = z + was.depthChange;
-    const float tolerance =
-        depthTolerance(params.camera, depthBefore, normalOf(surface), vec2(at), size, params.tests);
-    vec3 normalBefore = normalOf(surface);
+    const vec3 normal = normalOf(surface);
+    const float tolerance = depthTolerance(params.camera, depthBefore, normal, vec2(at), size, params.tests);
+    vec3 normalBefore = normal;
     if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
     return pastAt(was.position, Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
                                          weighsNormals() ? normalScaleOf(surface) : 0.0));

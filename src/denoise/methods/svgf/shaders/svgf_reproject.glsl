@@ -117,7 +117,7 @@ vec4 accumulate(ivec2 at) {
     if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
     if (framesOf(now) <= 0.0) now = pastOf(at, surface, LOAD_LAYER(motion, at));
     if (isFinite(light)) now = accumulated(now, x);
-    const bool seen = uintBitsToFloat(surface.y) > 0.0;
+    const bool seen = distanceOf(surface) > 0.0;
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
     imageStore(moments, at, packed);
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(x, SVGF_NOTHING_SEEN));
