@@ -50,8 +50,9 @@ struct Case {
     int frames = 8;
     int resizeAt = -1;     ///< from this frame on the picture is smaller
     int jumpAt = -1;       ///< from this frame on the light is three times as bright
-    bool hasNans = false;  ///< and infinities, in radiance and albedo
-    int mixesFrom = 0;     ///< before this frame, filtered light is not stabilised
+    bool hasNans = false;  ///< and infinities, in radiance, albedo and roughness
+    bool hasRoughness = true;
+    int mixesFrom = 0;  ///< before this frame, filtered light is not stabilised
 };
 
 SvgfSettings preset(const char* name) {
@@ -171,6 +172,7 @@ HostFrame SvgfPassTest::frameOf(int number) {
             for (float& value : *layer) value *= 3.0f;
         }
     }
+    if (!c.hasRoughness) frame.roughness.clear();
     if (!c.hasNans) return frame;
     size_t at = static_cast<size_t>(number) * 4 + 1;
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
@@ -179,6 +181,7 @@ HostFrame SvgfPassTest::frameOf(int number) {
             for (size_t i = at; i < layer->size(); i += 4 * 997) (*layer)[i] = bad;
             at += 4 * 83;
         }
+        for (size_t i = at - 1; i < frame.roughness.size(); i += 4 * 97) frame.roughness[i] = bad;
     }
     return frame;
 }
@@ -394,6 +397,7 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"Cis565", moving, preset("svgf-cis565")}, Case{"Paper", moving, preset("svgf-paper")},
             Case{"ThreeLevels", moving, {.levels = 3}}, Case{"Wide", moving, {.wide = true}},
             Case{"NarrowLobes", moving, {.lobeTest = 1.0f, .phiRoughness = 0.03f}},
+            Case{.name = "NoRoughness", .options = moving, .settings = {.levels = 2}, .hasRoughness = false},
             Case{"NoLobes", moving, {.lobeTest = 0.0f, .levels = 2, .phiRoughness = 0.0f}},
             Case{"DarkAlbedo", moving, {.minAlbedo = 0.1f}},
             Case{"Modulated", moving, {.demodulate = false, .levels = 3, .historyLevel = 0}},

@@ -1,5 +1,6 @@
 #include "tests/oracle/double_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -69,7 +70,8 @@ double DoubleFrame::id(size_t p) const {
 }
 
 double DoubleFrame::roughness(size_t p) const {
-    return frame_.roughness.empty() ? 1.0 : double{frame_.roughness[4 * p]};
+    const double r = frame_.roughness.empty() ? 1.0 : double{frame_.roughness[4 * p]};
+    return r >= 0.0 ? std::min(r, 1.0) : 1.0;
 }
 
 dvec2 DoubleFrame::screen(size_t p) const {

@@ -31,7 +31,7 @@ class DoubleFrame {
     dvec3 previousNormal(size_t p) const;                   ///< n'
     std::optional<dvec3> motion(size_t p) const;            ///< m; none if it is invalid
     std::optional<dvec3> reflectionMotion(size_t p) const;  ///< r; none if it is invalid
-    double roughness(size_t p) const;                       ///< 1 if the frame has none
+    double roughness(size_t p) const;                       ///< 1 if it is unknown
     double id(size_t p) const;                              ///< instance number + 1; 0 where the ray misses
 
     /// Returns (x, y) of the pixel's centre in [-1, 1]^2, y up.

@@ -43,7 +43,7 @@ std::vector<PreviousSurface> previousSurfaces(const SvgfHistory& history, size_t
 std::vector<double> lobeSharpness(const denoise::HostFrame& frame, SvgfSignal signal,
                                   const DoubleSvgfParams& params) {
     std::vector<double> result;
-    if (signal != SvgfSignal::Specular || params.lobeTest == 0.0) return result;
+    if (signal != SvgfSignal::Specular || params.lobeTest == 0.0 || frame.roughness.empty()) return result;
     const DoubleFrame pixels(frame);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double r = std::round(255.0 * pixels.roughness(p)) / 255.0;  // as it is stored
