@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Header {
+struct JpegHeader {
     int width = 0, height = 0, subsampling = 0, colorSpace = 0;
 
     PictureSize size() const { return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)}; }
@@ -48,15 +48,15 @@ class Decoder {
         if (!handle_) throw Error("libjpeg-turbo cannot be set up");
     }
 
-    Header header() {
-        Header h;
+    JpegHeader header() {
+        JpegHeader h;
         check(tjDecompressHeader3(handle_.get(), data(), size(), &h.width, &h.height, &h.subsampling,
                                   &h.colorSpace));
         return h;
     }
 
     /// Decodes to RGBA; `to` is one of the header's scaled sizes.
-    ByteImage decode(const Header& h, PictureSize to) {
+    ByteImage decode(const JpegHeader& h, PictureSize to) {
         ByteImage image{to.width, to.height, 4, {}};
         image.pixels.resize(to.pixels() * 4);
         check(tjDecompress2(handle_.get(), data(), size(), image.pixels.data(), static_cast<int>(to.width), 0,
@@ -88,14 +88,14 @@ constexpr uint64_t pixelsPerByte = 8 * 256;
 
 ByteImage decodeJpeg(std::span<const std::byte> bytes, const fs::path& name) {
     Decoder decoder(bytes, name);
-    const Header header = decoder.header();
+    const JpegHeader header = decoder.header();
     checkDimensions(name, header.size().width, header.size().height, bytes.size(), pixelsPerByte);
     return decoder.decode(header, header.size());
 }
 
 ByteImage decodeJpeg(std::span<const std::byte> bytes, const fs::path& name, const JpegBound& bound) {
     Decoder decoder(bytes, name);
-    const Header header = decoder.header();
+    const JpegHeader header = decoder.header();
     const PictureSize size = header.size();
     checkDimensions(name, size.width, size.height, bytes.size(), pixelsPerByte, maxStreamedPixels);
     // Memory for rows of blocks, upsampled and not, of all components.

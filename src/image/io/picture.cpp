@@ -9,6 +9,7 @@
 #include "image/color.h"
 #include "image/io/exr/exr.h"
 #include "image/io/hdr.h"
+#include "image/io/pfm.h"
 #include "image/io/png/png.h"
 
 namespace limpid::image {
@@ -41,6 +42,13 @@ SequencePicture readSequencePicture(const std::filesystem::path& path) {
         const auto layer = layers.colorLayer();
         if (!layer) throw InputError(path, "has no layer with the channels R, G and B");
         return {{layers.get(*layer, "RGB"), true}, geometryOf(layers)};
+    }
+    if (isPfm(bytes)) {
+        const Image map = decodePfm(bytes, path);
+        Image colors(map.width, map.height, 3);
+        for (size_t i = 0; i < colors.pixels.size(); ++i)
+            colors.pixels[i] = map.pixels[map.components == 3 ? i : i / 3];
+        return {{std::move(colors), true}, {}};
     }
     if (startsWith(bytes, hdrMagic)) return {{decodeHdr(bytes, path), true}, {}};
     return {{linearFromEncoded(decodeImageFloat(bytes, path)), false}, {}};

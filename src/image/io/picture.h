@@ -10,10 +10,10 @@ namespace limpid::image {
 
 struct Picture {
     Image linear;                ///< 3 components, Rec. 709 primaries; alpha is dropped
-    bool sceneReferred = false;  ///< EXR and HDR: unbounded radiance. PNG and JPEG: already exposed, in [0,1]
+    bool sceneReferred = false;  ///< EXR, HDR and PFM: unbounded radiance. PNG and JPEG: already exposed, in [0,1]
 };
 
-/// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PNG or JPEG (decoded from sRGB),
+/// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PFM, PNG or JPEG (decoded from sRGB),
 /// recognised by content, not by name. Values are not changed, not even NaN. Throws InputError.
 Picture readPicture(const std::filesystem::path& path);
 

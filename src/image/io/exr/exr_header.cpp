@@ -2,6 +2,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>
+#include <ImfIDManifestAttribute.h>
 #include <ImfPartType.h>
 #include <ImfThreading.h>
 #include <ImfTileDescription.h>
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <stdexcept>
+#include <string_view>
 #include <thread>
 
 #include "base/error.h"
@@ -29,8 +32,37 @@ constexpr uint64_t maxChunkBytes = uint64_t{1} << 30;
 /// be at most as large as the picture, which is limited by the file's size.
 constexpr uint64_t maxTileBytes = uint64_t{1} << 26;
 
+/// The types of attributes that OpenEXR reads whatever size is stated.
+constexpr struct {
+    std::string_view type;
+    uint32_t size;
+} fixedSizes[] = {{"box2f", 16},
+                  {"box2i", 16},
+                  {"chromaticities", 32},
+                  {"compression", 1},
+                  {"deepImageState", 1},
+                  {"double", 8},
+                  {"envmap", 1},
+                  {"float", 4},
+                  {"int", 4},
+                  {"keycode", 28},
+                  {"lineOrder", 1},
+                  {"m33d", 72},
+                  {"m33f", 36},
+                  {"m44d", 128},
+                  {"m44f", 64},
+                  {"rational", 8},
+                  {"tiledesc", 9},
+                  {"timecode", 8},
+                  {"v2d", 16},
+                  {"v2f", 8},
+                  {"v2i", 8},
+                  {"v3d", 24},
+                  {"v3f", 12},
+                  {"v3i", 12}};
+
 /// Walks the raw attribute lists. OpenEXR would allocate an attribute's claimed size before noticing that the
-/// file is shorter.
+/// file is shorter. If a size is not that of the type, it would take other bytes for the next attribute.
 class AttributeWalk {
   public:
     AttributeWalk(std::span<const std::byte> bytes, const fs::path& name, size_t position)
@@ -40,16 +72,37 @@ class AttributeWalk {
     bool header() {
         bool any = false;
         while (!text().empty()) {
-            text();  // skips the attribute's type
+            const std::string type = text();
             const uint32_t size = number();
-            if (size > bytes_.size() - position_) fail();
-            position_ += size;
+            const size_t begin = position_;
+            skip(size);
+            if (!fits(type, size)) fail();
+            if (type == "chlist" && channels(begin) != position_) fail();
             any = true;
         }
         return any;
     }
 
   private:
+    static bool fits(std::string_view type, uint32_t size) {
+        for (const auto& fixed : fixedSizes) {
+            if (type == fixed.type) return size == fixed.size;
+        }
+        return type != "floatvector" || size % 4 == 0;
+    }
+
+    /// Returns where the list of channels ends that begins there.
+    size_t channels(size_t begin) const {
+        AttributeWalk list(bytes_, name_, begin);
+        while (!list.text().empty()) list.skip(16);
+        return list.position_;
+    }
+
+    void skip(size_t count) {
+        if (count > bytes_.size() - position_) fail();
+        position_ += count;
+    }
+
     [[noreturn]] void fail() const {
         throw InputError(name_, "is no valid EXR file: its header is cut off or damaged");
     }
@@ -119,10 +172,6 @@ uint64_t checkChannels(const Imf::Header& header, const fs::path& name) {
     uint64_t bytesPerPixel = 0;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         const Imf::Channel& channel = it.channel();
-        if (channel.xSampling != 1 || channel.ySampling != 1) {
-            throw InputError(
-                name, fmt::format("has the subsampled channel '{}', which is not supported", it.name()));
-        }
         if (channel.type != Imf::HALF && channel.type != Imf::FLOAT && channel.type != Imf::UINT) {
             throw InputError(name, fmt::format("has the channel '{}' of an unknown type", it.name()));
         }
@@ -164,12 +213,28 @@ int checkChunks(const Imf::Header& header, Size data, uint64_t bytesPerPixel, bo
     return static_cast<int>(rows);
 }
 
-ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes, const fs::path& name) {
+/// Returns why the part's pixels cannot be decoded; empty if they can.
+std::string whyUnreadable(const Imf::Header& header, int version) {
     const bool deepType = header.hasType() && Imf::isDeepData(header.type());
-    if (Imf::isNonImage(version) || deepType)
-        throw InputError(name, "is a deep EXR file, which is not supported");
-    const bool tiled = header.hasType() ? Imf::isTiled(header.type()) : Imf::isTiled(version);
+    // In a file with several parts, the flag only says that one of them is deep.
+    const bool deepFile = Imf::isNonImage(version) && !Imf::isMultiPart(version);
+    if (deepFile || deepType) return "is deep";
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+        const Imf::Channel& channel = it.channel();
+        if (channel.xSampling != 1 || channel.ySampling != 1)
+            return fmt::format("has the subsampled channel '{}'", it.name());
+    }
+    return {};
+}
 
+/// Decides as OpenEXR does, which ignores the types of files with one part.
+bool isTiledPart(const Imf::Header& header, int version) {
+    const bool typed = Imf::isMultiPart(version) || Imf::isNonImage(version);
+    return typed && header.hasType() ? Imf::isTiled(header.type()) : Imf::isTiled(version);
+}
+
+ExrFrame checkPart(const Imf::Header& header, int version, size_t fileBytes, const fs::path& name) {
+    const bool tiled = isTiledPart(header, version);
     ExrFrame frame{header.dataWindow(), header.displayWindow()};
     const Size data = sizeOf(frame.data, name);
     const Size display = sizeOf(frame.display, name);
@@ -195,6 +260,55 @@ ExrFrame checkFirstPart(const Imf::Header& header, int version, size_t fileBytes
     return frame;
 }
 
+/// Removes an attribute. OpenEXR's own function leaks it.
+void removeAttribute(Imf::Header& header, std::string_view attribute) {
+    Imf::Header others;
+    for (auto it = header.begin(); it != header.end(); ++it) {
+        if (it.name() != attribute) others.insert(it.name(), it.attribute());
+    }
+    header = others;
+}
+
+/// Removes what OpenEXR would write though it may be wrong in a changed file.
+void removeMisleading(Imf::Header& header, int version, bool only) {
+    // Left over from a tiled file that was converted: OpenEXR would mark the file as tiled.
+    if (header.hasTileDescription() && !isTiledPart(header, version)) removeAttribute(header, "tiles");
+    // The number of blocks depends on the compression. With several parts, OpenEXR sets it.
+    if (only && header.hasChunkCount()) removeAttribute(header, "chunkCount");
+}
+
+/// Reads the magic number and returns the version field.
+int checkVersion(ExrMemoryStream& stream, std::span<const std::byte> bytes, const fs::path& name) {
+    int magic = 0, version = 0;
+    if (bytes.size() < 8) throw InputError(name, "is no EXR file: it is too short");
+    Imf::Xdr::read<Imf::StreamIO>(stream, magic);
+    Imf::Xdr::read<Imf::StreamIO>(stream, version);
+    if (magic != Imf::MAGIC) throw InputError(name, "is no EXR file: " + describeBeginning(bytes));
+    if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version)))
+        throw InputError(name, "is an EXR file of an unknown version");
+    return version;
+}
+
+/// OpenEXR 3.1 reads 4 bytes too many of an ID manifest, which are the name of the next attribute. It copies
+/// attributes of unknown types as they are.
+void makeIdManifestsUnknown() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        const Imf::Header registersAllTypes;
+        Imf::IDManifestAttribute::unRegisterAttributeType();
+    });
+}
+
+/// Checks that all attribute lists are complete, and returns the number of parts.
+uint64_t checkLists(std::span<const std::byte> bytes, int version, const fs::path& name) {
+    makeIdManifestsUnknown();
+    AttributeWalk walk(bytes, name, 8);
+    if (!walk.header()) throw InputError(name, "is an EXR file without a header");
+    uint64_t count = 1;
+    while (Imf::isMultiPart(version) && walk.header()) ++count;
+    return count;
+}
+
 }  // namespace
 
 void useExrThreads() {
@@ -207,7 +321,9 @@ void useExrThreads() {
 }
 
 bool ExrMemoryStream::read(char target[], int count) {
-    const auto wanted = static_cast<uint64_t>(std::max(count, 0));
+    // OpenEXR does not check all sizes in a damaged file before it reads that much.
+    if (count < 0) throw std::runtime_error("it has a block of a negative size");
+    const auto wanted = static_cast<uint64_t>(count);
     if (position_ > bytes_.size() || wanted > bytes_.size() - position_) {
         throw std::runtime_error("it ends too early");
     }
@@ -216,23 +332,34 @@ bool ExrMemoryStream::read(char target[], int count) {
     return position_ < bytes_.size();
 }
 
+std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const fs::path& name) {
+    ExrMemoryStream stream(bytes, name.string());
+    int version = checkVersion(stream, bytes, name);
+    std::vector<ExrPartHeader> parts;
+    const uint64_t count = checkLists(bytes, version, name);
+    for (uint64_t i = 0; i < count; ++i) {
+        ExrPartHeader part;
+        part.header.readFrom(stream, version);
+        // OpenEXR compares these with others or computes with them.
+        sizeOf(part.header.dataWindow(), name);
+        sizeOf(part.header.displayWindow(), name);
+        removeMisleading(part.header, version, count == 1);
+        part.unreadable = whyUnreadable(part.header, version);
+        if (part.unreadable.empty()) part.frame = checkPart(part.header, version, bytes.size(), name);
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
 ExrFrame checkExrHeaders(std::span<const std::byte> bytes, const fs::path& name) {
     ExrMemoryStream stream(bytes, name.string());
-    int magic = 0, version = 0;
-    if (bytes.size() < 8) throw InputError(name, "is no EXR file: it is too short");
-    Imf::Xdr::read<Imf::StreamIO>(stream, magic);
-    Imf::Xdr::read<Imf::StreamIO>(stream, version);
-    if (magic != Imf::MAGIC) throw InputError(name, "is no EXR file: " + describeBeginning(bytes));
-    if (Imf::getVersion(version) != Imf::EXR_VERSION || !Imf::supportsFlags(Imf::getFlags(version))) {
-        throw InputError(name, "is an EXR file of an unknown version");
-    }
-    AttributeWalk walk(bytes, name, 8);
-    if (!walk.header()) throw InputError(name, "is an EXR file without a header");
-    while (Imf::isMultiPart(version) && walk.header()) {
-    }
+    int version = checkVersion(stream, bytes, name);
+    checkLists(bytes, version, name);
     Imf::Header header;
     header.readFrom(stream, version);
-    return checkFirstPart(header, version, bytes.size(), name);
+    const std::string unreadable = whyUnreadable(header, version);
+    if (!unreadable.empty()) throw InputError(name, unreadable + ", which is not supported");
+    return checkPart(header, version, bytes.size(), name);
 }
 
 }  // namespace limpid::image

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ImathBox.h>
+#include <ImfHeader.h>
 #include <ImfIO.h>
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace limpid::image {
 
@@ -27,7 +29,7 @@ class ExrMemoryStream : public Imf::IStream {
     uint64_t position_ = 0;
 };
 
-/// The windows of the first part, in the file's coordinates (inclusive), and how many rows are decoded
+/// The windows of a part, in the file's coordinates (inclusive), and how many rows are decoded
 /// together.
 struct ExrFrame {
     Imath::Box2i data;
@@ -43,6 +45,17 @@ struct ExrFrame {
 /// the file's size and image/limits.h. Throws InputError(name), or what OpenEXR throws on an invalid
 /// attribute.
 ExrFrame checkExrHeaders(std::span<const std::byte> bytes, const std::filesystem::path& name);
+
+/// A part of a file: its header, and its windows. `unreadable` says why its pixels cannot be decoded ("is
+/// deep"); then there is no frame.
+struct ExrPartHeader {
+    Imf::Header header;
+    ExrFrame frame;
+    std::string unreadable;
+};
+
+/// Like checkExrHeaders(), but for all parts: those that cannot be read are no error.
+std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 /// Lets OpenEXR compress and decompress on all cores, unless the program has set a thread count. Acts once
 /// per process.

@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
-#include <limits>
 
 #include "base/error.h"
 #include "base/files/file.h"
 #include "image/io/exr/exr.h"
 #include "image/io/exr/exr_header.h"
+#include "image/io/exr/exr_values.h"
 
 namespace limpid::image {
 namespace {
@@ -34,30 +33,6 @@ Imf::Compression toImf(Compression compression) {
             return Imf::PIZ_COMPRESSION;
     }
     throw Error("unknown EXR compression");
-}
-
-Imf::PixelType toImf(Storage storage) {
-    switch (storage) {
-        case Storage::Half:
-            return Imf::HALF;
-        case Storage::Float:
-            return Imf::FLOAT;
-        case Storage::Uint:
-            return Imf::UINT;
-    }
-    throw Error("unknown EXR storage");
-}
-
-half toHalf(float value) {
-    constexpr float largest = 65504.0f;
-    // A bright but finite pixel must not become infinite.
-    return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
-}
-
-uint32_t toUint(float value) {
-    if (!(value > 0.0f)) return 0;
-    return value >= 4294967296.0f ? std::numeric_limits<uint32_t>::max()
-                                  : static_cast<uint32_t>(std::llround(static_cast<double>(value)));
 }
 
 /// One channel's values in the file's type.

@@ -1,0 +1,470 @@
+#include "image/io/exr/exr_document.h"
+
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfDeepScanLineInputPart.h>
+#include <ImfDeepScanLineOutputPart.h>
+#include <ImfDeepTiledInputPart.h>
+#include <ImfDeepTiledOutputPart.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledInputPart.h>
+#include <ImfTiledOutputFile.h>
+#include <ImfTiledOutputPart.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/hash.h"
+#include "image/io/exr/exr_header.h"
+#include "image/io/exr/exr_values.h"
+
+namespace limpid::image {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The decoded channels of a part may take this much memory in total.
+constexpr uint64_t maxPartBytes = uint64_t{8} << 30;
+
+std::string compressionName(Imf::Compression compression) {
+    constexpr std::array names = {"none",  "rle", "zips", "zip",  "piz",
+                                  "pxr24", "b44", "b44a", "dwaa", "dwab"};
+    const auto index = static_cast<size_t>(compression);
+    return index < names.size() ? names[index] : "unknown";
+}
+
+/// True if decoding and encoding again changes values. (PXR24 rounds floats to 24 bits, but only once.)
+bool isLossy(Imf::Compression compression) {
+    return compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION ||
+           compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+}
+
+template <typename Matrix>
+std::array<float, 16> elements(const Matrix& matrix) {
+    std::array<float, 16> result{};
+    for (unsigned i = 0; i < 16; ++i) result[i] = static_cast<float>(matrix[i / 4][i % 4]);
+    return result;
+}
+
+void addAttribute(ExrPart& part, const std::string& name, const Imf::Attribute& attribute) {
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
+        part.texts[name] = text->value();
+    } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
+        part.numbers[name] = static_cast<double>(single->value());
+    } else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {
+        part.numbers[name] = number->value();
+    } else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&attribute)) {
+        part.numbers[name] = integer->value();
+    } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) {
+        part.matrices[name] = elements(matrix->value());
+    } else if (const auto* precise = dynamic_cast<const Imf::M44dAttribute*>(&attribute)) {
+        part.matrices[name] = elements(precise->value());
+    }
+}
+
+ExrPart describe(const ExrPartHeader& from) {
+    ExrPart part;
+    const Imf::Header& header = from.header;
+    if (header.hasName()) part.name = header.name();
+    if (header.hasView()) part.view = header.view();
+    part.unreadable = from.unreadable;
+    part.compression = compressionName(header.compression());
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
+        part.channels.push_back({it.name(), storageOf(it.channel().type)});
+    for (auto it = header.begin(); it != header.end(); ++it) {
+        const std::string_view name = it.name();
+        if (name != "name" && name != "type" && name != "view") addAttribute(part, it.name(), it.attribute());
+    }
+    return part;
+}
+
+/// A part's channels over its data window, in the file's types.
+class Planes {
+  public:
+    Planes() = default;
+    Planes(const Imath::Box2i& data, const std::vector<ExrPart::Channel>& channels)
+        : data_(data),
+          width_(static_cast<size_t>(data.max.x - data.min.x) + 1),
+          height_(static_cast<size_t>(data.max.y - data.min.y) + 1) {
+        // Not initialised: decoding fills them, and if it fails the memory is never touched.
+        for (const ExrPart::Channel& channel : channels)
+            bytes_.push_back(
+                std::make_unique_for_overwrite<std::byte[]>(width_ * height_ * sizeOf(channel.storage)));
+    }
+
+    bool empty() const { return bytes_.empty(); }
+
+    /// For reading and writing; the library changes no memory when it writes a file.
+    Imf::FrameBuffer frameBuffer(const std::vector<ExrPart::Channel>& channels) const {
+        Imf::FrameBuffer frame;
+        for (size_t c = 0; c < bytes_.size(); ++c) {
+            const size_t size = sizeOf(channels[c].storage);
+            // EXR addresses pixels by absolute coordinates, so its base pointer lies outside the plane. We
+            // compute it as an integer, because such a pointer is undefined in C++.
+            const auto base = reinterpret_cast<intptr_t>(bytes_[c].get());
+            const auto rowBytes = static_cast<intptr_t>(size * width_);
+            const intptr_t origin =
+                base - static_cast<intptr_t>(size) * data_.min.x - rowBytes * intptr_t{data_.min.y};
+            frame.insert(channels[c].name, Imf::Slice(toImf(channels[c].storage),
+                                                      reinterpret_cast<char*>(origin), size, size * width_));
+        }
+        return frame;
+    }
+
+    float get(size_t c, Storage storage, size_t index) const {
+        const std::byte* const at = bytes_[c].get() + index * sizeOf(storage);
+        if (storage == Storage::Half) return static_cast<float>(load<half>(at));
+        return storage == Storage::Uint ? static_cast<float>(load<uint32_t>(at)) : load<float>(at);
+    }
+
+    void set(size_t c, Storage storage, size_t index, float value) {
+        std::byte* const at = bytes_[c].get() + index * sizeOf(storage);
+        if (storage == Storage::Half) return store(at, toHalf(value));
+        if (storage == Storage::Uint) return store(at, toUint(value));
+        store(at, value);
+    }
+
+    /// Calls action(index in the plane, index in the display window) for each pixel of both windows.
+    template <typename Action>
+    void forShared(const Imath::Box2i& display, Action action) const {
+        const size_t displayWidth = static_cast<size_t>(display.max.x - display.min.x) + 1;
+        for (int y = std::max(data_.min.y, display.min.y); y <= std::min(data_.max.y, display.max.y); ++y) {
+            const size_t row = static_cast<size_t>(y - data_.min.y) * width_;
+            const size_t displayRow = static_cast<size_t>(y - display.min.y) * displayWidth;
+            for (int x = std::max(data_.min.x, display.min.x); x <= std::min(data_.max.x, display.max.x); ++x)
+                action(row + static_cast<size_t>(x - data_.min.x),
+                       displayRow + static_cast<size_t>(x - display.min.x));
+        }
+    }
+
+  private:
+    static size_t sizeOf(Storage storage) { return storage == Storage::Half ? 2 : 4; }
+    template <typename T>
+    static T load(const std::byte* at) {
+        T value;
+        std::memcpy(&value, at, sizeof value);
+        return value;
+    }
+    template <typename T>
+    static void store(std::byte* at, T value) {
+        std::memcpy(at, &value, sizeof value);
+    }
+
+    Imath::Box2i data_;
+    size_t width_ = 0, height_ = 0;
+    std::vector<std::unique_ptr<std::byte[]>> bytes_;
+};
+
+/// Runs `action`; what OpenEXR throws becomes an InputError of the file.
+template <typename Action>
+auto reading(const fs::path& name, Action action) {
+    try {
+        return action();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw InputError(name, "needs more memory than there is");
+    } catch (const std::exception& error) {
+        throw InputError(name, fmt::format("is no valid EXR file: {}", error.what()));
+    }
+}
+
+void writeTiles(auto&& target, const Imf::FrameBuffer& frame) {
+    target.setFrameBuffer(frame);
+    target.writeTiles(0, target.numXTiles() - 1, 0, target.numYTiles() - 1);
+}
+
+void writeRows(auto&& target, const Imf::Header& header, const Imf::FrameBuffer& frame) {
+    target.setFrameBuffer(frame);
+    target.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
+}
+
+/// Checks the sizes in a deep block: copying trusts them, however large, and reads other memory if their sum
+/// overflows. `read` is rawPixelData() or rawTileData(), and the block begins with `headerBytes`.
+template <typename Read>
+void checkDeepBlock(size_t fileBytes, size_t headerBytes, Read read) {
+    uint64_t size = 0;
+    read(nullptr, size);  // returns the size
+    if (size < headerBytes || size > fileBytes)
+        throw std::runtime_error("it has a deep block of absurd size");
+    std::vector<char> block(size);
+    read(block.data(), size);
+    std::array<uint64_t, 2> sizes{};  // of the table of sample counts, and of the samples
+    std::memcpy(sizes.data(), block.data() + headerBytes - 24, sizeof sizes);
+    const uint64_t content = size - headerBytes;
+    if (sizes[0] > content || sizes[1] != content - sizes[0])
+        throw std::runtime_error("it has a damaged deep block");
+}
+
+void checkDeepBlocks(Imf::DeepScanLineInputPart part, size_t fileBytes) {
+    const Imath::Box2i data = part.header().dataWindow();
+    for (int y = data.min.y; y <= data.max.y; ++y)
+        checkDeepBlock(fileBytes, 28, [&](char* to, uint64_t& size) { part.rawPixelData(y, to, size); });
+}
+
+void checkDeepBlocks(Imf::DeepTiledInputPart part, size_t fileBytes) {
+    for (int ly = 0; ly < part.numYLevels(); ++ly) {
+        for (int lx = 0; lx < part.numXLevels(); ++lx) {
+            if (!part.isValidLevel(lx, ly)) continue;
+            for (int i = 0; i < part.numXTiles(lx) * part.numYTiles(ly); ++i) {
+                int x = i % part.numXTiles(lx), y = i / part.numXTiles(lx);
+                checkDeepBlock(fileBytes, 40,
+                               [&](char* to, uint64_t& size) { part.rawTileData(x, y, lx, ly, to, size); });
+            }
+        }
+    }
+}
+
+/// Copies the compressed blocks as they are.
+void copyBlocks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int index,
+                const Imf::Header& header, size_t fileBytes) {
+    const bool deep = header.hasType() && Imf::isDeepData(header.type());
+    const bool tiled = header.hasTileDescription();
+    const auto copy = [&]<typename In, typename Out>(In in, Out out) { out.copyPixels(in); };
+    if (deep && tiled) checkDeepBlocks(Imf::DeepTiledInputPart(from, index), fileBytes);
+    if (deep && !tiled) checkDeepBlocks(Imf::DeepScanLineInputPart(from, index), fileBytes);
+    if (deep && tiled) return copy(Imf::DeepTiledInputPart(from, index), Imf::DeepTiledOutputPart(to, index));
+    if (deep) return copy(Imf::DeepScanLineInputPart(from, index), Imf::DeepScanLineOutputPart(to, index));
+    if (tiled) return copy(Imf::TiledInputPart(from, index), Imf::TiledOutputPart(to, index));
+    copy(Imf::InputPart(from, index), Imf::OutputPart(to, index));
+}
+
+}  // namespace
+
+struct ExrDocument::Content {
+    fs::path name;
+    std::vector<std::byte> bytes;
+    std::vector<ExrPartHeader> headers;
+    std::vector<ExrPart> parts;
+    std::vector<Planes> planes;  ///< of each part; empty until a channel is used
+    std::vector<bool> changed;   ///< of each part: pixels
+    /// Attached channels: they come after the file's own parts, and are not written.
+    std::vector<LayeredImage> attached;
+
+    bool isAttached(size_t part) const { return part >= headers.size(); }
+
+    Imath::Box2i display() const { return headers.front().header.displayWindow(); }
+
+    size_t channelOf(size_t part, std::string_view channel) const {
+        const auto& channels = parts.at(part).channels;
+        const auto found = std::find_if(channels.begin(), channels.end(),
+                                        [&](const ExrPart::Channel& c) { return c.name == channel; });
+        if (found == channels.end()) throw Error(fmt::format("there is no channel '{}'", channel));
+        return static_cast<size_t>(found - channels.begin());
+    }
+
+    Planes& decoded(size_t part) {
+        if (!planes[part].empty()) return planes[part];
+        const ExrPart& description = parts[part];
+        if (!description.unreadable.empty())
+            throw InputError(name, fmt::format("the part '{}' {}, which is not supported", description.name,
+                                               description.unreadable));
+        reading(name, [&] { decode(part); });
+        return planes[part];
+    }
+
+    void decode(size_t index) {
+        const ExrFrame& frame = headers[index].frame;
+        const Imath::Box2i& data = frame.data;
+        const uint64_t pixels = (static_cast<uint64_t>(data.max.x - data.min.x) + 1) *
+                                (static_cast<uint64_t>(data.max.y - data.min.y) + 1);
+        if (pixels > maxPartBytes / frame.bytesPerPixel)
+            throw InputError(name, fmt::format("has a part of {} million pixels with {} bytes each, which is "
+                                               "too much",
+                                               pixels / 1000000, frame.bytesPerPixel));
+        Planes decodedPlanes(data, parts[index].channels);
+        ExrMemoryStream stream(bytes, name.string());
+        // Do not reconstruct a damaged chunk table: an incomplete file is an error, not a picture with holes.
+        Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(), false);
+        Imf::InputPart part(file, static_cast<int>(index));
+        part.setFrameBuffer(decodedPlanes.frameBuffer(parts[index].channels));
+        part.readPixels(data.min.y, data.max.y);
+        planes[index] = std::move(decodedPlanes);
+    }
+
+    /// Returns the header to write for a part.
+    Imf::Header headerToWrite(size_t part) const {
+        Imf::Header header = headers[part].header;
+        if (!changed[part]) return header;
+        if (isLossy(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
+        if (header.hasTileDescription() && header.tileDescription().mode != Imf::ONE_LEVEL)
+            throw InputError(name, "has several resolutions (mip levels), which is not supported");
+        return header;
+    }
+
+    /// Writes a file with one part, without the attributes that files with several need.
+    void writeOnly(Imf::OStream& stream) const {
+        const Imf::Header header = headerToWrite(0);
+        const Imf::FrameBuffer frame = planes[0].frameBuffer(parts[0].channels);
+        if (header.hasTileDescription())
+            writeTiles(Imf::TiledOutputFile(stream, header), frame);
+        else
+            writeRows(Imf::OutputFile(stream, header), header, frame);
+    }
+
+    void write(std::ofstream& target, const std::string& targetName) const {
+        Imf::StdOFStream stream(target, targetName.c_str());
+        if (std::find(changed.begin(), changed.end(), true) == changed.end()) {
+            target.write(reinterpret_cast<const char*>(bytes.data()),
+                         static_cast<std::streamsize>(bytes.size()));
+            return;
+        }
+        if (headers.size() == 1) return writeOnly(stream);
+        ExrMemoryStream source(bytes, name.string());
+        Imf::MultiPartInputFile from(source, Imf::globalThreadCount(), false);
+        std::vector<Imf::Header> toWrite;
+        for (size_t i = 0; i < headers.size(); ++i) toWrite.push_back(headerToWrite(i));
+        Imf::MultiPartOutputFile to(stream, toWrite.data(), static_cast<int>(toWrite.size()));
+        for (size_t i = 0; i < headers.size(); ++i) {
+            const auto index = static_cast<int>(i);
+            const Imf::FrameBuffer frame = planes[i].frameBuffer(parts[i].channels);
+            if (!changed[i])
+                copyBlocks(from, to, index, toWrite[i], bytes.size());
+            else if (toWrite[i].hasTileDescription())
+                writeTiles(Imf::TiledOutputPart(to, index), frame);
+            else
+                writeRows(Imf::OutputPart(to, index), toWrite[i], frame);
+        }
+    }
+};
+
+ExrDocument::ExrDocument(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+ExrDocument::ExrDocument() = default;
+ExrDocument::ExrDocument(ExrDocument&&) noexcept = default;
+ExrDocument& ExrDocument::operator=(ExrDocument&&) noexcept = default;
+ExrDocument::~ExrDocument() = default;
+
+ExrDocument ExrDocument::of(const LayeredImage& image, const fs::path& name) {
+    auto content = std::make_unique<Content>();
+    content->name = name;
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const Channel& channel : image.channels)
+        header.channels().insert(channel.name, Imf::Channel(toImf(channel.storage)));
+    content->headers.push_back({header, {header.dataWindow(), header.displayWindow()}, {}});
+    content->parts.push_back(describe(content->headers.front()));
+    content->planes.emplace_back(header.dataWindow(), content->parts.front().channels);
+    content->changed.push_back(true);
+    ExrDocument document(std::move(content));
+    for (const Channel& channel : image.channels) document.replace(0, channel.name, channel.values);
+    return document;
+}
+
+void ExrDocument::attach(const std::string& part, const LayeredImage& image, const fs::path& name) {
+    if (image.width != width() || image.height != height())
+        throw InputError(name, fmt::format("has {}x{} pixels, but {} has {}x{}", image.width, image.height,
+                                           content_->name.string(), width(), height()));
+    ExrPart& description = content_->parts.emplace_back();
+    description.name = part;
+    for (const Channel& channel : image.channels)
+        description.channels.push_back({channel.name, channel.storage});
+    content_->attached.push_back(image);
+}
+
+ExrDocument ExrDocument::read(const fs::path& path) {
+    return decode(readFile(path), path);
+}
+
+ExrDocument ExrDocument::decode(std::vector<std::byte> bytes, const fs::path& name) {
+    useExrThreads();
+    auto content = std::make_unique<Content>();
+    content->name = name;
+    content->bytes = std::move(bytes);
+    reading(name, [&] {
+        content->headers = checkExrParts(content->bytes, name);
+        for (const ExrPartHeader& header : content->headers) content->parts.push_back(describe(header));
+    });
+    content->planes.resize(content->parts.size());
+    content->changed.resize(content->parts.size());
+    return ExrDocument(std::move(content));
+}
+
+const fs::path& ExrDocument::name() const {
+    return content_->name;
+}
+uint32_t ExrDocument::width() const {
+    const Imath::Box2i display = content_->display();
+    return static_cast<uint32_t>(display.max.x - display.min.x) + 1;
+}
+uint32_t ExrDocument::height() const {
+    const Imath::Box2i display = content_->display();
+    return static_cast<uint32_t>(display.max.y - display.min.y) + 1;
+}
+uint64_t ExrDocument::hash() const {
+    Hash64 hash;
+    hash.add(content_->bytes);
+    return hash.value();
+}
+std::span<const ExrPart> ExrDocument::parts() const {
+    return content_->parts;
+}
+
+std::vector<float> ExrDocument::values(size_t part, std::string_view channel) {
+    const size_t c = content_->channelOf(part, channel);
+    if (content_->isAttached(part))
+        return content_->attached[part - content_->headers.size()].channels[c].values;
+    const Storage storage = content_->parts[part].channels[c].storage;
+    const Planes& planes = content_->decoded(part);
+    std::vector<float> result(size_t{width()} * height());
+    planes.forShared(content_->display(), [&](size_t inPlane, size_t inDisplay) {
+        result[inDisplay] = planes.get(c, storage, inPlane);
+    });
+    return result;
+}
+
+void ExrDocument::replace(size_t part, std::string_view channel, std::span<const float> values) {
+    const size_t c = content_->channelOf(part, channel);
+    if (values.size() != size_t{width()} * height()) throw Error("the channel has another size");
+    if (content_->isAttached(part)) throw Error("an attached channel cannot be replaced");
+    const Storage storage = content_->parts[part].channels[c].storage;
+    Planes& planes = content_->decoded(part);
+    planes.forShared(content_->display(), [&](size_t inPlane, size_t inDisplay) {
+        planes.set(c, storage, inPlane, values[inDisplay]);
+    });
+    content_->changed[part] = true;
+}
+
+void ExrDocument::setText(size_t part, const std::string& attribute, const std::string& text) {
+    try {
+        content_->headers.at(part).header.insert(attribute, Imf::StringAttribute(text));
+    } catch (const Iex::BaseExc&) {
+        throw Error(fmt::format("the attribute '{}' cannot be a text", attribute));
+    }
+    content_->parts[part].texts[attribute] = text;
+}
+
+void ExrDocument::write(const fs::path& path) const {
+    writeAtomically(path, [&](const fs::path& temporary) {
+        std::ofstream file(temporary, std::ios::binary);
+        try {
+            content_->write(file, path.string());
+        } catch (const Error&) {
+            throw;
+        } catch (const std::exception& error) {
+            // OpenEXR does not say which of the two files is at fault.
+            if (file) throw InputError(content_->name, fmt::format("cannot be copied: {}", error.what()));
+            throw OutputError(path, fmt::format("cannot be written: {}", error.what()));
+        }
+        // The library's destructors swallow errors, so check the stream.
+        file.close();
+        if (!file) throw OutputError(path, "cannot be written: the disk may be full");
+    });
+}
+
+}  // namespace limpid::image
