@@ -28,9 +28,11 @@ gpu::ImageHandle uploadImage(gpu::FrameGraph& graph, const HostFrame& frame, con
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     DenoiserInput input;
     frame.forEach([&](const LayerInfo& layer, const auto& pixels) {
-        // Zeros would be those of a perfect mirror.
-        const bool isOfLobe = layer.member == "roughness" || layer.member == "hitDistance";
-        if (isOfLobe && pixels.empty()) return;
+        // Zeros of the first two would be those of a perfect mirror; without specular light there is one
+        // signal.
+        const bool mayLack = layer.member == "roughness" || layer.member == "hitDistance" ||
+                             layer.member == "specular" || layer.member == "albedoSpecular";
+        if (mayLack && pixels.empty()) return;
         input[layer] = uploadImage(graph, frame, layer, pixels);
     });
     input.camera = frame.camera;

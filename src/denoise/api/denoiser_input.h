@@ -36,8 +36,9 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle target;
 };
 
-/// Uploads the frame's images; optional layers that are empty become zeros, but roughness and hit distance
-/// stay empty. Throws Error if an image of `frame` has another size than the frame.
+/// Uploads the frame's images; optional layers that are empty become zeros, but specular light, its albedo,
+/// roughness and hit distance stay empty. Throws Error if an image of `frame` has another size than the
+/// frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
 
 }  // namespace limpid::denoise

@@ -24,6 +24,8 @@ struct FilterSettings;
 struct DenoiserOutput {
     gpu::ImageHandle beauty;        ///< rgba32f: clean radiance with emission; alpha 1
     gpu::ImageHandle disocclusion;  ///< TemporalImages::disocclusion; empty without temporal accumulation
+    /// The fourth component counts the frames of a pixel's history; empty without temporal accumulation.
+    gpu::ImageHandle frames;
 };
 
 }  // namespace limpid::denoise

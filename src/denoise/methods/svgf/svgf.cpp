@@ -81,7 +81,7 @@ class Svgf {
             for (size_t i = 0; i < all.size(); ++i)
                 filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
         }
-        SvgfImages images{.beauty = beautyOf(filtered)};
+        SvgfImages images{.beauty = beautyOf(filtered), .moments = accumulated.front().moments};
         if (!signalsToo) return images;
         if (settings_.separate) {
             images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo);
@@ -459,7 +459,8 @@ SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, cons
 
 DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const FilterSettings& settings) {
-    return {antialias(graph, input, filterSvgf(graph, input, settings.svgf), settings.taa), {}};
+    const SvgfImages images = Svgf(graph, input, settings.svgf).record(false);
+    return {antialias(graph, input, images.beauty, settings.taa), {}, images.moments};
 }
 
 }  // namespace limpid::denoise

@@ -53,6 +53,7 @@ struct SvgfImages {
     gpu::ImageHandle beauty;
     gpu::ImageHandle diffuse;   ///< without `separate`: all light that was filtered
     gpu::ImageHandle specular;  ///< empty without `separate`
+    gpu::ImageHandle moments;   ///< of diffuse light, or of all: svgf_moments.glsl
 };
 SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const SvgfSettings& settings);

@@ -140,7 +140,7 @@ DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& inpu
     const gpu::ImageHandle picture = settings.temporal.showDisocclusion
                                          ? showDisocclusion(graph, beauty, accumulated.disocclusion)
                                          : antialias(graph, input, beauty, settings.taa);
-    return {picture, accumulated.disocclusion};
+    return {picture, accumulated.disocclusion, accumulated.color};
 }
 
 DenoiserOutput temporal::record(gpu::FrameGraph& graph, const DenoiserInput& input,
