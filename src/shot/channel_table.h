@@ -1,0 +1,55 @@
+// The channels of all parts of an EXR file by name, as `limpid denoise --map` and its messages name them.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/io/exr/exr_document.h"
+
+namespace limpid::shot {
+
+/// Where a channel is.
+struct ChannelPlace {
+    size_t part = 0;
+    std::string channel;  ///< its name in that part
+    image::Storage storage = image::Storage::Half;
+};
+
+/// The channels of one layer: "Combined.R", "Combined.G" and so on. Layer "" has the channels without a dot.
+struct LayerChannels {
+    std::string name;
+    std::vector<std::string> components;  ///< what follows the last dot, in the file's order
+};
+
+/// A channel's name is that in its part. If several parts have it, or if it has no layer ("R") and lies in
+/// another part than the first, the part's name and a dot precede it: "albedo.R". Unreadable parts are left
+/// out.
+class ChannelTable {
+  public:
+    explicit ChannelTable(std::span<const image::ExrPart> parts);
+
+    /// Returns null if there is no channel of this name.
+    const ChannelPlace* find(std::string_view name) const;
+    /// Sorted by name.
+    const std::vector<LayerChannels>& layers() const { return layers_; }
+    /// Returns null if there is no layer of this name.
+    const LayerChannels* layer(std::string_view name) const;
+
+  private:
+    std::map<std::string, ChannelPlace, std::less<>> channels_;
+    std::vector<LayerChannels> layers_;
+};
+
+/// "Combined.R": the layer "Combined", the component "R". The layer is empty without a dot.
+struct ChannelName {
+    std::string_view layer, component;
+};
+ChannelName split(std::string_view channel);
+/// The opposite.
+std::string joined(std::string_view layer, std::string_view component);
+
+}  // namespace limpid::shot

@@ -1,0 +1,21 @@
+// Says how a file was understood: `limpid denoise --explain`.
+#pragma once
+
+#include <string>
+
+#include "shot/motion_check.h"
+#include "shot/shot_denoiser.h"
+
+namespace limpid::shot {
+
+/// Several lines: the file, and for each picture its layers with their encoding, what is missing and what
+/// that costs, and channels that are not used.
+std::string explainLayers(const LoadedFrame& frame);
+
+/// One or two lines.
+std::string explainMotion(const MotionCheck& check, int before, int now);
+
+/// One line each on the camera, and on light that no layer explains.
+std::string explainView(const FrameReport& report);
+
+}  // namespace limpid::shot

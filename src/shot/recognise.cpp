@@ -1,0 +1,105 @@
+#include "shot/recognise.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "shot/conventions.h"
+
+namespace limpid::shot {
+namespace {
+
+/// `sign` is "name", or "name=beginning of the text".
+bool hasAttribute(const image::ExrDocument& file, std::string_view sign) {
+    const size_t equals = std::min(sign.find('='), sign.size());
+    const std::string key(sign.substr(0, equals));
+    const std::string_view beginning = sign.substr(std::min(equals + 1, sign.size()));
+    return std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
+        const auto text = part.texts.find(key);
+        if (text != part.texts.end()) return text->second.starts_with(beginning);
+        return beginning.empty() && (part.numbers.contains(key) || part.matrices.contains(key));
+    });
+}
+
+/// What precedes `layer` in the names of layers that end with it: "" or "ViewLayer.".
+std::vector<std::string> prefixesOf(const ChannelTable& table, std::string_view layer) {
+    std::vector<std::string> result;
+    for (const LayerChannels& candidate : table.layers()) {
+        const std::string_view name = candidate.name;
+        if (!name.ends_with(layer)) continue;
+        const std::string_view before = name.substr(0, name.size() - layer.size());
+        if (layer.empty() && !before.empty()) continue;  // the unnamed layer ends every name
+        if (before.empty() || before.ends_with('.')) result.emplace_back(before);
+    }
+    return result;
+}
+
+bool fits(const Convention& convention, const image::ExrDocument& file, const ChannelTable& table,
+          std::string_view prefix) {
+    if (convention.evidence.empty()) return true;
+    return std::any_of(convention.evidence.begin(), convention.evidence.end(), [&](std::string_view sign) {
+        return sign.starts_with('@') ? hasAttribute(file, sign.substr(1))
+                                     : table.layer(std::string(prefix) + std::string(sign)) != nullptr;
+    });
+}
+
+LayerMap mapOf(const Convention& convention, const ChannelTable& table, const std::string& prefix,
+               LayerExpression beauty) {
+    LayerMap map;
+    map.prefix = prefix;
+    map.title = prefix.empty() ? "" : prefix.substr(0, prefix.size() - 1);
+    map.renderer = convention.renderer;
+    map.encoding = convention.encoding;
+    map.layers.emplace("beauty", std::move(beauty));
+    for (const Rule& rule : convention.rules) {
+        if (map.find(rule.role)) continue;
+        auto expression = LayerExpression::resolve(rule.expression, table, prefix, rule.partial);
+        if (!expression) continue;
+        map.layers.emplace(rule.role, std::move(*expression));
+        for (const EncodingRule& change : convention.encodingRules)
+            if (change.role == rule.role && change.expression == rule.expression) change.set(map.encoding);
+    }
+    const std::string group = prefix + std::string(convention.group);
+    for (const LayerChannels& layer : table.layers()) {
+        if (convention.group.empty() || !layer.name.starts_with(group)) continue;
+        if (auto expression = LayerExpression::resolve(layer.name + ".RGB", table))
+            map.groups.push_back(std::move(*expression));
+    }
+    return map;
+}
+
+std::vector<LayerMap> mapsBy(const Convention& convention, const image::ExrDocument& file,
+                             const ChannelTable& table) {
+    std::vector<LayerMap> maps;
+    for (const std::string_view beauty : convention.beauties) {
+        const std::string_view layer = split(beauty).layer;
+        for (const std::string& prefix : prefixesOf(table, layer)) {
+            if (!fits(convention, file, table, prefix)) continue;
+            auto expression = LayerExpression::resolve(beauty, table, prefix);
+            if (expression) maps.push_back(mapOf(convention, table, prefix, std::move(*expression)));
+        }
+        if (!maps.empty()) break;
+    }
+    return maps;
+}
+
+}  // namespace
+
+std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignments& assignments) {
+    const ChannelTable table(file.parts());
+    std::vector<LayerMap> maps;
+    for (const Convention& convention : conventions()) {
+        maps = mapsBy(convention, file, table);
+        if (!maps.empty()) break;
+    }
+    if (maps.empty()) {
+        const bool named = std::any_of(assignments.begin(), assignments.end(),
+                                       [](const auto& a) { return a.first == "beauty"; });
+        if (!named)
+            throw InputError(file.name(), "has no layer of colours; --map beauty=LAYER.RGB names one");
+        maps.emplace_back();
+    }
+    for (LayerMap& map : maps) apply(assignments, table, file.name(), map);
+    return maps;
+}
+
+}  // namespace limpid::shot

@@ -1,0 +1,279 @@
+// Tests that the layers of each renderer's files are found, by files with exactly their channels.
+#include "shot/recognise.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "shot/camera_attributes.h"
+#include "shot/shot_fixture.h"
+
+namespace limpid::shot {
+namespace {
+
+using test::names;
+using test::TestPart;
+using testing::HasSubstr;
+
+class RecogniseTest : public testing::Test {
+  protected:
+    /// Each channel's value is its length, so that sums and products can be told apart.
+    image::ExrDocument file(const std::vector<TestPart>& parts) {
+        const auto value = [](const std::string& channel, uint32_t, uint32_t) {
+            return static_cast<float>(channel.size());
+        };
+        return image::ExrDocument::read(test::writeParts(folder_ / "a.exr", parts, 4, 2, value));
+    }
+
+    static std::string textOf(const LayerMap& map, std::string_view role) {
+        const LayerExpression* const layer = map.find(role);
+        return layer ? layer->text() : "";
+    }
+
+    image::test::TempFolder folder_;
+};
+
+std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {
+    std::vector<std::string> result;
+    for (auto& list : lists) result.insert(result.end(), list.begin(), list.end());
+    return result;
+}
+
+std::vector<std::string> cyclesChannels(const std::string& view) {
+    const auto colors = [&](const std::string& pass) { return names("A B G R", view + pass + "."); };
+    return joined({colors("Combined"),
+                   colors("DiffDir"),
+                   colors("DiffInd"),
+                   colors("DiffCol"),
+                   colors("GlossDir"),
+                   colors("GlossInd"),
+                   colors("GlossCol"),
+                   colors("Emit"),
+                   colors("Env"),
+                   names("X Y Z", view + "Normal."),
+                   names("W X Y Z", view + "Vector."),
+                   names("Depth.Z IndexOB.X", view),
+                   names("B G R", view + "Denoising Albedo."),
+                   names("X Y Z", view + "Denoising Normal."),
+                   {view + "Denoising Depth.Z"}});
+}
+
+TEST_F(RecogniseTest, Cycles) {
+    image::ExrDocument document = file({{.channels = cyclesChannels("View Layer.001.")}});
+    const std::vector<LayerMap> maps = recognise(document, {});
+    ASSERT_EQ(maps.size(), 1u);
+    const LayerMap& map = maps.front();
+    EXPECT_EQ(map.renderer, "Cycles (Blender)");
+    EXPECT_EQ(map.title, "View Layer.001");
+    EXPECT_EQ(textOf(map, "beauty"), "View Layer.001.Combined.RGB");
+    EXPECT_EQ(textOf(map, "diffuse"),
+              "View Layer.001.DiffCol.RGB * View Layer.001.DiffDir.RGB + "
+              "View Layer.001.DiffCol.RGB * View Layer.001.DiffInd.RGB");
+    // Without passes of transmission, the terms of glossy light remain.
+    EXPECT_EQ(textOf(map, "albedoSpecular"), "View Layer.001.GlossCol.RGB");
+    EXPECT_EQ(textOf(map, "emission"), "View Layer.001.Emit.RGB");
+    EXPECT_EQ(textOf(map, "normal"), "View Layer.001.Normal.XYZ");
+    EXPECT_EQ(map.encoding.normalSpace, NormalSpace::World);
+    EXPECT_EQ(textOf(map, "depth"), "View Layer.001.Depth.Z");
+    EXPECT_EQ(map.encoding.depthKind, DepthKind::Planar);
+    EXPECT_EQ(textOf(map, "motion"), "View Layer.001.Vector.XY");
+    EXPECT_EQ(map.encoding.motionScale, vec2(1, -1));
+    const float product = 4.0f + static_cast<float>(std::string("View Layer.001.DiffCol").size() - 2);
+    const image::Image diffuse = map.find("diffuse")->evaluate(document);
+    EXPECT_EQ(diffuse.components, 3u);
+    EXPECT_EQ(diffuse.at(1, 1, 2), 2.0f * product * product);
+}
+
+TEST_F(RecogniseTest, EachViewLayerIsAPicture) {
+    const auto maps =
+        recognise(file({{.channels = joined({cyclesChannels("A."), cyclesChannels("B.")})}}), {});
+    ASSERT_EQ(maps.size(), 2u);
+    EXPECT_EQ(textOf(maps[0], "depth"), "A.Depth.Z");
+    EXPECT_EQ(textOf(maps[1], "depth"), "B.Depth.Z");
+}
+
+TEST_F(RecogniseTest, OldPassesOfBlenderWithDenoisingDataOnly) {
+    const auto maps = recognise(file({{.channels = joined({names("R G B A", "ViewLayer.Combined."),
+                                                           names("R G B", "ViewLayer.Denoising Albedo."),
+                                                           names("X Y Z", "ViewLayer.Denoising Normal.")})}}),
+                                {});
+    EXPECT_EQ(textOf(maps.at(0), "albedo"), "ViewLayer.Denoising Albedo.RGB");
+    EXPECT_EQ(textOf(maps[0], "normal"), "ViewLayer.Denoising Normal.XYZ");
+    EXPECT_EQ(maps[0].encoding.normalSpace, NormalSpace::Camera);
+    EXPECT_EQ(maps[0].encoding.normalScale, vec3(1, 1, -1));
+    EXPECT_EQ(textOf(maps[0], "diffuse"), "");
+}
+
+/// Blender 5 writes a part for each pass, whose channels have full names.
+TEST_F(RecogniseTest, BlenderFive) {
+    const auto part = [](const std::string& pass, const std::string& components) {
+        return TestPart{.name = "ViewLayer." + pass,
+                        .channels = names(components, "ViewLayer." + pass + ".")};
+    };
+    const auto maps =
+        recognise(file({part("Combined", "R G B A"), part("Depth", "Z"), part("Diffuse Color", "R G B"),
+                        part("Diffuse Direct", "R G B"), part("Glossy Color", "R G B"),
+                        part("Glossy Direct", "R G B"), part("Emission", "R G B"), part("Normal", "X Y Z"),
+                        part("Object Index", "X"), part("Vector", "X Y Z W")}),
+                  {});
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(textOf(maps[0], "diffuse"), "ViewLayer.Diffuse Color.RGB * ViewLayer.Diffuse Direct.RGB");
+    EXPECT_EQ(textOf(maps[0], "specular"), "ViewLayer.Glossy Color.RGB * ViewLayer.Glossy Direct.RGB");
+    EXPECT_EQ(textOf(maps[0], "id"), "ViewLayer.Object Index.X");
+    EXPECT_EQ(maps[0].find("depth")->terms()[0].factors[0].channels[0].part, 1u);
+}
+
+TEST_F(RecogniseTest, Mitsuba) {
+    const auto maps = recognise(
+        file({{.channels =
+                   names("R G B image.R image.G image.B albedo.R albedo.G albedo.B nn.X nn.Y nn.Z dd.y.T"),
+               .texts = {{"generatedBy", "Mitsuba version 3.5.2"}}}}),
+        {});
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(maps[0].renderer, "Mitsuba 3");
+    EXPECT_EQ(textOf(maps[0], "beauty"), "RGB");
+    EXPECT_EQ(textOf(maps[0], "albedo"), "albedo.RGB");
+    EXPECT_EQ(textOf(maps[0], "normal"), "nn.XYZ");
+    EXPECT_EQ(textOf(maps[0], "depth"), "dd.y.T");
+    EXPECT_EQ(maps[0].encoding.depthKind, DepthKind::Distance);
+}
+
+TEST_F(RecogniseTest, Pbrt) {
+    for (const std::string geometry :
+         {"P.X P.Y P.Z N.X N.Y N.Z Ns.X Ns.Y Ns.Z", "Px Py Pz Nx Ny Nz Nsx Nsy Nsz"}) {
+        const auto maps = recognise(
+            file({{.channels = names("R G B Albedo.R Albedo.G Albedo.B dzdx dzdy u v Variance.R Variance.G "
+                                     "Variance.B RelativeVariance.R RelativeVariance.G RelativeVariance.B " +
+                                     geometry)}}),
+            {});
+        EXPECT_EQ(maps.at(0).renderer, "pbrt-v4");
+        EXPECT_EQ(textOf(maps[0], "albedo"), "Albedo.RGB");
+        EXPECT_NE(textOf(maps[0], "normal"), "") << geometry;
+        EXPECT_NE(textOf(maps[0], "depth"), "") << geometry;
+        EXPECT_EQ(maps[0].encoding.normalScale, vec3(1, 1, -1));
+    }
+}
+
+/// A camera at (0, 0, 5) that looks along -z: row vectors, z forwards; the film is 2 : 1, 90 degrees wide.
+TEST_F(RecogniseTest, ArnoldWithItsCamera) {
+    const Imath::M44f toCamera(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 5, 1);
+    const Imath::M44f toClip(1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 1, 0, 0, -0.1f, 0);
+    const image::ExrDocument document =
+        file({{.channels = names("R G B A Z N.X N.Y N.Z denoise_albedo.R denoise_albedo.G denoise_albedo.B "
+                                 "diffuse_direct.R diffuse_direct.G diffuse_direct.B diffuse_indirect.R "
+                                 "diffuse_indirect.G diffuse_indirect.B specular.R specular.G specular.B"),
+               .texts = {{"arnold/version", "Arnold 7.4.2.1"}},
+               .matrices = {{"worldToCamera", toCamera}, {"worldToScreen", toCamera * toClip}}}});
+    const auto maps = recognise(document, {});
+    EXPECT_EQ(maps.at(0).renderer, "Arnold");
+    EXPECT_EQ(textOf(maps[0], "diffuse"), "diffuse_direct.RGB + diffuse_indirect.RGB");
+    EXPECT_EQ(textOf(maps[0], "specular"), "specular.RGB");
+    EXPECT_EQ(textOf(maps[0], "albedo"), "denoise_albedo.RGB");
+    EXPECT_EQ(textOf(maps[0], "depth"), "Z");
+    const auto camera = cameraOfAttributes(document);
+    ASSERT_TRUE(camera);
+    EXPECT_EQ(camera->origin, vec3(0, 0, 5));
+    EXPECT_EQ(camera->forward, vec3(0, 0, -1));
+    EXPECT_NEAR(camera->right.x, 1.0f, 1e-5f);
+    EXPECT_NEAR(camera->up.y, 0.5f, 1e-5f);
+}
+
+/// pbrt writes its matrices for column vectors, and no angle of view that could be used.
+TEST_F(RecogniseTest, MatricesForColumnVectorsAreNoticed) {
+    const Imath::M44f toCamera(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 5, 0, 0, 0, 1);
+    image::ExrDocument document =
+        file({{.channels = names("R G B"), .matrices = {{"worldToCamera", toCamera}}}});
+    EXPECT_FALSE(cameraOfAttributes(document));
+    document = file({{.channels = names("R G B"),
+                      .matrices = {{"worldToCamera", toCamera},
+                                   {"worldToNDC",
+                                    Imath::M44f(0.5f, 0, 0.5f, 0, 0, 0.5f, 0.5f, 0, 0, 0, 1, 0, 0, 0, 1, 0) *
+                                        toCamera}}}});
+    const auto camera = cameraOfAttributes(document);
+    ASSERT_TRUE(camera);
+    EXPECT_EQ(camera->origin, vec3(0, 0, 5));
+}
+
+TEST_F(RecogniseTest, RenderMan) {
+    const auto maps = recognise(
+        file({{.channels = names("Ci.r Ci.g Ci.b a albedo.r albedo.g albedo.b normal.x normal.y normal.z z "
+                                 "mse.r mse.g mse.b diffuse.r diffuse.g diffuse.b specular.r specular.g "
+                                 "specular.b motionBack.x motionBack.y sampleCount")}}),
+        {});
+    EXPECT_EQ(maps.at(0).renderer, "RenderMan");
+    EXPECT_EQ(textOf(maps[0], "beauty"), "Ci.RGB");
+    EXPECT_EQ(textOf(maps[0], "normal"), "normal.XYZ");
+    EXPECT_EQ(textOf(maps[0], "motion"), "motionBack.XY");
+    EXPECT_EQ(textOf(maps[0], "depth"), "z");
+}
+
+/// Karma's parts have bare channels; the part's name is the layer's.
+TEST_F(RecogniseTest, KarmaInParts) {
+    const auto maps = recognise(file({{.name = "C", .channels = names("R G B A")},
+                                      {.name = "albedo", .channels = names("R G B")},
+                                      {.name = "combineddiffuse", .channels = names("R G B")},
+                                      {.name = "N", .channels = names("x y z")},
+                                      {.name = "depth", .channels = names("Y")}}),
+                                {});
+    ASSERT_EQ(maps.size(), 1u);
+    EXPECT_EQ(maps[0].renderer, "Karma");
+    EXPECT_EQ(textOf(maps[0], "beauty"), "C.RGB");
+    EXPECT_EQ(textOf(maps[0], "normal"), "N.XYZ");
+    EXPECT_EQ(textOf(maps[0], "depth"), "depth.Y");
+    EXPECT_EQ(maps[0].find("normal")->terms()[0].factors[0].channels[2].channel, "z");
+}
+
+TEST_F(RecogniseTest, BeautyAlbedoAndNormalOfAnyRenderer) {
+    const auto maps = recognise(
+        file({{.channels = names("R G B albedo.R albedo.G albedo.B normal.X normal.Y normal.Z")}}), {});
+    EXPECT_EQ(maps.at(0).renderer, "unknown");
+    EXPECT_EQ(textOf(maps[0], "albedo"), "albedo.RGB");
+    EXPECT_EQ(textOf(maps[0], "normal"), "normal.XYZ");
+    EXPECT_EQ(textOf(maps[0], "depth"), "") << "B is no depth";
+}
+
+TEST_F(RecogniseTest, AssignmentsWin) {
+    const image::ExrDocument document =
+        file({{.channels = names("R G B albedo.R albedo.G albedo.B My.Tex.R My.Tex.G My.Tex.B v.X v.Y")}});
+    const auto maps = recognise(document, {{"albedo", "My.Tex.RGB"},
+                                           {"motion", "v.XY"},
+                                           {"motion.scale", "-1,1"},
+                                           {"motion.unit", "picture"},
+                                           {"normal.space", "camera"}});
+    EXPECT_EQ(textOf(maps.at(0), "albedo"), "My.Tex.RGB");
+    EXPECT_EQ(maps[0].encoding.motionScale, vec2(-1, 1));
+    EXPECT_EQ(maps[0].encoding.motionUnit, MotionUnit::Picture);
+    EXPECT_EQ(maps[0].encoding.normalSpace, NormalSpace::Camera);
+    EXPECT_EQ(textOf(recognise(document, {{"albedo", ""}}).at(0), "albedo"), "") << "removed";
+    EXPECT_EQ(textOf(recognise(document, {{"beauty", "albedo.RGB - 0.5 * My.Tex.RGB"}}).at(0), "beauty"),
+              "albedo.RGB - 0.5 * My.Tex.RGB");
+}
+
+TEST_F(RecogniseTest, WrongAssignmentsAreRefused) {
+    const image::ExrDocument document = file({{.channels = names("R G B v.X v.Y")}});
+    const auto messageOf = [&](const std::string& key, const std::string& value) -> std::string {
+        try {
+            recognise(document, {{key, value}});
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_THAT(messageOf("colour", "RGB"), HasSubstr("'colour' is no layer; they are beauty, diffuse"));
+    EXPECT_THAT(messageOf("albedo", "missing.RGB"), HasSubstr("lacks a channel of 'albedo=missing.RGB'"));
+    EXPECT_THAT(messageOf("albedo", "v.XY"), HasSubstr("3 components are needed, not 2"));
+    EXPECT_THAT(messageOf("albedo", "RGB * v.XY"), HasSubstr("another number of components"));
+    EXPECT_THAT(messageOf("albedo", " * "), HasSubstr("is no product of layers"));
+    EXPECT_THAT(messageOf("motion.scale", "1"), HasSubstr("2 numbers are needed"));
+    EXPECT_THAT(messageOf("motion.scale", "1,nan"), HasSubstr("2 numbers are needed"));
+    EXPECT_THAT(messageOf("depth.kind", "flat"), HasSubstr("it is 'distance' or 'planar'"));
+    EXPECT_THROW(parseAssignment("albedo"), UsageError);
+    try {
+        recognise(file({{.channels = names("Z N.X")}}), {});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("has no layer of colours; --map beauty=LAYER.RGB names one"));
+    }
+}
+
+}  // namespace
+}  // namespace limpid::shot

@@ -1,0 +1,295 @@
+#include "shot/shot_denoiser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "image/io/exr/exr.h"
+#include "image/io/picture.h"
+#include "renderer/layers/frame_file.h"
+#include "shot/camera_attributes.h"
+#include "shot/recognise.h"
+
+namespace limpid::shot {
+namespace {
+
+using denoise::HostFrame;
+
+/// The first part as one picture, for what reads Limpid's own files.
+image::LayeredImage layeredImage(image::ExrDocument& file) {
+    image::LayeredImage picture;
+    picture.width = file.width();
+    picture.height = file.height();
+    const image::ExrPart& part = file.parts().front();
+    picture.metadata = part.texts;
+    for (const auto& channel : part.channels)
+        picture.channels.push_back({channel.name, channel.storage, file.values(0, channel.name)});
+    return picture;
+}
+
+/// A file's layers; a picture of another format has R, G and B.
+image::LayeredImage layersOf(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = readFile(path);
+    constexpr std::array exrMagic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
+    if (bytes.size() >= 4 && std::equal(exrMagic.begin(), exrMagic.end(), bytes.begin()))
+        return image::decodeExr(bytes, path);
+    const image::Image picture = image::readPicture(path).linear;
+    image::LayeredImage layers;
+    layers.width = picture.width;
+    layers.height = picture.height;
+    layers.add("", "RGB", picture, image::Storage::Float);
+    return layers;
+}
+
+image::ExrDocument openDocument(const std::filesystem::path& path) {
+    const std::string extension = path.extension().string();
+    const bool picture =
+        extension == ".pfm" || extension == ".hdr" || extension == ".png" || extension == ".jpg";
+    return picture ? image::ExrDocument::of(layersOf(path), path) : image::ExrDocument::read(path);
+}
+
+bool has(const image::ExrPart& part, const LayerInfo& layer) {
+    return std::all_of(layer.suffixes.begin(), layer.suffixes.end(), [&](char suffix) {
+        return std::any_of(part.channels.begin(), part.channels.end(), [&](const auto& channel) {
+            return channel.name == std::string(layer.name) + "." + suffix;
+        });
+    });
+}
+
+/// True if the file has the layers that Limpid writes for a still, and (`sequence`) those for a sequence.
+bool isOwn(const image::ExrDocument& file, bool sequence) {
+    const image::ExrPart& part = file.parts().front();
+    return part.unreadable.empty() && part.texts.contains("limpid.camera") &&
+           std::all_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
+               const bool needed =
+                   layer.need == Need::Always || (sequence && layer.need == Need::InSequences);
+               return !needed || has(part, layer);
+           });
+}
+
+/// Other renderers' samples lie all over the pixel, so edges differ from frame to frame like a jittered
+/// picture's. The number of frames was chosen on the shot `camera` of scripts/shots.
+constexpr int framesOfEdges = 4;
+
+float distanceOf(const HostFrame& frame, size_t p) {
+    const float share = frame.depth[4 * p + 1];
+    return share > 0.0f ? frame.depth[4 * p] / share : 0.0f;
+}
+
+void multiplyByAlpha(const image::Image& alpha, CleanPicture& picture) {
+    const auto multiply = [&](std::vector<float>& colors) {
+        for (size_t i = 0; i < colors.size(); ++i)
+            if (i % 4 != 3 && alpha.pixels[i / 4] > 0.0f) colors[i] *= alpha.pixels[i / 4];
+    };
+    multiply(picture.beauty);
+    for (std::vector<float>& group : picture.groups) multiply(group);
+}
+
+/// Replaces the layer of an expression that is nothing else. Adds the parts that changed.
+void replaceLayer(image::ExrDocument& file, const LayerExpression& expression,
+                  const std::vector<float>& colors, std::set<size_t>& parts) {
+    const bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
+                        expression.terms().front().factors.size() == 1;
+    if (!single) throw UsageError(fmt::format("'{}' is no layer that could be replaced", expression.text()));
+    const std::vector<ChannelPlace>& channels = expression.terms().front().factors.front().channels;
+    std::vector<float> values(colors.size() / 4);
+    for (size_t c = 0; c < channels.size(); ++c) {
+        for (size_t p = 0; p < values.size(); ++p) values[p] = colors[4 * p + c];
+        file.replace(channels[c].part, channels[c].channel, values);
+        parts.insert(channels[c].part);
+    }
+}
+
+}  // namespace
+
+struct ShotDenoiser::Picture {
+    explicit Picture(const LayerMap& map) : converter(map) {}
+    FrameConverter converter;
+    gpu::FrameGraph graph;
+    std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
+    std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
+};
+
+LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options) {
+    LoadedFrame frame{.number = number, .file = openDocument(path)};
+    for (const auto& [name, pattern] : options.files) {
+        const std::filesystem::path file = pattern.format(std::max(number, 0));
+        frame.file.attach(name, layersOf(file), file);
+    }
+    frame.maps = recognise(frame.file, options.assignments);
+    const bool asWritten =
+        options.assignments.empty() && !options.layersOnly && isOwn(frame.file, options.sequence);
+    if (asWritten || options.network) {
+        const image::LayeredImage picture = layeredImage(frame.file);
+        if (options.network) requireVariances(picture, path);
+        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
+        return frame;
+    }
+    const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
+    for (const LayerMap& map : frame.maps) {
+        frame.layers.push_back(readLayers(frame.file, map));
+        frame.layers.back().camera = camera;
+    }
+    return frame;
+}
+
+ShotDenoiser::ShotDenoiser(gpu::Device& device, const ShotOptions& options, Direction direction)
+    : device_(device), options_(options), direction_(direction) {}
+ShotDenoiser::~ShotDenoiser() = default;
+
+gpu::FrameGraph& ShotDenoiser::graph(size_t picture) {
+    return pictures_.at(picture)->graph;
+}
+
+HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& picture, bool continues) {
+    if (frame.own) return std::move(*frame.own);
+    ShotLayers& layers = frame.layers[index];
+    std::optional<CameraParams> given;
+    const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
+    if (camera) given = camera->params(layers.width, layers.height);
+    HostFrame host = direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
+                                                       : picture.converter.convertAlone(layers, given);
+    return host;
+}
+
+CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, bool edgesAreMeans,
+                                 bool continues) {
+    CleanPicture result;
+    denoise::DenoiserSettings settings = options_.settings;
+    if (frame.specular.empty()) settings.svgf.separate = false;
+    if (edgesAreMeans && settings.taa == denoise::TaaSettings{}) settings.taa.frames = framesOfEdges;
+    if (!continues) graph.resetHistories();
+    graph.beginFrame();
+    denoise::DenoiserInput input = denoise::upload(graph, frame);
+    input.filters = gpu::filterBacking(device_);
+    const denoise::DenoiserOutput clean = options_.method->record(graph, input, settings, options_.networks);
+    graph.execute(device_);
+    result.beauty = graph.downloadFloat(device_, clean.beauty);
+    if (clean.frames) {
+        const std::vector<float> texels = graph.downloadFloat(device_, clean.frames);
+        for (size_t p = 3; p < texels.size(); p += 4) result.frames.push_back(texels[p]);
+    }
+    if (clean.disocclusion)
+        result.disocclusion = denoise::countDisocclusion(graph.downloadUint(device_, clean.disocclusion));
+    return result;
+}
+
+/// Each group is one signal with the frame's guides.
+void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, const HostFrame& frame,
+                               bool continues, CleanPicture& result) {
+    HostFrame one = frame;
+    for (size_t i = 0; i < frame.albedoSpecular.size(); ++i) one.albedo[i] += frame.albedoSpecular[i];
+    one.specular.clear();
+    one.albedoSpecular.clear();
+    one.roughness.clear();
+    image::Image rest = layers.images.at("beauty");
+    for (size_t g = 0; g <= layers.groups.size(); ++g) {
+        const image::Image& light = g < layers.groups.size() ? layers.groups[g] : rest;
+        for (size_t p = 0; p < frame.pixelCount(); ++p) {
+            const bool hit = frame.depth[4 * p + 1] > 0.0f;
+            const float alpha = layers.isTransparent && hit ? layers.images.at("alpha").pixels[p] : 1.0f;
+            for (size_t c = 0; c < 3; ++c) {
+                const float value = light.pixels[3 * p + c];
+                one.diffuse[4 * p + c] = hit ? value / alpha : 0.0f;
+                one.emission[4 * p + c] = hit ? 0.0f : value;
+                if (g < layers.groups.size()) rest.pixels[3 * p + c] -= value;
+            }
+        }
+        if (g == picture.groups.size()) picture.groups.push_back(std::make_unique<gpu::FrameGraph>());
+        result.groups.push_back(clean(*picture.groups[g], one, !layers.isTransparent, continues).beauty);
+    }
+}
+
+std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continues) {
+    std::vector<CleanPicture> results;
+    const size_t count = frame.own ? 1 : frame.maps.size();  // other layers of Limpid's files are no pictures
+    for (size_t i = 0; i < count; ++i) {
+        if (i == pictures_.size()) pictures_.push_back(std::make_unique<Picture>(frame.maps[i]));
+        Picture& picture = *pictures_[i];
+        const bool own = frame.own.has_value();
+        HostFrame host = hostFrame(frame, i, picture, continues);
+        if (direction_ == Direction::Backwards) {
+            HostFrame guides;  // before the motion is inverted: the next call needs this frame's
+            guides.width = host.width;
+            guides.height = host.height;
+            guides.motion = host.motion;
+            guides.depth = host.depth;
+            if (continues && picture.last)
+                turnAround(host, *picture.last);
+            else
+                std::fill(host.motion.begin(), host.motion.end(), 0.0f);
+            picture.last = std::move(guides);
+        }
+        // Anti-aliasing would mix covered and empty pixels.
+        const bool transparent = !own && frame.layers[i].isTransparent;
+        CleanPicture& result =
+            results.emplace_back(clean(picture.graph, host, !own && !transparent, continues));
+        result.report = picture.converter.report();
+        if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
+            cleanGroups(picture, frame.layers[i], host, continues, result);
+        if (transparent) multiplyByAlpha(frame.layers[i].images.at("alpha"), result);
+        if (!own) frame.layers[i] = {};
+    }
+    return results;
+}
+
+void turnAround(HostFrame& now, const HostFrame& next) {
+    const size_t count = now.pixelCount();
+    std::vector<float> nearest(count, INFINITY);
+    std::fill(now.motion.begin(), now.motion.end(), 0.0f);
+    now.reflectionMotion.clear();
+    now.previousNormal = now.normal;
+    if (next.pixelCount() != count || next.width != now.width) return;
+    for (size_t q = 0; q < count; ++q) {
+        const float share = next.motion[4 * q + 3], distance = distanceOf(next, q);
+        if (!(share > 0.0f && distance > 0.0f)) continue;
+        const vec2 moved(next.motion[4 * q] / share, next.motion[4 * q + 1] / share);
+        const float before = distance + next.motion[4 * q + 2] / share;
+        const float x = std::floor(static_cast<float>(q % now.width) + moved.x + 0.5f);
+        const float y = std::floor(static_cast<float>(q / now.width) + moved.y + 0.5f);
+        if (!(x >= 0.0f && y >= 0.0f && x < static_cast<float>(now.width) &&
+              y < static_cast<float>(now.height)))
+            continue;
+        const size_t p = static_cast<size_t>(y) * now.width + static_cast<size_t>(x);
+        // A pixel that shows another surface now is hidden in the next frame, or the other one.
+        if (!(before < nearest[p]) || std::abs(before - distanceOf(now, p)) > 0.1f * before) continue;
+        nearest[p] = before;
+        const float texel[] = {-moved.x, -moved.y, distance - distanceOf(now, p), 1.0f};
+        std::copy_n(texel, 4, &now.motion[4 * p]);
+    }
+}
+
+void merge(CleanPicture& forwards, const CleanPicture& backwards) {
+    if (forwards.frames.empty() || backwards.frames.size() != forwards.frames.size()) return;
+    for (size_t p = 0; p < forwards.frames.size(); ++p) {
+        const float before = std::max(forwards.frames[p], 0.0f), after = std::max(backwards.frames[p], 0.0f);
+        if (!(before + after > 0.0f)) continue;
+        const float share = after / (before + after);
+        for (size_t c = 4 * p; c < 4 * p + 3; ++c)
+            forwards.beauty[c] += share * (backwards.beauty[c] - forwards.beauty[c]);
+    }
+}
+
+void shareOut(CleanPicture& picture) {
+    for (size_t i = 0; i < picture.beauty.size() && !picture.groups.empty(); ++i) {
+        float sum = 0.0f;
+        for (const std::vector<float>& group : picture.groups) sum += group[i];
+        const float scale = sum > 0.0f ? picture.beauty[i] / sum : 0.0f;
+        for (std::vector<float>& group : picture.groups) group[i] *= scale;
+        if (!(sum > 0.0f)) picture.groups.back()[i] = picture.beauty[i];
+    }
+}
+
+std::set<size_t> replacePicture(image::ExrDocument& file, const LayerMap& map, const CleanPicture& picture) {
+    std::set<size_t> parts;
+    replaceLayer(file, map.layers.at("beauty"), picture.beauty, parts);
+    for (size_t g = 0; g < map.groups.size() && g < picture.groups.size(); ++g)
+        replaceLayer(file, map.groups[g], picture.groups[g], parts);
+    return parts;
+}
+
+}  // namespace limpid::shot

@@ -1,0 +1,86 @@
+// Makes frames for denoisers of a shot's files.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "denoise/api/host_frame.h"
+#include "image/io/exr/exr_document.h"
+#include "shot/camera_track.h"
+#include "shot/layer_map.h"
+
+namespace limpid::shot {
+
+/// The layers of one picture of a file, decoded, in the file's encoding.
+struct ShotLayers {
+    uint32_t width = 0, height = 0;
+    /// The film is transparent: light and albedo are multiplied by alpha, which is below 1 somewhere.
+    bool isTransparent = false;
+    std::map<std::string, image::Image, std::less<>> images;  ///< by role
+    std::optional<CameraParams> camera;                       ///< of the file's attributes
+    std::vector<image::Image> groups;                         ///< of light
+
+    const image::Image* find(std::string_view role) const {
+        const auto found = images.find(role);
+        return found == images.end() ? nullptr : &found->second;
+    }
+};
+
+ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map);
+
+/// Where a frame's camera is from.
+enum class CameraSource {
+    Given,     ///< from a file of cameras, or the frame's attributes
+    Solved,    ///< from positions, depth, normals and motion
+    Supposed,  ///< nothing is known: an angle of 50 degrees, and no movement
+};
+
+/// What is known of a frame's view, for messages.
+struct FrameReport {
+    CameraSource camera = CameraSource::Supposed;
+    float inliers = 0.0f;        ///< of a solved movement: the share of points that agree
+    float horizontalFov = 0.0f;  ///< degrees; 0 for an orthographic camera
+    double lightShare = 1.0;     ///< of the beauty's energy: what diffuse, specular and emission explain
+};
+
+/// Converts the frames of one picture of a shot, in order.
+class FrameConverter {
+  public:
+    explicit FrameConverter(LayerMap map) : map_(std::move(map)) {}
+
+    /// `given`: the camera, if it is known otherwise. `continues`: the last frame that was converted is the
+    /// one before; else all motion is invalid. Missing layers become what the denoisers take for missing:
+    /// without specular light, all light is one signal; without normals, surfaces face the viewer; without
+    /// depth, all lie on a plane; without albedo, it is white. On transparent film, light and albedo are
+    /// divided by alpha, so that coverage is no noise: multiply the clean picture by it.
+    denoise::HostFrame convert(const ShotLayers& layers, const std::optional<CameraParams>& given,
+                               bool continues);
+
+    /// The same for frames in any order: motion has no difference of distances, and it is kept although no
+    /// frame came before. A camera that only a shot in order tells stands still.
+    denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given);
+
+    const FrameReport& report() const { return report_; }
+
+  private:
+    struct View {
+        CameraParams camera{};
+        std::vector<float> distance;  ///< along the ray; 0 where nothing is seen
+        bool comparable = false;      ///< the camera stands in the same space as the last frame's
+    };
+    CameraParams cameraOf(const ShotLayers& layers, const std::optional<CameraParams>& given);
+    std::optional<CameraParams> locatedCamera(const ShotLayers& layers) const;
+    CameraParams solvedCamera(const ShotLayers& layers);
+    void addMotion(const ShotLayers& layers, const View& view, denoise::HostFrame& frame) const;
+    void addLight(const ShotLayers& layers, const std::vector<float>& distance, denoise::HostFrame& frame);
+
+    LayerMap map_;
+    FrameReport report_;
+    std::optional<View> last_;
+    bool continues_ = false;
+    bool alone_ = false;
+};
+
+}  // namespace limpid::shot
