@@ -1,47 +1,42 @@
-// `limpid denoise`: denoises EXR frames from any renderer.
+// `limpid denoise`: denoises frames of any renderer.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/files/frame_pattern.h"
+#include "base/files/file.h"
+#include "base/hash.h"
 #include "base/log.h"
+#include "cli/commands.h"
+#include "cli/denoise/denoise_shot.h"
+#include "cli/denoise/explain_shot.h"
+#include "cli/json_text.h"
 #include "cli/options/device_options.h"
 #include "cli/options/former_options.h"
 #include "cli/options/pipeline_options.h"
 #include "cli/render/picture_output.h"
-#include "cli/render/render_job.h"
-#include "commands.h"
-#include "image/io/exr/exr.h"
-#include "image/io/png/png.h"
-#include "image/tonemap.h"
-#include "json_text.h"
-#include "progress.h"
-#include "renderer/frame/frame_download.h"
 #include "renderer/frame/network_file.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
-#include "renderer/layers/frame_file.h"
 
 namespace limpid::cli {
 namespace {
 
-namespace fs = std::filesystem;
-using image::LayeredImage;
-
 struct DenoiseOptions {
-    std::string input, output, denoiser, exposure = "auto", dump, weights;
-    std::string preset;
-    std::vector<std::string> assignments;
+    std::string input, output, denoiser, exposure = "auto", dump, weights, preset;
+    std::string mapFile, cameras, frames, shard, cuts = "auto", onError = "stop";
+    std::vector<std::string> assignments, map, files;
     DeviceChoice device;
-    bool json = false;
+    float strength = 1.0f;
+    bool json = false, explain = false, bidirectional = false, resume = false;
 };
 
-/// Returns the denoiser of --denoiser, else of --preset.
+/// Returns the denoiser of --denoiser, else of --preset, else svgf.
 const denoise::Denoiser& chosenDenoiser(const DenoiseOptions& o) {
-    const Pipeline pipeline = pipelineFor(o.preset, {.integrator = {}, .denoiser = o.denoiser}, {});
+    const std::string name = o.denoiser.empty() && o.preset.empty() ? "svgf" : o.denoiser;
+    const Pipeline pipeline = pipelineFor(o.preset, {.integrator = {}, .denoiser = name}, {});
     if (pipeline.denoiser) return *pipeline.denoiser;
     throw UsageError("--denoiser is missing; it is one of " + listOfDenoisers());
 }
@@ -53,126 +48,217 @@ denoise::DenoiserSettings settingsOf(const DenoiseOptions& o) {
     return settings.denoisers;
 }
 
-/// Returns all frames of the sequence, or -1 for a single file.
-std::vector<int> framesOf(const FramePattern& input, const FramePattern& output) {
-    if (input.numbered() != output.numbered())
-        throw UsageError("'" + output.text() + "': the output's name holds a number if the input's does");
-    return input.numbered() ? input.wholeSequence() : std::vector<int>{-1};
+uint64_t hashOfFile(const std::string& path) {
+    Hash64 hash;
+    hash.add(readFile(path));
+    return hash.value();
 }
 
-/// Replaces the file's beauty. All other layers stay, for metrics and further filters.
-LayeredImage withBeauty(LayeredImage file, const std::vector<float>& beauty, std::string_view method) {
-    const image::Channel* before = file.find("R");
-    const image::Storage storage = before ? before->storage : image::Storage::Half;
-    std::erase_if(file.channels, [](const image::Channel& channel) {
-        return channel.name == "R" || channel.name == "G" || channel.name == "B" || channel.name == "A";
-    });
-    image::Image picture(file.width, file.height, 4);
-    picture.pixels = beauty;
-    file.add("", "RGBA", picture, storage);
-    file.metadata["limpid.denoiser"] = method;
-    return file;
+/// Parses "10-20" or "7".
+std::pair<int, int> parseRange(const std::string& text) {
+    int first = 0, last = 0;
+    const char* const end = text.data() + text.size();
+    const auto a = std::from_chars(text.data(), end, first);
+    bool good = a.ec == std::errc{} && first >= 0;
+    last = first;
+    if (good && a.ptr != end) {
+        const auto b = std::from_chars(a.ptr + 1, end, last);
+        good = *a.ptr == '-' && b.ec == std::errc{} && b.ptr == end && last >= first;
+    }
+    if (!good) throw UsageError(fmt::format("--frames {}: an example is 10-20", text));
+    return {first, last};
 }
 
-/// Returns 1 for pixels that see a surface, else 0.
-std::vector<float> surfaces(const LayeredImage& file) {
-    const image::Channel* depth = file.find("depth.Z");
-    if (!depth) return {};
-    std::vector<float> result = depth->values;
-    for (float& distance : result) distance = distance > 0.0f && distance < missDepth ? 1.0f : 0.0f;
+/// Returns the frames to denoise, or -1 for a single file.
+std::vector<int> framesOf(const DenoiseOptions& o, const FramePattern& input) {
+    if (!input.numbered()) {
+        if (!o.frames.empty()) throw UsageError("--frames: the input's name holds no number");
+        return {-1};
+    }
+    std::vector<int> frames = o.onError == "skip" ? input.existingFrames() : std::vector<int>{};
+    if (o.frames.empty()) return frames.empty() ? input.wholeSequence() : frames;
+    if (frames.empty()) frames = input.existingFrames();
+    const auto [first, last] = parseRange(o.frames);
+    std::erase_if(frames, [&, a = first, b = last](int frame) { return frame < a || frame > b; });
+    for (size_t i = 0; o.onError != "skip" && i + 1 < frames.size(); ++i)
+        if (frames[i + 1] != frames[i] + 1)
+            throw InputError(input.text(), fmt::format("frame {} is missing", frames[i] + 1));
+    if (frames.empty()) throw InputError(input.text(), fmt::format("there are no frames {}", o.frames));
+    return frames;
+}
+
+/// Chooses the job's frames that are written: all, or those of "2/4", the second of four parts.
+void chooseShard(const std::string& text, ShotJob& job) {
+    size_t part = 1, parts = 1;
+    if (!text.empty()) {
+        const char* const end = text.data() + text.size();
+        const auto a = std::from_chars(text.data(), end, part);
+        const auto b = a.ptr < end && *a.ptr == '/' ? std::from_chars(a.ptr + 1, end, parts) : a;
+        if (a.ec != std::errc{} || b.ec != std::errc{} || b.ptr != end || b.ptr == a.ptr || part < 1 ||
+            part > parts)
+            throw UsageError(fmt::format("--shard {}: an example is 2/4, the second of four parts", text));
+    }
+    const size_t count = job.frames.size();
+    job.firstWritten = count * (part - 1) / parts;
+    job.endWritten = count * part / parts;
+}
+
+/// What the result depends on besides the input.
+std::string settingsText(const DenoiseOptions& o) {
+    const std::string cameras = o.cameras.empty() ? "" : hashText(hashOfFile(o.cameras));
+    const std::string mapFile = o.mapFile.empty() ? "" : hashText(hashOfFile(o.mapFile));
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, o.weights,
+                       fmt::join(o.assignments, " "), fmt::join(o.map, " "), mapFile, cameras, o.cuts,
+                       o.bidirectional, o.strength);
+}
+
+/// Parses "auto", "none" or "12,40".
+std::optional<std::vector<int>> parseCuts(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    std::vector<int> cuts;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (text != "none" && at < end) {
+        int frame = 0;
+        const auto [next, error] = std::from_chars(at, end, frame);
+        if (error != std::errc{} || (next != end && *next != ','))
+            throw UsageError(fmt::format("--cuts {}: it is auto, none, or frames separated by commas", text));
+        cuts.push_back(frame);
+        at = next + 1;
+    }
+    return cuts;
+}
+
+shot::Assignments mapOf(const DenoiseOptions& o) {
+    shot::Assignments result;
+    if (!o.mapFile.empty()) result = shot::readAssignments(o.mapFile);
+    for (const std::string& text : o.map) result.push_back(shot::parseAssignment(text));
     return result;
 }
 
-void write(const DenoiseOptions& o, const fs::path& path, LayeredImage file,
-           const std::vector<float>& beauty) {
-    const LayeredImage result = withBeauty(std::move(file), beauty, chosenDenoiser(o).name);
-    if (isExr(path)) return image::writeExr(path, result);
-    const image::Image picture = result.get("", "RGB");
-    const float stops = parseExposure(o.exposure).value_or(image::autoExposure(picture, surfaces(result)));
-    image::writePng(path, image::toBytes(image::tonemap(picture, stops)));
-}
-
-void warnOfLacking(const std::vector<const LayerInfo*>& lacking) {
-    for (const LayerInfo* layer : lacking)
-        log::warn("the layer '{}' is missing: {}", layer->name, layer->without);
-}
-
-struct DenoiseSummary {
-    int frames = 0;
-    denoise::DisocclusionCounts disocclusion;
-    std::map<std::string, double> lastFrame;
-};
-
-DenoiseSummary denoiseFrames(const DenoiseOptions& o, gpu::Device& device) {
-    const denoise::Denoiser& method = chosenDenoiser(o);
-    const denoise::DenoiserSettings settings = settingsOf(o);
-    const denoise::DenoiserNetworks networks = loadNetworks(device, &method, o.weights, settings);
-    const FramePattern input(o.input), output(o.output);
-    const std::vector<int> frames = framesOf(input, output);
-    Progress progress("frames", frames.size());
-    gpu::FrameGraph graph;
-    DenoiseSummary summary;
-    for (const int frame : frames) {
-        const fs::path name = input.format(std::max(frame, 0)), result = output.format(std::max(frame, 0));
-        LayeredImage file = image::readExr(name);
-        std::vector<const LayerInfo*> lacking;
-        if (method.network) requireVariances(file, name);
-        const denoise::HostFrame host = frameOf(file, name, frames.size() > 1 && !method.network, lacking);
-        if (summary.frames == 0) warnOfLacking(lacking);
-        graph.beginFrame();
-        denoise::DenoiserInput images = denoise::upload(graph, host);
-        images.filters = gpu::filterBacking(device);
-        const denoise::DenoiserOutput denoised = method.record(graph, images, settings, networks);
-        graph.execute(device);
-        write(o, result, std::move(file), graph.downloadFloat(device, denoised.beauty));
-        if (!o.dump.empty()) writeDump(result, imagesOfPass(graph, device, o.dump));
-        if (denoised.disocclusion)
-            summary.disocclusion =
-                denoise::countDisocclusion(graph.downloadUint(device, denoised.disocclusion));
-        if (summary.disocclusion.rejected > 0)
-            log::warn("{}: {} pixels are NaN or infinite and were left out", name.string(),
-                      summary.disocclusion.rejected);
-        summary.lastFrame = sumByName(graph.passTimes(device));
-        progress.show(static_cast<uint64_t>(++summary.frames));
+std::vector<std::pair<std::string, FramePattern>> filesOf(const DenoiseOptions& o, bool numbered) {
+    std::vector<std::pair<std::string, FramePattern>> files;
+    for (const std::string& text : o.files) {
+        const size_t equals = text.find('=');
+        if (equals == 0 || equals == std::string::npos)
+            throw UsageError(fmt::format("--file {}: an example is albedo=albedo.%04d.pfm", text));
+        files.emplace_back(text.substr(0, equals), FramePattern(text.substr(equals + 1)));
+        if (files.back().second.numbered() && !numbered)
+            throw UsageError(fmt::format("--file {}: the input's name holds no number", text));
     }
-    return summary;
+    return files;
+}
+
+ShotJob jobOf(const DenoiseOptions& o) {
+    ShotJob job{.input = FramePattern(o.input),
+                .output = FramePattern(o.explain ? o.input : o.output),
+                .exposure = o.exposure,
+                .dump = o.dump};
+    if (job.input.numbered() != job.output.numbered())
+        throw UsageError("'" + o.output + "': the output's name holds a number if the input's does");
+    job.options.method = &chosenDenoiser(o);
+    job.options.settings = settingsOf(o);
+    job.load.assignments = mapOf(o);
+    job.load.network = job.options.method->network;
+    job.load.files = filesOf(o, job.input.numbered());
+    if (o.onError != "stop" && o.onError != "skip") throw UsageError("--on-error is 'stop' or 'skip'");
+    job.skipUnreadable = o.onError == "skip";
+    job.strength = o.strength;
+    job.bidirectional = o.bidirectional && job.input.numbered();
+    if (job.bidirectional && (job.options.method->network || job.options.method->name == "bilateral"))
+        throw UsageError("--bidirectional: --denoiser " + o.denoiser + " has no history");
+    const auto cuts = parseCuts(o.cuts);
+    job.cuts = cuts ? Cuts::Given : Cuts::Found;
+    job.cutFrames = cuts.value_or(std::vector<int>{});
+    job.frames = framesOf(o, job.input);
+    job.load.sequence = job.frames.size() > 1;
+    chooseShard(o.shard, job);
+    job.settingsText = settingsText(o);
+    job.resume = o.resume;
+    const bool exr = isExr(job.output.format(0));
+    if (o.resume && !exr) throw UsageError("--resume: only EXR files tell what they are of");
+    return job;
+}
+
+void report(const DenoiseOptions& o, const ShotJob& job, const ShotSummary& summary, gpu::Device& device) {
+    if (o.json) {
+        const nlohmann::json object{{"output", o.output},           {"denoiser", job.options.method->name},
+                                    {"device", device.info().name}, {"frames", summary.frames},
+                                    {"kept", summary.kept},         {"skipped", summary.skipped},
+                                    {"cuts", summary.cuts},         {"last_frame_ms", summary.lastFrame}};
+        fmt::print("{}\n", jsonText(object));
+    } else {
+        if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
+        if (!summary.cuts.empty()) log::info("cuts before frames {}", describeFrames(summary.cuts));
+        log::info("{} frames by {}, on {}", summary.frames, job.options.method->name, device.info().name);
+    }
 }
 
 void denoiseFiles(const DenoiseOptions& o) {
     parseExposure(o.exposure);
-    checkPictureOutput(FramePattern(o.output).format(0), false);
-    chosenDenoiser(o);
-    settingsOf(o);
+    if (!o.explain && o.output.empty()) throw UsageError("--output is missing");
+    if (!o.explain) checkPictureOutput(FramePattern(o.output).format(0), false);
+    ShotJob job = jobOf(o);
+    std::optional<shot::CameraTrack> cameras;
+    if (!o.cameras.empty()) cameras = shot::CameraTrack::read(o.cameras);
+    job.options.cameras = cameras ? &*cameras : nullptr;
+    if (o.explain) return explainShot(job);
     const OpenDevice device = openDevice(o.device);
-    const DenoiseSummary summary = denoiseFrames(o, *device);
-    if (o.json) {
-        const nlohmann::json object{{"output", o.output},
-                                    {"denoiser", chosenDenoiser(o).name},
-                                    {"device", device->info().name},
-                                    {"frames", summary.frames},
-                                    {"last_frame_ms", summary.lastFrame}};
-        fmt::print("{}\n", jsonText(object));
-    } else {
-        log::info("{} frames by {}, on {}", summary.frames, chosenDenoiser(o).name, device->info().name);
-    }
+    job.options.networks = loadNetworks(*device, job.options.method, o.weights, job.options.settings);
+    const ShotSummary summary = denoiseShot(job, *device);
+    report(o, job, summary, *device);
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
+}
+
+void addFileOptions(CLI::App& command, DenoiseOptions& o) {
+    command
+        .add_option("IN", o.input,
+                    "Input: frame.exr, or frame.%04d.exr for all existing frames; also .pfm, .hdr, .png")
+        ->required();
+    command.add_option("-o,--output", o.output,
+                       "Output: EXR (everything that the input has, with a new beauty) or PNG");
+    command.add_flag(
+        "--explain", o.explain,
+        "Print how each layer of the input is understood, what is missing and what that costs, and "
+        "denoise nothing");
+    command.add_option("--map", o.map,
+                       "Say which layer something is: albedo=MyAlbedo.RGB, normal.space=camera; "
+                       "docs/denoise-your-renders.md lists all (repeatable)");
+    command.add_option(
+        "--file", o.files,
+        "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR, PNG (repeatable)");
+    command.add_option("--map-file", o.mapFile, "Read assignments of --map from a JSON file");
+    command.add_option("--camera", o.cameras,
+                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md)");
+    command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
+    command.add_flag("--bidirectional", o.bidirectional,
+                     "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
+                     "two and a half times as long");
+    command
+        .add_option("--strength", o.strength, "Share of the clean picture in the result: 0 to 1 (default)")
+        ->check(CLI::Range(0.0f, 1.0f));
+    command.add_option(
+        "--shard", o.shard,
+        "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");
+    command.add_flag(
+        "--resume", o.resume,
+        "Go on after the last complete output: EXR files say of which input and options they are");
+    command.add_option("--cuts", o.cuts,
+                       "Where the shot changes: auto (default), none, or the first frames after cuts: 12,40");
+    command.add_option(
+        "--on-error", o.onError,
+        "What an unreadable frame does: stop (default), or skip, which also allows missing frames");
 }
 
 }  // namespace
 
 void addDenoiseCommand(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("denoise", "Denoise EXR frames that have the layers of docs/layers.md");
+    CLI::App* command = app.add_subcommand("denoise", "Denoise EXR frames of any renderer");
     auto o = std::make_shared<DenoiseOptions>();
-    command->add_option("IN", o->input, "Input: frame.exr, or frame.%04d.exr for all existing frames")
-        ->required();
-    command
-        ->add_option("-o,--output", o->output,
-                     "Output: EXR (all layers of the input, with a new beauty) or PNG")
-        ->required();
+    addFileOptions(*command, *o);
     command->add_option("--denoiser", o->denoiser,
-                        "Denoiser: " + listOfDenoisers() + "; required unless --preset names one");
+                        "Denoiser: " + listOfDenoisers() + "; default svgf, or that of --preset");
     refuseMethodOption(*command);
     command->add_option("--preset", o->preset,
                         "Use a denoiser with the settings of a paper or course; 'limpid info' lists them; "

@@ -1,0 +1,263 @@
+// Tests `limpid denoise` on files of other renderers: Limpid's frames with the names and encodings of Cycles,
+// and frames that Blender wrote (tests/data/shots).
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "image/io/exr/exr.h"
+#include "image/io/exr/exr_document.h"
+#include "tests/cli/cli_fixture.h"
+
+namespace limpid {
+namespace {
+
+using image::Image;
+using image::LayeredImage;
+using image::Storage;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr uint32_t width = 96, height = 54;
+constexpr int frames = 8;
+const std::string size = fmt::format(" --device cpu --width {} --height {} ", width, height);
+
+double meanError(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const auto shown = [](float v) { return std::max(v, 0.0f) / (1.0f + std::max(v, 0.0f)); };
+        sum += std::abs(static_cast<double>(shown(a[i]) - shown(b[i])));
+    }
+    return sum / static_cast<double>(a.size());
+}
+
+class CliShotTest : public CliTest {
+  protected:
+    void SetUp() override {
+        CliTest::SetUp();
+        const std::string scene =
+            "render builtin:cornell-moving --camera-path shake --frames 8 --float" + size;
+        const Result noisy = run(scene + "--spp 1 --jitter off --aov all -o " + path("own.%02d.exr"));
+        ASSERT_EQ(noisy.code, 0) << noisy.output;
+    }
+
+    Result denoise(const std::string& in, const std::string& out, const std::string& options = {}) {
+        return run("denoise " + path(in) + " -o " + path(out) + " --device cpu " + options);
+    }
+
+    std::vector<float> colors(const std::string& file, const std::string& layer = {}) {
+        return image::readExr(path(file)).get(layer, "RGB").pixels;
+    }
+
+    /// Writes the frames as Cycles names and encodes its passes.
+    void writeAsCycles(const std::string& out) {
+        for (int frame = 0; frame < frames; ++frame) {
+            const LayeredImage own = image::readExr(path(fmt::format("own.{:02}.exr", frame)));
+            LayeredImage file;
+            file.width = width;
+            file.height = height;
+            const auto add = [&](const std::string& pass, const std::string& suffixes, const Image& values) {
+                file.add("ViewLayer." + pass, suffixes, values, Storage::Float);
+            };
+            add("Combined", "RGBA", own.get("", "RGBA"));
+            addLight(own, "diffuse", "albedo", "Diff", file);
+            addLight(own, "specular", "albedoSpecular", "Gloss", file);
+            add("Emit", "RGB", own.get("emission", "RGB"));
+            add("Normal", "XYZ", own.get("normal", "XYZ"));
+            add("IndexOB", "X", own.get("id", "I"));
+            Image vector = own.get("motion", "XY"), depth = own.get("depth", "Z");
+            for (size_t i = 0; i < vector.pixels.size(); ++i)
+                vector.pixels[i] =
+                    std::abs(vector.pixels[i]) > 1e9f ? 0.0f : vector.pixels[i] * (i % 2 == 0 ? 1.0f : -1.0f);
+            add("Vector", "XY", vector);
+            // Of a camera 40 degrees high, from the distance along the ray.
+            for (uint32_t y = 0; y < height; ++y)
+                for (uint32_t x = 0; x < width; ++x)
+                    if (depth.at(x, y, 0) < 1e9f) depth.at(x, y, 0) /= rayLength(x, y);
+            add("Depth", "Z", depth);
+            file.metadata["cycles.ViewLayer.samples"] = "1";
+            image::writeExr(path(fmt::format(fmt::runtime(out), frame)), file);
+        }
+    }
+
+    /// The light divided by its albedo is "direct".
+    static void addLight(const LayeredImage& own, const std::string& light, const std::string& albedo,
+                         const std::string& name, LayeredImage& file) {
+        const Image color = own.get(albedo, "RGB");
+        Image direct = own.get(light, "RGB");
+        for (size_t i = 0; i < direct.pixels.size(); ++i)
+            direct.pixels[i] = color.pixels[i] > 0.0f ? direct.pixels[i] / color.pixels[i] : 0.0f;
+        file.add("ViewLayer." + name + "Dir", "RGB", direct, Storage::Float);
+        file.add("ViewLayer." + name + "Ind", "RGB", Image(width, height, 3), Storage::Float);
+        file.add("ViewLayer." + name + "Col", "RGB", color, Storage::Float);
+    }
+
+    /// Of the ray through a pixel's centre, whose component along the axis is 1: the camera is in the files.
+    float rayLength(uint32_t x, uint32_t y) {
+        if (tangents_[0] == 0.0f) {
+            float v[12];
+            const std::string text = image::readExr(path("own.00.exr")).metadata.at("limpid.camera");
+            std::sscanf(text.c_str(),
+                        "perspective origin %f %f %f forward %f %f %f right %f %f %f up %f %f %f", v, v + 1,
+                        v + 2, v + 3, v + 4, v + 5, v + 6, v + 7, v + 8, v + 9, v + 10, v + 11);
+            tangents_[0] = std::hypot(v[6], v[7], v[8]);
+            tangents_[1] = std::hypot(v[9], v[10], v[11]);
+        }
+        const float sx = (2.0f * (static_cast<float>(x) + 0.5f) / width - 1.0f) * tangents_[0];
+        const float sy = (1.0f - 2.0f * (static_cast<float>(y) + 0.5f) / height) * tangents_[1];
+        return std::sqrt(1.0f + sx * sx + sy * sy);
+    }
+
+    float tangents_[2] = {0.0f, 0.0f};
+};
+
+TEST_F(CliShotTest, FilesNamedLikeCyclesComeOutNearlyAsCleanAsOurOwn) {
+    writeAsCycles("cycles.{:02}.exr");
+    ASSERT_EQ(
+        run("render builtin:cornell-moving --camera-path shake --frames 8 --jitter off --spp 96 --float" +
+            size + "-o " + path("reference.%02d.exr"))
+            .code,
+        0);
+    ASSERT_EQ(denoise("own.%02d.exr", "own-clean.%02d.exr").code, 0);
+    const Result result = denoise("cycles.%02d.exr", "clean.%02d.exr", "--set taa.frames=1");
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, Not(HasSubstr("is missing")));
+    const Result both = denoise("cycles.%02d.exr", "both.%02d.exr", "--set taa.frames=1 --bidirectional");
+    ASSERT_EQ(both.code, 0) << both.output;
+    double noisy = 0.0, own = 0.0, clean = 0.0, merged = 0.0;
+    for (const char* frame : {"00", "05", "07"}) {
+        const std::string end = std::string(".") + frame + ".exr";
+        const auto reference = colors("reference" + end);
+        noisy += meanError(colors("own" + end), reference);
+        own += meanError(colors("own-clean" + end), reference);
+        clean += meanError(colors("clean" + end, "ViewLayer.Combined"), reference);
+        merged += meanError(colors("both" + end, "ViewLayer.Combined"), reference);
+    }
+    fmt::print("error: noisy {:.4f}, own {:.4f}, named like Cycles {:.4f}, both ways {:.4f}\n", noisy, own,
+               clean, merged);
+    EXPECT_LT(own, 0.35 * noisy);
+    EXPECT_LT(clean, 1.2 * own);
+    EXPECT_LT(merged, clean) << "the first frame has a future";
+    const image::ExrDocument before = image::ExrDocument::read(path("cycles.07.exr"));
+    image::ExrDocument input = image::ExrDocument::read(path("cycles.07.exr"));
+    image::ExrDocument output = image::ExrDocument::read(path("clean.07.exr"));
+    ASSERT_EQ(output.parts().size(), 1u);
+    for (const auto& channel : before.parts()[0].channels) {
+        const bool changes = channel.name.starts_with("ViewLayer.Combined.") && !channel.name.ends_with("A");
+        EXPECT_EQ(input.values(0, channel.name) == output.values(0, channel.name), !changes) << channel.name;
+    }
+    EXPECT_EQ(output.parts()[0].texts.at("cycles.ViewLayer.samples"), "1");
+    EXPECT_EQ(output.parts()[0].texts.at("limpid.denoiser"), "svgf");
+}
+
+TEST_F(CliShotTest, ExplainSaysWhatItSees) {
+    writeAsCycles("cycles.{:02}.exr");
+    Result result = run("denoise --explain " + path("cycles.%02d.exr"));
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("layers of Cycles (Blender), 96x54 pixels, 1 part, zip"));
+    EXPECT_THAT(result.output, HasSubstr("depth           ViewLayer.Depth.Z (along the camera's axis)"));
+    EXPECT_THAT(result.output, HasSubstr("no roughness"));
+    EXPECT_THAT(result.output, Not(HasSubstr("not used")));
+    EXPECT_THAT(result.output, Not(HasSubstr("is its sign right")));
+    result = run("denoise --explain " + path("own.%02d.exr"));
+    EXPECT_THAT(result.output, HasSubstr("layers of Limpid"));
+    EXPECT_THAT(result.output, HasSubstr("camera: given"));
+    EXPECT_EQ(run("denoise --explain " + path("missing.exr")).code, 3);
+}
+
+TEST_F(CliShotTest, ShardsAndInterruptedRunsMakeTheSameFiles) {
+    ASSERT_EQ(denoise("own.%02d.exr", "whole.%02d.exr").code, 0);
+    ASSERT_EQ(denoise("own.%02d.exr", "part.%02d.exr", "--shard 1/2").code, 0);
+    EXPECT_TRUE(fs::exists(path("part.03.exr")));
+    EXPECT_FALSE(fs::exists(path("part.04.exr")));
+    Result result = denoise("own.%02d.exr", "part.%02d.exr", "--resume");
+    EXPECT_THAT(result.output, HasSubstr("4 frames were complete"));
+    // The run-up covers the whole shot here, so that the files are equal.
+    for (const char* frame : {"00", "03", "04", "07"})
+        EXPECT_EQ(get(std::string("part.") + frame + ".exr"), get(std::string("whole.") + frame + ".exr"))
+            << frame;
+    result = denoise("own.%02d.exr", "part.%02d.exr", "--resume");
+    EXPECT_THAT(result.output, HasSubstr("8 frames were complete"));
+    result = denoise("own.%02d.exr", "part.%02d.exr", "--resume --set svgf.levels=3");
+    EXPECT_THAT(result.output, Not(HasSubstr("were complete"))) << "other settings";
+    result = denoise("own.%02d.exr", "few.%02d.exr", "--frames 2-3");
+    EXPECT_EQ(result.code, 0);
+    EXPECT_FALSE(fs::exists(path("few.01.exr")));
+    EXPECT_TRUE(fs::exists(path("few.03.exr")));
+    for (const char* wrong :
+         {"--shard 0/2", "--shard 3/2", "--shard 1", "--frames 5-2", "--frames x", "--cuts 1,x",
+          "--on-error never", "--strength 2", "--map albedo", "--bidirectional --denoiser kpcn"})
+        EXPECT_EQ(denoise("own.%02d.exr", "few.%02d.exr", wrong).code, 2) << wrong;
+}
+
+TEST_F(CliShotTest, UnreadableFramesEndTheRunOrAreSkipped) {
+    const std::string good = get("own.03.exr");
+    put("own.03.exr", good.substr(0, good.size() / 2));
+    Result result = denoise("own.%02d.exr", "clean.%02d.exr");
+    EXPECT_EQ(result.code, 3) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("own.03.exr"));
+    EXPECT_TRUE(fs::exists(path("clean.02.exr"))) << "frames before it are complete";
+    EXPECT_FALSE(fs::exists(path("clean.03.exr")));
+    result = denoise("own.%02d.exr", "clean.%02d.exr", "--on-error skip");
+    EXPECT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("the frame is skipped"));
+    EXPECT_TRUE(fs::exists(path("clean.07.exr")));
+    EXPECT_FALSE(fs::exists(path("clean.03.exr")));
+}
+
+TEST_F(CliShotTest, StrengthMixesWithTheInputAndGroupsSumUpToTheBeauty) {
+    ASSERT_EQ(denoise("own.02.exr", "clean.exr").code, 0);
+    ASSERT_EQ(denoise("own.02.exr", "half.exr", "--strength 0.5").code, 0);
+    const auto noisy = colors("own.02.exr"), clean = colors("clean.exr"), half = colors("half.exr");
+    for (size_t i = 0; i < half.size(); i += 101)
+        EXPECT_NEAR(half[i], (noisy[i] + clean[i]) / 2.0f, 1e-4f + 1e-4f * clean[i]);
+    writeAsCycles("cycles.{:02}.exr");
+    LayeredImage file = image::readExr(path("cycles.02.exr"));
+    Image key = file.get("ViewLayer.Combined", "RGB"), fill = key;
+    for (size_t i = 0; i < key.pixels.size(); ++i) {
+        const float share = static_cast<float>(i / 3 % width) / width;
+        key.pixels[i] *= share;
+        fill.pixels[i] *= 1.0f - share;
+    }
+    file.add("ViewLayer.Combined_key", "RGB", key, Storage::Float);
+    file.add("ViewLayer.Combined_fill", "RGB", fill, Storage::Float);
+    image::writeExr(path("groups.exr"), file);
+    const Result result = denoise("groups.exr", "groups-clean.exr");
+    ASSERT_EQ(result.code, 0) << result.output;
+    const auto sum = colors("groups-clean.exr", "ViewLayer.Combined");
+    const auto a = colors("groups-clean.exr", "ViewLayer.Combined_key");
+    const auto b = colors("groups-clean.exr", "ViewLayer.Combined_fill");
+    double error = 0.0, total = 0.0;
+    for (size_t i = 0; i < sum.size(); ++i) {
+        error += std::abs(static_cast<double>(a[i] + b[i] - sum[i]));
+        total += static_cast<double>(sum[i]);
+    }
+    EXPECT_LT(error, 1e-3 * total);
+    EXPECT_NE(a, key.pixels);
+}
+
+TEST_F(CliShotTest, LayersMayBeFilesOfTheirOwn) {
+    const LayeredImage own = image::readExr(path("own.02.exr"));
+    const auto putPfm = [&](const std::string& name, const Image& values) {
+        std::ofstream file(path(name), std::ios::binary);
+        file << "PF\n" << width << " " << height << "\n-1\n";
+        for (uint32_t y = height; y-- > 0;)
+            file.write(reinterpret_cast<const char*>(&values.pixels[size_t{y} * width * 3]), width * 12);
+    };
+    putPfm("beauty.02.pfm", own.get("", "RGB"));
+    putPfm("albedo.02.pfm", own.get("albedo", "RGB"));
+    putPfm("n.02.pfm", own.get("normal", "XYZ"));
+    const Result result = denoise("beauty.%02d.pfm", "clean.%02d.exr",
+                                  "--file albedo=" + path("albedo.%02d.pfm") +
+                                      " --file n=" + path("n.%02d.pfm") + " --map normal=n.RGB");
+    ASSERT_EQ(result.code, 0) << result.output;
+    EXPECT_THAT(result.output, Not(HasSubstr("'albedo' is missing")));
+    EXPECT_THAT(result.output, HasSubstr("'depth' is missing"));
+    const LayeredImage clean = image::readExr(path("clean.02.exr"));
+    EXPECT_EQ(clean.channels.size(), 3u) << "only the input's own channels are written";
+    EXPECT_LT(meanError(clean.get("", "RGB").pixels, colors("own.02.exr")), 0.5);
+    EXPECT_NE(clean.get("", "RGB").pixels, own.get("", "RGB").pixels);
+}
+
+}  // namespace
+}  // namespace limpid
