@@ -718,18 +718,20 @@ TEST_F(ExrDocumentParts, FullDiskIsAnErrorAndKeepsTheOldFile) {
                 ExrDocument document = ExrDocument::read(path);
                 document.replace(0, "R", countUp(frameSize()));
                 test::limitFileSize(limit);
+                bool refused = false;
                 try {
                     document.write(output());
                 } catch (const OutputError&) {
-                    std::_Exit(0);
+                    refused = true;
                 }
-                std::_Exit(1);
+                // This process has its own folder.
+                const bool kept = test::get(output()) == "old" && folder_->files() == 3;
+                folder_.reset();
+                std::_Exit(refused && kept ? 0 : 1);
             },
             testing::ExitedWithCode(0), "");
-        EXPECT_EQ(test::get(output()), "old");
     }
     std::filesystem::remove(*folder_ / "single.exr");
-    EXPECT_EQ(folder_->files(), 2u) << "a temporary file is left";
 }
 
 TEST(ExrDocument, PixelsOutsideTheDataWindowAreZeroAndThoseOutsideTheFrameStay) {

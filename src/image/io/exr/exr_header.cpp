@@ -32,34 +32,23 @@ constexpr uint64_t maxChunkBytes = uint64_t{1} << 30;
 /// be at most as large as the picture, which is limited by the file's size.
 constexpr uint64_t maxTileBytes = uint64_t{1} << 26;
 
-/// The types of attributes that OpenEXR reads whatever size is stated.
-constexpr struct {
-    std::string_view type;
-    uint32_t size;
-} fixedSizes[] = {{"box2f", 16},
-                  {"box2i", 16},
-                  {"chromaticities", 32},
-                  {"compression", 1},
-                  {"deepImageState", 1},
-                  {"double", 8},
-                  {"envmap", 1},
-                  {"float", 4},
-                  {"int", 4},
-                  {"keycode", 28},
-                  {"lineOrder", 1},
-                  {"m33d", 72},
-                  {"m33f", 36},
-                  {"m44d", 128},
-                  {"m44f", 64},
-                  {"rational", 8},
-                  {"tiledesc", 9},
-                  {"timecode", 8},
-                  {"v2d", 16},
-                  {"v2f", 8},
-                  {"v2i", 8},
-                  {"v3d", 24},
-                  {"v3f", 12},
-                  {"v3i", 12}};
+/// Returns the size of attributes that OpenEXR reads whatever size is stated; 0 for those of other types.
+uint32_t fixedSize(std::string_view type) {
+    const auto isOneOf = [&](auto... types) { return ((type == types) || ...); };
+    if (isOneOf("compression", "deepImageState", "envmap", "lineOrder")) return 1;
+    if (isOneOf("float", "int")) return 4;
+    if (isOneOf("double", "rational", "timecode", "v2f", "v2i")) return 8;
+    if (type == "tiledesc") return 9;
+    if (isOneOf("v3f", "v3i")) return 12;
+    if (isOneOf("box2f", "box2i", "v2d")) return 16;
+    if (type == "v3d") return 24;
+    if (type == "keycode") return 28;
+    if (type == "chromaticities") return 32;
+    if (type == "m33f") return 36;
+    if (type == "m44f") return 64;
+    if (type == "m33d") return 72;
+    return type == "m44d" ? 128 : 0;
+}
 
 /// Walks the raw attribute lists. OpenEXR would allocate an attribute's claimed size before noticing that the
 /// file is shorter. If a size is not that of the type, it would take other bytes for the next attribute.
@@ -85,9 +74,7 @@ class AttributeWalk {
 
   private:
     static bool fits(std::string_view type, uint32_t size) {
-        for (const auto& fixed : fixedSizes) {
-            if (type == fixed.type) return size == fixed.size;
-        }
+        if (const uint32_t fixed = fixedSize(type)) return size == fixed;
         return type != "floatvector" || size % 4 == 0;
     }
 
