@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
@@ -71,13 +72,37 @@ bool isOwn(const image::ExrDocument& file, bool sequence) {
            });
 }
 
-/// Other renderers' samples lie all over the pixel, so edges differ from frame to frame like a jittered
-/// picture's. The number of frames was chosen on the shot `camera` of scripts/shots.
-constexpr int framesOfEdges = 4;
+/// Other renderers' samples lie all over the pixel, so with few of them edges differ from frame to frame like
+/// a jittered picture's. This many frames are averaged with fewer samples than `smoothSamples`; with more,
+/// the blur of moving textures outweighs the noise. Chosen on the shots `camera` and `objects` of
+/// scripts/shots.
+constexpr float framesOfEdges = 2.0f;
+constexpr uint32_t smoothSamples = 8;
+/// On transparent film, where coverage is noisy, so many samples are averaged; chosen on the shot `hair`.
+constexpr float samplesOfCoverage = 16.0f;
+
+/// Samples per pixel by an attribute such as "cycles.ViewLayer.samples"; 0 if there is none.
+uint32_t samplesOf(const image::ExrDocument& file) {
+    uint32_t samples = 0;
+    for (const image::ExrPart& part : file.parts()) {
+        for (const auto& [name, text] : part.texts)
+            if (name.ends_with(".samples")) std::from_chars(text.data(), text.data() + text.size(), samples);
+        for (const char* name : {"samplesPerPixel", "arnold/AA_samples"})
+            if (const auto found = part.numbers.find(name);
+                found != part.numbers.end() && found->second >= 1.0)
+                samples = static_cast<uint32_t>(std::min(found->second, 1e6));
+    }
+    return samples;
+}
 
 float distanceOf(const HostFrame& frame, size_t p) {
     const float share = frame.depth[4 * p + 1];
     return share > 0.0f ? frame.depth[4 * p] / share : 0.0f;
+}
+
+/// How many frames anti-aliasing averages. It would mix covered and empty pixels of transparent film.
+float edgeFrames(const ShotLayers& layers) {
+    return layers.isTransparent || layers.samples >= smoothSamples ? 1.0f : framesOfEdges;
 }
 
 void multiplyByAlpha(const image::Image& alpha, CleanPicture& picture) {
@@ -110,6 +135,7 @@ struct ShotDenoiser::Picture {
     explicit Picture(const LayerMap& map) : converter(map) {}
     FrameConverter converter;
     gpu::FrameGraph graph;
+    gpu::FrameGraph coveredColors, coverage;  ///< of transparent film
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
     std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
 };
@@ -133,6 +159,7 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     for (const LayerMap& map : frame.maps) {
         frame.layers.push_back(readLayers(frame.file, map));
         frame.layers.back().camera = camera;
+        frame.layers.back().samples = samplesOf(frame.file);
     }
     return frame;
 }
@@ -156,12 +183,12 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     return host;
 }
 
-CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, bool edgesAreMeans,
+CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, float frames,
                                  bool continues) {
     CleanPicture result;
     denoise::DenoiserSettings settings = options_.settings;
     if (frame.specular.empty()) settings.svgf.separate = false;
-    if (edgesAreMeans && settings.taa == denoise::TaaSettings{}) settings.taa.frames = framesOfEdges;
+    if (settings.taa == denoise::TaaSettings{}) settings.taa.frames = frames;
     if (!continues) graph.resetHistories();
     graph.beginFrame();
     denoise::DenoiserInput input = denoise::upload(graph, frame);
@@ -176,6 +203,48 @@ CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame,
     if (clean.disocclusion)
         result.disocclusion = denoise::countDisocclusion(graph.downloadUint(device_, clean.disocclusion));
     return result;
+}
+
+/// Averages colours (RGBA) over frames as temporal anti-aliasing does.
+std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFrame& frame,
+                                          std::vector<float> colors, float frames, bool continues) {
+    if (!continues) graph.resetHistories();
+    graph.beginFrame();
+    HostFrame guides;
+    guides.width = frame.width;
+    guides.height = frame.height;
+    const gpu::Extent extent{frame.width, frame.height};
+    denoise::DenoiserInput input;
+    input.filters = gpu::filterBacking(device_);
+    const auto upload = [&](const char* name, const std::vector<float>& texels) {
+        const gpu::ImageHandle image = graph.transient(name, gpu::Format::RGBA32Float, extent);
+        graph.upload(image, gpu::bytesOf(texels));
+        return image;
+    };
+    for (float& value : colors) value = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
+    input.depth = upload("input/depth", frame.depth);
+    input.motion = upload("input/motion", frame.motion);
+    const gpu::ImageHandle result =
+        denoise::antialias(graph, input, upload("input/colors", colors), {.frames = frames});
+    graph.execute(device_);
+    return graph.downloadFloat(device_, result);
+}
+
+/// Multiplies the clean picture by alpha, and averages both over frames in the same way: with few samples,
+/// most of the noise of thin things is their coverage.
+void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const HostFrame& frame,
+                             bool continues, CleanPicture& result) {
+    const image::Image& alpha = layers.images.at("alpha");
+    multiplyByAlpha(alpha, result);
+    const float framesOfCoverage =
+        std::max(samplesOfCoverage / static_cast<float>(std::max(layers.samples, 2u)), 1.0f);
+    if (options_.settings.taa != denoise::TaaSettings{} || framesOfCoverage <= 1.0f) return;
+    result.beauty =
+        smoothed(picture.coveredColors, frame, std::move(result.beauty), framesOfCoverage, continues);
+    std::vector<float> shares(4 * alpha.pixels.size());
+    for (size_t i = 0; i < shares.size(); ++i) shares[i] = alpha.pixels[i / 4];
+    shares = smoothed(picture.coverage, frame, std::move(shares), framesOfCoverage, continues);
+    for (size_t p = 0; p < alpha.pixels.size(); ++p) result.alpha.push_back(std::min(shares[4 * p], 1.0f));
 }
 
 /// Each group is one signal with the frame's guides.
@@ -200,7 +269,7 @@ void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, const
             }
         }
         if (g == picture.groups.size()) picture.groups.push_back(std::make_unique<gpu::FrameGraph>());
-        result.groups.push_back(clean(*picture.groups[g], one, !layers.isTransparent, continues).beauty);
+        result.groups.push_back(clean(*picture.groups[g], one, edgeFrames(layers), continues).beauty);
     }
 }
 
@@ -224,14 +293,13 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
                 std::fill(host.motion.begin(), host.motion.end(), 0.0f);
             picture.last = std::move(guides);
         }
-        // Anti-aliasing would mix covered and empty pixels.
-        const bool transparent = !own && frame.layers[i].isTransparent;
-        CleanPicture& result =
-            results.emplace_back(clean(picture.graph, host, !own && !transparent, continues));
+        CleanPicture& result = results.emplace_back(
+            clean(picture.graph, host, own ? 1.0f : edgeFrames(frame.layers[i]), continues));
         result.report = picture.converter.report();
         if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
             cleanGroups(picture, frame.layers[i], host, continues, result);
-        if (transparent) multiplyByAlpha(frame.layers[i].images.at("alpha"), result);
+        if (!own && frame.layers[i].isTransparent)
+            coverFilm(picture, frame.layers[i], host, continues, result);
         if (!own) frame.layers[i] = {};
     }
     return results;
@@ -271,6 +339,8 @@ void merge(CleanPicture& forwards, const CleanPicture& backwards) {
         const float share = after / (before + after);
         for (size_t c = 4 * p; c < 4 * p + 3; ++c)
             forwards.beauty[c] += share * (backwards.beauty[c] - forwards.beauty[c]);
+        if (!forwards.alpha.empty() && !backwards.alpha.empty())
+            forwards.alpha[p] += share * (backwards.alpha[p] - forwards.alpha[p]);
     }
 }
 
@@ -287,6 +357,11 @@ void shareOut(CleanPicture& picture) {
 std::set<size_t> replacePicture(image::ExrDocument& file, const LayerMap& map, const CleanPicture& picture) {
     std::set<size_t> parts;
     replaceLayer(file, map.layers.at("beauty"), picture.beauty, parts);
+    if (!picture.alpha.empty()) {
+        std::vector<float> texels(4 * picture.alpha.size());
+        for (size_t p = 0; p < picture.alpha.size(); ++p) texels[4 * p] = picture.alpha[p];
+        replaceLayer(file, map.layers.at("alpha"), texels, parts);
+    }
     for (size_t g = 0; g < map.groups.size() && g < picture.groups.size(); ++g)
         replaceLayer(file, map.groups[g], picture.groups[g], parts);
     return parts;

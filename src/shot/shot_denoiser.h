@@ -50,6 +50,7 @@ struct ShotOptions {
 /// One clean picture of a frame.
 struct CleanPicture {
     std::vector<float> beauty;  ///< RGBA per pixel
+    std::vector<float> alpha;   ///< on transparent film: coverage without noise, per pixel; else empty
     std::vector<float> frames;  ///< of each pixel's history; empty without temporal accumulation
     /// Clean light groups, RGBA per pixel, and what no group has; see shareOut(). Empty if there are none.
     std::vector<std::vector<float>> groups;
@@ -78,8 +79,12 @@ class ShotDenoiser {
     denoise::HostFrame hostFrame(LoadedFrame& frame, size_t index, Picture& picture, bool continues);
     void cleanGroups(Picture& picture, const ShotLayers& layers, const denoise::HostFrame& frame,
                      bool continues, CleanPicture& result);
-    CleanPicture clean(gpu::FrameGraph& graph, const denoise::HostFrame& frame, bool edgesAreMeans,
+    CleanPicture clean(gpu::FrameGraph& graph, const denoise::HostFrame& frame, float framesOfEdges,
                        bool continues);
+    std::vector<float> smoothed(gpu::FrameGraph& graph, const denoise::HostFrame& frame,
+                                std::vector<float> colors, float frames, bool continues);
+    void coverFilm(Picture& picture, const ShotLayers& layers, const denoise::HostFrame& frame,
+                   bool continues, CleanPicture& result);
 
     gpu::Device& device_;
     const ShotOptions& options_;

@@ -20,6 +20,7 @@ struct ShotLayers {
     bool isTransparent = false;
     std::map<std::string, image::Image, std::less<>> images;  ///< by role
     std::optional<CameraParams> camera;                       ///< of the file's attributes
+    uint32_t samples = 0;                                     ///< per pixel; 0: unknown
     std::vector<image::Image> groups;                         ///< of light
 
     const image::Image* find(std::string_view role) const {

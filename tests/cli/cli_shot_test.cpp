@@ -259,5 +259,65 @@ TEST_F(CliShotTest, LayersMayBeFilesOfTheirOwn) {
     EXPECT_NE(clean.get("", "RGB").pixels, own.get("", "RGB").pixels);
 }
 
+/// Two small frames of each shot of scripts/shots, rendered by Blender 3.4.
+class CliBlenderTest : public CliTest {
+  protected:
+    static std::string shot(const std::string& name) {
+        return std::string(LIMPID_TEST_DATA) + "/shots/" + name + ".%04d.exr";
+    }
+};
+
+TEST_F(CliBlenderTest, AllLayersAreUnderstoodUnaided) {
+    const std::pair<const char*, const char*> shots[] = {
+        {"camera", "62.0"}, {"objects", "55.0"}, {"glass", "50.0"}, {"hair", "46.0"}};
+    for (const auto& [name, degrees] : shots) {
+        const Result result = run("denoise --explain " + shot(name));
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_THAT(result.output, HasSubstr("layers of Cycles (Blender)"));
+        EXPECT_THAT(result.output,
+                    HasSubstr(fmt::format("camera: from the layers, {} degrees wide", degrees)));
+        EXPECT_THAT(result.output, Not(HasSubstr("is its sign right"))) << name;
+        EXPECT_THAT(result.output, Not(HasSubstr("is in no layer of light"))) << name;
+    }
+}
+
+TEST_F(CliBlenderTest, GivenAndFoundCamerasAreTheSame) {
+    for (const char* name : {"camera", "glass"}) {
+        const std::string cameras = std::string(LIMPID_TEST_DATA) + "/shots/" + name + ".camera.json";
+        ASSERT_EQ(run("denoise " + shot(name) + " -o " + path("a.%04d.exr") + " --device cpu").code, 0);
+        ASSERT_EQ(
+            run("denoise " + shot(name) + " -o " + path("b.%04d.exr") + " --device cpu --camera " + cameras)
+                .code,
+            0);
+        const auto a = image::readExr(path("a.0014.exr")).get("ViewLayer.Combined", "RGB").pixels;
+        const auto b = image::readExr(path("b.0014.exr")).get("ViewLayer.Combined", "RGB").pixels;
+        EXPECT_LT(meanError(a, b), 2e-3) << name;
+        EXPECT_GT(
+            meanError(
+                a, image::readExr(
+                       fmt::format(fmt::runtime(std::string(LIMPID_TEST_DATA) + "/shots/{}.0014.exr"), name))
+                       .get("ViewLayer.Combined", "RGB")
+                       .pixels),
+            0.02);
+    }
+}
+
+TEST_F(CliBlenderTest, OnlyTransparentFilmGetsANewAlpha) {
+    for (const char* name : {"hair", "camera"}) {
+        const Result result =
+            run("denoise " + shot(name) + " -o " + path("a.%04d.exr") + " --device cpu --bidirectional");
+        ASSERT_EQ(result.code, 0) << result.output;
+        const std::string in = std::string(LIMPID_TEST_DATA) + "/shots/" + name + ".0014.exr";
+        image::ExrDocument before = image::ExrDocument::read(in),
+                           after = image::ExrDocument::read(path("a.0014.exr"));
+        for (const auto& channel : before.parts()[0].channels) {
+            const bool color = channel.name.starts_with("ViewLayer.Combined.");
+            const bool changes = color && (!channel.name.ends_with(".A") || std::string(name) == "hair");
+            EXPECT_EQ(before.values(0, channel.name) == after.values(0, channel.name), !changes)
+                << channel.name;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -107,7 +107,7 @@ class CutFinder {
 
 /// A clean picture in seven bytes per pixel.
 struct PackedPicture {
-    std::vector<uint16_t> colors;
+    std::vector<uint16_t> colors, alpha;
     std::vector<uint8_t> frames;
 
     explicit PackedPicture(const CleanPicture& picture) {
@@ -115,6 +115,7 @@ struct PackedPicture {
         for (size_t i = 0; i < picture.beauty.size(); ++i)
             if (i % 4 != 3)
                 colors.push_back(glm::packHalf1x16(std::clamp(picture.beauty[i], -65504.0f, 65504.0f)));
+        for (const float share : picture.alpha) alpha.push_back(glm::packHalf1x16(share));
         for (const float count : picture.frames)
             frames.push_back(static_cast<uint8_t>(std::clamp(count, 0.0f, 255.0f)));
     }
@@ -124,6 +125,7 @@ struct PackedPicture {
         picture.beauty.resize(colors.size() / 3 * 4);
         for (size_t i = 0; i < colors.size(); ++i)
             picture.beauty[i / 3 * 4 + i % 3] = glm::unpackHalf1x16(colors[i]);
+        for (const uint16_t share : alpha) picture.alpha.push_back(glm::unpackHalf1x16(share));
         picture.frames.assign(frames.begin(), frames.end());
         return picture;
     }
