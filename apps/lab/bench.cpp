@@ -271,6 +271,7 @@ void addBenchCommand(CLI::App& app) {
         runConvergence(*options);
     });
     addDenoiseBench(*bench);
+    addFilesBench(*bench);
     addFirstFrameBench(*bench);
     addKpcnBench(*bench);
     addLaunchesBench(*bench);

@@ -14,6 +14,7 @@ namespace limpid::cli {
 std::string sceneStem(const std::string& scene);
 
 void addDenoiseBench(CLI::App& bench);
+void addFilesBench(CLI::App& bench);
 void addFirstFrameBench(CLI::App& bench);
 void addKpcnBench(CLI::App& bench);
 void addLaunchesBench(CLI::App& bench);

@@ -77,6 +77,11 @@ std::optional<vec2> movedBy(const Image& motion, size_t p, const Candidate& by, 
     return by.unit == MotionUnit::Picture ? m * vec2(motion.width, motion.height) : m;
 }
 
+/// Large pictures are compared at so many pixels' distance; odd, so that columns do not repeat.
+size_t strideOf(const ShotLayers& layers) {
+    return (size_t{layers.width} * layers.height / 50000) | 1u;
+}
+
 struct Sums {
     double still = 0.0, moved = 0.0;
     size_t pixels = 0, inside = 0, alike = 0;
@@ -90,7 +95,8 @@ Sums compare(const ShotLayers& before, const ShotLayers& now, const Candidate& b
     const Image& motion = *now.find("motion");
     const std::vector<Guide> guides = guidesOf(before, now);
     Sums sums;
-    for (size_t p = 0; p < size_t{now.width} * now.height; ++p) {
+    const size_t stride = strideOf(now);
+    for (size_t p = 0; p < size_t{now.width} * now.height; p += stride) {
         const auto moved = movedBy(motion, p, by, noMotion);
         if (!moved) continue;
         const float still = nearestDifference(guides, now, p, p);
@@ -114,8 +120,9 @@ double shareFound(const ShotLayers& before, const ShotLayers& now) {
     const std::vector<Guide> guides = guidesOf(before, now);
     constexpr int reach = 5;
     size_t found = 0, all = 0;
-    for (uint32_t y = reach; y + reach < now.height; y += 3) {
-        for (uint32_t x = reach; x + reach < now.width; x += 3) {
+    const uint32_t stride = std::max(3u, now.height / 60);
+    for (uint32_t y = reach; y + reach < now.height; y += stride) {
+        for (uint32_t x = reach; x + reach < now.width; x += stride) {
             const size_t p = size_t{y} * now.width + x;
             bool alike = false;
             for (int dy = -reach; dy <= reach && !alike; ++dy)

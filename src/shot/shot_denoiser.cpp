@@ -1,6 +1,7 @@
 #include "shot/shot_denoiser.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 #include <array>
@@ -20,15 +21,27 @@ namespace {
 
 using denoise::HostFrame;
 
-/// The first part as one picture, for what reads Limpid's own files.
-image::LayeredImage layeredImage(image::ExrDocument& file) {
+/// True if the denoiser reads this channel of Limpid's own files.
+bool isRead(std::string_view channel, bool network) {
+    if (channel.find(".variance") != std::string_view::npos) return network;
+    const ChannelName name = split(channel);
+    return std::any_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
+        return layer.name == name.layer && (network || layer.forFilters != ForFilters::Nothing);
+    });
+}
+
+/// What is read of the first part as one picture, for Limpid's own files.
+image::LayeredImage layeredImage(image::ExrDocument& file, bool network) {
     image::LayeredImage picture;
     picture.width = file.width();
     picture.height = file.height();
     const image::ExrPart& part = file.parts().front();
     picture.metadata = part.texts;
     for (const auto& channel : part.channels)
-        picture.channels.push_back({channel.name, channel.storage, file.values(0, channel.name)});
+        if (isRead(channel.name, network)) picture.channels.push_back({channel.name, channel.storage, {}});
+    file.decode(0);
+    tbb::parallel_for_each(picture.channels,
+                           [&](image::Channel& channel) { channel.values = file.values(0, channel.name); });
     return picture;
 }
 
@@ -80,6 +93,9 @@ constexpr float framesOfEdges = 2.0f;
 constexpr uint32_t smoothSamples = 8;
 /// On transparent film, where coverage is noisy, so many samples are averaged; chosen on the shot `hair`.
 constexpr float samplesOfCoverage = 16.0f;
+
+/// Each frame is downloaded before the next one, so a second one would only take memory.
+const gpu::GraphOptions oneFrame{.framesInFlight = 1};
 
 /// Samples per pixel by an attribute such as "cycles.ViewLayer.samples"; 0 if there is none.
 uint32_t samplesOf(const image::ExrDocument& file) {
@@ -134,8 +150,8 @@ void replaceLayer(image::ExrDocument& file, const LayerExpression& expression,
 struct ShotDenoiser::Picture {
     explicit Picture(const LayerMap& map) : converter(map) {}
     FrameConverter converter;
-    gpu::FrameGraph graph;
-    gpu::FrameGraph coveredColors, coverage;  ///< of transparent film
+    gpu::FrameGraph graph{oneFrame};
+    gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
     std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
 };
@@ -147,13 +163,22 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
         frame.file.attach(name, layersOf(file), file);
     }
     frame.maps = recognise(frame.file, options.assignments);
+    for (const LayerMap& map : frame.maps)
+        for (const auto& [role, expression] : map.layers)
+            for (const Term& term : expression.terms())
+                for (const Factor& factor : term.factors) frame.file.decode(factor.channels.front().part);
+    return frame;
+}
+
+void unpack(LoadedFrame& frame, const LoadOptions& options) {
     const bool asWritten =
         options.assignments.empty() && !options.layersOnly && isOwn(frame.file, options.sequence);
     if (asWritten || options.network) {
-        const image::LayeredImage picture = layeredImage(frame.file);
+        const std::filesystem::path& path = frame.file.name();
+        const image::LayeredImage picture = layeredImage(frame.file, options.network);
         if (options.network) requireVariances(picture, path);
         frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
-        return frame;
+        return;
     }
     const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
     for (const LayerMap& map : frame.maps) {
@@ -161,7 +186,6 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
         frame.layers.back().camera = camera;
         frame.layers.back().samples = samplesOf(frame.file);
     }
-    return frame;
 }
 
 ShotDenoiser::ShotDenoiser(gpu::Device& device, const ShotOptions& options, Direction direction)
@@ -268,7 +292,7 @@ void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, const
                 if (g < layers.groups.size()) rest.pixels[3 * p + c] -= value;
             }
         }
-        if (g == picture.groups.size()) picture.groups.push_back(std::make_unique<gpu::FrameGraph>());
+        if (g == picture.groups.size()) picture.groups.push_back(std::make_unique<gpu::FrameGraph>(oneFrame));
         result.groups.push_back(clean(*picture.groups[g], one, edgeFrames(layers), continues).beauty);
     }
 }

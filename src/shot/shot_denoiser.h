@@ -19,7 +19,7 @@ struct LoadedFrame {
     int number = 0;
     image::ExrDocument file;
     std::vector<LayerMap> maps;      ///< of each picture
-    std::vector<ShotLayers> layers;  ///< of each picture; empty if `own` is used
+    std::vector<ShotLayers> layers;  ///< of each picture, once unpacked; empty if `own` is used
     /// Files with all of Limpid's layers are read as docs/layers.md says: with turns, reflections and
     /// variances.
     std::optional<denoise::HostFrame> own;
@@ -35,9 +35,13 @@ struct LoadOptions {
     std::vector<std::pair<std::string, FramePattern>> files;
 };
 
-/// Reads a file: EXR, or a picture in PFM, Radiance HDR, PNG or JPEG, which has a beauty alone. Throws
-/// InputError, also if a network lacks layers.
+/// Reads and decodes a file: EXR, or a picture in PFM, Radiance HDR, PNG or JPEG, which has a beauty alone.
+/// Throws InputError.
 LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options);
+
+/// Makes `layers` or `own` of the decoded file, which take more memory than it. Throws InputError, also if a
+/// network lacks layers.
+void unpack(LoadedFrame& frame, const LoadOptions& options);
 
 /// How the pictures are denoised.
 struct ShotOptions {

@@ -75,7 +75,6 @@ class FrameConverter {
     std::optional<CameraParams> locatedCamera(const ShotLayers& layers) const;
     CameraParams solvedCamera(const ShotLayers& layers);
     void addMotion(const ShotLayers& layers, const View& view, denoise::HostFrame& frame) const;
-    void addLight(const ShotLayers& layers, const std::vector<float>& distance, denoise::HostFrame& frame);
 
     LayerMap map_;
     FrameReport report_;

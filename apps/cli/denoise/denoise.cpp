@@ -182,10 +182,15 @@ ShotJob jobOf(const DenoiseOptions& o) {
 
 void report(const DenoiseOptions& o, const ShotJob& job, const ShotSummary& summary, gpu::Device& device) {
     if (o.json) {
-        const nlohmann::json object{{"output", o.output},           {"denoiser", job.options.method->name},
-                                    {"device", device.info().name}, {"frames", summary.frames},
-                                    {"kept", summary.kept},         {"skipped", summary.skipped},
-                                    {"cuts", summary.cuts},         {"last_frame_ms", summary.lastFrame}};
+        const nlohmann::json object{{"output", o.output},
+                                    {"denoiser", job.options.method->name},
+                                    {"device", device.info().name},
+                                    {"frames", summary.frames},
+                                    {"seconds", summary.seconds},
+                                    {"kept", summary.kept},
+                                    {"skipped", summary.skipped},
+                                    {"cuts", summary.cuts},
+                                    {"last_frame_ms", summary.lastFrame}};
         fmt::print("{}\n", jsonText(object));
     } else {
         if (summary.kept > 0) log::info("{} frames were complete", summary.kept);

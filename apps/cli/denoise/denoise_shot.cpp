@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <glm/gtc/packing.hpp>
 #include <set>
@@ -42,8 +43,10 @@ class FrameReader {
         std::optional<LoadedFrame> frame;
         try {
             frame = current.get();
+            shot::unpack(*frame, job_.load);
         } catch (const InputError& error) {
             if (!job_.skipUnreadable) throw;
+            frame.reset();
             if (skipped_.insert(job_.frames[index]).second)
                 log::warn("{}; the frame is skipped", error.what());
         }
@@ -266,6 +269,7 @@ class ShotRun {
           progress_("frames", job.endWritten - first_) {}
 
     ShotSummary run() {
+        const auto start = std::chrono::steady_clock::now();
         summary_.kept = static_cast<int>(first_ - job_.firstWritten);
         const size_t runUp = std::min(first_, runUpFrames);
         for (size_t i = first_ - (first_ < job_.endWritten ? runUp : 0); i < job_.endWritten; ++i) {
@@ -278,6 +282,7 @@ class ShotRun {
             if (i >= first_) progress_.show(i + 1 - first_);
         }
         writer_.finish();
+        summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         summary_.skipped.assign(reader_.skipped().begin(), reader_.skipped().end());
         return summary_;
     }

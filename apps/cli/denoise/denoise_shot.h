@@ -40,6 +40,7 @@ inline constexpr size_t runUpFrames = 16;
 struct ShotSummary {
     int frames = 0;  ///< written
     int kept = 0;    ///< found complete
+    double seconds = 0.0;
     std::vector<int> skipped, cuts;
     std::map<std::string, double> lastFrame;  ///< ms by pass
 };

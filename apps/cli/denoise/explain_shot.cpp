@@ -16,7 +16,9 @@ LoadedFrame load(const ShotJob& job, int frame) {
     shot::LoadOptions options = job.load;
     options.layersOnly = true;
     options.network = false;
-    return shot::loadFrame(job.input.format(std::max(frame, 0)), frame, options);
+    LoadedFrame loaded = shot::loadFrame(job.input.format(std::max(frame, 0)), frame, options);
+    shot::unpack(loaded, options);
+    return loaded;
 }
 
 shot::FrameReport viewOf(shot::FrameConverter& converter, const LoadedFrame& frame, size_t picture,

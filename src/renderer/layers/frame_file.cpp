@@ -1,8 +1,11 @@
 #include "renderer/layers/frame_file.h"
 
+#include <tbb/parallel_for_each.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <string_view>
 
 #include "base/error.h"
@@ -14,7 +17,6 @@
 namespace limpid {
 namespace {
 
-using image::Image;
 using image::LayeredImage;
 
 /// From this distance on, nothing was hit (files have 1e10).
@@ -89,10 +91,13 @@ bool isValue(const LayerInfo& layer, const float* components) {
 
 /// Reads a mean, four floats per pixel.
 void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
-    const Image picture = file.get(layer.name, layer.suffixes);
     const size_t count = layer.suffixes.size();
+    std::vector<const float*> channels;
+    for (const char suffix : layer.suffixes)
+        channels.push_back(file.find(std::string(layer.name) + "." + suffix)->values.data());
     for (size_t p = 0; 4 * p < texels.size(); ++p) {
-        const float* const components = &picture.pixels[count * p];
+        float components[4];
+        for (size_t c = 0; c < count; ++c) components[c] = channels[c][p];
         if (layer.hasShare() && !isValue(layer, components)) continue;
         std::copy_n(components, count, &texels[4 * p]);
         if (layer.hasShare()) texels[4 * p + count] = 1.0f;
@@ -103,10 +108,10 @@ void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& 
 /// Reads instance numbers, two integers per pixel. In files 0 is a miss, and an instance is its number plus
 /// one.
 void read(const LayeredImage& file, const LayerInfo& layer, std::vector<uint32_t>& ids) {
-    const Image numbers = file.get(layer.name, layer.suffixes);
+    const std::vector<float>& numbers = file.find(std::string(layer.name) + "." + layer.suffixes[0])->values;
     std::fill(ids.begin(), ids.end(), layout::NONE);
-    for (size_t p = 0; p < numbers.pixels.size(); ++p) {
-        const float number = numbers.pixels[p];
+    for (size_t p = 0; p < numbers.size(); ++p) {
+        const float number = numbers[p];
         if (number >= 1.0f && number < 4e9f) ids[2 * p] = static_cast<uint32_t>(number) - 1;
     }
 }
@@ -134,16 +139,23 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     const auto makePixels = [&](const LayerInfo& layer, auto& texels) {
         texels.resize((layer.stored == Stored::Uint ? 2 : 4) * frame.pixelCount());
     };
+    std::vector<std::function<void()>> readers;
     frame.forEach([&](const LayerInfo& layer, auto& texels) {
         if (has(file, layer)) {
-            makePixels(layer, texels);
-            read(file, layer, texels);
+            readers.push_back([&] {
+                makePixels(layer, texels);
+                read(file, layer, texels);
+            });
         } else if (sequence && layer.need == Need::Advised) {
             lacking.push_back(&layer);
         }
     });
+    tbb::parallel_for_each(readers, [](const auto& reader) { reader(); });
     if (frame.previousNormal.empty()) frame.previousNormal = frame.normal;  // as if nothing rotated
-    frame.forEach(makePixels);  // zeros for missing layers: no motion, one object
+    frame.forEach(
+        [&](const LayerInfo& layer, auto& texels) {  // zeros for missing layers: no motion, one object
+            if (layer.forFilters != ForFilters::Nothing) makePixels(layer, texels);
+        });
     return frame;
 }
 

@@ -249,7 +249,8 @@ void copyBlocks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int
 
 struct ExrDocument::Content {
     fs::path name;
-    std::vector<std::byte> bytes;
+    std::vector<std::byte> bytes;  ///< empty once the only part is decoded
+    uint64_t hash = 0;             ///< of the bytes
     std::vector<ExrPartHeader> headers;
     std::vector<ExrPart> parts;
     std::vector<Planes> planes;  ///< of each part; empty until a channel is used
@@ -296,6 +297,11 @@ struct ExrDocument::Content {
         part.setFrameBuffer(decodedPlanes.frameBuffer(parts[index].channels));
         part.readPixels(data.min.y, data.max.y);
         planes[index] = std::move(decodedPlanes);
+    }
+
+    /// A file with one part is written anew if a channel changes; only what nobody changes is copied.
+    void forgetBytes() {
+        if (headers.size() == 1 && changed[0]) std::vector<std::byte>().swap(bytes);
     }
 
     /// Returns the header to write for a part.
@@ -386,6 +392,9 @@ ExrDocument ExrDocument::decode(std::vector<std::byte> bytes, const fs::path& na
     auto content = std::make_unique<Content>();
     content->name = name;
     content->bytes = std::move(bytes);
+    Hash64 hash;
+    hash.add(content->bytes);
+    content->hash = hash.value();
     reading(name, [&] {
         content->headers = checkExrParts(content->bytes, name);
         for (const ExrPartHeader& header : content->headers) content->parts.push_back(describe(header));
@@ -407,12 +416,14 @@ uint32_t ExrDocument::height() const {
     return static_cast<uint32_t>(display.max.y - display.min.y) + 1;
 }
 uint64_t ExrDocument::hash() const {
-    Hash64 hash;
-    hash.add(content_->bytes);
-    return hash.value();
+    return content_->hash;
 }
 std::span<const ExrPart> ExrDocument::parts() const {
     return content_->parts;
+}
+
+void ExrDocument::decode(size_t part) {
+    if (!content_->isAttached(part)) content_->decoded(part);
 }
 
 std::vector<float> ExrDocument::values(size_t part, std::string_view channel) {
@@ -438,6 +449,7 @@ void ExrDocument::replace(size_t part, std::string_view channel, std::span<const
         planes.set(c, storage, inPlane, values[inDisplay]);
     });
     content_->changed[part] = true;
+    content_->forgetBytes();
 }
 
 void ExrDocument::setText(size_t part, const std::string& attribute, const std::string& text) {

@@ -61,6 +61,10 @@ class ExrDocument {
     /// be replaced. Throws InputError(name) if the image has another size.
     void attach(const std::string& part, const LayeredImage& image, const std::filesystem::path& name);
 
+    /// Decodes the part, which values() and replace() would do. Afterwards several threads may call values() of
+    /// it. Throws as values() does.
+    void decode(size_t part);
+
     /// Returns width * height values; Uint as exact integers below 2^24. Throws InputError if the part cannot
     /// be read, and Error if there is no such channel.
     std::vector<float> values(size_t part, std::string_view channel);
