@@ -239,7 +239,7 @@ void addFileOptions(CLI::App& command, DenoiseOptions& o) {
     command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
     command.add_flag("--bidirectional", o.bidirectional,
                      "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
-                     "two and a half times as long");
+                     "about twice as long");
     command
         .add_option("--strength", o.strength, "Share of the clean picture in the result: 0 to 1 (default)")
         ->check(CLI::Range(0.0f, 1.0f));
