@@ -50,7 +50,7 @@ void addInputs(FrameRenderer& still, const std::string& prefix, neural::TensorFi
     file.tensors[prefix + "depth"] = tensorOf(distances(layers));
     for (const char* name : {"diffuse", "specular", "albedo", "normal", "depth"}) {
         Image variance(layers.width, layers.height, 1);
-        variance.pixels = layers.find(std::string(name) + ".variance")->values;
+        variance.pixels = layers.find(std::string(name) + ".variance.V")->values;
         file.tensors[prefix + name + ".variance"] = tensorOf(variance);
     }
 }

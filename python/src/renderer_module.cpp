@@ -109,7 +109,7 @@ py::dict arraysOf(const image::LayeredImage& layers) {
     }
     if (dict.contains("id")) dict["id"] = dict["id"].attr("astype")("uint32");
     for (const char* name : varianceOf) {
-        const image::Channel* channel = layers.find(std::string(name) + ".variance");
+        const image::Channel* channel = layers.find(std::string(name) + ".variance.V");
         if (!channel) continue;
         image::Image picture(layers.width, layers.height, 1);
         picture.pixels = channel->values;

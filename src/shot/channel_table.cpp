@@ -19,13 +19,18 @@ std::string joined(std::string_view layer, std::string_view component) {
 ChannelTable::ChannelTable(std::span<const image::ExrPart> parts) {
     std::map<std::string_view, int> uses;
     for (const image::ExrPart& part : parts)
-        for (const auto& channel : part.channels) ++uses[channel.name];
+        for (const auto& channel : part.channels) uses[channel.name] += part.attached ? 0 : 1;
     std::map<std::string, LayerChannels> byName;
-    for (size_t p = 0; p < parts.size(); ++p) {
+    std::vector<size_t> order;
+    for (const bool attached : {true, false})
+        for (size_t p = 0; p < parts.size(); ++p)
+            if (parts[p].attached == attached) order.push_back(p);
+    for (const size_t p : order) {
         if (!parts[p].unreadable.empty()) continue;
         for (const auto& channel : parts[p].channels) {
             const bool layerless = p > 0 && channel.name.find('.') == std::string::npos;
-            const bool prefixed = !parts[p].name.empty() && (uses[channel.name] > 1 || layerless);
+            const bool prefixed =
+                parts[p].attached || (!parts[p].name.empty() && (uses[channel.name] > 1 || layerless));
             const std::string name = prefixed ? joined(parts[p].name, channel.name) : channel.name;
             if (!channels_.emplace(name, ChannelPlace{p, channel.name, channel.storage}).second) continue;
             const ChannelName pieces = split(name);

@@ -27,7 +27,7 @@ struct LayerChannels {
 
 /// A channel's name is that in its part. If several parts have it, or if it has no layer ("R") and lies in
 /// another part than the first, the part's name and a dot precede it: "albedo.R". Unreadable parts are left
-/// out.
+/// out. Attached parts always have their name before, and hide channels of that name.
 class ChannelTable {
   public:
     explicit ChannelTable(std::span<const image::ExrPart> parts);

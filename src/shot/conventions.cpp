@@ -202,6 +202,7 @@ Convention karma() {
     c.encoding.depthKind = DepthKind::Planar;
     c.encoding.motionUnit = MotionUnit::Picture;
     c.encoding.motionScale = {-0.5f, 0.5f};  // forwards, from -1 to 1, y up
+    c.group = "C_";
     return c;
 }
 

@@ -241,7 +241,8 @@ void addSeen(const ShotLayers& layers, const LayerMap& map, HostFrame& frame) {
         if (!behind || diffuse > 0.05f * luminance(colorAt(frame.albedoSpecular, p))) return;
         const vec3 n = vectorAt(*normal, p) * map.encoding.cameraNormalScale;
         std::copy_n(&albedo->pixels[3 * p], 3, &frame.albedoSpecular[4 * p]);
-        if (n == vec3(0.0f)) return;
+        const float size = glm::length(n);
+        if (!(size > 0.0f && std::isfinite(size))) return;
         const vec3 seen = glm::normalize(axes * n);
         for (int c = 0; c < 3; ++c) frame.normal[4 * p + static_cast<size_t>(c)] = seen[c];
     });

@@ -53,7 +53,7 @@ LayerMap mapOf(const Convention& convention, const ChannelTable& table, const st
     for (const Rule& rule : convention.rules) {
         if (map.find(rule.role)) continue;
         auto expression = LayerExpression::resolve(rule.expression, table, prefix, rule.partial);
-        if (!expression) continue;
+        if (!expression || expression->components() != findRole(rule.role)->components) continue;
         map.layers.emplace(rule.role, std::move(*expression));
         for (const EncodingRule& change : convention.encodingRules)
             if (change.role == rule.role && change.expression == rule.expression) change.set(map.encoding);
@@ -61,8 +61,8 @@ LayerMap mapOf(const Convention& convention, const ChannelTable& table, const st
     const std::string group = prefix + std::string(convention.group);
     for (const LayerChannels& layer : table.layers()) {
         if (convention.group.empty() || !layer.name.starts_with(group)) continue;
-        if (auto expression = LayerExpression::resolve(layer.name + ".RGB", table))
-            map.groups.push_back(std::move(*expression));
+        auto expression = LayerExpression::resolve(layer.name + ".RGB", table);
+        if (expression && expression->components() == 3) map.groups.push_back(std::move(*expression));
     }
     return map;
 }
@@ -75,7 +75,8 @@ std::vector<LayerMap> mapsBy(const Convention& convention, const image::ExrDocum
         for (const std::string& prefix : prefixesOf(table, layer)) {
             if (!fits(convention, file, table, prefix)) continue;
             auto expression = LayerExpression::resolve(beauty, table, prefix);
-            if (expression) maps.push_back(mapOf(convention, table, prefix, std::move(*expression)));
+            if (expression && expression->components() == 3)
+                maps.push_back(mapOf(convention, table, prefix, std::move(*expression)));
         }
         if (!maps.empty()) break;
     }
@@ -94,11 +95,17 @@ std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignment
     if (maps.empty()) {
         const bool named = std::any_of(assignments.begin(), assignments.end(),
                                        [](const auto& a) { return a.first == "beauty"; });
+        for (const image::ExrPart& part : file.parts())
+            if (!named && !part.unreadable.empty())
+                throw InputError(file.name(), part.unreadable + ", which is not supported");
         if (!named)
             throw InputError(file.name(), "has no layer of colours; --map beauty=LAYER.RGB names one");
         maps.emplace_back();
     }
-    for (LayerMap& map : maps) apply(assignments, table, file.name(), map);
+    for (LayerMap& map : maps) {
+        apply(assignments, table, file.name(), map);
+        if (!map.find("beauty")) throw UsageError("--map: the beauty is needed");
+    }
     return maps;
 }
 

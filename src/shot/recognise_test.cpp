@@ -231,6 +231,39 @@ TEST_F(RecogniseTest, BeautyAlbedoAndNormalOfAnyRenderer) {
     EXPECT_EQ(textOf(maps[0], "depth"), "") << "B is no depth";
 }
 
+/// A name is a layer only if it has the components.
+TEST_F(RecogniseTest, OneChannelIsNoColour) {
+    const auto maps = recognise(file({{.channels = names("R G B albedo.RGB normal.XYZ motion.XY")}}), {});
+    for (const char* role : {"albedo", "normal", "motion"}) EXPECT_EQ(textOf(maps.at(0), role), "") << role;
+    EXPECT_THROW(recognise(file({{.channels = names("RGB")}}), {}), InputError);
+    EXPECT_THROW(recognise(file({{.channels = names("R G B")}}), {{"beauty", ""}}), UsageError);
+}
+
+/// A file beside the frame's hides a layer of the same name.
+TEST_F(RecogniseTest, AttachedLayersWin) {
+    image::ExrDocument document =
+        file({{.name = "part", .channels = names("R G B albedo.R albedo.G albedo.B")}});
+    image::LayeredImage better;
+    better.width = 4;
+    better.height = 2;
+    better.add("", "RGB", image::Image(4, 2, 3, 0.25f), image::Storage::Float);
+    document.attach("albedo", better, "better.pfm");
+    const auto maps = recognise(document, {});
+    EXPECT_EQ(textOf(maps.at(0), "beauty"), "RGB");
+    EXPECT_EQ(maps[0].find("albedo")->evaluate(document).at(0, 0, 0), 0.25f);
+    better.width = 8;
+    EXPECT_THROW(document.attach("normal", better, "wide.pfm"), InputError);
+}
+
+TEST_F(RecogniseTest, LightGroups) {
+    const auto maps =
+        recognise(file({{.channels = names("V.Combined.R V.Combined.G V.Combined.B V.Combined_key.R "
+                                           "V.Combined_key.G V.Combined_key.B V.Combined_odd.R")}}),
+                  {});
+    ASSERT_EQ(maps.at(0).groups.size(), 1u);
+    EXPECT_EQ(maps[0].groups[0].text(), "V.Combined_key.RGB");
+}
+
 TEST_F(RecogniseTest, AssignmentsWin) {
     const image::ExrDocument document =
         file({{.channels = names("R G B albedo.R albedo.G albedo.B My.Tex.R My.Tex.G My.Tex.B v.X v.Y")}});

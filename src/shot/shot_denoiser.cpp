@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "image/io/exr/exr.h"
+#include "image/io/pfm.h"
 #include "image/io/picture.h"
 #include "renderer/layers/frame_file.h"
 #include "shot/camera_attributes.h"
@@ -51,11 +52,12 @@ image::LayeredImage layersOf(const std::filesystem::path& path) {
     constexpr std::array exrMagic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
     if (bytes.size() >= 4 && std::equal(exrMagic.begin(), exrMagic.end(), bytes.begin()))
         return image::decodeExr(bytes, path);
-    const image::Image picture = image::readPicture(path).linear;
+    const image::Image picture =
+        image::isPfm(bytes) ? image::decodePfm(bytes, path) : image::readPicture(path).linear;
     image::LayeredImage layers;
     layers.width = picture.width;
     layers.height = picture.height;
-    layers.add("", "RGB", picture, image::Storage::Float);
+    layers.add("", picture.components == 1 ? "Y" : "RGB", picture, image::Storage::Float);
     return layers;
 }
 
@@ -116,26 +118,48 @@ float distanceOf(const HostFrame& frame, size_t p) {
     return share > 0.0f ? frame.depth[4 * p] / share : 0.0f;
 }
 
-/// How many frames anti-aliasing averages. It would mix covered and empty pixels of transparent film.
-float edgeFrames(const ShotLayers& layers) {
-    return layers.isTransparent || layers.samples >= smoothSamples ? 1.0f : framesOfEdges;
+/// True if two frames' pictures have the same layers.
+bool isAlike(const LayerMap& a, const LayerMap& b) {
+    const auto sameText = [](const LayerExpression& x, const LayerExpression& y) {
+        return x.text() == y.text();
+    };
+    return a.prefix == b.prefix &&
+           std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
+                      [&](const auto& x, const auto& y) {
+                          return x.first == y.first && sameText(x.second, y.second);
+                      }) &&
+           std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), sameText);
 }
 
-void multiplyByAlpha(const image::Image& alpha, CleanPicture& picture) {
+/// How many frames anti-aliasing averages. It would mix covered and empty pixels of transparent film.
+float edgeFrames(const ShotLayers& layers) {
+    const bool few = layers.samples > 0 && layers.samples < smoothSamples;
+    return few && !layers.isTransparent ? framesOfEdges : 1.0f;
+}
+
+/// Where light was divided by it: where a surface is seen.
+void multiplyByAlpha(const image::Image& alpha, const HostFrame& frame, CleanPicture& picture) {
     const auto multiply = [&](std::vector<float>& colors) {
         for (size_t i = 0; i < colors.size(); ++i)
-            if (i % 4 != 3 && alpha.pixels[i / 4] > 0.0f) colors[i] *= alpha.pixels[i / 4];
+            if (i % 4 != 3 && frame.depth[i / 4 * 4 + 1] > 0.0f) colors[i] *= alpha.pixels[i / 4];
     };
     multiply(picture.beauty);
     for (std::vector<float>& group : picture.groups) multiply(group);
 }
 
-/// Replaces the layer of an expression that is nothing else. Adds the parts that changed.
+void checkReplaceable(const image::ExrDocument& file, const LayerExpression& expression) {
+    bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
+                  expression.terms().front().factors.size() == 1;
+    for (const ChannelPlace& place : expression.terms().front().factors.front().channels)
+        single = single && !file.parts()[place.part].attached;
+    if (!single)
+        throw UsageError(fmt::format("'{}' is no layer of {} that could be replaced", expression.text(),
+                                     file.name().string()));
+}
+
+/// Replaces a layer. Adds the parts that changed.
 void replaceLayer(image::ExrDocument& file, const LayerExpression& expression,
                   const std::vector<float>& colors, std::set<size_t>& parts) {
-    const bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
-                        expression.terms().front().factors.size() == 1;
-    if (!single) throw UsageError(fmt::format("'{}' is no layer that could be replaced", expression.text()));
     const std::vector<ChannelPlace>& channels = expression.terms().front().factors.front().channels;
     std::vector<float> values(colors.size() / 4);
     for (size_t c = 0; c < channels.size(); ++c) {
@@ -148,7 +172,8 @@ void replaceLayer(image::ExrDocument& file, const LayerExpression& expression,
 }  // namespace
 
 struct ShotDenoiser::Picture {
-    explicit Picture(const LayerMap& map) : converter(map) {}
+    explicit Picture(const LayerMap& of) : map(of), converter(of) {}
+    LayerMap map;
     FrameConverter converter;
     gpu::FrameGraph graph{oneFrame};
     gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
@@ -163,16 +188,13 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
         frame.file.attach(name, layersOf(file), file);
     }
     frame.maps = recognise(frame.file, options.assignments);
-    for (const LayerMap& map : frame.maps)
-        for (const auto& [role, expression] : map.layers)
-            for (const Term& term : expression.terms())
-                for (const Factor& factor : term.factors) frame.file.decode(factor.channels.front().part);
+    for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
     return frame;
 }
 
 void unpack(LoadedFrame& frame, const LoadOptions& options) {
-    const bool asWritten =
-        options.assignments.empty() && !options.layersOnly && isOwn(frame.file, options.sequence);
+    const bool asWritten = options.assignments.empty() && options.files.empty() && !options.layersOnly &&
+                           isOwn(frame.file, options.sequence);
     if (asWritten || options.network) {
         const std::filesystem::path& path = frame.file.name();
         const image::LayeredImage picture = layeredImage(frame.file, options.network);
@@ -212,7 +234,7 @@ CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame,
     CleanPicture result;
     denoise::DenoiserSettings settings = options_.settings;
     if (frame.specular.empty()) settings.svgf.separate = false;
-    if (settings.taa == denoise::TaaSettings{}) settings.taa.frames = frames;
+    if (!options_.keepsAntialiasing) settings.taa.frames = frames;
     if (!continues) graph.resetHistories();
     graph.beginFrame();
     denoise::DenoiserInput input = denoise::upload(graph, frame);
@@ -259,10 +281,11 @@ std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFram
 void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const HostFrame& frame,
                              bool continues, CleanPicture& result) {
     const image::Image& alpha = layers.images.at("alpha");
-    multiplyByAlpha(alpha, result);
+    multiplyByAlpha(alpha, frame, result);
+    const auto samples = static_cast<float>(layers.samples);
     const float framesOfCoverage =
-        std::max(samplesOfCoverage / static_cast<float>(std::max(layers.samples, 2u)), 1.0f);
-    if (options_.settings.taa != denoise::TaaSettings{} || framesOfCoverage <= 1.0f) return;
+        samples > 0.0f ? std::max(samplesOfCoverage / std::max(samples, 2.0f), 1.0f) : 1.0f;
+    if (options_.keepsAntialiasing || framesOfCoverage <= 1.0f) return;
     result.beauty =
         smoothed(picture.coveredColors, frame, std::move(result.beauty), framesOfCoverage, continues);
     std::vector<float> shares(4 * alpha.pixels.size());
@@ -302,6 +325,9 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
     const size_t count = frame.own ? 1 : frame.maps.size();  // other layers of Limpid's files are no pictures
     for (size_t i = 0; i < count; ++i) {
         if (i == pictures_.size()) pictures_.push_back(std::make_unique<Picture>(frame.maps[i]));
+        // A file with other pictures or layers begins a new history.
+        if (!isAlike(pictures_[i]->map, frame.maps[i]))
+            pictures_[i] = std::make_unique<Picture>(frame.maps[i]);
         Picture& picture = *pictures_[i];
         const bool own = frame.own.has_value();
         HostFrame host = hostFrame(frame, i, picture, continues);
@@ -366,6 +392,12 @@ void merge(CleanPicture& forwards, const CleanPicture& backwards) {
         if (!forwards.alpha.empty() && !backwards.alpha.empty())
             forwards.alpha[p] += share * (backwards.alpha[p] - forwards.alpha[p]);
     }
+}
+
+void checkReplaceable(const image::ExrDocument& file, const LayerMap& map) {
+    checkReplaceable(file, map.layers.at("beauty"));
+    if (const LayerExpression* const alpha = map.find("alpha")) checkReplaceable(file, *alpha);
+    for (const LayerExpression& group : map.groups) checkReplaceable(file, group);
 }
 
 void shareOut(CleanPicture& picture) {

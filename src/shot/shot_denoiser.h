@@ -49,6 +49,9 @@ struct ShotOptions {
     denoise::DenoiserSettings settings;
     denoise::DenoiserNetworks networks;
     const CameraTrack* cameras = nullptr;  ///< null: none are given
+    /// Anti-aliases as `settings` say; else as the frames' samples need it, coverage of transparent film
+    /// included.
+    bool keepsAntialiasing = false;
 };
 
 /// One clean picture of a frame.
@@ -104,12 +107,16 @@ void turnAround(denoise::HostFrame& now, const denoise::HostFrame& next);
 /// histories, forwards.
 void merge(CleanPicture& forwards, const CleanPicture& backwards);
 
+/// Throws UsageError if the beauty or a light group is no single layer of the file, so that it cannot be
+/// replaced.
+void checkReplaceable(const image::ExrDocument& file, const LayerMap& map);
+
 /// Scales the groups so that their sum is the beauty at each pixel and component; where all are 0, the last
 /// one (what no group has) gets it.
 void shareOut(CleanPicture& picture);
 
 /// Puts a clean picture in the place of its beauty, and its groups in the place of theirs, and returns the
-/// parts that changed. Throws UsageError if the beauty is no single layer of the file.
+/// parts that changed. The map has passed checkReplaceable().
 std::set<size_t> replacePicture(image::ExrDocument& file, const LayerMap& map, const CleanPicture& picture);
 
 }  // namespace limpid::shot

@@ -63,6 +63,16 @@ float distanceAt(const std::vector<float>& distance, const ShotLayers& layers, c
 
 }  // namespace
 
+void decodeParts(image::ExrDocument& file, const LayerMap& map) {
+    const auto decode = [&](const LayerExpression& expression) {
+        for (const Term& term : expression.terms())
+            for (const Factor& factor : term.factors)
+                for (const ChannelPlace& place : factor.channels) file.decode(place.part);
+    };
+    for (const auto& [role, expression] : map.layers) decode(expression);
+    for (const LayerExpression& group : map.groups) decode(group);
+}
+
 ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map) {
     ShotLayers layers;
     layers.width = file.width();
@@ -72,9 +82,7 @@ ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map) {
     for (const auto& [role, expression] : map.layers) wanted.emplace_back(&expression, &layers.images[role]);
     for (size_t g = 0; g < map.groups.size(); ++g) wanted.emplace_back(&map.groups[g], &layers.groups[g]);
     // Parts are decoded when they are first used, which is not for several threads.
-    for (const auto& [expression, image] : wanted)
-        for (const Term& term : expression->terms())
-            for (const Factor& factor : term.factors) file.decode(factor.channels.front().part);
+    decodeParts(file, map);
     tbb::parallel_for_each(wanted, [&](const auto& one) { *one.second = one.first->evaluate(file); });
     if (const Image* const alpha = layers.find("alpha"))
         layers.isTransparent = std::any_of(alpha->pixels.begin(), alpha->pixels.end(),

@@ -29,6 +29,8 @@ struct ShotLayers {
     }
 };
 
+/// Decodes the parts that the map's layers lie in.
+void decodeParts(image::ExrDocument& file, const LayerMap& map);
 ShotLayers readLayers(image::ExrDocument& file, const LayerMap& map);
 
 /// Where a frame's camera is from.

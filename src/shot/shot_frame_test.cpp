@@ -123,6 +123,11 @@ TEST(ShotFrame, TransparentFilmIsDividedByItsAlpha) {
     EXPECT_EQ(frame.albedo[4 * at(5, 9) + 1], 2.0f);
     EXPECT_EQ(frame.depth[4 * at(3, 9) + 1], 0.0f) << "not covered";
     EXPECT_EQ(frame.emission[4 * at(3, 9)], 1.5f) << "a lamp has alpha 0 and a colour";
+    // Partly covered, but neither the depth nor the distance knows by what: not divided.
+    layers.images["depth"].at(7, 9, 0) = 1e10f;
+    const HostFrame missed = converter.convert(layers, cameraAt(0).params(columns, rows), false);
+    EXPECT_EQ(missed.depth[4 * at(7, 9) + 1], 0.0f);
+    EXPECT_EQ(missed.emission[4 * at(7, 9)], 1.5f);
 }
 
 TEST(ShotFrame, NormalsAreTurnedIntoTheWorld) {

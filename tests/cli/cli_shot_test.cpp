@@ -184,9 +184,16 @@ TEST_F(CliShotTest, ShardsAndInterruptedRunsMakeTheSameFiles) {
     EXPECT_EQ(result.code, 0);
     EXPECT_FALSE(fs::exists(path("few.01.exr")));
     EXPECT_TRUE(fs::exists(path("few.03.exr")));
-    for (const char* wrong :
-         {"--shard 0/2", "--shard 3/2", "--shard 1", "--frames 5-2", "--frames x", "--cuts 1,x",
-          "--on-error never", "--strength 2", "--map albedo", "--bidirectional --denoiser kpcn"})
+    // A single file, and frames that are not there.
+    ASSERT_EQ(denoise("own.02.exr", "one.exr", "--resume").code, 0);
+    EXPECT_THAT(denoise("own.02.exr", "one.exr", "--resume").output, HasSubstr("1 frames were complete"));
+    result = denoise("own.%02d.exr", "few.%02d.exr", "--frames 6-9");
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.output, HasSubstr("frame 9 is missing"));
+    EXPECT_EQ(denoise("own.%02d.exr", "own.%02d.exr").code, 2) << "in place";
+    for (const char* wrong : {"--map beauty=", "--shard 0/2", "--shard 3/2", "--shard 1", "--frames 5-2",
+                              "--frames x", "--cuts 1,x", "--on-error never", "--strength 2", "--map albedo",
+                              "--bidirectional --denoiser kpcn"})
         EXPECT_EQ(denoise("own.%02d.exr", "few.%02d.exr", wrong).code, 2) << wrong;
 }
 
@@ -247,6 +254,16 @@ TEST_F(CliShotTest, LayersMayBeFilesOfTheirOwn) {
     putPfm("beauty.02.pfm", own.get("", "RGB"));
     putPfm("albedo.02.pfm", own.get("albedo", "RGB"));
     putPfm("n.02.pfm", own.get("normal", "XYZ"));
+    {
+        std::ofstream file(path("depth.02.pfm"), std::ios::binary);
+        file << "Pf\n" << width << " " << height << "\n-1\n";
+        const Image depth = own.get("depth", "Z");
+        for (uint32_t y = height; y-- > 0;)
+            file.write(reinterpret_cast<const char*>(&depth.pixels[size_t{y} * width]), width * 4);
+    }
+    const Result all =
+        run("denoise --explain " + path("beauty.02.pfm") + " --file depth=" + path("depth.02.pfm"));
+    EXPECT_THAT(all.output, HasSubstr("depth           depth.Y"));
     const Result result = denoise("beauty.%02d.pfm", "clean.%02d.exr",
                                   "--file albedo=" + path("albedo.%02d.pfm") +
                                       " --file n=" + path("n.%02d.pfm") + " --map normal=n.RGB");

@@ -1,6 +1,7 @@
 // `limpid denoise`: denoises frames of any renderer.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -84,6 +85,9 @@ std::vector<int> framesOf(const DenoiseOptions& o, const FramePattern& input) {
         if (frames[i + 1] != frames[i] + 1)
             throw InputError(input.text(), fmt::format("frame {} is missing", frames[i] + 1));
     if (frames.empty()) throw InputError(input.text(), fmt::format("there are no frames {}", o.frames));
+    if (o.onError != "skip" && (frames.front() != first || frames.back() != last))
+        throw InputError(input.text(),
+                         fmt::format("frame {} is missing", frames.front() != first ? first : last));
     return frames;
 }
 
@@ -107,9 +111,10 @@ void chooseShard(const std::string& text, ShotJob& job) {
 std::string settingsText(const DenoiseOptions& o) {
     const std::string cameras = o.cameras.empty() ? "" : hashText(hashOfFile(o.cameras));
     const std::string mapFile = o.mapFile.empty() ? "" : hashText(hashOfFile(o.mapFile));
-    return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, o.weights,
-                       fmt::join(o.assignments, " "), fmt::join(o.map, " "), mapFile, cameras, o.cuts,
-                       o.bidirectional, o.strength);
+    const std::string weights = o.weights.empty() ? "" : hashText(hashOfFile(o.weights));
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, weights,
+                       fmt::join(o.assignments, " "), fmt::join(o.map, " "), fmt::join(o.files, " "), mapFile,
+                       cameras, o.cuts, o.bidirectional, o.strength);
 }
 
 /// Parses "auto", "none" or "12,40".
@@ -158,6 +163,9 @@ ShotJob jobOf(const DenoiseOptions& o) {
         throw UsageError("'" + o.output + "': the output's name holds a number if the input's does");
     job.options.method = &chosenDenoiser(o);
     job.options.settings = settingsOf(o);
+    job.options.keepsAntialiasing =
+        !o.preset.empty() || std::any_of(o.assignments.begin(), o.assignments.end(),
+                                         [](const std::string& text) { return text.starts_with("taa."); });
     job.load.assignments = mapOf(o);
     job.load.network = job.options.method->network;
     job.load.files = filesOf(o, job.input.numbered());
@@ -166,7 +174,8 @@ ShotJob jobOf(const DenoiseOptions& o) {
     job.strength = o.strength;
     job.bidirectional = o.bidirectional && job.input.numbered();
     if (job.bidirectional && (job.options.method->network || job.options.method->name == "bilateral"))
-        throw UsageError("--bidirectional: --denoiser " + o.denoiser + " has no history");
+        throw UsageError("--bidirectional: --denoiser " + std::string(job.options.method->name) +
+                         " has no history");
     const auto cuts = parseCuts(o.cuts);
     job.cuts = cuts ? Cuts::Given : Cuts::Found;
     job.cutFrames = cuts.value_or(std::vector<int>{});
@@ -177,6 +186,9 @@ ShotJob jobOf(const DenoiseOptions& o) {
     job.resume = o.resume;
     const bool exr = isExr(job.output.format(0));
     if (o.resume && !exr) throw UsageError("--resume: only EXR files tell what they are of");
+    const int any = std::max(job.frames.front(), 0);
+    if (!o.explain && isSameFile(job.input.format(any), job.output.format(any)))
+        throw UsageError("'" + o.output + "': the output is the input");
     return job;
 }
 

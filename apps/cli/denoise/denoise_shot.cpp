@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/files/file.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "cli/pass_times.h"
@@ -45,7 +46,7 @@ class FrameReader {
             frame = current.get();
             shot::unpack(*frame, job_.load);
         } catch (const InputError& error) {
-            if (!job_.skipUnreadable) throw;
+            if (!job_.skipUnreadable || job_.frames.size() == 1) throw;
             frame.reset();
             if (skipped_.insert(job_.frames[index]).second)
                 log::warn("{}; the frame is skipped", error.what());
@@ -136,6 +137,7 @@ struct PackedPicture {
 
 /// What is written of one frame.
 struct FrameToWrite {
+    int number = 0;
     image::ExrDocument file;
     std::vector<shot::LayerMap> maps;
     std::vector<CleanPicture> pictures;
@@ -144,10 +146,12 @@ struct FrameToWrite {
 
 constexpr const char* inputAttribute = "limpid.input";
 
-/// Changes with the input's content and with what is done to it.
-std::string identityOf(const image::ExrDocument& input, const ShotJob& job) {
+/// Changes with the content of a frame's files and with what is done to them.
+std::string identityOf(int frame, const ShotJob& job) {
     Hash64 hash;
-    hash.addValue(input.hash());
+    hash.addValues(readFile(job.input.format(std::max(frame, 0))));
+    for (const auto& [name, pattern] : job.load.files)
+        hash.addValues(readFile(pattern.format(std::max(frame, 0))));
     hash.add(job.settingsText);
     return hashText(hash.value());
 }
@@ -174,6 +178,11 @@ void mixWithInput(FrameToWrite& frame, float strength) {
                 const float input = noisy.pixels[3 * p + c];
                 if (std::isfinite(input)) beauty[4 * p + c] = input + strength * (beauty[4 * p + c] - input);
             }
+        std::vector<float>& alpha = frame.pictures[i].alpha;
+        if (alpha.empty()) continue;
+        const image::Image given = frame.maps[i].layers.at("alpha").evaluate(frame.file);
+        for (size_t p = 0; p < alpha.size(); ++p)
+            alpha[p] = given.pixels[p] + strength * (alpha[p] - given.pixels[p]);
     }
 }
 
@@ -194,19 +203,18 @@ void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
     }
     for (const size_t part : parts) {
         frame.file.setText(part, "limpid.denoiser", std::string(job.options.method->name));
-        frame.file.setText(part, inputAttribute, identityOf(frame.file, job));
+        frame.file.setText(part, inputAttribute, identityOf(frame.number, job));
     }
     frame.file.write(path);
 }
 
 /// True if the output of this frame is complete: it says that it is of this input and these settings.
 bool isComplete(int frame, const ShotJob& job) {
-    const fs::path output = job.output.format(frame);
+    const fs::path output = job.output.format(std::max(frame, 0));
     if (!fs::exists(output)) return false;
     try {
-        const image::ExrDocument input = image::ExrDocument::read(job.input.format(frame));
         const image::ExrDocument file = image::ExrDocument::read(output);
-        const std::string identity = identityOf(input, job);
+        const std::string identity = identityOf(frame, job);
         return std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
             const auto text = part.texts.find(inputAttribute);
             return text != part.texts.end() && text->second == identity;
@@ -284,6 +292,8 @@ class ShotRun {
         writer_.finish();
         summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         summary_.skipped.assign(reader_.skipped().begin(), reader_.skipped().end());
+        if (summary_.frames == 0 && summary_.kept == 0 && first_ < job_.endWritten)
+            throw InputError(job_.input.text(), "no frame could be read");
         return summary_;
     }
 
@@ -313,10 +323,14 @@ class ShotRun {
     /// `isWritten`: else the frame only makes histories.
     void goForwards(LoadedFrame frame, bool isWritten) {
         const bool first = !last_, cut = cuts_.isCut(frame);
-        if (first) warnOf(frame, job_);
+        if (first) {
+            warnOf(frame, job_);
+            if (isExr(job_.output.format(0)))
+                for (const shot::LayerMap& map : frame.maps) shot::checkReplaceable(frame.file, map);
+        }
         if (cut && !first) summary_.cuts.push_back(frame.number);
         // Motion leads to the frame before, so after a gap it leads nowhere.
-        const bool continues = !first && !cut && (frame.own || frame.number == *last_ + 1);
+        const bool continues = !first && !cut && frame.number == *last_ + 1;
         last_ = frame.number;
         FrameToWrite result;
         if (!isExr(job_.output.format(0))) result.surfaces = surfacesOf(frame);
@@ -336,6 +350,7 @@ class ShotRun {
         if (!job_.dump.empty())
             writeDump(job_.output.format(std::max(frame.number, 0)),
                       imagesOfPass(denoiser_.graph(0), device_, job_.dump));
+        result.number = frame.number;
         result.file = std::move(frame.file);
         result.maps = std::move(frame.maps);
         writer_.write(frame.number, std::move(result));

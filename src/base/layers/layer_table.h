@@ -50,7 +50,7 @@ struct LayerInfo {
     Stored stored = Stored::Color;
     Mean mean = Mean::OfAll;
     VarianceOf varianceOf = VarianceOf::Nothing;
-    bool varianceInFiles = false;  ///< files can contain its variance, as channel `name`.variance
+    bool varianceInFiles = false;  ///< files can contain its variance, as channel `name`.variance.V
     bool inBeauty = false;         ///< beauty is the sum of these layers
     bool ofFirstHit = false;       ///< depends on the first hit alone, so the G-buffer pass writes it too
     ForFilters forFilters = ForFilters::Halves;

@@ -15,7 +15,7 @@ namespace {
 
 /// Formats channels like docs/layers.md: "depth.Z", "R G B A".
 std::string channelsOf(const LayerInfo& layer) {
-    if (layer.index == varianceLayer.index) return "X.variance";
+    if (layer.index == varianceLayer.index) return "X.variance.V";
     std::string text = layer.index == beautyLayer.index ? "" : std::string(layer.name) + ".";
     for (const char suffix : layer.suffixes) {
         if (suffix != layer.suffixes.front()) text += ' ';

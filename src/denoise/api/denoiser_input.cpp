@@ -30,8 +30,9 @@ DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame) {
     frame.forEach([&](const LayerInfo& layer, const auto& pixels) {
         // Zeros of the first two would be those of a perfect mirror; without specular light there is one
         // signal.
+        const bool ofSpecular = layer.member == "specular" || layer.member == "albedoSpecular";
         const bool mayLack = layer.member == "roughness" || layer.member == "hitDistance" ||
-                             layer.member == "specular" || layer.member == "albedoSpecular";
+                             (ofSpecular && frame.specular.empty());
         if (mayLack && pixels.empty()) return;
         input[layer] = uploadImage(graph, frame, layer, pixels);
     });

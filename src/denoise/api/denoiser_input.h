@@ -36,8 +36,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     gpu::ImageHandle target;
 };
 
-/// Uploads the frame's images; optional layers that are empty become zeros, but specular light, its albedo,
-/// roughness and hit distance stay empty. Throws Error if an image of `frame` has another size than the
+/// Uploads the frame's images; optional layers that are empty become zeros, but roughness, hit distance, and
+/// specular light with its albedo stay empty. Throws Error if an image of `frame` has another size than the
 /// frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
 

@@ -34,8 +34,12 @@ class PfmHeader {
     }
 
     void skipMagic() { position_ = 2; }
-    /// Where the pixels begin.
-    size_t end() const { return position_ + 1; }
+    /// Where the pixels begin: after one blank, or a carriage return and a line feed.
+    size_t end() const {
+        const bool pair =
+            position_ + 1 < text_.size() && text_[position_] == '\r' && text_[position_ + 1] == '\n';
+        return position_ + (pair ? 2 : 1);
+    }
 
   private:
     std::string_view text_;

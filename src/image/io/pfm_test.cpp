@@ -35,7 +35,7 @@ TEST(Pfm, RowsGoUpwardsInEitherByteOrder) {
 TEST(Pfm, IsReadAsAPicture) {
     const test::TempFolder folder;
     test::put(folder / "a.pfm", "PF 1 1 -1\n" + words({1, 200, 3}, false));
-    test::put(folder / "b.pfm", "Pf 1 1 -1\n" + words({7}, false));
+    test::put(folder / "b.pfm", "Pf\r\n1 1\r\n-1\r\n" + words({7}, false));
     EXPECT_THAT(readPicture(folder / "a.pfm").linear.pixels, testing::ElementsAre(1, 200, 3));
     EXPECT_TRUE(readPicture(folder / "a.pfm").sceneReferred);
     EXPECT_THAT(readPicture(folder / "b.pfm").linear.pixels, testing::ElementsAre(7, 7, 7));

@@ -28,12 +28,16 @@ bool has(const LayeredImage& file, const LayerInfo& layer) {
     });
 }
 
-/// Returns the layer's variance channel, also found under a name with a one-letter ending, which Blender
-/// adds; null if there is none.
-const image::Channel* varianceOf(const LayeredImage& file, const LayerInfo& layer) {
+/// "albedo.variance": the channel's name in files of Limpid 0.2, and in messages.
+std::string shortVarianceName(const LayerInfo& layer) {
     const std::string name = varianceChannel(layer);
-    const image::Channel* const channel = file.find(name);
-    return channel ? channel : file.find(name + ".V");
+    return name.substr(0, name.rfind('.'));
+}
+
+/// Returns the layer's variance channel, under either name; null if there is none.
+const image::Channel* varianceOf(const LayeredImage& file, const LayerInfo& layer) {
+    const image::Channel* const channel = file.find(varianceChannel(layer));
+    return channel ? channel : file.find(shortVarianceName(layer));
 }
 
 void addName(std::string& list, std::string_view name) {
@@ -121,7 +125,7 @@ void read(const LayeredImage& file, const LayerInfo& layer, std::vector<uint32_t
 void requireVariances(const LayeredImage& file, const std::filesystem::path& name) {
     std::string missing;
     for (const LayerInfo& layer : frameLayers) {
-        if (layer.varianceInFiles && !varianceOf(file, layer)) addName(missing, varianceChannel(layer));
+        if (layer.varianceInFiles && !varianceOf(file, layer)) addName(missing, shortVarianceName(layer));
     }
     if (!missing.empty())
         throw InputError(name, "lacks the layers " + missing +

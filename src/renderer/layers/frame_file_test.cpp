@@ -105,16 +105,16 @@ TEST(FrameFile, LayersThatWereNotComputedAreNotWritten) {
     layers.ids.clear();
     const LayeredImage file = fileOf(layers);
     EXPECT_EQ(file.find("specular.R"), nullptr);
-    EXPECT_EQ(file.find("specular.variance"), nullptr);
+    EXPECT_EQ(file.find("specular.variance.V"), nullptr);
     EXPECT_EQ(file.find("id.I"), nullptr);
-    EXPECT_NE(file.find("diffuse.variance"), nullptr);
+    EXPECT_NE(file.find("diffuse.variance.V"), nullptr);
 }
 
 TEST(FrameFile, VarianceIsReadUnderBothNames) {
     const RenderedLayers layers = twoPixels();
     LayeredImage file = fileOf(layers);
     for (image::Channel& channel : file.channels) {
-        if (channel.name.ends_with(".variance")) channel.name += ".V";
+        if (channel.name.ends_with(".variance.V")) channel.name.resize(channel.name.size() - 2);
     }
     std::vector<const LayerInfo*> lacking;
     expectSame(frameOf(file, "x.exr", true, lacking), layers);
@@ -142,7 +142,7 @@ TEST(FrameFile, MissingLayersAreNamed) {
     EXPECT_THAT(faultOf(file, false), HasSubstr("x.exr: lacks the layers diffuse, normal, which"));
     LayeredImage means = fileOf(twoPixels());
     std::erase_if(means.channels,
-                  [](const image::Channel& channel) { return channel.name.ends_with(".variance"); });
+                  [](const image::Channel& channel) { return channel.name.ends_with(".variance.V"); });
     EXPECT_THAT(faultOf(means, true), HasSubstr("diffuse.variance, specular.variance, albedo.variance, "
                                                 "normal.variance, depth.variance"));
     EXPECT_THAT(faultOf(means, true), Not(HasSubstr("emission.variance")));

@@ -139,7 +139,7 @@ image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vect
 }
 
 std::string varianceChannel(const LayerInfo& layer) {
-    return std::string(layer.name) + "." + std::string(varianceLayer.name);
+    return std::string(layer.name) + "." + std::string(varianceLayer.name) + ".V";
 }
 
 }  // namespace limpid

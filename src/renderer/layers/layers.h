@@ -51,7 +51,8 @@ std::vector<float> surfaceShare(const RenderedLayers& layers);
 image::LayeredImage toLayeredImage(const RenderedLayers& layers, const std::vector<std::string>& names,
                                    image::Storage colorStorage);
 
-/// The channel of a file that holds the layer's variance, if there is one.
+/// The channel of a file that holds the layer's variance, if there is one: "albedo.variance.V". Blender drops
+/// channels whose name does not end in one letter.
 std::string varianceChannel(const LayerInfo& layer);
 
 }  // namespace limpid

@@ -30,7 +30,6 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
-#include "base/hash.h"
 #include "image/io/exr/exr_header.h"
 #include "image/io/exr/exr_values.h"
 
@@ -249,8 +248,7 @@ void copyBlocks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int
 
 struct ExrDocument::Content {
     fs::path name;
-    std::vector<std::byte> bytes;  ///< empty once the only part is decoded
-    uint64_t hash = 0;             ///< of the bytes
+    std::vector<std::byte> bytes;  ///< empty once the only part has changed
     std::vector<ExrPartHeader> headers;
     std::vector<ExrPart> parts;
     std::vector<Planes> planes;  ///< of each part; empty until a channel is used
@@ -378,6 +376,7 @@ void ExrDocument::attach(const std::string& part, const LayeredImage& image, con
                                            content_->name.string(), width(), height()));
     ExrPart& description = content_->parts.emplace_back();
     description.name = part;
+    description.attached = true;
     for (const Channel& channel : image.channels)
         description.channels.push_back({channel.name, channel.storage});
     content_->attached.push_back(image);
@@ -392,9 +391,6 @@ ExrDocument ExrDocument::decode(std::vector<std::byte> bytes, const fs::path& na
     auto content = std::make_unique<Content>();
     content->name = name;
     content->bytes = std::move(bytes);
-    Hash64 hash;
-    hash.add(content->bytes);
-    content->hash = hash.value();
     reading(name, [&] {
         content->headers = checkExrParts(content->bytes, name);
         for (const ExrPartHeader& header : content->headers) content->parts.push_back(describe(header));
@@ -415,9 +411,7 @@ uint32_t ExrDocument::height() const {
     const Imath::Box2i display = content_->display();
     return static_cast<uint32_t>(display.max.y - display.min.y) + 1;
 }
-uint64_t ExrDocument::hash() const {
-    return content_->hash;
-}
+
 std::span<const ExrPart> ExrDocument::parts() const {
     return content_->parts;
 }

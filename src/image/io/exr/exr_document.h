@@ -25,6 +25,7 @@ struct ExrPart {
     std::string view;               ///< "left", for stereo; empty without views
     std::vector<Channel> channels;  ///< in the file's (alphabetical) order
     std::string compression;        ///< "zip", as in OpenEXR's documentation
+    bool attached = false;          ///< not of the file: ExrDocument::attach()
     std::string unreadable;         ///< why its pixels cannot be read: "is deep"; empty if they can
     std::map<std::string, std::string> texts;
     std::map<std::string, double> numbers;
@@ -53,16 +54,15 @@ class ExrDocument {
     const std::filesystem::path& name() const;
     uint32_t width() const;
     uint32_t height() const;
-    /// Of the file's bytes as they were read.
-    uint64_t hash() const;
+
     std::span<const ExrPart> parts() const;
 
     /// Lets the image's channels be read like those of a part of this name. They are not written, and cannot
     /// be replaced. Throws InputError(name) if the image has another size.
     void attach(const std::string& part, const LayeredImage& image, const std::filesystem::path& name);
 
-    /// Decodes the part, which values() and replace() would do. Afterwards several threads may call values() of
-    /// it. Throws as values() does.
+    /// Decodes the part, which values() and replace() would do. Afterwards several threads may call values()
+    /// of it. Throws as values() does.
     void decode(size_t part);
 
     /// Returns width * height values; Uint as exact integers below 2^24. Throws InputError if the part cannot
