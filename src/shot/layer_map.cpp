@@ -153,7 +153,7 @@ void apply(const Assignments& assignments, const ChannelTable& table, const std:
             setEncoding(map.encoding, key, value);
         } else {
             std::string known;
-            for (const RoleInfo& role : roleTable) known += std::string(role.name) + ", ";
+            for (const RoleInfo& each : roleTable) known += std::string(each.name) + ", ";
             throw UsageError(
                 fmt::format("'{}' is no layer; they are {}{}", key, known, fmt::join(otherKeys, ", ")));
         }
