@@ -58,9 +58,7 @@ void planarDepth(Encoding& e) {
 Convention cycles() {
     Convention c{.renderer = "Cycles (Blender)",
                  .beauties = {"Combined.RGB"},
-                 .evidence = {},
                  .rules = cyclesRules(),
-                 .encoding = {},
                  .encodingRules = {{"depth", "Depth.?", planarDepth},
                                    {"normal", "Denoising Normal.XYZ", normalInCamera}},
                  .group = "Combined_"};
@@ -83,10 +81,7 @@ Convention limpidFiles() {
                            {"depth", "depth.Z"},
                            {"motion", "motion.XY"},
                            {"id", "id.I"},
-                           {"roughness", "roughness.R"}},
-                 .encoding = {},
-                 .encodingRules = {},
-                 .group = {}};
+                           {"roughness", "roughness.R"}}};
     return c;
 }
 
@@ -110,8 +105,6 @@ Convention arnold() {
                            {"depth", "Z"},
                            {"depth", "Z.?"},
                            {"motion", "motionvector.XY"}},
-                 .encoding = {},
-                 .encodingRules = {},
                  .group = "RGBA_"};
     c.encoding.depthKind = DepthKind::Planar;
     c.encoding.motionScale = {-1.0f, 1.0f};  // forwards, y up
@@ -133,8 +126,6 @@ Convention renderMan() {
                            {"depth", "z"},
                            {"motion", "motionBack.XY"},
                            {"motion", "backward.XY"}},
-                 .encoding = {},
-                 .encodingRules = {},
                  .group = "Ci_"};
     normalInCamera(c.encoding);
     c.encoding.depthKind = DepthKind::Planar;
@@ -150,10 +141,7 @@ Convention pbrt() {
                            {"normal", "Ns.XYZ"},
                            {"normal", "N.XYZ"},
                            {"depth", "P.Z"},
-                           {"depth", "Pz"}},
-                 .encoding = {},
-                 .encodingRules = {},
-                 .group = {}};
+                           {"depth", "Pz"}}};
     normalInCamera(c.encoding);
     c.encoding.depthKind = DepthKind::Planar;
     return c;
@@ -172,10 +160,7 @@ Convention mitsuba() {
                       {"normal", "normals.XYZ"},
                       {"normal", "geo_normal.XYZ"},
                       {"depth", "*.T"},
-                      {"id", "*.I"}},
-            .encoding = {},
-            .encodingRules = {},
-            .group = {}};
+                      {"id", "*.I"}}};
 }
 
 Convention karma() {
@@ -196,9 +181,7 @@ Convention karma() {
                   {"albedoSpecular", "albedoglossyreflection.RGB"},
                   {"normal", "N.XYZ"},
                   {"depth", "depth.?"},
-                  {"motion", "motionvectors.XY"}},
-        .encoding = {},
-        .encodingRules = {}};
+                  {"motion", "motionvectors.XY"}}};
     c.encoding.depthKind = DepthKind::Planar;
     c.encoding.motionUnit = MotionUnit::Picture;
     c.encoding.motionScale = {-0.5f, 0.5f};  // forwards, from -1 to 1, y up
@@ -211,7 +194,6 @@ Convention anyRenderer() {
     return {.renderer = "unknown",
             .beauties = {"RGB", "rgba.RGB", "RGBA.RGB", "beauty.RGB", "Beauty.RGB", "C.RGB", "color.RGB",
                          "Color.RGB", "hdr.RGB"},
-            .evidence = {},
             .rules = {{"diffuse", "diffuse.RGB"},
                       {"specular", "specular.RGB"},
                       {"emission", "emission.RGB"},
@@ -235,10 +217,7 @@ Convention anyRenderer() {
                       {"depth", "z"},
                       {"motion", "motion.XY"},
                       {"id", "id.?"},
-                      {"roughness", "roughness.?"}},
-            .encoding = {},
-            .encodingRules = {},
-            .group = {}};
+                      {"roughness", "roughness.?"}}};
 }
 
 }  // namespace

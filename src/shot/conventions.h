@@ -29,11 +29,11 @@ struct Convention {
     /// One of these must exist as well, unless there are none: a layer, or an attribute after '@' ("@name",
     /// or
     /// "@name=beginning of its text").
-    std::vector<std::string_view> evidence;
+    std::vector<std::string_view> evidence{};
     std::vector<Rule> rules;
-    Encoding encoding;
-    std::vector<EncodingRule> encodingRules;
-    std::string_view group;  ///< how layers of light groups begin: "Combined_"; empty if there are none
+    Encoding encoding{};
+    std::vector<EncodingRule> encodingRules{};
+    std::string_view group{};  ///< how layers of light groups begin: "Combined_"; empty if there are none
 };
 
 /// From the most to the least specific; the last fits every file with colours.

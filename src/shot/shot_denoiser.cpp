@@ -1,91 +1,12 @@
 #include "shot/shot_denoiser.h"
 
-#include <fmt/format.h>
-#include <tbb/parallel_for_each.h>
-
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-
-#include "base/error.h"
-#include "base/files/file.h"
-#include "image/io/exr/exr.h"
-#include "image/io/pfm.h"
-#include "image/io/picture.h"
-#include "renderer/layers/frame_file.h"
-#include "shot/camera_attributes.h"
-#include "shot/recognise.h"
 
 namespace limpid::shot {
 namespace {
 
 using denoise::HostFrame;
-
-/// True if the denoiser reads this channel of Limpid's own files.
-bool isRead(std::string_view channel, bool network) {
-    if (channel.find(".variance") != std::string_view::npos) return network;
-    const ChannelName name = split(channel);
-    return std::any_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
-        return layer.name == name.layer && (network || layer.forFilters != ForFilters::Nothing);
-    });
-}
-
-/// What is read of the first part as one picture, for Limpid's own files.
-image::LayeredImage layeredImage(image::ExrDocument& file, bool network) {
-    image::LayeredImage picture;
-    picture.width = file.width();
-    picture.height = file.height();
-    const image::ExrPart& part = file.parts().front();
-    picture.metadata = part.texts;
-    for (const auto& channel : part.channels)
-        if (isRead(channel.name, network)) picture.channels.push_back({channel.name, channel.storage, {}});
-    file.decode(0);
-    tbb::parallel_for_each(picture.channels,
-                           [&](image::Channel& channel) { channel.values = file.values(0, channel.name); });
-    return picture;
-}
-
-/// A file's layers; a picture of another format has R, G and B.
-image::LayeredImage layersOf(const std::filesystem::path& path) {
-    const std::vector<std::byte> bytes = readFile(path);
-    constexpr std::array exrMagic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
-    if (bytes.size() >= 4 && std::equal(exrMagic.begin(), exrMagic.end(), bytes.begin()))
-        return image::decodeExr(bytes, path);
-    const image::Image picture =
-        image::isPfm(bytes) ? image::decodePfm(bytes, path) : image::readPicture(path).linear;
-    image::LayeredImage layers;
-    layers.width = picture.width;
-    layers.height = picture.height;
-    layers.add("", picture.components == 1 ? "Y" : "RGB", picture, image::Storage::Float);
-    return layers;
-}
-
-image::ExrDocument openDocument(const std::filesystem::path& path) {
-    const std::string extension = path.extension().string();
-    const bool picture =
-        extension == ".pfm" || extension == ".hdr" || extension == ".png" || extension == ".jpg";
-    return picture ? image::ExrDocument::of(layersOf(path), path) : image::ExrDocument::read(path);
-}
-
-bool has(const image::ExrPart& part, const LayerInfo& layer) {
-    return std::all_of(layer.suffixes.begin(), layer.suffixes.end(), [&](char suffix) {
-        return std::any_of(part.channels.begin(), part.channels.end(), [&](const auto& channel) {
-            return channel.name == std::string(layer.name) + "." + suffix;
-        });
-    });
-}
-
-/// True if the file has the layers that Limpid writes for a still, and (`sequence`) those for a sequence.
-bool isOwn(const image::ExrDocument& file, bool sequence) {
-    const image::ExrPart& part = file.parts().front();
-    return part.unreadable.empty() && part.texts.contains("limpid.camera") &&
-           std::all_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
-               const bool needed =
-                   layer.need == Need::Always || (sequence && layer.need == Need::InSequences);
-               return !needed || has(part, layer);
-           });
-}
 
 /// Other renderers' samples lie all over the pixel, so with few of them edges differ from frame to frame like
 /// a jittered picture's. This many frames are averaged with fewer samples than `smoothSamples`; with more,
@@ -98,20 +19,6 @@ constexpr float samplesOfCoverage = 16.0f;
 
 /// Each frame is downloaded before the next one, so a second one would only take memory.
 const gpu::GraphOptions oneFrame{.framesInFlight = 1};
-
-/// Samples per pixel by an attribute such as "cycles.ViewLayer.samples"; 0 if there is none.
-uint32_t samplesOf(const image::ExrDocument& file) {
-    uint32_t samples = 0;
-    for (const image::ExrPart& part : file.parts()) {
-        for (const auto& [name, text] : part.texts)
-            if (name.ends_with(".samples")) std::from_chars(text.data(), text.data() + text.size(), samples);
-        for (const char* name : {"samplesPerPixel", "arnold/AA_samples"})
-            if (const auto found = part.numbers.find(name);
-                found != part.numbers.end() && found->second >= 1.0)
-                samples = static_cast<uint32_t>(std::min(found->second, 1e6));
-    }
-    return samples;
-}
 
 float distanceOf(const HostFrame& frame, size_t p) {
     const float share = frame.depth[4 * p + 1];
@@ -147,28 +54,6 @@ void multiplyByAlpha(const image::Image& alpha, const HostFrame& frame, CleanPic
     for (std::vector<float>& group : picture.groups) multiply(group);
 }
 
-void checkReplaceable(const image::ExrDocument& file, const LayerExpression& expression) {
-    bool single = expression.terms().size() == 1 && expression.terms().front().scale == 1.0f &&
-                  expression.terms().front().factors.size() == 1;
-    for (const ChannelPlace& place : expression.terms().front().factors.front().channels)
-        single = single && !file.parts()[place.part].attached;
-    if (!single)
-        throw UsageError(fmt::format("'{}' is no layer of {} that could be replaced", expression.text(),
-                                     file.name().string()));
-}
-
-/// Replaces a layer. Adds the parts that changed.
-void replaceLayer(image::ExrDocument& file, const LayerExpression& expression,
-                  const std::vector<float>& colors, std::set<size_t>& parts) {
-    const std::vector<ChannelPlace>& channels = expression.terms().front().factors.front().channels;
-    std::vector<float> values(colors.size() / 4);
-    for (size_t c = 0; c < channels.size(); ++c) {
-        for (size_t p = 0; p < values.size(); ++p) values[p] = colors[4 * p + c];
-        file.replace(channels[c].part, channels[c].channel, values);
-        parts.insert(channels[c].part);
-    }
-}
-
 }  // namespace
 
 struct ShotDenoiser::Picture {
@@ -180,35 +65,6 @@ struct ShotDenoiser::Picture {
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
     std::optional<HostFrame> last;  ///< of Backwards: the guides of the frame after
 };
-
-LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options) {
-    LoadedFrame frame{.number = number, .file = openDocument(path)};
-    for (const auto& [name, pattern] : options.files) {
-        const std::filesystem::path file = pattern.format(std::max(number, 0));
-        frame.file.attach(name, layersOf(file), file);
-    }
-    frame.maps = recognise(frame.file, options.assignments);
-    for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
-    return frame;
-}
-
-void unpack(LoadedFrame& frame, const LoadOptions& options) {
-    const bool asWritten = options.assignments.empty() && options.files.empty() && !options.layersOnly &&
-                           isOwn(frame.file, options.sequence);
-    if (asWritten || options.network) {
-        const std::filesystem::path& path = frame.file.name();
-        const image::LayeredImage picture = layeredImage(frame.file, options.network);
-        if (options.network) requireVariances(picture, path);
-        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
-        return;
-    }
-    const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
-    for (const LayerMap& map : frame.maps) {
-        frame.layers.push_back(readLayers(frame.file, map));
-        frame.layers.back().camera = camera;
-        frame.layers.back().samples = samplesOf(frame.file);
-    }
-}
 
 ShotDenoiser::ShotDenoiser(gpu::Device& device, const ShotOptions& options, Direction direction)
     : device_(device), options_(options), direction_(direction) {}
@@ -224,9 +80,8 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     std::optional<CameraParams> given;
     const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
-    HostFrame host = direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
-                                                       : picture.converter.convertAlone(layers, given);
-    return host;
+    return direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
+                                             : picture.converter.convertAlone(layers, given);
 }
 
 CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, float frames,
@@ -256,9 +111,6 @@ std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFram
                                           std::vector<float> colors, float frames, bool continues) {
     if (!continues) graph.resetHistories();
     graph.beginFrame();
-    HostFrame guides;
-    guides.width = frame.width;
-    guides.height = frame.height;
     const gpu::Extent extent{frame.width, frame.height};
     denoise::DenoiserInput input;
     input.filters = gpu::filterBacking(device_);
@@ -379,48 +231,6 @@ void turnAround(HostFrame& now, const HostFrame& next) {
         const float texel[] = {-moved.x, -moved.y, distance - distanceOf(now, p), 1.0f};
         std::copy_n(texel, 4, &now.motion[4 * p]);
     }
-}
-
-void merge(CleanPicture& forwards, const CleanPicture& backwards) {
-    if (forwards.frames.empty() || backwards.frames.size() != forwards.frames.size()) return;
-    for (size_t p = 0; p < forwards.frames.size(); ++p) {
-        const float before = std::max(forwards.frames[p], 0.0f), after = std::max(backwards.frames[p], 0.0f);
-        if (!(before + after > 0.0f)) continue;
-        const float share = after / (before + after);
-        for (size_t c = 4 * p; c < 4 * p + 3; ++c)
-            forwards.beauty[c] += share * (backwards.beauty[c] - forwards.beauty[c]);
-        if (!forwards.alpha.empty() && !backwards.alpha.empty())
-            forwards.alpha[p] += share * (backwards.alpha[p] - forwards.alpha[p]);
-    }
-}
-
-void checkReplaceable(const image::ExrDocument& file, const LayerMap& map) {
-    checkReplaceable(file, map.layers.at("beauty"));
-    if (const LayerExpression* const alpha = map.find("alpha")) checkReplaceable(file, *alpha);
-    for (const LayerExpression& group : map.groups) checkReplaceable(file, group);
-}
-
-void shareOut(CleanPicture& picture) {
-    for (size_t i = 0; i < picture.beauty.size() && !picture.groups.empty(); ++i) {
-        float sum = 0.0f;
-        for (const std::vector<float>& group : picture.groups) sum += group[i];
-        const float scale = sum > 0.0f ? picture.beauty[i] / sum : 0.0f;
-        for (std::vector<float>& group : picture.groups) group[i] *= scale;
-        if (!(sum > 0.0f)) picture.groups.back()[i] = picture.beauty[i];
-    }
-}
-
-std::set<size_t> replacePicture(image::ExrDocument& file, const LayerMap& map, const CleanPicture& picture) {
-    std::set<size_t> parts;
-    replaceLayer(file, map.layers.at("beauty"), picture.beauty, parts);
-    if (!picture.alpha.empty()) {
-        std::vector<float> texels(4 * picture.alpha.size());
-        for (size_t p = 0; p < picture.alpha.size(); ++p) texels[4 * p] = picture.alpha[p];
-        replaceLayer(file, map.layers.at("alpha"), texels, parts);
-    }
-    for (size_t g = 0; g < map.groups.size() && g < picture.groups.size(); ++g)
-        replaceLayer(file, map.groups[g], picture.groups[g], parts);
-    return parts;
 }
 
 }  // namespace limpid::shot

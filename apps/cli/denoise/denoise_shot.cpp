@@ -9,7 +9,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/files/file.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "cli/pass_times.h"
@@ -137,7 +136,7 @@ struct PackedPicture {
 
 /// What is written of one frame.
 struct FrameToWrite {
-    int number = 0;
+    uint64_t content = 0;  ///< LoadedFrame::content
     image::ExrDocument file;
     std::vector<shot::LayerMap> maps;
     std::vector<CleanPicture> pictures;
@@ -147,11 +146,9 @@ struct FrameToWrite {
 constexpr const char* inputAttribute = "limpid.input";
 
 /// Changes with the content of a frame's files and with what is done to them.
-std::string identityOf(int frame, const ShotJob& job) {
+std::string identityOf(uint64_t content, const ShotJob& job) {
     Hash64 hash;
-    hash.addValues(readFile(job.input.format(std::max(frame, 0))));
-    for (const auto& [name, pattern] : job.load.files)
-        hash.addValues(readFile(pattern.format(std::max(frame, 0))));
+    hash.addValue(content);
     hash.add(job.settingsText);
     return hashText(hash.value());
 }
@@ -203,7 +200,7 @@ void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
     }
     for (const size_t part : parts) {
         frame.file.setText(part, "limpid.denoiser", std::string(job.options.method->name));
-        frame.file.setText(part, inputAttribute, identityOf(frame.number, job));
+        frame.file.setText(part, inputAttribute, identityOf(frame.content, job));
     }
     frame.file.write(path);
 }
@@ -214,7 +211,8 @@ bool isComplete(int frame, const ShotJob& job) {
     if (!fs::exists(output)) return false;
     try {
         const image::ExrDocument file = image::ExrDocument::read(output);
-        const std::string identity = identityOf(frame, job);
+        const uint64_t content = shot::contentOf(job.input.format(std::max(frame, 0)), frame, job.load);
+        const std::string identity = identityOf(content, job);
         return std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
             const auto text = part.texts.find(inputAttribute);
             return text != part.texts.end() && text->second == identity;
@@ -350,7 +348,7 @@ class ShotRun {
         if (!job_.dump.empty())
             writeDump(job_.output.format(std::max(frame.number, 0)),
                       imagesOfPass(denoiser_.graph(0), device_, job_.dump));
-        result.number = frame.number;
+        result.content = frame.content;
         result.file = std::move(frame.file);
         result.maps = std::move(frame.maps);
         writer_.write(frame.number, std::move(result));

@@ -154,7 +154,8 @@ void FrameGraph::beginFrame() {
     impl_->commitHistories();
     if (std::exchange(impl_->resetRequested, false)) impl_->histories.clear();
     const uint64_t number = impl_->frame.number + 1;
-    std::vector<std::byte> uploadData = std::move(impl_->frame.uploadData);
+    std::vector<std::byte> uploadData;
+    if (!impl_->frame.uploadData.empty()) uploadData.swap(impl_->frame.uploadData);
     uploadData.clear();
     impl_->frame = {};
     impl_->frame.uploadData = std::move(uploadData);  // growing it anew would cost more than the copies

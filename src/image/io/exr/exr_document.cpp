@@ -170,20 +170,6 @@ class Planes {
     std::vector<std::unique_ptr<std::byte[]>> bytes_;
 };
 
-/// Runs `action`; what OpenEXR throws becomes an InputError of the file.
-template <typename Action>
-auto reading(const fs::path& name, Action action) {
-    try {
-        return action();
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw InputError(name, "needs more memory than there is");
-    } catch (const std::exception& error) {
-        throw InputError(name, fmt::format("is no valid EXR file: {}", error.what()));
-    }
-}
-
 void writeTiles(auto&& target, const Imf::FrameBuffer& frame) {
     target.setFrameBuffer(frame);
     target.writeTiles(0, target.numXTiles() - 1, 0, target.numYTiles() - 1);
@@ -274,7 +260,7 @@ struct ExrDocument::Content {
         if (!description.unreadable.empty())
             throw InputError(name, fmt::format("the part '{}' {}, which is not supported", description.name,
                                                description.unreadable));
-        reading(name, [&] { decode(part); });
+        readingExr(name, [&] { decode(part); });
         return planes[part];
     }
 
@@ -391,7 +377,7 @@ ExrDocument ExrDocument::decode(std::vector<std::byte> bytes, const fs::path& na
     auto content = std::make_unique<Content>();
     content->name = name;
     content->bytes = std::move(bytes);
-    reading(name, [&] {
+    readingExr(name, [&] {
         content->headers = checkExrParts(content->bytes, name);
         for (const ExrPartHeader& header : content->headers) content->parts.push_back(describe(header));
     });

@@ -5,13 +5,17 @@
 #include <ImathBox.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <fmt/format.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <new>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "base/error.h"
 
 namespace limpid::image {
 
@@ -56,6 +60,20 @@ struct ExrPartHeader {
 
 /// Like checkExrHeaders(), but for all parts: those that cannot be read are no error.
 std::vector<ExrPartHeader> checkExrParts(std::span<const std::byte> bytes, const std::filesystem::path& name);
+
+/// Runs `action`; what OpenEXR throws becomes an InputError of the file.
+template <typename Action>
+auto readingExr(const std::filesystem::path& name, Action action) {
+    try {
+        return action();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw InputError(name, "needs more memory than there is");
+    } catch (const std::exception& error) {
+        throw InputError(name, fmt::format("is no valid EXR file: {}", error.what()));
+    }
+}
 
 /// Lets OpenEXR compress and decompress on all cores, unless the program has set a thread count. Acts once
 /// per process.

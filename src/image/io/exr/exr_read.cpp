@@ -133,15 +133,7 @@ LayeredImage decode(std::span<const std::byte> bytes, const std::filesystem::pat
 }  // namespace
 
 LayeredImage decodeExr(std::span<const std::byte> bytes, const std::filesystem::path& name) {
-    try {
-        return decode(bytes, name);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw InputError(name, "needs more memory than there is");
-    } catch (const std::exception& error) {
-        throw InputError(name, fmt::format("is no valid EXR file: {}", error.what()));
-    }
+    return readingExr(name, [&] { return decode(bytes, name); });
 }
 
 LayeredImage readExr(const std::filesystem::path& path) {

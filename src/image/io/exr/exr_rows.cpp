@@ -133,15 +133,7 @@ void decode(std::span<const std::byte> bytes, const fs::path& name, const RowSin
 
 void decodeExrRows(std::span<const std::byte> bytes, const fs::path& name, const RowSink& sink,
                    uint64_t maxMemory) {
-    try {
-        decode(bytes, name, sink, maxMemory);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw InputError(name, "needs more memory than there is");
-    } catch (const std::exception& error) {
-        throw InputError(name, fmt::format("is no valid EXR file: {}", error.what()));
-    }
+    readingExr(name, [&] { decode(bytes, name, sink, maxMemory); });
 }
 
 }  // namespace limpid::image

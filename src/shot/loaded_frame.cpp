@@ -1,0 +1,146 @@
+#include "shot/loaded_frame.h"
+
+#include <tbb/parallel_for_each.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <span>
+
+#include "base/files/file.h"
+#include "base/hash.h"
+#include "image/io/exr/exr.h"
+#include "image/io/pfm.h"
+#include "image/io/picture.h"
+#include "renderer/layers/frame_file.h"
+#include "shot/camera_attributes.h"
+#include "shot/recognise.h"
+
+namespace limpid::shot {
+namespace {
+
+/// True if the denoiser reads this channel of Limpid's own files.
+bool isRead(std::string_view channel, bool network) {
+    if (channel.find(".variance") != std::string_view::npos) return network;
+    const ChannelName name = split(channel);
+    return std::any_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
+        return layer.name == name.layer && (network || layer.forFilters != ForFilters::Nothing);
+    });
+}
+
+/// What is read of the first part as one picture, for Limpid's own files.
+image::LayeredImage layeredImage(image::ExrDocument& file, bool network) {
+    image::LayeredImage picture;
+    picture.width = file.width();
+    picture.height = file.height();
+    const image::ExrPart& part = file.parts().front();
+    picture.metadata = part.texts;
+    for (const auto& channel : part.channels)
+        if (isRead(channel.name, network)) picture.channels.push_back({channel.name, channel.storage, {}});
+    file.decode(0);
+    tbb::parallel_for_each(picture.channels,
+                           [&](image::Channel& channel) { channel.values = file.values(0, channel.name); });
+    return picture;
+}
+
+/// A file's layers; a picture of another format has R, G and B, or Y.
+image::LayeredImage layersOf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+    constexpr std::array exrMagic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
+    if (bytes.size() >= 4 && std::equal(exrMagic.begin(), exrMagic.end(), bytes.begin()))
+        return image::decodeExr(bytes, path);
+    const image::Image picture =
+        image::isPfm(bytes) ? image::decodePfm(bytes, path) : image::readPicture(path).linear;
+    image::LayeredImage layers;
+    layers.width = picture.width;
+    layers.height = picture.height;
+    layers.add("", picture.components == 1 ? "Y" : "RGB", picture, image::Storage::Float);
+    return layers;
+}
+
+image::ExrDocument openDocument(std::vector<std::byte> bytes, const std::filesystem::path& path) {
+    const std::string extension = path.extension().string();
+    const bool picture =
+        extension == ".pfm" || extension == ".hdr" || extension == ".png" || extension == ".jpg";
+    return picture ? image::ExrDocument::of(layersOf(bytes, path), path)
+                   : image::ExrDocument::decode(std::move(bytes), path);
+}
+
+bool has(const image::ExrPart& part, const LayerInfo& layer) {
+    return std::all_of(layer.suffixes.begin(), layer.suffixes.end(), [&](char suffix) {
+        return std::any_of(part.channels.begin(), part.channels.end(), [&](const auto& channel) {
+            return channel.name == std::string(layer.name) + "." + suffix;
+        });
+    });
+}
+
+/// True if the file has the layers that Limpid writes for a still, and (`sequence`) those for a sequence.
+bool isOwn(const image::ExrDocument& file, bool sequence) {
+    const image::ExrPart& part = file.parts().front();
+    return part.unreadable.empty() && part.texts.contains("limpid.camera") &&
+           std::all_of(frameLayers.begin(), frameLayers.end(), [&](const LayerInfo& layer) {
+               const bool needed =
+                   layer.need == Need::Always || (sequence && layer.need == Need::InSequences);
+               return !needed || has(part, layer);
+           });
+}
+
+/// Samples per pixel by an attribute such as "cycles.ViewLayer.samples"; 0 if there is none.
+uint32_t samplesOf(const image::ExrDocument& file) {
+    uint32_t samples = 0;
+    for (const image::ExrPart& part : file.parts()) {
+        for (const auto& [name, text] : part.texts)
+            if (name.ends_with(".samples")) std::from_chars(text.data(), text.data() + text.size(), samples);
+        for (const char* name : {"samplesPerPixel", "arnold/AA_samples"})
+            if (const auto found = part.numbers.find(name);
+                found != part.numbers.end() && found->second >= 1.0)
+                samples = static_cast<uint32_t>(std::min(found->second, 1e6));
+    }
+    return samples;
+}
+
+}  // namespace
+
+LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options) {
+    Hash64 content;
+    std::vector<std::byte> bytes = readFile(path);
+    content.addValues(bytes);
+    LoadedFrame frame{.number = number, .file = openDocument(std::move(bytes), path)};
+    for (const auto& [name, pattern] : options.files) {
+        const std::filesystem::path file = pattern.format(std::max(number, 0));
+        const std::vector<std::byte> attached = readFile(file);
+        content.addValues(attached);
+        frame.file.attach(name, layersOf(attached, file), file);
+    }
+    frame.content = content.value();
+    frame.maps = recognise(frame.file, options.assignments);
+    for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
+    return frame;
+}
+
+uint64_t contentOf(const std::filesystem::path& path, int number, const LoadOptions& options) {
+    Hash64 content;
+    content.addValues(readFile(path));
+    for (const auto& [name, pattern] : options.files)
+        content.addValues(readFile(pattern.format(std::max(number, 0))));
+    return content.value();
+}
+
+void unpack(LoadedFrame& frame, const LoadOptions& options) {
+    const bool asWritten = options.assignments.empty() && options.files.empty() && !options.layersOnly &&
+                           isOwn(frame.file, options.sequence);
+    if (asWritten || options.network) {
+        const std::filesystem::path& path = frame.file.name();
+        const image::LayeredImage picture = layeredImage(frame.file, options.network);
+        if (options.network) requireVariances(picture, path);
+        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
+        return;
+    }
+    const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
+    for (const LayerMap& map : frame.maps) {
+        frame.layers.push_back(readLayers(frame.file, map));
+        frame.layers.back().camera = camera;
+        frame.layers.back().samples = samplesOf(frame.file);
+    }
+}
+
+}  // namespace limpid::shot
