@@ -6,7 +6,7 @@
 
 #include "denoise/methods/temporal/temporal.h"
 #include "image/io/exr/exr_document.h"
-#include "shot/layer_map.h"
+#include "shot/layers/layer_map.h"
 #include "shot/shot_frame.h"
 
 namespace limpid::shot {

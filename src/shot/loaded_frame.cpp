@@ -13,8 +13,8 @@
 #include "image/io/pfm.h"
 #include "image/io/picture.h"
 #include "renderer/layers/frame_file.h"
-#include "shot/camera_attributes.h"
-#include "shot/recognise.h"
+#include "shot/camera/camera_attributes.h"
+#include "shot/layers/recognise.h"
 
 namespace limpid::shot {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/layers/layer_table.h"
 #include "shaders/common/scene_layout.h"
-#include "shot/camera_solve.h"
+#include "shot/camera/camera_solve.h"
 #include "shot/pixel_layers.h"
 
 namespace limpid::shot {

@@ -8,8 +8,8 @@
 
 #include "denoise/api/host_frame.h"
 #include "image/io/exr/exr_document.h"
-#include "shot/camera_track.h"
-#include "shot/layer_map.h"
+#include "shot/camera/camera_track.h"
+#include "shot/layers/layer_map.h"
 
 namespace limpid::shot {
 

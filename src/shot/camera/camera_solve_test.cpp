@@ -1,5 +1,5 @@
 // Tests that cameras are found again in the layers that they see.
-#include "shot/camera_solve.h"
+#include "shot/camera/camera_solve.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "shot/camera_track.h"
+#include "shot/camera/camera_track.h"
 
 namespace limpid::shot {
 namespace {

@@ -1,11 +1,11 @@
 // Tests that the layers of each renderer's files are found, by files with exactly their channels.
-#include "shot/recognise.h"
+#include "shot/layers/recognise.h"
 
 #include <gmock/gmock.h>
 
 #include "base/error.h"
-#include "shot/camera_attributes.h"
-#include "shot/shot_fixture.h"
+#include "shot/camera/camera_attributes.h"
+#include "shot/layers/shot_fixture.h"
 
 namespace limpid::shot {
 namespace {

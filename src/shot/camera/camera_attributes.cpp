@@ -1,4 +1,4 @@
-#include "shot/camera_attributes.h"
+#include "shot/camera/camera_attributes.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "shot/channel_table.h"
+#include "shot/layers/channel_table.h"
 
 namespace limpid::shot {
 

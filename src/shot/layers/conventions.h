@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shot/layer_map.h"
+#include "shot/layers/layer_map.h"
 
 namespace limpid::shot {
 

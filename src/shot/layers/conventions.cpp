@@ -1,4 +1,4 @@
-#include "shot/conventions.h"
+#include "shot/layers/conventions.h"
 
 #include "base/layers/layer_table.h"
 

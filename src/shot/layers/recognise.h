@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "shot/layer_map.h"
+#include "shot/layers/layer_map.h"
 
 namespace limpid::shot {
 

@@ -1,4 +1,4 @@
-#include "shot/channel_table.h"
+#include "shot/layers/channel_table.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "shot/camera_track.h"
+#include "shot/camera/camera_track.h"
 
 #include <gmock/gmock.h>
 

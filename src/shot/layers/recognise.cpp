@@ -1,9 +1,9 @@
-#include "shot/recognise.h"
+#include "shot/layers/recognise.h"
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "shot/conventions.h"
+#include "shot/layers/conventions.h"
 
 namespace limpid::shot {
 namespace {

@@ -1,4 +1,4 @@
-#include "shot/expression.h"
+#include "shot/layers/expression.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "shot/camera_solve.h"
+#include "shot/camera/camera_solve.h"
 
 #include <algorithm>
 #include <array>

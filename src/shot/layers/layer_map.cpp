@@ -1,4 +1,4 @@
-#include "shot/layer_map.h"
+#include "shot/layers/layer_map.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "shot/expression.h"
+#include "shot/layers/expression.h"
 
 namespace limpid::shot {
 
