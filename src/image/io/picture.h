@@ -9,8 +9,9 @@
 namespace limpid::image {
 
 struct Picture {
-    Image linear;                ///< 3 components, Rec. 709 primaries; alpha is dropped
-    bool sceneReferred = false;  ///< EXR, HDR and PFM: unbounded radiance. PNG and JPEG: already exposed, in [0,1]
+    Image linear;  ///< 3 components, Rec. 709 primaries; alpha is dropped
+    bool sceneReferred =
+        false;  ///< EXR, HDR and PFM: unbounded radiance. PNG and JPEG: already exposed, in [0,1]
 };
 
 /// Reads EXR (the layer of LayeredImage::colorLayer), Radiance HDR, PFM, PNG or JPEG (decoded from sRGB),
