@@ -16,7 +16,7 @@ struct ShotOptions {
     const denoise::Denoiser* method = nullptr;
     denoise::DenoiserSettings settings;
     denoise::DenoiserNetworks networks;
-    const CameraTrack* cameras = nullptr;  ///< null: none are given
+    std::shared_ptr<const CameraTrack> cameras;  ///< null: none are given
     /// Anti-aliases as `settings` say; else as the frames' samples need it, coverage of transparent film
     /// included.
     bool keepsAntialiasing = false;

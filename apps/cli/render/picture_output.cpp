@@ -1,8 +1,6 @@
 #include "cli/render/picture_output.h"
 
 #include "base/error.h"
-#include "base/files/file.h"
-#include "base/params.h"
 #include "image/io/exr/exr.h"
 #include "image/io/png/png.h"
 #include "image/metrics/metrics.h"
@@ -15,22 +13,9 @@ namespace limpid::cli {
 
 namespace fs = std::filesystem;
 
-std::optional<float> parseExposure(const std::string& text) {
-    if (text == "auto") return std::nullopt;
-    const ParamValue value = parseParam("--exposure", text, ParamValue(0.0f));
-    checkRange("--exposure", {"stops", 0.0f, -100.0, 100.0, "stops", ""}, value);
-    return std::get<float>(value);
-}
-
-bool isExr(const fs::path& path) {
-    return path.extension() == ".exr";
-}
-
 void checkPictureOutput(const fs::path& path, bool layers) {
-    if (!isExr(path) && path.extension() != ".png")
-        throw UsageError("'" + path.string() + "': an output's name ends in .exr or .png");
+    limpid::checkPictureOutput(path);
     if (layers && !isExr(path)) throw UsageError("--aov needs an .exr output");
-    checkWritable(path);
 }
 
 PictureFormat formatOf(const AccumulationHeader& header) {

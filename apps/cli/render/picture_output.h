@@ -3,22 +3,16 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/layers/layers.h"
+#include "renderer/layers/picture_name.h"
 #include "renderer/long/accumulation_header.h"
 
 namespace limpid::cli {
 
-/// Stops, or nothing for "auto". Throws UsageError.
-std::optional<float> parseExposure(const std::string& text);
-
-bool isExr(const std::filesystem::path& path);
-
-/// Throws UsageError unless the name ends in .exr or .png, and layers go to an .exr; OutputError if no such
-/// file can be written.
+/// As limpid::checkPictureOutput(), and throws UsageError unless layers go to an .exr.
 void checkPictureOutput(const std::filesystem::path& path, bool layers);
 
 struct PictureFormat {

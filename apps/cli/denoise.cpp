@@ -1,0 +1,146 @@
+// `limpid denoise`: denoises frames of any renderer.
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/options/device_options.h"
+#include "cli/options/former_options.h"
+#include "cli/options/pipeline_options.h"
+#include "cli/pass_times.h"
+#include "cli/progress.h"
+#include "cli/render/render_job.h"
+#include "renderer/frame/frame_download.h"
+#include "renderer/frame/network_file.h"
+#include "shot/run/denoise_shot.h"
+#include "shot/run/explain_shot.h"
+#include "shot/run/shot_request.h"
+
+namespace limpid::cli {
+namespace {
+
+struct DenoiseOptions {
+    shot::ShotRequest request;
+    std::string dump;
+    DeviceChoice device;
+    bool json = false, explain = false;
+};
+
+/// Milliseconds by pass.
+using Times = std::map<std::string, double>;
+
+void report(const DenoiseOptions& o, const shot::ShotJob& job, const shot::ShotSummary& summary,
+            const Times& lastFrame, gpu::Device& device) {
+    const std::string_view denoiser = job.options.method->name;
+    if (o.json) {
+        const nlohmann::json object{
+            {"output", o.request.output}, {"denoiser", denoiser},       {"device", device.info().name},
+            {"frames", summary.frames},   {"seconds", summary.seconds}, {"kept", summary.kept},
+            {"skipped", summary.skipped}, {"cuts", summary.cuts},       {"last_frame_ms", lastFrame}};
+        fmt::print("{}\n", jsonText(object));
+    } else {
+        if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
+        if (!summary.cuts.empty()) log::info("cuts before frames {}", describeFrames(summary.cuts));
+        log::info("{} frames by {}, on {}", summary.frames, denoiser, device.info().name);
+    }
+}
+
+void denoiseFiles(DenoiseOptions& o) {
+    if (o.explain)
+        o.request.output.clear();
+    else if (o.request.output.empty())
+        throw UsageError("--output is missing");
+    shot::ShotJob job = shot::jobOf(o.request);
+    if (o.explain) {
+        fmt::print("{}", shot::explainShot(job));
+        return;
+    }
+    const OpenDevice device = openDevice(o.device);
+    job.options.networks = loadNetworks(*device, job.options.method, job.weights, job.options.settings);
+    job.messages = log::write;
+    Progress progress("frames", job.endWritten - job.firstWritten);
+    job.progress = [&](size_t done, size_t) {
+        progress.show(done);
+        return true;
+    };
+    Times lastFrame;
+    job.afterFrame = [&](int frame, gpu::FrameGraph& graph) {
+        lastFrame = sumByName(graph.passTimes(*device));
+        if (!o.dump.empty()) writeDump(outputOf(job, frame), imagesOfPass(graph, *device, o.dump));
+    };
+    report(o, job, denoiseShot(job, *device), lastFrame, *device);
+    if (device->validationMessages() > 0)
+        throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
+}
+
+void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
+    command
+        .add_option("IN", o.input,
+                    "Input: frame.exr, or frame.%04d.exr for all existing frames; also .pfm, .hdr, .png")
+        ->required();
+    command.add_option("-o,--output", o.output,
+                       "Output: EXR (everything that the input has, with a new beauty) or PNG");
+    command.add_option("--map", o.map,
+                       "Say which layer something is: albedo=MyAlbedo.RGB, normal.space=camera; "
+                       "docs/denoise-your-renders.md lists all (repeatable)");
+    command.add_option(
+        "--file", o.files,
+        "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR, PNG (repeatable)");
+    command.add_option("--map-file", o.mapFile, "Read assignments of --map from a JSON file");
+    command.add_option("--camera", o.cameras,
+                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md)");
+    command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
+    command.add_flag("--bidirectional", o.bidirectional,
+                     "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
+                     "about twice as long");
+    command
+        .add_option("--strength", o.strength, "Share of the clean picture in the result: 0 to 1 (default)")
+        ->check(CLI::Range(0.0f, 1.0f));
+    command.add_option(
+        "--shard", o.shard,
+        "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");
+    command.add_flag(
+        "--resume", o.resume,
+        "Go on after the last complete output: EXR files say of which input and options they are");
+    command.add_option("--cuts", o.cuts,
+                       "Where the shot changes: auto (default), none, or the first frames after cuts: 12,40");
+    command.add_option(
+        "--on-error", o.onError,
+        "What an unreadable frame does: stop (default), or skip, which also allows missing frames");
+}
+
+}  // namespace
+
+void addDenoiseCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("denoise", "Denoise EXR frames of any renderer");
+    auto o = std::make_shared<DenoiseOptions>();
+    addFileOptions(*command, o->request);
+    command->add_flag(
+        "--explain", o->explain,
+        "Print how each layer of the input is understood, what is missing and what that costs, and "
+        "denoise nothing");
+    command->add_option("--denoiser", o->request.denoiser,
+                        "Denoiser: " + listOfDenoisers() + "; default svgf, or that of --preset");
+    refuseMethodOption(*command);
+    command->add_option("--preset", o->request.preset,
+                        "Use a denoiser with the settings of a paper or course; 'limpid info' lists them; "
+                        "other options override it");
+    command->add_option("--set", o->request.settings,
+                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command->add_option("--weights", o->request.weights,
+                        "Weights file for kpcn instead of the one that comes with Limpid");
+    command->add_option("--exposure", o->request.exposure,
+                        "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
+                        "pixels that see a surface");
+    command->add_option("--dump", o->dump, "Also write the images of this pass, beside the output");
+    command->add_flag("--json", o->json, "Print one JSON object about the run on stdout");
+    addDeviceOptions(*command, o->device);
+    command->callback([o] { denoiseFiles(*o); });
+}
+
+}  // namespace limpid::cli

@@ -1,0 +1,24 @@
+// Reads, denoises and writes the frames of a shot: the next frame is read and the last one written while one
+// is denoised.
+#pragma once
+
+#include <vector>
+
+#include "shot/run/shot_job.h"
+
+namespace limpid::shot {
+
+struct ShotSummary {
+    int frames = 0;        ///< written
+    int kept = 0;          ///< found complete
+    bool stopped = false;  ///< by ShotJob::progress
+    double seconds = 0.0;
+    std::vector<int> skipped, cuts;
+};
+
+/// Throws InputError if a frame cannot be read and is not to be skipped; frames before it are complete.
+/// Bidirectional shots are denoised in blocks, which bounds the memory: each block first backwards, beginning
+/// some frames behind its end, then forwards.
+ShotSummary denoiseShot(const ShotJob& job, gpu::Device& device);
+
+}  // namespace limpid::shot

@@ -1,0 +1,51 @@
+#include "shot/run/explain_shot.h"
+
+#include <fmt/format.h>
+
+#include "shot/explain.h"
+#include "shot/motion_check.h"
+
+namespace limpid::shot {
+namespace {
+
+LoadedFrame load(const ShotJob& job, int frame) {
+    LoadOptions options = job.load;
+    options.layersOnly = true;
+    options.network = false;
+    LoadedFrame loaded = loadFrame(inputOf(job, frame), frame, options);
+    unpack(loaded, options);
+    return loaded;
+}
+
+FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t picture, const ShotJob& job,
+                   bool continues) {
+    const ShotLayers& layers = frame.layers[picture];
+    std::optional<CameraParams> given;
+    const auto camera = job.options.cameras ? job.options.cameras->at(frame.number) : std::nullopt;
+    if (camera) given = camera->params(layers.width, layers.height);
+    converter.convert(layers, given, continues);
+    return converter.report();
+}
+
+}  // namespace
+
+std::string explainShot(const ShotJob& job) {
+    const LoadedFrame first = load(job, job.frames.front());
+    std::optional<LoadedFrame> second;
+    if (job.frames.size() > 1) second = load(job, job.frames[1]);
+    std::string text = explainLayers(first);
+    for (size_t i = 0; i < first.maps.size(); ++i) {
+        if (first.maps.size() > 1) text += fmt::format("  picture '{}'\n", first.maps[i].title);
+        FrameConverter converter(first.maps[i]);
+        FrameReport report = viewOf(converter, first, i, job, false);
+        const bool pair = second && i < second->maps.size();
+        if (pair) report = viewOf(converter, *second, i, job, true);
+        text += explainView(report);
+        if (!pair) continue;
+        const auto check = checkMotion(first.layers[i], second->layers[i], first.maps[i].encoding);
+        if (check) text += explainMotion(*check, first.number, second->number);
+    }
+    return text;
+}
+
+}  // namespace limpid::shot

@@ -1,0 +1,114 @@
+#include "shot/run/frame_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "image/io/png/png.h"
+#include "image/tonemap.h"
+#include "renderer/layers/picture_name.h"
+
+namespace limpid::shot {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* inputAttribute = "limpid.input";
+
+/// Changes with the content of a frame's files and with what is done to them.
+std::string identityOf(uint64_t content, const ShotJob& job) {
+    Hash64 hash;
+    hash.addValue(content);
+    hash.add(job.settingsText);
+    return hashText(hash.value());
+}
+
+void mixWithInput(FrameToWrite& frame, float strength) {
+    for (size_t i = 0; i < frame.pictures.size(); ++i) {
+        const image::Image noisy = frame.maps[i].layers.at("beauty").evaluate(frame.file);
+        std::vector<float>& beauty = frame.pictures[i].beauty;
+        for (size_t p = 0; 4 * p < beauty.size(); ++p)
+            for (size_t c = 0; c < 3; ++c) {
+                const float input = noisy.pixels[3 * p + c];
+                if (std::isfinite(input)) beauty[4 * p + c] = input + strength * (beauty[4 * p + c] - input);
+            }
+        std::vector<float>& alpha = frame.pictures[i].alpha;
+        if (alpha.empty()) continue;
+        const image::Image given = frame.maps[i].layers.at("alpha").evaluate(frame.file);
+        for (size_t p = 0; p < alpha.size(); ++p)
+            alpha[p] = given.pixels[p] + strength * (alpha[p] - given.pixels[p]);
+    }
+}
+
+void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
+    if (job.strength < 1.0f) mixWithInput(frame, job.strength);
+    if (!isExr(path)) {
+        image::Image picture(frame.file.width(), frame.file.height(), 3);
+        for (size_t i = 0; i < picture.pixels.size(); ++i)
+            picture.pixels[i] = frame.pictures.front().beauty[i / 3 * 4 + i % 3];
+        const float stops = job.exposure.value_or(image::autoExposure(picture, frame.surfaces));
+        return image::writePng(path, image::toBytes(image::tonemap(picture, stops)));
+    }
+    std::set<size_t> parts;
+    for (size_t i = 0; i < frame.pictures.size(); ++i) {
+        shareOut(frame.pictures[i]);
+        parts.merge(replacePicture(frame.file, frame.maps[i], frame.pictures[i]));
+    }
+    for (const size_t part : parts) {
+        frame.file.setText(part, "limpid.denoiser", std::string(job.options.method->name));
+        frame.file.setText(part, inputAttribute, identityOf(frame.content, job));
+    }
+    frame.file.write(path);
+}
+
+/// True if the output of this frame is complete: it says that it is of this input and these settings.
+bool isComplete(int frame, const ShotJob& job) {
+    const fs::path output = outputOf(job, frame);
+    if (!fs::exists(output)) return false;
+    try {
+        const image::ExrDocument file = image::ExrDocument::read(output);
+        const std::string identity = identityOf(contentOf(inputOf(job, frame), frame, job.load), job);
+        return std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
+            const auto text = part.texts.find(inputAttribute);
+            return text != part.texts.end() && text->second == identity;
+        });
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+void FrameWriter::write(int number, FrameToWrite frame) {
+    finish();
+    writing_ = std::async(std::launch::async,
+                          [this, path = outputOf(job_, number), moved = std::move(frame)]() mutable {
+                              writeFrame(path, std::move(moved), job_);
+                          });
+}
+
+void FrameWriter::finish() {
+    if (writing_.valid()) writing_.get();
+}
+
+std::vector<float> surfacesOf(const LoadedFrame& frame) {
+    std::vector<float> result;
+    if (frame.own) {
+        for (size_t p = 0; p < frame.own->pixelCount(); ++p)
+            result.push_back(frame.own->depth[4 * p + 1] > 0.0f ? 1.0f : 0.0f);
+    } else if (const image::Image* const depth = frame.layers.front().find("depth")) {
+        for (const float z : depth->pixels)
+            result.push_back(z > 0.0f && z < frame.maps.front().encoding.farDepth ? 1.0f : 0.0f);
+    }
+    return result;
+}
+
+size_t firstIncomplete(const ShotJob& job) {
+    size_t i = job.firstWritten;
+    while (i < job.endWritten && isComplete(job.frames[i], job)) ++i;
+    return i;
+}
+
+}  // namespace limpid::shot

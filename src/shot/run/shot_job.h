@@ -1,0 +1,56 @@
+// A shot to denoise: which frames, how, and where the results go.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/files/frame_pattern.h"
+#include "base/message.h"
+#include "shot/shot_denoiser.h"
+
+namespace limpid::shot {
+
+enum class Cuts { Found, Given };
+
+struct ShotJob {
+    FramePattern input, output;
+    std::vector<int> frames;  ///< ascending; -1 for a single file
+    /// Indices of the frames that are written; those around them only make histories.
+    size_t firstWritten = 0, endWritten = 0;
+    /// What the result depends on besides the input, for the attribute "limpid.input" of EXR files.
+    std::string settingsText;
+    bool resume = false;  ///< begin at the first frame whose output is not that of its input and the settings
+    LoadOptions load;
+    ShotOptions options;
+    std::string weights;  ///< of a network; empty: those that come with Limpid
+    bool bidirectional = false;
+    float strength = 1.0f;  ///< share of the clean picture in the result
+    Cuts cuts = Cuts::Found;
+    std::vector<int> cutFrames;  ///< if given: the first frame after each cut
+    bool skipUnreadable = false;
+    std::optional<float> exposure;  ///< of PNG files, stops; none: measured
+
+    MessageCallback messages;
+    /// Called after each frame that is written; false stops the run. `done` of `total` frames are finished.
+    std::function<bool(size_t done, size_t total)> progress;
+    /// Called after each frame that is written, with the graph of its first picture.
+    std::function<void(int frame, gpu::FrameGraph& graph)> afterFrame;
+};
+
+/// How many frames before its first one a part of a shot needs, so that histories are nearly as long as they
+/// get.
+inline constexpr size_t runUpFrames = 16;
+
+inline std::filesystem::path inputOf(const ShotJob& job, int frame) {
+    return job.input.format(std::max(frame, 0));
+}
+inline std::filesystem::path outputOf(const ShotJob& job, int frame) {
+    return job.output.format(std::max(frame, 0));
+}
+inline void warn(const ShotJob& job, const std::string& text) {
+    if (job.messages) job.messages(MessageLevel::Warning, text);
+}
+
+}  // namespace limpid::shot

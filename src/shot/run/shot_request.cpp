@@ -1,0 +1,198 @@
+#include "shot/run/shot_request.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "base/hash.h"
+#include "renderer/frame/parameters.h"
+#include "renderer/frame/presets.h"
+#include "renderer/layers/picture_name.h"
+
+namespace limpid::shot {
+namespace {
+
+/// Returns the request's denoiser, else that of its preset, else svgf.
+const denoise::Denoiser& chosenDenoiser(const ShotRequest& r) {
+    const std::string name = r.denoiser.empty() && r.preset.empty() ? "svgf" : r.denoiser;
+    const Pipeline pipeline = pipelineFor(r.preset, {.integrator = {}, .denoiser = name}, {});
+    if (pipeline.denoiser) return *pipeline.denoiser;
+    throw UsageError(fmt::format("--denoiser is missing; it is one of {}", fmt::join(denoiserNames(), ", ")));
+}
+
+denoise::DenoiserSettings settingsOf(const ShotRequest& r) {
+    RenderSettings settings;
+    applyPreset(settings, r.preset);
+    for (const std::string& text : r.settings) assign(settings, text);
+    return settings.denoisers;
+}
+
+uint64_t hashOfFile(const std::string& path) {
+    Hash64 hash;
+    hash.add(readFile(path));
+    return hash.value();
+}
+
+/// Parses "10-20" or "7".
+std::pair<int, int> parseRange(const std::string& text) {
+    int first = 0, last = 0;
+    const char* const end = text.data() + text.size();
+    const auto a = std::from_chars(text.data(), end, first);
+    bool good = a.ec == std::errc{} && first >= 0;
+    last = first;
+    if (good && a.ptr != end) {
+        const auto b = std::from_chars(a.ptr + 1, end, last);
+        good = *a.ptr == '-' && b.ec == std::errc{} && b.ptr == end && last >= first;
+    }
+    if (!good) throw UsageError(fmt::format("--frames {}: an example is 10-20", text));
+    return {first, last};
+}
+
+/// Returns the frames to denoise, or -1 for a single file.
+std::vector<int> framesOf(const ShotRequest& r, const FramePattern& input) {
+    if (!input.numbered()) {
+        if (!r.frames.empty()) throw UsageError("--frames: the input's name holds no number");
+        return {-1};
+    }
+    const bool skips = r.onError == "skip";
+    std::vector<int> frames = skips ? input.existingFrames() : std::vector<int>{};
+    if (r.frames.empty()) return frames.empty() ? input.wholeSequence() : frames;
+    if (frames.empty()) frames = input.existingFrames();
+    const auto [first, last] = parseRange(r.frames);
+    std::erase_if(frames, [&, a = first, b = last](int frame) { return frame < a || frame > b; });
+    for (size_t i = 0; !skips && i + 1 < frames.size(); ++i)
+        if (frames[i + 1] != frames[i] + 1)
+            throw InputError(input.text(), fmt::format("frame {} is missing", frames[i] + 1));
+    if (frames.empty()) throw InputError(input.text(), fmt::format("there are no frames {}", r.frames));
+    if (!skips && (frames.front() != first || frames.back() != last))
+        throw InputError(input.text(),
+                         fmt::format("frame {} is missing", frames.front() != first ? first : last));
+    return frames;
+}
+
+/// Chooses the job's frames that are written: all, or those of "2/4", the second of four parts.
+void chooseShard(const std::string& text, ShotJob& job) {
+    size_t part = 1, parts = 1;
+    if (!text.empty()) {
+        const char* const end = text.data() + text.size();
+        const auto a = std::from_chars(text.data(), end, part);
+        const auto b = a.ptr < end && *a.ptr == '/' ? std::from_chars(a.ptr + 1, end, parts) : a;
+        if (a.ec != std::errc{} || b.ec != std::errc{} || b.ptr != end || b.ptr == a.ptr || part < 1 ||
+            part > parts)
+            throw UsageError(fmt::format("--shard {}: an example is 2/4, the second of four parts", text));
+    }
+    const size_t count = job.frames.size();
+    job.firstWritten = count * (part - 1) / parts;
+    job.endWritten = count * part / parts;
+}
+
+/// What the result depends on besides the input.
+std::string settingsText(const ShotRequest& r) {
+    const auto hashed = [](const std::string& file) {
+        return file.empty() ? std::string() : hashText(hashOfFile(file));
+    };
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, r.denoiser, r.preset,
+                       hashed(r.weights), fmt::join(r.settings, " "), fmt::join(r.map, " "),
+                       fmt::join(r.files, " "), hashed(r.mapFile), hashed(r.cameras), r.cuts, r.bidirectional,
+                       r.strength);
+}
+
+/// Parses "auto", "none" or "12,40".
+std::optional<std::vector<int>> parseCuts(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    std::vector<int> cuts;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (text != "none" && at < end) {
+        int frame = 0;
+        const auto [next, error] = std::from_chars(at, end, frame);
+        if (error != std::errc{} || (next != end && *next != ','))
+            throw UsageError(fmt::format("--cuts {}: it is auto, none, or frames separated by commas", text));
+        cuts.push_back(frame);
+        at = next + 1;
+    }
+    return cuts;
+}
+
+Assignments mapOf(const ShotRequest& r) {
+    Assignments result;
+    if (!r.mapFile.empty()) result = readAssignments(r.mapFile);
+    for (const std::string& text : r.map) result.push_back(parseAssignment(text));
+    return result;
+}
+
+std::vector<std::pair<std::string, FramePattern>> filesOf(const ShotRequest& r, bool numbered) {
+    std::vector<std::pair<std::string, FramePattern>> files;
+    for (const std::string& text : r.files) {
+        const size_t equals = text.find('=');
+        if (equals == 0 || equals == std::string::npos)
+            throw UsageError(fmt::format("--file {}: an example is albedo=albedo.%04d.pfm", text));
+        files.emplace_back(text.substr(0, equals), FramePattern(text.substr(equals + 1)));
+        if (files.back().second.numbered() && !numbered)
+            throw UsageError(fmt::format("--file {}: the input's name holds no number", text));
+    }
+    return files;
+}
+
+void chooseMethod(const ShotRequest& r, ShotJob& job) {
+    job.options.method = &chosenDenoiser(r);
+    job.options.settings = settingsOf(r);
+    job.options.keepsAntialiasing =
+        !r.preset.empty() || std::any_of(r.settings.begin(), r.settings.end(),
+                                         [](const std::string& text) { return text.starts_with("taa."); });
+    if (!r.cameras.empty())
+        job.options.cameras = std::make_shared<const CameraTrack>(CameraTrack::read(r.cameras));
+    job.weights = r.weights;
+    job.bidirectional = r.bidirectional && job.input.numbered();
+    if (job.bidirectional && (job.options.method->network || job.options.method->name == "bilateral"))
+        throw UsageError(
+            fmt::format("--bidirectional: --denoiser {} has no history", job.options.method->name));
+}
+
+void chooseFrames(const ShotRequest& r, ShotJob& job) {
+    const auto cuts = parseCuts(r.cuts);
+    job.cuts = cuts ? Cuts::Given : Cuts::Found;
+    job.cutFrames = cuts.value_or(std::vector<int>{});
+    if (r.onError != "stop" && r.onError != "skip") throw UsageError("--on-error is 'stop' or 'skip'");
+    job.skipUnreadable = r.onError == "skip";
+    job.frames = framesOf(r, job.input);
+    chooseShard(r.shard, job);
+    job.resume = r.resume;
+}
+
+void checkFiles(const ShotRequest& r, const ShotJob& job) {
+    if (r.output.empty()) return;
+    if (job.input.numbered() != job.output.numbered())
+        throw UsageError("'" + r.output + "': the output's name holds a number if the input's does");
+    if (r.resume && !isExr(job.output.format(0)))
+        throw UsageError("--resume: only EXR files tell what they are of");
+    if (isSameFile(inputOf(job, job.frames.front()), outputOf(job, job.frames.front())))
+        throw UsageError("'" + r.output + "': the output is the input");
+}
+
+}  // namespace
+
+ShotJob jobOf(const ShotRequest& r) {
+    ShotJob job{.input = FramePattern(r.input),
+                .output = FramePattern(r.output.empty() ? r.input : r.output)};
+    job.exposure = parseExposure(r.exposure);
+    if (!r.output.empty()) checkPictureOutput(job.output.format(0));
+    if (!(r.strength >= 0.0f && r.strength <= 1.0f)) throw UsageError("--strength is from 0 to 1");
+    job.strength = r.strength;
+    chooseMethod(r, job);
+    chooseFrames(r, job);
+    job.load.assignments = mapOf(r);
+    job.load.network = job.options.method->network;
+    job.load.files = filesOf(r, job.input.numbered());
+    job.load.sequence = job.frames.size() > 1;
+    job.settingsText = settingsText(r);
+    checkFiles(r, job);
+    return job;
+}
+
+}  // namespace limpid::shot
