@@ -1,6 +1,7 @@
 # Installation rules. Each component is also a Debian package (LimpidPackages.cmake):
 # - library: liblimpid.so.0; development: its headers, CMake package and pkg-config file;
-# - neural and neural_development: the same for liblimpid-neural.so.0; weights: the network's weights;
+# - neural and neural_development: the same for liblimpid-neural.so.0; shot and shot_development: for
+#   liblimpid-shot.so.0; weights: the network's weights;
 # - program: limpid; python: the Python package.
 include(CMakePackageConfigHelpers)
 find_program(LIMPID_GZIP gzip REQUIRED)
@@ -10,7 +11,8 @@ set(LIMPID_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/limpid)
 install(TARGETS limpid_denoise EXPORT limpidTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/limpid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "neural.*" EXCLUDE)
+  COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" PATTERN "neural.*" EXCLUDE
+  PATTERN "shot.*" EXCLUDE)
 
 # For find_package(limpid).
 install(EXPORT limpidTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT development)
@@ -40,12 +42,19 @@ function(limpid_install_pc NAME DESCRIPTION COMPONENT)
 endfunction()
 limpid_install_pc(limpid "Real-time denoisers for any Vulkan device" development)
 
+# limpid_install_extra(NAME TARGETS DESCRIPTION): installs liblimpid-NAME with its headers. limpidConfig.cmake includes
+# TARGETS.cmake if it is in the same folder.
+function(limpid_install_extra NAME TARGETS DESCRIPTION)
+  install(TARGETS limpid_${NAME} EXPORT ${TARGETS}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${NAME} NAMELINK_COMPONENT ${NAME}_development)
+  install(FILES ${PROJECT_SOURCE_DIR}/include/limpid/${NAME}.h ${PROJECT_SOURCE_DIR}/include/limpid/${NAME}.hpp
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limpid COMPONENT ${NAME}_development)
+  install(EXPORT ${TARGETS} NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT ${NAME}_development)
+  limpid_install_pc(limpid-${NAME} "${DESCRIPTION}" ${NAME}_development)
+endfunction()
 if(TARGET limpid_neural)
-  install(TARGETS limpid_neural EXPORT limpidNeuralTargets
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT neural NAMELINK_COMPONENT neural_development)
-  install(FILES ${PROJECT_SOURCE_DIR}/include/limpid/neural.h ${PROJECT_SOURCE_DIR}/include/limpid/neural.hpp
-    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limpid COMPONENT neural_development)
-  # limpidConfig.cmake includes it if it is in the same folder.
-  install(EXPORT limpidNeuralTargets NAMESPACE limpid:: DESTINATION ${LIMPID_CMAKE_DIR} COMPONENT neural_development)
-  limpid_install_pc(limpid-neural "Kernel-predicting denoising network for any Vulkan device" neural_development)
+  limpid_install_extra(neural limpidNeuralTargets "Kernel-predicting denoising network for any Vulkan device")
+endif()
+if(TARGET limpid_shot)
+  limpid_install_extra(shot limpidShotTargets "Denoising of other renderers' EXR files on any Vulkan device")
 endif()

@@ -21,6 +21,9 @@ endif()
 if(TARGET limpid_neural)
   list(APPEND CPACK_COMPONENTS_ALL neural neural_development)
 endif()
+if(TARGET limpid_shot)
+  list(APPEND CPACK_COMPONENTS_ALL shot shot_development)
+endif()
 if(TARGET limpid_python_denoise)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -66,6 +69,23 @@ set(CPACK_DEBIAN_NEURAL_DEVELOPMENT_DESCRIPTION "denoising network for any Vulka
 Headers for C and C++, the component 'neural' of Limpid's CMake package and a
 pkg-config file.")
 
+set(CPACK_DEBIAN_SHOT_PACKAGE_NAME liblimpid-shot0)
+set(CPACK_DEBIAN_SHOT_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_SHOT_PACKAGE_DEPENDS libvulkan1)
+set(CPACK_DEBIAN_SHOT_PACKAGE_RECOMMENDS "limpid-weights (= ${LIMPID_DEB_VERSION})")
+set(CPACK_DEBIAN_SHOT_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/install/triggers)
+set(CPACK_DEBIAN_SHOT_DESCRIPTION "denoising of other renderers' EXR files
+Recognises the layers of Blender, Mitsuba, pbrt, Arnold, RenderMan and Karma,
+and cleans the frames of a shot on any Vulkan device.")
+
+set(CPACK_DEBIAN_SHOT_DEVELOPMENT_PACKAGE_NAME liblimpid-shot-dev)
+set(CPACK_DEBIAN_SHOT_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_SHOT_DEVELOPMENT_PACKAGE_DEPENDS
+  "liblimpid-shot0 (= ${LIMPID_DEB_VERSION}), liblimpid-dev (= ${LIMPID_DEB_VERSION})")
+set(CPACK_DEBIAN_SHOT_DEVELOPMENT_DESCRIPTION "denoising of other renderers' EXR files, to build programs with
+Headers for C and C++, the component 'shot' of Limpid's CMake package and a
+pkg-config file.")
+
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_NAME limpid-weights)
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_WEIGHTS_PACKAGE_ARCHITECTURE all)
@@ -92,6 +112,11 @@ python3 (>= 3.${LIMPID_PYTHON_MINOR}), python3 (<< 3.${LIMPID_NEXT_PYTHON})")
     string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-neural0 (= ${LIMPID_DEB_VERSION})")
     get_target_property(LIMPID_NEURAL_DIR limpid_neural BINARY_DIR)  # for dpkg-shlibdeps
     list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_NEURAL_DIR})
+  endif()
+  if(TARGET limpid_shot)
+    string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", liblimpid-shot0 (= ${LIMPID_DEB_VERSION})")
+    get_target_property(LIMPID_SHOT_DIR limpid_shot BINARY_DIR)
+    list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${LIMPID_SHOT_DIR})
   endif()
 endif()
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "real-time denoisers for any Vulkan device, for Python

@@ -56,7 +56,8 @@ typedef enum limpid_result {
     LIMPID_ERROR_UNSUPPORTED = 2,      /* the device lacks a required feature */
     LIMPID_ERROR_OUT_OF_MEMORY = 3,    /* on the device or the host */
     LIMPID_ERROR_DEVICE_LOST = 4,      /* destroy everything that was created on the device */
-    LIMPID_ERROR_FAILED = 5            /* anything else */
+    LIMPID_ERROR_FAILED = 5,           /* anything else */
+    LIMPID_ERROR_UNREADABLE = 6        /* an input file is missing or damaged (neural.h, shot.h) */
 } limpid_result;
 
 /* Describes the calling thread's last failure; "" if there was none. Valid until the thread's next call. */

@@ -45,7 +45,7 @@ typedef struct limpid_network_desc {
 } limpid_network_desc;
 
 /* Opens a device as limpid_device_create() does, and loads the weights onto it. Both descriptions may be NULL.
- * LIMPID_ERROR_UNSUPPORTED if no device fits, LIMPID_ERROR_FAILED if the weights are missing or damaged. */
+ * LIMPID_ERROR_UNSUPPORTED if no device fits, LIMPID_ERROR_UNREADABLE if the weights are missing or damaged. */
 LIMPID_API limpid_result limpid_network_create(const limpid_device_desc* device, const limpid_network_desc* desc,
                                                limpid_network** network);
 /* NULL is ignored. */

@@ -1,4 +1,4 @@
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, NamedTuple, overload
 
@@ -192,6 +192,38 @@ def denoise(
     device: Device | str | int | None = None,
     **options: Any,
 ) -> _Image: ...
+def denoise_shot(
+    input: _Path,
+    output: _Path,
+    *,
+    denoiser: _StillMethod | None = None,
+    preset: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    weights: _Path | None = None,
+    map: Mapping[str, str] | None = None,
+    map_file: _Path | None = None,
+    files: Mapping[str, _Path] | None = None,
+    cameras: _Path | None = None,
+    frames: int | tuple[int, int] | None = None,
+    shard: tuple[int, int] | None = None,
+    cuts: Literal["auto"] | Sequence[int] = "auto",
+    skip_unreadable: bool = False,
+    bidirectional: bool = False,
+    strength: float = 1.0,
+    resume: bool = False,
+    exposure: float | Literal["auto"] = "auto",
+    device: Device | str | int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> dict[str, float]: ...
+def explain_shot(
+    input: _Path,
+    *,
+    map: Mapping[str, str] | None = None,
+    map_file: _Path | None = None,
+    files: Mapping[str, _Path] | None = None,
+    cameras: _Path | None = None,
+    frames: int | tuple[int, int] | None = None,
+) -> str: ...
 def parameters(method: _StillMethod = "svgf") -> dict[str, Parameter]: ...
 def compare(
     test: ArrayLike, reference: ArrayLike, *, exposure: float | Literal["auto"] = "auto"

@@ -30,6 +30,8 @@ inline const char* codeOf(limpid_result result) {
             return "out_of_memory";
         case LIMPID_ERROR_DEVICE_LOST:
             return "device_lost";
+        case LIMPID_ERROR_UNREADABLE:
+            return "unreadable";
         default:
             return "failed";
     }

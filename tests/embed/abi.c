@@ -15,6 +15,7 @@ int main(void) {
     VALUE(LIMPID_ERROR_OUT_OF_MEMORY);
     VALUE(LIMPID_ERROR_DEVICE_LOST);
     VALUE(LIMPID_ERROR_FAILED);
+    VALUE(LIMPID_ERROR_UNREADABLE);
     printf("enum limpid_message_level %zu\n", sizeof(limpid_message_level));
     VALUE(LIMPID_MESSAGE_DEBUG);
     VALUE(LIMPID_MESSAGE_INFO);

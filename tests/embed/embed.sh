@@ -66,7 +66,9 @@ case $test in
         soname liblimpid.so liblimpid.so.0
         installed include/limpid/denoise{.h,.hpp,_vulkan.h,_vulkan.hpp} "$libdir"/liblimpid.so.0 \
             "$libdir"/pkgconfig/limpid.pc "$libdir"/cmake/limpid/limpidConfig{,Version}.cmake
-        [ ! -e "$prefix/include/limpid/neural.h" ] || fail "neural.h is installed without its library"
+        for other in neural shot; do
+            [ ! -e "$prefix/include/limpid/$other.h" ] || fail "$other.h is installed without its library"
+        done
         ;;
     find_package)
         configure "$source/tests/embed/consumer" "$own"
@@ -117,6 +119,27 @@ case $test in
         ;;
     neural_symbols)
         abi liblimpid-neural limpid_network_ abi_neural abi-neural-0.2.txt
+        ;;
+    shot_install)
+        for component in shot shot_development; do cmake --install "$build" --prefix "$prefix" --component $component; done
+        soname liblimpid-shot.so liblimpid-shot.so.0
+        installed include/limpid/shot{.h,.hpp} "$libdir"/liblimpid-shot.so.0 "$libdir"/pkgconfig/limpid-shot.pc
+        ;;
+    shot_find_package)
+        configure "$source/tests/embed/consumer" "$own" -D COMPONENT=shot
+        cmake --build "$own"
+        "$own/shot_wrapper" "$source/tests/data/shots/camera.%04d.exr" "$own/clean.%04d.exr"
+        ;;
+    shot_pkg_config)
+        ${CC:-cc} -std=c99 $(pkg-config --cflags limpid-shot) -o "$own/shot" "$source/tests/embed/consumer/shot.c" \
+            $(pkg-config --libs limpid-shot)
+        input=$source/tests/data/shots/objects.%04d.exr
+        LD_LIBRARY_PATH=$prefix/$libdir "$own/shot" "$input" "$own/c.%04d.exr" | grep -F "layers of Cycles"
+        "$build/limpid" denoise "$input" -o "$own/program.%04d.exr" --device cpu --bidirectional
+        for frame in 0013 0014; do cmp "$own/c.$frame.exr" "$own/program.$frame.exr"; done
+        ;;
+    shot_symbols)
+        abi liblimpid-shot limpid_shot_ abi_shot abi-shot-0.2.txt
         ;;
     example_c)
         configure "$source/examples/c" "$own"

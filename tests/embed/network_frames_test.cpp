@@ -253,7 +253,7 @@ TEST_F(NetworkFramesTest, WeightsThatAreMissingOrDamagedAreNamed) {
     limpid_network* network = nullptr;
     for (const std::string& file : {damaged, (folder / "none").string()}) {
         desc.weights = file.c_str();
-        EXPECT_EQ(limpid_network_create(&device, &desc, &network), LIMPID_ERROR_FAILED);
+        EXPECT_EQ(limpid_network_create(&device, &desc, &network), LIMPID_ERROR_UNREADABLE);
         EXPECT_THAT(limpid_network_last_error(), HasSubstr(file));
         EXPECT_EQ(network, nullptr);
     }

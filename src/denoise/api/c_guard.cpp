@@ -34,6 +34,8 @@ limpid_result resultOfException() noexcept {
         return say(error.what(), LIMPID_ERROR_UNSUPPORTED);
     } catch (const UsageError& error) {
         return say(error.what(), LIMPID_ERROR_INVALID_ARGUMENT);
+    } catch (const InputError& error) {
+        return say(error.what(), LIMPID_ERROR_UNREADABLE);
     } catch (const std::bad_alloc&) {
         return say("out of host memory", LIMPID_ERROR_OUT_OF_MEMORY);
     } catch (const std::exception& error) {

@@ -1,5 +1,7 @@
 #include "renderer/frame/network_file.h"
 
+#include <dlfcn.h>
+
 #include "base/error.h"
 
 namespace limpid {
@@ -12,14 +14,27 @@ const char* shippedName(const denoise::KpcnSettings& settings) {
     return settings.cis565 ? "kpcn-cis565.safetensors" : "kpcn.safetensors";
 }
 
+/// The folder of the file that contains this function; empty if that is unknown.
+fs::path folderOfThisLibrary() {
+    Dl_info info{};
+    if (::dladdr(reinterpret_cast<const void*>(&folderOfThisLibrary), &info) == 0 || !info.dli_fname)
+        return {};
+    std::error_code fault;
+    return fs::canonical(info.dli_fname, fault).parent_path();
+}
+
 }  // namespace
 
 fs::path shippedWeights(const denoise::KpcnSettings& settings) {
     std::error_code fault;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", fault).parent_path();
     const char* name = shippedName(settings);
-    for (const fs::path& candidate : {folder / name, folder.parent_path() / "share" / "limpid" / name}) {
-        if (fs::exists(candidate, fault)) return candidate;
+    for (const fs::path& folder :
+         {fs::read_symlink("/proc/self/exe", fault).parent_path(), folderOfThisLibrary()}) {
+        // An installed library is in lib, or in a folder below it for each architecture.
+        const fs::path prefix = folder.parent_path();
+        for (const fs::path& candidate : {folder / name, prefix / "share" / "limpid" / name,
+                                          prefix.parent_path() / "share" / "limpid" / name})
+            if (!folder.empty() && fs::exists(candidate, fault)) return candidate;
     }
     return {};
 }

@@ -11,8 +11,9 @@ namespace limpid {
 /// Minimum samples per pixel of a frame for a network; fewer contain too little information.
 constexpr uint32_t minNetworkSamples = 8;
 
-/// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`, beside
-/// the program, or in ../share/limpid relative to it. Empty if there is no such file.
+/// Weights that come with Limpid: kpcn.safetensors, or kpcn-cis565.safetensors if `settings.cis565`. They are
+/// looked for beside the program and beside the library that this is part of, then in ../share/limpid and
+/// ../../share/limpid relative to these. Empty if there is no such file.
 std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
 /// Loads the network that the denoiser needs (null: none) from `file`, or from the shipped file if `file` is

@@ -38,7 +38,7 @@ int main() {
     cpu.select = "cpu";
     limpid::NetworkDesc missing;
     missing.weights = "there is no such file";
-    expect(resultOf([&] { limpid::Network(cpu, missing); }) == LIMPID_ERROR_FAILED,
+    expect(resultOf([&] { limpid::Network(cpu, missing); }) == LIMPID_ERROR_UNREADABLE,
            "missing weights are refused");
     limpid::Network first(cpu);
     limpid::Network network = std::move(first);

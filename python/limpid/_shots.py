@@ -1,0 +1,105 @@
+"""Denoising of files of any renderer. Uses the extension module limpid._shot."""
+
+import os
+import warnings
+
+from limpid._denoising import Device
+
+try:
+    from limpid import _shot
+except ImportError as error:
+    _shot, _missing = None, error
+
+
+def _module():
+    if _shot is None:
+        message = "limpid was built without its programs: limpid.denoise_shot and limpid.explain_shot are missing"
+        raise ImportError(message) from _missing
+    return _shot
+
+
+def _path(value):
+    return "" if value is None else os.fspath(value)
+
+
+def _pairs(values):
+    """{"albedo": "MyAlbedo.RGB"} as "albedo=MyAlbedo.RGB"."""
+    def text(value):
+        if isinstance(value, bool):
+            return str(value).lower()
+        return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
+
+    return [f"{name}={text(value)}" for name, value in (values or {}).items()]
+
+
+def _inputs(input, map, map_file, files, cameras, frames, **rest):
+    options = _module().Options()
+    options.input = _path(input)
+    options.map = _pairs(map)
+    options.map_file = _path(map_file)
+    options.files = _pairs(files)
+    options.cameras = _path(cameras)
+    if frames is not None:
+        first, last = (frames, frames) if isinstance(frames, int) else frames
+        options.frames = f"{first:d}-{last:d}"
+    for name, value in rest.items():
+        setattr(options, name, value)
+    return options
+
+
+def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, frames=None):
+    """Returns several lines: how each layer of a shot's files is understood, what is missing and what that costs,
+    where the camera is from, and how much of the change between two frames the motion explains.
+
+    The arguments are those of denoise_shot().
+    """
+    return _module().explain(_inputs(input, map, map_file, files, cameras, frames))
+
+
+def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, weights=None, map=None, map_file=None,
+                 files=None, cameras=None, frames=None, shard=None, cuts="auto", skip_unreadable=False,
+                 bidirectional=False, strength=1.0, resume=False, exposure="auto", device=None, progress=None):
+    """Denoises the frames of a shot of any renderer as `limpid denoise` does (docs/denoise-your-renders.md).
+
+    input: path of a frame, or of all frames of a shot: "shot.%04d.exr". EXR, PFM, HDR or PNG.
+    output: path of the results, with a number if the input has one. EXR: the input's files with a clean beauty; PNG: a
+        tone-mapped picture.
+    denoiser: "svgf" (default), "atrous", "temporal", "bilateral" or "kpcn".
+    preset: the settings of a paper or course, by name.
+    parameters: a dict of names and values: {"svgf.alpha": 0.1}.
+    weights: path of weights for "kpcn" instead of those that come with Limpid.
+    map: a dict of what layers are: {"albedo": "MyAlbedo.RGB"}. map_file: path of a JSON file of the same.
+    files: a dict of layers in files of their own: {"albedo": "albedo.%04d.pfm"}.
+    cameras: path of a file of the frames' cameras.
+    frames: the only frames to denoise: a number, or (first, last).
+    shard: (2, 4) denoises only the second of four parts.
+    cuts: "auto", or a list of the first frames after cuts, which may be empty.
+    skip_unreadable: leaves out frames that are missing or cannot be read, with a warning, instead of raising an error.
+    bidirectional: denoises forwards and backwards and merges both. Takes twice as long.
+    strength: share of the clean picture in the result, above 0 to 1.
+    resume: goes on after the last complete output. Only for EXR.
+    exposure: of a PNG: stops, or "auto".
+    device: text or number that chooses a device as limpid.Device does, or a limpid.Device. In both cases the device is
+        opened separately. None: the best one.
+    progress: is called after each frame with the numbers of finished frames and of all frames. An exception in it stops
+        the run, and is raised; what is written is complete.
+
+    Returns a dict: "frames" (written), "kept" (found complete, with `resume`), "skipped", "cuts" (numbers of them) and
+    "seconds". What the command line would warn of becomes a UserWarning.
+
+    Raises limpid.Error: "invalid_argument" for a wrong option, "unreadable" for a file that cannot be read. The GIL is
+    released while it works.
+    """
+    if not 0.0 < strength <= 1.0:
+        raise ValueError(f"strength: {strength!r} is not above 0 and at most 1")
+    select = device.name if isinstance(device, Device) else "" if device is None else str(device)
+    options = _inputs(input, map, map_file, files, cameras, frames, output=_path(output), denoiser=denoiser or "",
+                      preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
+                      shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
+                      cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",
+                      on_error="skip" if skip_unreadable else "stop", strength=float(strength),
+                      bidirectional=bool(bidirectional), resume=bool(resume), exposure=str(exposure))
+    summary = _module().denoise(options, select, progress)
+    for message in summary.pop("warnings"):
+        warnings.warn(message, stacklevel=2)
+    return summary
