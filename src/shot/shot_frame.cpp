@@ -8,6 +8,7 @@
 #include "base/layers/layer_table.h"
 #include "shaders/common/scene_layout.h"
 #include "shot/camera/camera_solve.h"
+#include "shot/emitters.h"
 #include "shot/pixel_layers.h"
 
 namespace limpid::shot {
@@ -59,6 +60,13 @@ float distanceAt(const std::vector<float>& distance, const ShotLayers& layers, c
     const auto y = static_cast<int64_t>(std::floor(position.y + 0.5f));
     if (x < 0 || y < 0 || x >= int64_t{layers.width} || y >= int64_t{layers.height}) return 0.0f;
     return distance[static_cast<size_t>(y) * layers.width + static_cast<size_t>(x)];
+}
+
+/// What is behind everything is not filtered, and neither are lamps.
+void hideEmitters(const ShotLayers& layers, std::vector<float>& distance) {
+    const std::vector<uint8_t> emits = findEmitters(layers.images.at("beauty"));
+    for (size_t p = 0; p < emits.size(); ++p)
+        if (emits[p]) distance[p] = 0.0f;
 }
 
 }  // namespace
@@ -192,6 +200,7 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     });
     View view{frame.camera, distancesOf(layers, map_.encoding, frame.camera),
               report_.camera != CameraSource::Supposed};
+    if (!layers.find("emission")) hideEmitters(layers, view.distance);
     report_.lightShare = addLight(layers, view.distance, frame);
     addAlbedo(layers, frame);
     divideByAlpha(layers, view.distance, frame);
