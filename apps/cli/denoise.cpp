@@ -101,6 +101,12 @@ void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
     command
         .add_option("--strength", o.strength, "Share of the clean picture in the result: 0 to 1 (default)")
         ->check(CLI::Range(0.0f, 1.0f));
+    command
+        .add_option(
+            "--preserve", o.preserve,
+            "Share of what was filtered away, in the mean over 5x5 pixels, that is given back: 0 (default) "
+            "to 1; more detail and more noise")
+        ->check(CLI::Range(0.0f, 1.0f));
     command.add_option(
         "--shard", o.shard,
         "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");

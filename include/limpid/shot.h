@@ -54,6 +54,7 @@ typedef struct limpid_shot_desc {
     const char* on_error;  /* what an unreadable frame does: "stop" (default) or "skip" */
     const char* exposure;  /* of a PNG: stops, or "auto" (default) */
     float strength;        /* share of the clean picture in the result, above 0 to 1; 0: 1 */
+    float preserve;        /* share of filtered detail that is given back, 0 to 1: more detail and more noise */
     int32_t bidirectional; /* not 0: denoise forwards and backwards, and merge both; takes twice as long */
     int32_t resume;        /* not 0: go on after the last complete output (EXR) */
     /* Called on the calling thread after each frame that is written. Not 0 stops the run: frames so far are complete.

@@ -210,6 +210,7 @@ def denoise_shot(
     skip_unreadable: bool = False,
     bidirectional: bool = False,
     strength: float = 1.0,
+    preserve: float = 0.0,
     resume: bool = False,
     exposure: float | Literal["auto"] = "auto",
     device: Device | str | int | None = None,

@@ -58,7 +58,7 @@ def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, fr
 
 def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, weights=None, map=None, map_file=None,
                  files=None, cameras=None, frames=None, shard=None, cuts="auto", skip_unreadable=False,
-                 bidirectional=False, strength=1.0, resume=False, exposure="auto", device=None, progress=None):
+                 bidirectional=False, strength=1.0, preserve=0.0, resume=False, exposure="auto", device=None, progress=None):
     """Denoises the frames of a shot of any renderer as `limpid denoise` does (docs/denoise-your-renders.md).
 
     input: path of a frame, or of all frames of a shot: "shot.%04d.exr". EXR, PFM, HDR or PNG.
@@ -77,6 +77,8 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     skip_unreadable: leaves out frames that are missing or cannot be read, with a warning, instead of raising an error.
     bidirectional: denoises forwards and backwards and merges both. Takes twice as long.
     strength: share of the clean picture in the result, above 0 to 1.
+    preserve: share of what was filtered away, in the mean over 5x5 pixels, that is given back, 0 to 1: more detail and
+        more noise.
     resume: goes on after the last complete output. Only for EXR.
     exposure: of a PNG: stops, or "auto".
     device: text or number that chooses a device as limpid.Device does, or a limpid.Device. In both cases the device is
@@ -97,7 +99,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
                       preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
                       shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
                       cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",
-                      on_error="skip" if skip_unreadable else "stop", strength=float(strength),
+                      on_error="skip" if skip_unreadable else "stop", strength=float(strength), preserve=float(preserve),
                       bidirectional=bool(bidirectional), resume=bool(resume), exposure=str(exposure))
     summary = _module().denoise(options, select, progress)
     for message in summary.pop("warnings"):

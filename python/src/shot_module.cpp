@@ -41,7 +41,7 @@ struct Options {
     std::string input, output, denoiser, preset, weights, mapFile, cameras, frames, shard, cuts, onError,
         exposure;
     std::vector<std::string> settings, map, files;
-    float strength = 1.0f;
+    float strength = 1.0f, preserve = 0.0f;
     bool bidirectional = false, resume = false;
 };
 
@@ -68,6 +68,7 @@ void withDesc(const Options& o, const Use& use) {
     desc.on_error = text(o.onError);
     desc.exposure = text(o.exposure);
     desc.strength = o.strength;
+    desc.preserve = o.preserve;
     desc.bidirectional = o.bidirectional;
     desc.resume = o.resume;
     use(desc);
@@ -160,6 +161,7 @@ PYBIND11_MODULE(_shot, m) {
         .def_readwrite("map", &Options::map)
         .def_readwrite("files", &Options::files)
         .def_readwrite("strength", &Options::strength)
+        .def_readwrite("preserve", &Options::preserve)
         .def_readwrite("bidirectional", &Options::bidirectional)
         .def_readwrite("resume", &Options::resume);
     m.def("denoise", &denoise);

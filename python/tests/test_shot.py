@@ -37,11 +37,11 @@ class ShotTest(unittest.TestCase):
                               text=True).stdout
 
     def test_writes_the_same_bits_as_the_program(self):
-        options = ["--device", DEVICE, "--bidirectional", "--strength", "0.75", "--set", "svgf.levels=3"]
+        options = ["--device", DEVICE, "--bidirectional", "--strength", "0.75", "--preserve", "0.3", "--set", "svgf.levels=3"]
         self.program("-o", self.path("a.%04d.exr"), *options)
         calls = []
         summary = limpid.denoise_shot(self.shot, self.path("b.%04d.exr"), device=DEVICE, bidirectional=True,
-                                      strength=0.75, parameters={"svgf.levels": 3},
+                                      strength=0.75, preserve=0.3, parameters={"svgf.levels": 3},
                                       progress=lambda done, total: calls.append((done, total)))
         self.assertEqual(calls, [(1, 2), (2, 2)])
         self.assertEqual((summary["frames"], summary["skipped"], summary["cuts"]), (2, 0, 0))

@@ -28,6 +28,7 @@ int main(void) {
     MEMBER(limpid_shot_desc, on_error);
     MEMBER(limpid_shot_desc, exposure);
     MEMBER(limpid_shot_desc, strength);
+    MEMBER(limpid_shot_desc, preserve);
     MEMBER(limpid_shot_desc, bidirectional);
     MEMBER(limpid_shot_desc, resume);
     MEMBER(limpid_shot_desc, progress);

@@ -178,16 +178,17 @@ def find_program(name):
     return os.path.abspath(path)
 
 
-def run_limpid(program, folder, number):
+def run_limpid(program, folder, number, bidirectional=False):
     """Denoises noisy.NUMBER.exr to clean.NUMBER.exr. `number`: a frame's number or %04d."""
     # Relative names, since a '%' in the folder's name would be read as part of a frame pattern.
     command = [program, "denoise", f"noisy.{number}.exr", "-o", f"clean.{number}.exr", "--camera", "cameras.json"]
+    command += ["--bidirectional"] if bidirectional else []
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace")
     if result.returncode != 0:
         raise Problem(f"limpid failed with exit code {result.returncode}:\n{result.stderr.strip()}")
 
 
-def render_and_denoise(scene, folder, frames, program, still=False):
+def render_and_denoise(scene, folder, frames, program, still=False, bidirectional=False):
     """Renders and denoises the frames into the folder."""
     program = find_program(program)
     check_scene(scene)
@@ -196,7 +197,7 @@ def render_and_denoise(scene, folder, frames, program, still=False):
         refuse_other_frames(folder, frames)
     write_cameras(scene, frames, os.path.join(folder, "cameras.json"))
     render_frames(scene, frames, folder)
-    run_limpid(program, folder, f"{frames[0]:04d}" if still else "%04d")
+    run_limpid(program, folder, f"{frames[0]:04d}" if still else "%04d", bidirectional)
     require_files(folder, "clean", frames, "limpid wrote no picture")
 
 
@@ -258,7 +259,7 @@ class LIMPID_OT_denoise_sequence(bpy.types.Operator):
         frames = range(scene.frame_start, scene.frame_end + 1)
         try:
             folder = folder_of(scene)
-            render_and_denoise(scene, folder, frames, program_of(context))
+            render_and_denoise(scene, folder, frames, program_of(context), bidirectional=scene.limpid_bidirectional)
         except (Problem, OSError) as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
@@ -280,6 +281,7 @@ class LIMPID_PT_panel(bpy.types.Panel):
 
     def draw(self, context):
         self.layout.operator("limpid.enable_passes")
+        self.layout.prop(context.scene, "limpid_bidirectional")
         self.layout.operator("limpid.denoise_sequence")
 
 
@@ -289,9 +291,14 @@ CLASSES = (LIMPID_Preferences, LIMPID_OT_enable_passes, LIMPID_OT_denoise_sequen
 def register():
     for item in CLASSES:
         bpy.utils.register_class(item)
+    bpy.types.Scene.limpid_bidirectional = bpy.props.BoolProperty(
+        name="Both directions", default=True,
+        description="Denoise forwards and backwards, so that the first frames are as clean as the others. Takes twice "
+                    "as long")
 
 
 def unregister():
+    del bpy.types.Scene.limpid_bidirectional
     for item in reversed(CLASSES):
         bpy.utils.unregister_class(item)
 
@@ -313,6 +320,8 @@ def arguments(words):
     which.add_argument("--frames", type=frame_range, metavar="FIRST-LAST",
                        help="frames to render; default: those of the scene")
     which.add_argument("--still", action="store_true", help="render only the current frame")
+    parser.add_argument("--bidirectional", action="store_true",
+                        help="denoise forwards and backwards, so that the first frames are as clean as the others")
     parser.add_argument("--limpid", metavar="PATH", default="limpid", help="program; default: limpid from PATH")
     return parser.parse_args(words)
 
@@ -326,7 +335,8 @@ def main(words):
         frames = range(scene.frame_current, scene.frame_current + 1)
     try:
         enable_passes(scene)
-        render_and_denoise(scene, os.path.abspath(given.output), frames, given.limpid, given.still)
+        render_and_denoise(scene, os.path.abspath(given.output), frames, given.limpid, given.still,
+                           given.bidirectional)
     except (Problem, OSError) as problem:
         print(f"Error: {problem}", file=sys.stderr)
         return 1

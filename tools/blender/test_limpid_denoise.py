@@ -125,8 +125,12 @@ class AddonTest(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.results)), sorted(names + ["cameras.json"]))
         self.assertEqual(read(self.folder, "folder").strip(), self.results)
         self.assertEqual(read(self.folder, "arguments").split("\n")[:-1],
-                         ["denoise", "noisy.%04d.exr", "-o", "clean.%04d.exr", "--camera", "cameras.json"])
+                         ["denoise", "noisy.%04d.exr", "-o", "clean.%04d.exr", "--camera", "cameras.json",
+                          "--bidirectional"])
         self.assert_settings_restored()
+        self.scene.limpid_bidirectional = False
+        self.assertEqual(self.denoise(), {"FINISHED"})
+        self.assertNotIn("--bidirectional", read(self.folder, "arguments"))
 
     def test_renders_multilayer_pictures_with_all_passes(self):
         self.denoise()
@@ -235,6 +239,12 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         names = ["cameras.json", "clean.0003.exr", "clean.0004.exr", "noisy.0003.exr", "noisy.0004.exr"]
         self.assertEqual(sorted(os.listdir(self.results)), names)
+        self.assertNotIn("--bidirectional", read(self.folder, "arguments"))
+
+    def test_denoises_in_both_directions(self):
+        result = self.run_addon("--limpid", self.stub, "--bidirectional")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("--bidirectional", read(self.folder, "arguments"))
 
     def test_denoises_a_still(self):
         result = self.run_addon("--still", "--limpid", self.stub)

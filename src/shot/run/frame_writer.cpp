@@ -1,7 +1,6 @@
 #include "shot/run/frame_writer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/error.h"
@@ -9,6 +8,7 @@
 #include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "renderer/layers/picture_name.h"
+#include "shot/run/keep_input.h"
 
 namespace limpid::shot {
 namespace {
@@ -25,25 +25,23 @@ std::string identityOf(uint64_t content, const ShotJob& job) {
     return hashText(hash.value());
 }
 
-void mixWithInput(FrameToWrite& frame, float strength) {
+/// --preserve and --strength.
+void keepInput(FrameToWrite& frame, const ShotJob& job) {
     for (size_t i = 0; i < frame.pictures.size(); ++i) {
         const image::Image noisy = frame.maps[i].layers.at("beauty").evaluate(frame.file);
         std::vector<float>& beauty = frame.pictures[i].beauty;
-        for (size_t p = 0; 4 * p < beauty.size(); ++p)
-            for (size_t c = 0; c < 3; ++c) {
-                const float input = noisy.pixels[3 * p + c];
-                if (std::isfinite(input)) beauty[4 * p + c] = input + strength * (beauty[4 * p + c] - input);
-            }
+        if (job.preserve > 0.0f) restoreDetail(beauty, noisy, job.preserve);
+        if (job.strength < 1.0f) mix(beauty, noisy, job.strength);
         std::vector<float>& alpha = frame.pictures[i].alpha;
-        if (alpha.empty()) continue;
+        if (alpha.empty() || job.strength == 1.0f) continue;
         const image::Image given = frame.maps[i].layers.at("alpha").evaluate(frame.file);
         for (size_t p = 0; p < alpha.size(); ++p)
-            alpha[p] = given.pixels[p] + strength * (alpha[p] - given.pixels[p]);
+            alpha[p] = given.pixels[p] + job.strength * (alpha[p] - given.pixels[p]);
     }
 }
 
 void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
-    if (job.strength < 1.0f) mixWithInput(frame, job.strength);
+    if (job.strength < 1.0f || job.preserve > 0.0f) keepInput(frame, job);
     if (!isExr(path)) {
         image::Image picture(frame.file.width(), frame.file.height(), 3);
         for (size_t i = 0; i < picture.pixels.size(); ++i)

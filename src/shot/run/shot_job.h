@@ -27,6 +27,7 @@ struct ShotJob {
     std::string weights;  ///< of a network; empty: those that come with Limpid
     bool bidirectional = false;
     float strength = 1.0f;  ///< share of the clean picture in the result
+    float preserve = 0.0f;  ///< share of filtered detail that is given back; keep_input.h
     Cuts cuts = Cuts::Found;
     std::vector<int> cutFrames;  ///< if given: the first frame after each cut
     bool skipUnreadable = false;

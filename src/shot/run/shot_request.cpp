@@ -96,10 +96,10 @@ std::string settingsText(const ShotRequest& r) {
     const auto hashed = [](const std::string& file) {
         return file.empty() ? std::string() : hashText(hashOfFile(file));
     };
-    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, r.denoiser, r.preset,
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, r.denoiser, r.preset,
                        hashed(r.weights), fmt::join(r.settings, " "), fmt::join(r.map, " "),
                        fmt::join(r.files, " "), hashed(r.mapFile), hashed(r.cameras), r.cuts, r.bidirectional,
-                       r.strength);
+                       r.strength, r.preserve);
 }
 
 /// Parses "auto", "none" or "12,40".
@@ -184,6 +184,8 @@ ShotJob jobOf(const ShotRequest& r) {
     if (!r.output.empty()) checkPictureOutput(job.output.format(0));
     if (!(r.strength >= 0.0f && r.strength <= 1.0f)) throw UsageError("--strength is from 0 to 1");
     job.strength = r.strength;
+    if (!(r.preserve >= 0.0f && r.preserve <= 1.0f)) throw UsageError("--preserve is from 0 to 1");
+    job.preserve = r.preserve;
     chooseMethod(r, job);
     chooseFrames(r, job);
     job.load.assignments = mapOf(r);

@@ -24,7 +24,7 @@ struct ShotRequest {
     std::string cuts = "auto";     ///< "none", or "12,40"
     std::string onError = "stop";  ///< or "skip"
     std::string exposure = "auto";
-    float strength = 1.0f;
+    float strength = 1.0f, preserve = 0.0f;
     bool bidirectional = false, resume = false;
 };
 
