@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/options/device_options.h"
 #include "cli/options/former_options.h"
@@ -46,7 +47,8 @@ void report(const DenoiseOptions& o, const shot::ShotJob& job, const shot::ShotS
     } else {
         if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
         if (!summary.cuts.empty()) log::info("cuts before frames {}", describeFrames(summary.cuts));
-        log::info("{} frames by {}, on {}", summary.frames, denoiser, device.info().name);
+        log::info("wrote {}: {} frames by {}, in {}, on {}", o.request.output, summary.frames, denoiser,
+                  durationText(summary.seconds), device.info().name);
     }
 }
 
@@ -60,13 +62,14 @@ void denoiseFiles(DenoiseOptions& o) {
         fmt::print("{}", shot::explainShot(job));
         return;
     }
+    const InterruptGuard guard;
     const OpenDevice device = openDevice(o.device);
     job.options.networks = loadNetworks(*device, job.options.method, job.weights, job.options.settings);
     job.messages = log::write;
     Progress progress("frames", job.endWritten - job.firstWritten);
     job.progress = [&](size_t done, size_t) {
         progress.show(done);
-        return true;
+        return !interrupted();
     };
     Times lastFrame;
     job.afterFrame = [&](int frame, gpu::FrameGraph& graph) {
@@ -76,6 +79,7 @@ void denoiseFiles(DenoiseOptions& o) {
     report(o, job, denoiseShot(job, *device), lastFrame, *device);
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
+    endIfInterrupted();
 }
 
 void addFileOptions(CLI::App& command, shot::ShotRequest& o) {

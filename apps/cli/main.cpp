@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text/terminal_text.h"
+#include "cli/help_text.h"
 #include "commands.h"
 
 namespace limpid::cli {
@@ -27,6 +28,8 @@ int answer(const CLI::App& app, const CLI::ParseError& error) {
     const int code = app.exit(error, out, faults);
     fmt::print("{}", out.str());
     fmt::print(stderr, "{}", terminalText(faults.str(), LineBreaks::Keep));
+    const std::string suggestion = code == 0 ? std::string() : suggestionFor(app);
+    if (!suggestion.empty()) fmt::print(stderr, "{}\n", terminalText(suggestion, LineBreaks::Keep));
     return static_cast<int>(code == 0 ? ExitCode::Done : ExitCode::Usage);
 }
 
@@ -44,10 +47,28 @@ void refuseNonFinite(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuseNonFinite(*command);
 }
 
+/// True for a file of a scene, or a built-in one.
+bool isScene(const std::string& word) {
+    return word.starts_with("builtin:") || word.ends_with(".gltf") || word.ends_with(".glb") ||
+           word.ends_with(".obj");
+}
+
+/// The words of the command line, in reverse as CLI11 takes them: `limpid SCENE` is `limpid view SCENE`.
+std::vector<std::string> wordsOf(int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && isScene(words.front())) words.insert(words.begin(), "view");
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Limpid: a real-time path tracer and denoiser for every Vulkan device.", "limpid");
     app.set_version_flag("--version", LIMPID_VERSION);
     app.require_subcommand(1);
+    app.formatter(helpFormat());  // subcommands inherit it
+    app.footer(
+        "'limpid SCENE' opens a scene in the window, like 'limpid view SCENE'.\n"
+        "'limpid COMMAND --help' explains the options of a command.");
     addRenderCommand(app);
     addMergeCommand(app);
     addDenoiseCommand(app);
@@ -59,7 +80,7 @@ int run(int argc, char** argv) {
     addManualCommands(app);
     refuseNonFinite(app);
     try {
-        app.parse(argc, argv);
+        app.parse(wordsOf(argc, argv));
         return static_cast<int>(ExitCode::Done);
     } catch (const CLI::ParseError& error) {
         return answer(app, error);

@@ -3,9 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace limpid::cli {
+
+std::string durationText(double seconds) {
+    const auto whole = static_cast<uint64_t>(std::min(std::max(seconds, 0.0), 1e9) + 0.5);
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+    if (whole < 24 * 3600) return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+    return fmt::format("{} d {} h", whole / 86400, whole % 86400 / 3600);
+}
 
 Progress::Progress(std::string unit, uint64_t total)
     : unit_(std::move(unit)), total_(total), terminal_(::isatty(STDERR_FILENO) != 0) {}
@@ -23,8 +32,8 @@ void Progress::show(uint64_t done) {
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double rate = seconds > 0.0 ? static_cast<double>(done) / seconds : 0.0;
     const double left = rate > 0.0 ? static_cast<double>(total_ - done) / rate : 0.0;
-    fmt::print(stderr, "\r\x1b[K[{:#<{}}{:.<{}}] {}/{} {}, {:.1f} a second, {:.0f} s left", "", filled, "",
-               width - filled, done, total_, unit_, rate, left);
+    fmt::print(stderr, "\r\x1b[K[{:#<{}}{:.<{}}] {}/{} {}, {:.1f} a second, {} left", "", filled, "",
+               width - filled, done, total_, unit_, rate, durationText(left));
     std::fflush(stderr);
 }
 

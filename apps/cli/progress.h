@@ -7,6 +7,9 @@
 
 namespace limpid::cli {
 
+/// "42 s", "3 min 20 s", "2 h 5 min", "1 d 3 h".
+std::string durationText(double seconds);
+
 class Progress {
   public:
     /// `unit` is what is counted: "samples".

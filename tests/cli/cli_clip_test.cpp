@@ -41,6 +41,27 @@ class CliClipTest : public CliTest {
         fs::permissions(folder_ / "bin" / "ffmpeg", fs::perms::owner_all);
         return "PATH='" + path("bin") + "':/usr/bin:/bin '" + LIMPID_PROGRAM + "' ";
     }
+    /// Starts a long clip, and returns when ffmpeg runs, as a temporary file shows.
+    pid_t startClip(const std::string& program, size_t filesBefore) const {
+        const std::string command =
+            "exec env " + program + scene + "--frames 100000 -o " + path("a.mp4") + " >/dev/null 2>&1";
+        const pid_t process = ::fork();
+        if (process == 0) {
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            std::_Exit(127);
+        }
+        EXPECT_GT(process, 0);
+        for (int i = 0; i < 600 && files() == filesBefore; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        EXPECT_EQ(files(), filesBefore + 1);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        return process;
+    }
+    static void expectEndBy(pid_t process, int signal) {
+        int status = 0;
+        ASSERT_EQ(::waitpid(process, &status, 0), process);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    }
     double meanOf(const std::string& name, size_t component) const {
         const image::ByteImage picture = image::readPngOrJpeg(path(name));
         double sum = 0.0;
@@ -122,27 +143,24 @@ TEST_F(CliClipTest, ReportsAFailureOfFfmpegAndKeepsTheOldClip) {
     }
 }
 
-TEST_F(CliClipTest, AnInterruptedRenderLeavesNoFile) {
-    for (const int signal : {SIGINT, SIGTERM}) {
-        const std::string command = std::string("exec '") + LIMPID_PROGRAM + "' " + scene +
-                                    "--frames 100000 -o " + path("a.mp4") + " >/dev/null 2>&1";
-        const pid_t process = ::fork();
-        if (process == 0) {
-            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-            std::_Exit(127);
-        }
-        ASSERT_GT(process, 0);
-        // A temporary file shows that ffmpeg is running.
-        for (int i = 0; i < 600 && files() == 0; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        EXPECT_EQ(files(), 1u);
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        EXPECT_EQ(::kill(process, signal), 0);
-        int status = 0;
-        ASSERT_EQ(::waitpid(process, &status, 0), process);
-        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
-        EXPECT_EQ(files(), 0u);
-    }
+TEST_F(CliClipTest, AnInterruptedRenderKeepsItsFrames) {
+    const pid_t process = startClip("'" + std::string(LIMPID_PROGRAM) + "' ", 0);
+    EXPECT_EQ(::kill(process, SIGINT), 0);
+    expectEndBy(process, SIGINT);
+    EXPECT_EQ(files(), 1u);
+    EXPECT_EQ(probe("a.mp4").substr(0, 6), "34,18,");
+}
+
+TEST_F(CliClipTest, AskedTwiceItEndsAtOnceAndLeavesNoFile) {
+    // An encoder that is slow to finish, so that the second signal finds the render at work.
+    const std::string slow =
+        fakeFfmpeg("for file; do :; done; : >\"${file#file:}\"; cat >/dev/null; sleep 20");
+    const pid_t process = startClip(slow, 1);
+    EXPECT_EQ(::kill(process, SIGTERM), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(800));
+    EXPECT_EQ(::kill(process, SIGTERM), 0);
+    expectEndBy(process, SIGTERM);
+    EXPECT_EQ(files(), 1u) << "only bin";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/help_text.h"
 
 namespace limpid::cli {
 
@@ -16,6 +17,7 @@ std::string faultOfTracer(const std::string& name) {
 }  // namespace
 
 void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
+    const OptionGroup group(command, "Device");
     command.add_option("--device", choice.device.select,
                        "Device by name, index, or 'cpu'; default: the best one");
     command.add_option("--tracer", choice.tracer, "Ray tracing method: auto (default), compute or hardware")

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "cli/help_text.h"
 
 namespace limpid::cli {
 namespace {
@@ -21,6 +22,7 @@ uint32_t positiveNumber(std::string_view text) {
 }  // namespace
 
 void addLongRenderOptions(CLI::App& command, LongRenderChoice& choice) {
+    const OptionGroup group(command, "Long renders");
     command
         .add_option("--time-limit", choice.timeLimit,
                     "Seconds from the start of the program after which the picture so far is written")

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/files/frame_pattern.h"
+#include "cli/help_text.h"
 #include "cli/render/clip_output.h"
 #include "cli/render/picture_output.h"
 #include "renderer/frame/parameters.h"
@@ -68,11 +69,8 @@ void checkCheckpointIsNoOutput(const RenderOptions& o) {
     }
 }
 
-}  // namespace
-
-void addRenderOptions(CLI::App& command, RenderOptions& o) {
-    addSceneOptions(command, o.scene);
-    addSequenceOptions(command, o.sequence);
+void addOutputOptions(CLI::App& command, RenderOptions& o) {
+    const OptionGroup group(command, "Output");
     command
         .add_option("-o,--output", o.output,
                     "Output: .exr (linear, layers) or .png (tone-mapped), frame.%04d.exr for several frames, "
@@ -80,6 +78,23 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
         ->required();
     command.add_option("--width", o.width, "Picture width, pixels (1280)")->check(CLI::Range(1, 65535));
     command.add_option("--height", o.height, "Picture height, pixels (720)")->check(CLI::Range(1, 65535));
+    command.add_option("--exposure", o.exposure,
+                       "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
+                       "pixels that see a surface");
+    std::string layers;
+    for (const std::string& layer : layerNames()) layers += " " + layer;
+    command.add_option("--aov", o.layers, "EXR layers besides beauty, comma-separated, or 'all':" + layers);
+    command.add_option("--dump", o.dump, "Also write the images of this pass, beside the output");
+    command.add_flag("--float", o.floatExr, "Store colours in the EXR in 32 bits instead of 16");
+    command.add_flag("--json", o.json, "Print one JSON object about the run on stdout");
+    command.add_flag(
+        "--preview", o.preview,
+        "Of a still: write the picture so far every few seconds, to OUTPUT if it is a .png, else to a "
+        "name.preview.png beside it");
+}
+
+void addSamplingOptions(CLI::App& command, RenderOptions& o) {
+    const OptionGroup group(command, "Sampling");
     command
         .add_option("--spp", o.samples,
                     "Samples per pixel (64), with a denoiser per pixel and frame (1; kpcn 32); more is less "
@@ -101,6 +116,10 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
                     "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
                     "default: pixel, but off with denoisers that keep a history")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
+}
+
+void addMethodOptions(CLI::App& command, RenderOptions& o) {
+    const OptionGroup group(command, "Method");
     addPipelineOptions(command, o.pipeline, "path, or the preset's", "none, or the preset's");
     command.add_option("--preset", o.preset,
                        "Use all settings of a paper, course or tutorial, as in svgf-paper; 'limpid info' "
@@ -112,15 +131,16 @@ void addRenderOptions(CLI::App& command, RenderOptions& o) {
     command.add_flag("--progressive", o.progressive,
                      "Accumulate in single precision, launch after launch, as the window does; only without "
                      "a denoiser, --resume, --shard and --time-limit");
-    command.add_option("--exposure", o.exposure,
-                       "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
-                       "pixels that see a surface");
-    std::string layers;
-    for (const std::string& layer : layerNames()) layers += " " + layer;
-    command.add_option("--aov", o.layers, "EXR layers besides beauty, comma-separated, or 'all':" + layers);
-    command.add_option("--dump", o.dump, "Also write the images of this pass, beside the output");
-    command.add_flag("--float", o.floatExr, "Store colours in the EXR in 32 bits instead of 16");
-    command.add_flag("--json", o.json, "Print one JSON object about the run on stdout");
+}
+
+}  // namespace
+
+void addRenderOptions(CLI::App& command, RenderOptions& o) {
+    addSceneOptions(command, o.scene);
+    addOutputOptions(command, o);
+    addSamplingOptions(command, o);
+    addMethodOptions(command, o);
+    addSequenceOptions(command, o.sequence);
     addLongRenderOptions(command, o.longRender);
     addDeviceOptions(command, o.device);
 }
@@ -193,12 +213,17 @@ void checkRenderOptions(const RenderOptions& o) {
     }
     if (!pipeline.accumulates() && samplesOf(o) > 65536)
         throw UsageError("--spp: a frame that is denoised takes 65536 samples at most");
+    if (o.preview && (!hasIndependentFrames(pipeline) || o.progressive || FramePattern(o.output).numbered() ||
+                      isClip(FramePattern(o.output).format(0)) || writesSums(o)))
+        throw UsageError("--preview is for stills by --integrator path or direct and --denoiser none");
     checkLongRender(o.longRender);
     checkOutput(o);
     checkCheckpointIsNoOutput(o);
     parseExposure(o.exposure);
     chosenLayers(o);
     settingsOf(o);
+    for (const std::string& text : o.assignments)
+        checkTakesPart(groupsOf(pipeline), text, pipeline.options());
 }
 
 }  // namespace limpid::cli

@@ -29,7 +29,7 @@ struct RenderOptions {
     std::string sampler, jitter, exposure = "auto", layers, dump, weights;  ///< "": as the preset says
     std::string preset;
     std::vector<std::string> assignments;
-    bool progressive = false, floatExr = false, json = false;
+    bool progressive = false, preview = false, floatExr = false, json = false;
 };
 
 void addRenderOptions(CLI::App& command, RenderOptions& options);

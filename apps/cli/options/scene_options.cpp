@@ -1,6 +1,7 @@
 #include "cli/options/scene_options.h"
 
 #include "base/error.h"
+#include "cli/help_text.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/camera.h"
 
@@ -14,6 +15,7 @@ constexpr double farthest = 1e18;
 }  // namespace
 
 void addSceneOptions(CLI::App& command, SceneChoice& choice) {
+    const OptionGroup group(command, "Scene and camera");
     std::string builtins;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
     command

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/help_text.h"
 #include "cli/render/clip_output.h"
 #include "scene/motion/movement.h"
 
@@ -38,6 +39,7 @@ int framesUntil(double seconds, const SequenceTiming& timing) {
 }  // namespace
 
 void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
+    const OptionGroup group(command, "Animation");
     command.add_option("--animation", choice.animation,
                        "Clip by name or number, 'all' together, or 'none' for the rest pose; default: the "
                        "first if there are several frames or --time");

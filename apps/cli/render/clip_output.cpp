@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "cli/interrupt.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 
@@ -106,18 +107,14 @@ std::vector<std::string> argumentsFor(const Kind& kind, const fs::path& file, ui
     return arguments;
 }
 
-// State for the signal handlers, which delete an interrupted render's file. They can only use variables like
-// these.
+// State for signal handlers, which delete the file of a render that ends at once. They can only use variables
+// like these.
 std::array<char, 4096> interruptedFile{};
 volatile pid_t interruptedProcess = -1;
-constexpr std::array<int, 3> interrupts{SIGINT, SIGTERM, SIGHUP};
-std::array<sighandler_t, 3> handlersBefore{};
 
-extern "C" void removeAndDie(int signal) {
+void removeFile() {
     if (interruptedProcess > 0) ::kill(interruptedProcess, SIGKILL);
     if (interruptedFile[0] != '\0') ::unlink(interruptedFile.data());
-    ::signal(signal, SIG_DFL);
-    ::raise(signal);
 }
 
 void removeOnInterrupt(const fs::path& file, pid_t process) {
@@ -125,16 +122,12 @@ void removeOnInterrupt(const fs::path& file, pid_t process) {
     if (name.size() >= interruptedFile.size()) return;
     interruptedProcess = process;
     std::strncpy(interruptedFile.data(), name.c_str(), interruptedFile.size() - 1);
-    for (size_t i = 0; i < interrupts.size(); ++i) {
-        handlersBefore[i] = ::signal(interrupts[i], removeAndDie);
-        // Signals that are ignored (as by nohup) stay ignored.
-        if (handlersBefore[i] == SIG_IGN) ::signal(interrupts[i], SIG_IGN);
-    }
+    beforeInterruptedEnd(removeFile);
 }
 
 void keepOnInterrupt() {
     if (interruptedFile[0] == '\0') return;
-    for (size_t i = 0; i < interrupts.size(); ++i) ::signal(interrupts[i], handlersBefore[i]);
+    beforeInterruptedEnd(nullptr);
     interruptedProcess = -1;
     interruptedFile[0] = '\0';
 }

@@ -8,6 +8,7 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/render/render_job.h"
 #include "image/io/exr/exr.h"
 #include "renderer/frame/network_file.h"
@@ -75,6 +76,7 @@ void renderClip(RenderJob job, RenderSummary& summary) {
 
 void render(const RenderOptions& o) {
     checkRenderOptions(o);
+    const InterruptGuard guard;
     RenderSettings settings = settingsOf(o);
     const FramePattern output(o.output);
     RenderSummary summary;
@@ -112,6 +114,7 @@ void render(const RenderOptions& o) {
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     }
+    endIfInterrupted();
 }
 
 }  // namespace

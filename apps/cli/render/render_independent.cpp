@@ -1,6 +1,7 @@
 // `limpid render` with the path tracer and no denoiser: stills, and sequences whose frames are independent.
 #include "base/files/file.h"
 #include "base/log.h"
+#include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/render/picture_output.h"
 #include "cli/render/render_job.h"
@@ -12,6 +13,13 @@ namespace limpid::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds previewEvery{3};
+
+/// Where --preview writes.
+fs::path previewFile(fs::path output) {
+    return isExr(output) ? output.replace_extension(".preview.png") : output;
+}
 
 /// Returns the header that describes this render in files of sums and pictures.
 AccumulationHeader headerOf(const RenderJob& job) {
@@ -52,6 +60,8 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         const std::chrono::duration<double> limit(o.longRender.timeLimit);
         render.setDeadline(job.started + std::chrono::duration_cast<LongRender::Clock::duration>(limit));
     }
+    render.setStop(interrupted);
+    if (o.preview) render.setPreview(previewEvery);
     if (!o.longRender.checkpoint.empty())
         render.setCheckpoint(Checkpoint(o.longRender.checkpoint), o.longRender.resume);
     Progress progress("samples", render.samplesToDo());
@@ -70,8 +80,14 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         if (!frames.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
         writeDump(file(frame), frames.dump(o.dump));
     };
+    const auto preview = [&](const FrameSums& sums) {
+        PictureFormat format = formatOf(render.header());
+        format.layers.clear();
+        writePicture(previewFile(file(0)), format, sums.means(), {});
+    };
     summary.complete = render.run({.progress = [&](uint64_t samples) { progress.show(samples); },
                                    .finish = finish,
+                                   .preview = preview,
                                    .isThere = [&](uint64_t frame) { return fs::exists(file(frame)); }});
     summary.blocksFinished = render.blocksFinished();
     summary.framesFinished = render.framesFinished();

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "cli/interrupt.h"
 #include "cli/json_text.h"
+#include "cli/progress.h"
 
 namespace limpid::cli {
 namespace {
@@ -28,10 +30,11 @@ void warnOfRest(const RenderOptions& o, const RenderSummary& s) {
         log::warn("shard {} is empty: there are fewer parts than shards", o.longRender.shard);
     if (s.complete) return;
     const std::string rest = o.longRender.checkpoint.empty() ? "" : "; --resume makes the rest";
+    const char* const why = interrupted() ? "interrupted" : "time is up";
     if (s.frames > 1) {
-        log::warn("time is up: {} of {} frames are finished{}", s.framesFinished, s.framesToDo, rest);
+        log::warn("{}: {} of {} frames are finished{}", why, s.framesFinished, s.framesToDo, rest);
     } else {
-        log::warn("time is up: the picture has {} of {} samples{}", s.samples, samplesOf(o), rest);
+        log::warn("{}: the picture has {} of {} samples{}", why, s.samples, samplesOf(o), rest);
     }
 }
 
@@ -39,6 +42,11 @@ void warnOfNoProgress(const RenderOptions& o, const RenderSummary& s) {
     if (s.complete || s.blocksFinished > 0 || (o.longRender.checkpoint.empty() && !writesSums(o))) return;
     log::warn("not one block of {} samples was finished in that time, and only whole blocks are kept",
               std::min<uint64_t>(samplesOf(o), blockSamplesFor(samplesOf(o))));
+}
+
+/// With hundredths below a minute.
+std::string timeText(double seconds) {
+    return seconds < 60.0 ? fmt::format("{:.2f} s", seconds) : durationText(seconds);
 }
 
 }  // namespace
@@ -52,8 +60,9 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
         static_cast<double>(s.counts.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
     if (!o.json) {
         const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.framesFinished) : "";
-        log::info("{}{} samples of {}x{} in {:.2f} s, {:.2f} million rays per second, on {}", frames,
-                  s.samples, o.width, o.height, s.timings.renderSeconds, megaRays, device.info().name);
+        log::info("wrote {}: {}{} samples of {}x{} in {}, {:.2f} million rays per second, on {}", o.output,
+                  frames, s.samples, o.width, o.height, timeText(s.timings.renderSeconds), megaRays,
+                  device.info().name);
         return;
     }
     nlohmann::json object{{"output", o.output},

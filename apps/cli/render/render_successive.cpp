@@ -1,5 +1,6 @@
 // `limpid render` when frames build on each other: denoisers, and means kept on the device.
 #include "base/log.h"
+#include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/render/picture_output.h"
 #include "cli/render/render_job.h"
@@ -47,8 +48,9 @@ void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
         if (!o.dump.empty()) writeDump(file, renderer.dump(o.dump));
         summary.samples = layers.samples;
         progress.show(++summary.framesFinished);
+        if (interrupted()) break;
     }
-    summary.complete = true;
+    summary.complete = summary.framesFinished == summary.framesToDo;
     summary.medians = times.medians();
     summary.timings.renderSeconds = std::chrono::duration<double>(Clock::now() - start).count();
     const RenderCounters counters = renderer.counters();

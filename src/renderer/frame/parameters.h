@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,13 @@ const std::vector<ParamGroup>& paramGroups();
 
 /// "group.name=value". Throws UsageError if there is no such parameter, or on a bad value.
 void assign(RenderSettings& settings, std::string_view assignment);
+
+/// The groups whose parameters change what the pipeline computes.
+std::vector<std::string_view> groupsOf(const Pipeline& pipeline);
+
+/// Throws UsageError, naming `owner`, if the parameter of this assignment belongs to none of the groups.
+void checkTakesPart(std::span<const std::string_view> groups, std::string_view assignment,
+                    std::string_view owner);
 
 /// The assignments that turn the defaults into these settings, for assign().
 std::vector<std::string> assignmentsOf(const RenderSettings& settings);

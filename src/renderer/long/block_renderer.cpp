@@ -35,6 +35,13 @@ uint32_t BlockRenderer::render(uint32_t block, const std::function<bool(uint32_t
     return done;
 }
 
+void BlockRenderer::peek(FrameSums& sums) {
+    const auto samples = static_cast<uint32_t>(frames_.samplesInMean());
+    if (samples == 0) return;
+    sums.addPart(samples, [&](const LayerInfo& layer) { return frames_.download(layer); });
+    if (block_ == 0 && sums.wantsIds) sums.ids = frames_.ids();
+}
+
 void BlockRenderer::addTo(FrameSums& sums) {
     const auto samples = static_cast<uint32_t>(frames_.samplesInMean());
     if (samples == 0) throw Error("nothing has been rendered yet");

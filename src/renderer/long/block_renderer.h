@@ -27,6 +27,9 @@ class BlockRenderer {
     /// Adds the samples of the last render(), a whole block or a part of one. Waits for the device.
     void addTo(FrameSums& sums);
 
+    /// Adds the samples so far of the render() that is going on, as a part of a block, and counts nothing.
+    void peek(FrameSums& sums);
+
     /// Total over all blocks that were added to sums.
     const SampleCounts& counts() const { return counts_; }
 

@@ -110,8 +110,17 @@ bool LongRender::renderFrame(uint64_t k, const LongRenderEvents& events) {
     return true;
 }
 
+void LongRender::showPreview(const FrameSums& sums, uint32_t done, const LongRenderEvents& events) {
+    if (previewEvery_.count() <= 0.0 || Clock::now() - previewed_ < previewEvery_) return;
+    FrameSums shown = sums;
+    if (done > 0) renderer_.peek(shown);
+    if (shown.samples() > 0) events.preview(shown);
+    previewed_ = Clock::now();  // writing takes time
+}
+
 bool LongRender::renderBlocks(FrameSums& sums, const LongRenderEvents& events) {
     const Clock::time_point start = Clock::now();
+    previewed_ = start;
     bool whole = true;
     const uint64_t before = launched_;
     const bool mustLaunch = isStill() && !isStillShard() && sums.samples() == 0;
@@ -119,6 +128,7 @@ bool LongRender::renderBlocks(FrameSums& sums, const LongRenderEvents& events) {
         if (sums.blocks[block] || !hasBlock(block)) continue;
         const uint32_t made = renderer_.render(block, [&](uint32_t done) {
             events.progress(launched_ + done);
+            showPreview(sums, done, events);
             return !timeIsUp() || (mustLaunch && block == 0 && done == 0);
         });
         launched_ += made;

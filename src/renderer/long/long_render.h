@@ -20,6 +20,8 @@ struct LongRenderEvents {
     /// Called with the sums for a picture or a shard's file. They are complete, unless a still ran out of
     /// time.
     std::function<void(uint64_t frame, const FrameSums& sums)> finish;
+    /// Called with the sums so far of a still; see setPreview().
+    std::function<void(const FrameSums& sums)> preview;
     /// Whether the output of finish() for a frame still exists. If not, the frame is rendered again.
     std::function<bool(uint64_t frame)> isThere;
 };
@@ -34,6 +36,10 @@ class LongRender {
 
     /// No launch starts after this time, except that a still gets at least one.
     void setDeadline(Clock::time_point deadline) { deadline_ = deadline; }
+    /// From when this is true, no launch starts either, as after the deadline.
+    void setStop(std::function<bool()> stop) { stop_ = std::move(stop); }
+    /// Calls LongRenderEvents::preview this often, between launches.
+    void setPreview(std::chrono::duration<double> every) { previewEvery_ = every; }
     /// Writes checkpoints from now on. With `resume`, continues from the file if it exists. Throws like
     /// Checkpoint.
     void setCheckpoint(Checkpoint checkpoint, bool resume);
@@ -54,17 +60,21 @@ class LongRender {
     bool isStillShard() const { return isStill() && header_.shard.count > 1; }
     uint64_t frameOf(uint64_t k) const { return isStill() ? 0 : header_.shard.at(k); }
     bool hasBlock(uint32_t block) const { return !isStill() || header_.shard.has(block); }
-    bool timeIsUp() const { return deadline_ && Clock::now() >= *deadline_; }
+    bool timeIsUp() const { return (stop_ && stop_()) || (deadline_ && Clock::now() >= *deadline_); }
     uint64_t samplesMissing(const FrameSums& sums) const;
     FrameSums newSums() const { return {header_.extent, header_.plan, header_.layers}; }
     bool renderFrame(uint64_t k, const LongRenderEvents& events);
     bool renderBlocks(FrameSums& sums, const LongRenderEvents& events);
+    void showPreview(const FrameSums& sums, uint32_t done, const LongRenderEvents& events);
     void saveState(const FrameSums& sums, bool now);
 
     BlockRenderer& renderer_;
     const Sequence& sequence_;
     AccumulationHeader header_;
     std::optional<Clock::time_point> deadline_;
+    std::function<bool()> stop_;
+    std::chrono::duration<double> previewEvery_{};  ///< 0: never
+    Clock::time_point previewed_;
     std::optional<Checkpoint> checkpoint_;
     std::optional<FrameSums> resumed_;  ///< sums of header_.frame
     std::vector<bool> finished_;        ///< by number within the shard; a still is one frame

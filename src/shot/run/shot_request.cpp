@@ -21,8 +21,12 @@ namespace {
 const denoise::Denoiser& chosenDenoiser(const ShotRequest& r) {
     const std::string name = r.denoiser.empty() && r.preset.empty() ? "svgf" : r.denoiser;
     const Pipeline pipeline = pipelineFor(r.preset, {.integrator = {}, .denoiser = name}, {});
-    if (pipeline.denoiser) return *pipeline.denoiser;
-    throw UsageError(fmt::format("--denoiser is missing; it is one of {}", fmt::join(denoiserNames(), ", ")));
+    if (!pipeline.denoiser)
+        throw UsageError(
+            fmt::format("--denoiser is missing; it is one of {}", fmt::join(denoiserNames(), ", ")));
+    for (const std::string& text : r.settings)
+        checkTakesPart(pipeline.denoiser->groups, text, pipeline.denoiser->name);
+    return *pipeline.denoiser;
 }
 
 denoise::DenoiserSettings settingsOf(const ShotRequest& r) {

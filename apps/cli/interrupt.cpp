@@ -1,0 +1,75 @@
+#include "cli/interrupt.h"
+
+#include <time.h>
+
+#include <array>
+#include <csignal>
+
+#include "base/log.h"
+
+namespace limpid::cli {
+namespace {
+
+constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
+volatile std::sig_atomic_t received = 0;
+bool said = false;
+
+void (*volatile beforeEnd)() = nullptr;
+timespec since;  ///< of the first signal
+
+/// Some programs send a signal to a process and again to its group (timeout does), which is one to their
+/// user.
+constexpr double secondsOfOne = 0.5;
+
+extern "C" void onSignal(int signal) {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    if (received == 0) {
+        since = now;
+        received = signal;
+        return;
+    }
+    const double elapsed = static_cast<double>(now.tv_sec - since.tv_sec) +
+                           1e-9 * static_cast<double>(now.tv_nsec - since.tv_nsec);
+    if (elapsed < secondsOfOne) return;
+    if (beforeEnd) beforeEnd();
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+}  // namespace
+
+InterruptGuard::InterruptGuard() {
+    for (const int signal : signals) {
+        // A process in the background ignores Ctrl-C, and should go on doing so.
+        struct sigaction action {};
+        action.sa_handler = onSignal;
+        action.sa_flags = SA_RESTART;
+        struct sigaction before {};
+        ::sigaction(signal, &action, &before);
+        if (before.sa_handler == SIG_IGN) ::sigaction(signal, &before, nullptr);
+    }
+}
+
+InterruptGuard::~InterruptGuard() {
+    for (const int signal : signals) std::signal(signal, SIG_DFL);
+}
+
+bool interrupted() {
+    if (received == 0) return false;
+    if (!said) log::warn("interrupted: what there is will be written; once more ends at once");
+    said = true;
+    return true;
+}
+
+void beforeInterruptedEnd(void (*action)()) {
+    beforeEnd = action;
+}
+
+void endIfInterrupted() {
+    if (received == 0) return;
+    std::signal(received, SIG_DFL);
+    std::raise(received);
+}
+
+}  // namespace limpid::cli
