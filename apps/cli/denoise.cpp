@@ -1,6 +1,7 @@
 // `limpid denoise`: denoises frames of any renderer.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -36,13 +37,14 @@ struct DenoiseOptions {
 using Times = std::map<std::string, double>;
 
 void report(const DenoiseOptions& o, const shot::ShotJob& job, const shot::ShotSummary& summary,
-            const Times& lastFrame, gpu::Device& device) {
+            const Times& lastFrame, uint64_t deviceBytes, gpu::Device& device) {
     const std::string_view denoiser = job.options.method->name;
     if (o.json) {
-        const nlohmann::json object{
-            {"output", o.request.output}, {"denoiser", denoiser},       {"device", device.info().name},
-            {"frames", summary.frames},   {"seconds", summary.seconds}, {"kept", summary.kept},
-            {"skipped", summary.skipped}, {"cuts", summary.cuts},       {"last_frame_ms", lastFrame}};
+        const nlohmann::json object{{"output", o.request.output},   {"denoiser", denoiser},
+                                    {"device", device.info().name}, {"frames", summary.frames},
+                                    {"seconds", summary.seconds},   {"kept", summary.kept},
+                                    {"skipped", summary.skipped},   {"cuts", summary.cuts},
+                                    {"last_frame_ms", lastFrame},   {"device_bytes", deviceBytes}};
         fmt::print("{}\n", jsonText(object));
     } else {
         if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
@@ -72,11 +74,14 @@ void denoiseFiles(DenoiseOptions& o) {
         return !interrupted();
     };
     Times lastFrame;
+    uint64_t deviceBytes = 0;
     job.afterFrame = [&](int frame, gpu::FrameGraph& graph) {
+        deviceBytes = std::max(deviceBytes, device->allocatedBytes());
         lastFrame = sumByName(graph.passTimes(*device));
         if (!o.dump.empty()) writeDump(outputOf(job, frame), imagesOfPass(graph, *device, o.dump));
     };
-    report(o, job, denoiseShot(job, *device), lastFrame, *device);
+    const shot::ShotSummary summary = shot::denoiseShot(job, *device);
+    report(o, job, summary, lastFrame, deviceBytes, *device);
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     endIfInterrupted();

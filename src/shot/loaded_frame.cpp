@@ -1,7 +1,5 @@
 #include "shot/loaded_frame.h"
 
-#include <tbb/parallel_for_each.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -28,8 +26,8 @@ bool isRead(std::string_view channel, bool network) {
     });
 }
 
-/// What is read of the first part as one picture, for Limpid's own files.
-image::LayeredImage layeredImage(image::ExrDocument& file, bool network) {
+/// The channels that are read of Limpid's own files, without their values.
+image::LayeredImage layeredImage(const image::ExrDocument& file, bool network) {
     image::LayeredImage picture;
     picture.width = file.width();
     picture.height = file.height();
@@ -37,9 +35,6 @@ image::LayeredImage layeredImage(image::ExrDocument& file, bool network) {
     picture.metadata = part.texts;
     for (const auto& channel : part.channels)
         if (isRead(channel.name, network)) picture.channels.push_back({channel.name, channel.storage, {}});
-    file.decode(0);
-    tbb::parallel_for_each(picture.channels,
-                           [&](image::Channel& channel) { channel.values = file.values(0, channel.name); });
     return picture;
 }
 
@@ -84,6 +79,16 @@ bool isOwn(const image::ExrDocument& file, bool sequence) {
            });
 }
 
+/// A file with more decoded channels than Limpid's own at 1920x1080 (240 MB) is decoded when it is used: the
+/// one that is denoised and the one that is written take enough memory.
+constexpr uint64_t decodedAhead = uint64_t{256} << 20;
+
+bool isDecodedAhead(const image::ExrDocument& file) {
+    uint64_t bytes = 0;
+    for (size_t part = 0; part < file.parts().size(); ++part) bytes += file.decodedBytes(part);
+    return bytes <= decodedAhead;
+}
+
 /// Samples per pixel by an attribute such as "cycles.ViewLayer.samples"; 0 if there is none.
 uint32_t samplesOf(const image::ExrDocument& file) {
     uint32_t samples = 0;
@@ -113,7 +118,8 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     }
     frame.content = content.value();
     frame.maps = recognise(frame.file, options.assignments);
-    for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
+    if (isDecodedAhead(frame.file))
+        for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
     return frame;
 }
 
@@ -132,7 +138,11 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
         const std::filesystem::path& path = frame.file.name();
         const image::LayeredImage picture = layeredImage(frame.file, options.network);
         if (options.network) requireVariances(picture, path);
-        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
+        frame.file.decode(0);  // before several threads read it
+        const ChannelReader reader = [&](const std::string& channel, std::span<float> to, size_t stride) {
+            frame.file.read(0, channel, to, stride);
+        };
+        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking, reader);
         return;
     }
     const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);

@@ -37,15 +37,15 @@ struct LoadOptions {
     std::vector<std::pair<std::string, FramePattern>> files;
 };
 
-/// Reads and decodes a file: EXR, or a picture in PFM, Radiance HDR, PNG or JPEG, which has a beauty alone.
-/// Throws InputError.
+/// Reads a file, and decodes it unless it takes much memory: EXR, or a picture in PFM, Radiance HDR, PNG or
+/// JPEG, which has a beauty alone. Throws InputError.
 LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadOptions& options);
 
 /// The hash LoadedFrame::content, without decoding. Throws InputError if a file cannot be read.
 uint64_t contentOf(const std::filesystem::path& path, int number, const LoadOptions& options);
 
-/// Makes `layers` or `own` of the decoded file, which take more memory than it. Throws InputError, also if a
-/// network lacks layers.
+/// Makes `layers` or `own` of the file, decoding it if loadFrame() did not; they take more memory than it.
+/// Throws InputError, also if a network lacks layers.
 void unpack(LoadedFrame& frame, const LoadOptions& options);
 
 }  // namespace limpid::shot

@@ -80,8 +80,8 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     std::optional<CameraParams> given;
     const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
-    return direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
-                                             : picture.converter.convertAlone(layers, given);
+    return picture.converter.convertUsingUp(
+        layers, given, direction_ == Direction::Forwards ? std::optional(continues) : std::nullopt);
 }
 
 CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, float frames,
@@ -92,7 +92,7 @@ CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame,
     if (!options_.keepsAntialiasing) settings.taa.frames = frames;
     if (!continues) graph.resetHistories();
     graph.beginFrame();
-    denoise::DenoiserInput input = denoise::upload(graph, frame);
+    denoise::DenoiserInput input = denoise::uploadBorrowed(graph, frame);
     input.filters = gpu::filterBacking(device_);
     const denoise::DenoiserOutput clean = options_.method->record(graph, input, settings, options_.networks);
     graph.execute(device_);
@@ -116,7 +116,7 @@ std::vector<float> ShotDenoiser::smoothed(gpu::FrameGraph& graph, const HostFram
     input.filters = gpu::filterBacking(device_);
     const auto upload = [&](const char* name, const std::vector<float>& texels) {
         const gpu::ImageHandle image = graph.transient(name, gpu::Format::RGBA32Float, extent);
-        graph.upload(image, gpu::bytesOf(texels));
+        graph.uploadBorrowed(image, gpu::bytesOf(texels));
         return image;
     };
     for (float& value : colors) value = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
@@ -146,19 +146,19 @@ void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const H
     for (size_t p = 0; p < alpha.pixels.size(); ++p) result.alpha.push_back(std::min(shares[4 * p], 1.0f));
 }
 
-/// Each group is one signal with the frame's guides.
-void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, const HostFrame& frame,
-                               bool continues, CleanPicture& result) {
-    HostFrame one = frame;
-    for (size_t i = 0; i < frame.albedoSpecular.size(); ++i) one.albedo[i] += frame.albedoSpecular[i];
+/// Each group is one signal with the frame's guides. Its light takes the place of the frame's, since a copy
+/// would take much memory.
+void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, HostFrame& one, bool continues,
+                               CleanPicture& result) {
+    for (size_t i = 0; i < one.albedoSpecular.size(); ++i) one.albedo[i] += one.albedoSpecular[i];
     one.specular.clear();
     one.albedoSpecular.clear();
     one.roughness.clear();
     image::Image rest = layers.images.at("beauty");
     for (size_t g = 0; g <= layers.groups.size(); ++g) {
         const image::Image& light = g < layers.groups.size() ? layers.groups[g] : rest;
-        for (size_t p = 0; p < frame.pixelCount(); ++p) {
-            const bool hit = frame.depth[4 * p + 1] > 0.0f;
+        for (size_t p = 0; p < one.pixelCount(); ++p) {
+            const bool hit = one.depth[4 * p + 1] > 0.0f;
             const float alpha = layers.isTransparent && hit ? layers.images.at("alpha").pixels[p] : 1.0f;
             for (size_t c = 0; c < 3; ++c) {
                 const float value = light.pixels[3 * p + c];

@@ -69,6 +69,35 @@ void hideEmitters(const ShotLayers& layers, std::vector<float>& distance) {
         if (emits[p]) distance[p] = 0.0f;
 }
 
+/// Whether a layer is light or the albedo that was multiplied in.
+bool isLight(const LayerInfo& layer) {
+    return layer.inBeauty || layer.member == "albedo" || layer.member == "albedoSpecular";
+}
+
+void makeLight(denoise::HostFrame& frame, bool separate) {
+    for (const LayerInfo& layer : frameLayers) {
+        const bool ofSpecular = layer.member == "specular" || layer.member == "albedoSpecular";
+        if (isLight(layer) && (separate || !ofSpecular)) frame[layer].resize(4 * frame.pixelCount());
+    }
+}
+
+void makeGeometry(denoise::HostFrame& frame) {
+    frame.forEach([&](const LayerInfo& layer, auto& texels) {
+        const bool unknown = layer.member == "hitDistance" || layer.member == "roughness" ||
+                             layer.member == "reflectionMotion";
+        const bool copied = layer.member == "previousNormal";
+        if (unknown || copied || isLight(layer)) return;
+        const bool integers = layer.stored == Stored::Uint;
+        texels.resize((integers ? 2 : 4) * frame.pixelCount());
+        if (integers) std::fill(texels.begin(), texels.end(), layout::NONE);
+    });
+}
+
+void freeLight(ShotLayers& layers) {
+    for (const char* role : {"diffuse", "specular", "emission", "background", "albedo", "albedoSpecular"})
+        layers.images.erase(role);
+}
+
 }  // namespace
 
 void decodeParts(image::ExrDocument& file, const LayerMap& map) {
@@ -181,6 +210,17 @@ denoise::HostFrame FrameConverter::convertAlone(const ShotLayers& layers,
     return frame;
 }
 
+denoise::HostFrame FrameConverter::convertUsingUp(ShotLayers& layers,
+                                                  const std::optional<CameraParams>& given,
+                                                  std::optional<bool> continues) {
+    used_ = &layers;
+    denoise::HostFrame frame = continues ? convert(layers, given, *continues) : convertAlone(layers, given);
+    used_ = nullptr;
+    std::erase_if(layers.images,
+                  [](const auto& layer) { return layer.first != "beauty" && layer.first != "alpha"; });
+    return frame;
+}
+
 denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::optional<CameraParams>& given,
                                            bool continues) {
     continues_ = continues && last_ && last_->distance.size() == size_t{layers.width} * layers.height;
@@ -189,21 +229,15 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     frame.height = layers.height;
     frame.camera = cameraOf(layers, given);
     const bool two = layers.find("diffuse") && layers.find("specular");
-    frame.forEach([&](const LayerInfo& layer, auto& texels) {
-        const bool ofSpecular = layer.member == "specular" || layer.member == "albedoSpecular";
-        const bool unknown = layer.member == "hitDistance" || layer.member == "roughness" ||
-                             layer.member == "reflectionMotion";
-        if (unknown || (ofSpecular && !two)) return;
-        const bool integers = layer.stored == Stored::Uint;
-        texels.resize((integers ? 2 : 4) * frame.pixelCount());
-        if (integers) std::fill(texels.begin(), texels.end(), layout::NONE);
-    });
+    makeLight(frame, two);
     View view{frame.camera, distancesOf(layers, map_.encoding, frame.camera),
               report_.camera != CameraSource::Supposed};
     if (!layers.find("emission")) hideEmitters(layers, view.distance);
     report_.lightShare = addLight(layers, view.distance, frame);
     addAlbedo(layers, frame);
     divideByAlpha(layers, view.distance, frame);
+    if (used_) freeLight(*used_);
+    makeGeometry(frame);
     addGeometry(layers, map_, view.distance, frame);
     if (const Image* const roughness = layers.find("roughness"); roughness && two) {
         frame.roughness.resize(4 * frame.pixelCount());

@@ -65,6 +65,11 @@ class FrameConverter {
     /// frame came before. A camera that only a shot in order tells stands still.
     denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given);
 
+    /// convert(), or convertAlone() if `continues` is empty, for frames whose layers nobody else needs: frees
+    /// all but the beauty and alpha, those of light before those of geometry are made.
+    denoise::HostFrame convertUsingUp(ShotLayers& layers, const std::optional<CameraParams>& given,
+                                      std::optional<bool> continues);
+
     const FrameReport& report() const { return report_; }
 
   private:
@@ -83,6 +88,7 @@ class FrameConverter {
     std::optional<View> last_;
     bool continues_ = false;
     bool alone_ = false;
+    ShotLayers* used_ = nullptr;  ///< in convertUsingUp()
 };
 
 }  // namespace limpid::shot

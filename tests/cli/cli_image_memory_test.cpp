@@ -1,12 +1,11 @@
 // Tests that the host memory for one picture, from its file to the device, stays below --max-image-memory:
 // compares the peak of `limpid render` with a large picture and with one of a single pixel.
-#include <fcntl.h>
 #include <stb/stb_image_write.h>
-#include <sys/resource.h>
 
 #include <vector>
 
 #include "tests/cli/cli_fixture.h"
+#include "tests/cli/measured_run.h"
 
 namespace limpid {
 namespace {
@@ -51,13 +50,7 @@ class ImageMemoryTest : public CliTest {
         put("sky.hdr", text);
     }
 
-    struct Run {
-        int code = -1;
-        uint64_t peak = 0;  ///< bytes
-        std::string output;
-    };
-
-    Run render(const std::vector<std::string>& more) const {
+    MeasuredRun render(const std::vector<std::string>& more) const {
         std::vector<std::string> words = {LIMPID_PROGRAM,
                                           "render",
                                           path("scene.obj"),
@@ -74,32 +67,16 @@ class ImageMemoryTest : public CliTest {
                                           "--max-image-memory",
                                           "64MB"};
         words.insert(words.end(), more.begin(), more.end());
-        std::vector<char*> arguments;
-        for (std::string& word : words) arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        const std::string log = path("log.txt");
-        const pid_t child = ::fork();
-        if (child == 0) {
-            const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-            ::dup2(file, 1);
-            ::dup2(file, 2);
-            ::execv(arguments[0], arguments.data());
-            ::_exit(127);
-        }
-        int status = 0;
-        rusage usage{};
-        ::wait4(child, &status, 0, &usage);
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, static_cast<uint64_t>(usage.ru_maxrss) * 1024,
-                get("log.txt")};
+        return runMeasured(words, path("log.txt"));
     }
 };
 
 TEST_F(ImageMemoryTest, ALargeTextureIsScaledDownAndStaysBelowTheBound) {
     putPng(1);
-    const Run small = render({});
+    const MeasuredRun small = render({});
     ASSERT_EQ(small.code, 0) << small.output;
     putPng(6144);  // at full size it takes 144 MB as RGBA alone, 553 MB with mip levels and the device's copy
-    const Run large = render({});
+    const MeasuredRun large = render({});
     ASSERT_EQ(large.code, 0) << large.output;
     EXPECT_NE(large.output.find("picture.png: scaled down from 6144x6144 to 2048x2048"), std::string::npos)
         << large.output;
@@ -109,10 +86,10 @@ TEST_F(ImageMemoryTest, ALargeTextureIsScaledDownAndStaysBelowTheBound) {
 TEST_F(ImageMemoryTest, ALargeEnvironmentIsScaledDownAndStaysBelowTheBound) {
     putPng(1);
     putHdr(8, 4);
-    const Run small = render({"--env", path("sky.hdr")});
+    const MeasuredRun small = render({"--env", path("sky.hdr")});
     ASSERT_EQ(small.code, 0) << small.output;
     putHdr(4096, 2048);  // at full size it takes 503 MB
-    const Run large = render({"--env", path("sky.hdr")});
+    const MeasuredRun large = render({"--env", path("sky.hdr")});
     ASSERT_EQ(large.code, 0) << large.output;
     EXPECT_NE(large.output.find("sky.hdr: scaled down from 4096x2048 to 1365x682"), std::string::npos)
         << large.output;

@@ -41,4 +41,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
 /// frame.
 DenoiserInput upload(gpu::FrameGraph& graph, const HostFrame& frame);
 
+/// The same by FrameGraph::uploadBorrowed(): `frame` must stay as it is until the graph has been executed.
+DenoiserInput uploadBorrowed(gpu::FrameGraph& graph, const HostFrame& frame);
+DenoiserInput uploadBorrowed(gpu::FrameGraph& graph, HostFrame&& frame) = delete;
+
 }  // namespace limpid::denoise

@@ -244,27 +244,29 @@ void FrameGraph::upload(const Buffer& buffer, uint64_t offset, std::span<const s
                                data.size(), offset, storage->name, storage->size));
     }
     if (data.empty()) return;
-    std::vector<std::byte>& all = impl_->frame.uploadData;
-    impl_->frame.uploads.push_back(
-        {.buffer = storage, .offset = offset, .at = all.size(), .size = data.size()});
-    all.insert(all.end(), data.begin(), data.end());
+    impl_->frame.add({.buffer = storage, .offset = offset}, data, true);
 }
 
-void FrameGraph::upload(ImageHandle handle, std::span<const std::byte> pixels) {
-    impl_->requireRecording();
-    const uint32_t index = impl_->indexOf(handle);
-    RecordedImage& image = impl_->frame.images[index];
+void FrameGraph::upload(ImageHandle image, std::span<const std::byte> pixels) {
+    impl_->frame.add({.image = impl_->uploadTarget(image, pixels.size())}, pixels, true);
+}
+
+void FrameGraph::uploadBorrowed(ImageHandle image, std::span<const std::byte> pixels) {
+    impl_->frame.add({.image = impl_->uploadTarget(image, pixels.size())}, pixels, false);
+}
+
+uint32_t FrameGraph::Impl::uploadTarget(ImageHandle handle, size_t bytes) {
+    requireRecording();
+    const uint32_t index = indexOf(handle);
+    RecordedImage& image = frame.images[index];
     if (image.role != RecordedImage::Role::Transient || image.written)
         throw Error(formatText("image '{}' cannot be uploaded: it is a history, or written", image.name));
-    if (pixels.size() != image.bytes()) {
-        throw Error(formatText("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(),
-                               pixels.size()));
+    if (bytes != image.bytes()) {
+        throw Error(
+            formatText("image '{}' has {} bytes, but {} are uploaded", image.name, image.bytes(), bytes));
     }
     image.written = image.uploaded = true;
-    std::vector<std::byte>& all = impl_->frame.uploadData;
-    all.resize((all.size() + 15) / 16 * 16);  // copies to images start at multiples of a texel
-    impl_->frame.uploads.push_back({.image = index, .at = all.size(), .size = pixels.size()});
-    all.insert(all.end(), pixels.begin(), pixels.end());
+    return index;
 }
 
 void FrameGraph::place(const AccelerationStructures& structures, uint32_t placement,
@@ -272,12 +274,8 @@ void FrameGraph::place(const AccelerationStructures& structures, uint32_t placem
     impl_->requireRecording();
     const StructuresResource& storage = *structures.resource();
     const StructuresResource::InstanceRecord bytes = storage.instanceRecord(placement, where);
-    std::vector<std::byte>& all = impl_->frame.uploadData;
-    impl_->frame.uploads.push_back({.buffer = storage.instances,
-                                    .offset = uint64_t{placement} * bytes.size(),
-                                    .at = all.size(),
-                                    .size = bytes.size()});
-    all.insert(all.end(), bytes.begin(), bytes.end());
+    impl_->frame.add({.buffer = storage.instances, .offset = uint64_t{placement} * bytes.size()}, bytes,
+                     true);
 }
 
 void FrameGraph::rebuild(std::string_view pass, const AccelerationStructures& structures) {

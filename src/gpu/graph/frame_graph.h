@@ -221,6 +221,10 @@ class FrameGraph {
     /// Error if `pixels` does not have the size of the image.
     void upload(ImageHandle image, std::span<const std::byte> pixels);
 
+    /// The same without copies of all of them in host memory: `pixels` must stay as they are until execute()
+    /// or record() has returned, and execute() waits for copies to the device.
+    void uploadBorrowed(ImageHandle image, std::span<const std::byte> pixels);
+
     /// Moves a tree at the next rebuild(); timed like an upload().
     void place(const AccelerationStructures& structures, uint32_t placement, const TreePlacement& where);
     /// Records a pass that refits the moving trees to their triangles and rebuilds the top level.

@@ -84,7 +84,9 @@ struct RecordedUpload {
     std::shared_ptr<const BufferResource> buffer;  ///< none: the target is an image
     uint64_t offset = 0;                           ///< in the buffer
     uint32_t image = 0;                            ///< index into images
-    size_t at = 0, size = 0;                       ///< in RecordedFrame::uploadData
+    size_t at = 0, size = 0;                       ///< in the staging buffer
+    const std::byte* borrowed = nullptr;           ///< the caller's data; null: RecordedFrame::uploadData
+    size_t copied = 0;                             ///< where in uploadData
 };
 
 /// One access of a pass to a resource.
@@ -99,7 +101,22 @@ struct Access {
 struct RecordedFrame {
     uint64_t number = 0;
     std::vector<RecordedUpload> uploads;
-    std::vector<std::byte> uploadData;
+    std::vector<std::byte> uploadData;  ///< of the uploads that are not borrowed
+    size_t stagingBytes = 0;            ///< of all uploads
+
+    /// Gives the upload a place in the staging buffer. Copies to images start at multiples of a texel.
+    void add(RecordedUpload upload, std::span<const std::byte> data, bool copies) {
+        upload.at = (stagingBytes + 15) / 16 * 16;
+        upload.size = data.size();
+        stagingBytes = upload.at + upload.size;
+        if (copies) {
+            upload.copied = uploadData.size();
+            uploadData.insert(uploadData.end(), data.begin(), data.end());
+        } else {
+            upload.borrowed = data.data();
+        }
+        uploads.push_back(std::move(upload));
+    }
     std::vector<RecordedImage> images;
     std::vector<RecordedPass> passes;
     std::vector<RecordedDispatch> dispatches;   ///< one per pass
@@ -149,6 +166,8 @@ struct FrameGraph::Impl {
     void claimName(const std::string& name);
     /// Returns the index of a handle; throws Error if it is empty or from another frame.
     uint32_t indexOf(ImageHandle handle) const;
+    /// Returns the index of an image that may be uploaded, and notes that it is; throws Error for others.
+    uint32_t uploadTarget(ImageHandle handle, size_t bytes);
     std::shared_ptr<const Shader> shaderOf(const ShaderCode& code, const RayShaders* rays);
     /// Returns the replacement of the code, or the code itself without an owner.
     std::shared_ptr<const ShaderCode> replaced(const ShaderCode& code) const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <vector>
@@ -141,6 +142,35 @@ TEST_F(GpuTest, LargeUploadsGoThroughBoundedStaging) {
     const std::vector<std::byte> bytes = device().download(buffer);
     ASSERT_EQ(bytes.size(), data.size() * 4);
     EXPECT_EQ(std::memcmp(bytes.data(), data.data(), bytes.size()), 0);
+}
+
+TEST_F(GpuTest, BorrowedUploadsGoThroughBoundedStaging) {
+    constexpr Extent extent{1400, 1000};  // 21 MB each, four of them more than is staged together
+    std::vector<std::vector<float>> pictures(4);
+    for (std::vector<float>& picture : pictures) {
+        picture.resize(size_t{4} * extent.width * extent.height);
+        std::iota(picture.begin(), picture.end(), 1e6f * static_cast<float>(&picture - pictures.data()));
+    }
+    FrameGraph graph({.framesInFlight = 1});
+    for (int frame = 0; frame < 2; ++frame) {
+        graph.beginFrame();
+        std::vector<ImageHandle> images;
+        for (const std::vector<float>& picture : pictures) {
+            const std::string name = "picture " + std::to_string(images.size());
+            images.push_back(graph.transient(name, rgba, extent));
+            if (images.size() == 2)
+                graph.upload(images.back(), bytesOf(picture));
+            else
+                graph.uploadBorrowed(images.back(), bytesOf(picture));
+        }
+        const uint64_t before = device().allocatedBytes();
+        graph.execute(device());
+        const uint64_t all = 4 * bytesOf(pictures[0]).size();
+        EXPECT_LT(device().allocatedBytes() - before, all + (uint64_t{70} << 20));
+        for (size_t i = 0; i < images.size(); ++i)
+            EXPECT_TRUE(graph.downloadFloat(device(), images[i]) == pictures[i]) << i;
+        for (std::vector<float>& picture : pictures) std::reverse(picture.begin(), picture.end());
+    }
 }
 
 TEST_F(GpuTest, StagedCopiesWorkWhereMemoryCouldBeMapped) {

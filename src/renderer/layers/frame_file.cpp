@@ -79,12 +79,22 @@ uint32_t samplesOf(const LayeredImage& file) {
     return samples > 0 ? samples : unknown;
 }
 
+/// Reads the values that the file's channels have.
+ChannelReader readerOf(const LayeredImage& file) {
+    return [&file](const std::string& channel, std::span<float> to, size_t stride) {
+        const std::vector<float>& values = file.find(channel)->values;
+        for (size_t p = 0; p < values.size(); ++p) to[stride * p] = values[p];
+    };
+}
+
 /// Writes the variance as the fourth of four components; it stays 0 if the file has none.
-void addVariance(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
+void addVariance(const LayeredImage& file, const ChannelReader& reader, const LayerInfo& layer,
+                 std::vector<float>& texels) {
     const image::Channel* const variance = varianceOf(file, layer);
+    if (!variance) return;
+    reader(variance->name, std::span(texels).subspan(3), 4);
     const auto ofDeviations = static_cast<float>(samplesOf(file) - 1);
-    for (size_t p = 0; variance && p < variance->values.size(); ++p)
-        texels[4 * p + 3] = variance->values[p] * ofDeviations;
+    for (size_t at = 3; at < texels.size(); at += 4) texels[at] *= ofDeviations;
 }
 
 /// True if a layer with a share of samples has a value here.
@@ -94,25 +104,25 @@ bool isValue(const LayerInfo& layer, const float* components) {
 }
 
 /// Reads a mean, four floats per pixel.
-void read(const LayeredImage& file, const LayerInfo& layer, std::vector<float>& texels) {
+void read(const LayeredImage& file, const ChannelReader& reader, const LayerInfo& layer,
+          std::vector<float>& texels) {
     const size_t count = layer.suffixes.size();
-    std::vector<const float*> channels;
-    for (const char suffix : layer.suffixes)
-        channels.push_back(file.find(std::string(layer.name) + "." + suffix)->values.data());
-    for (size_t p = 0; 4 * p < texels.size(); ++p) {
-        float components[4];
-        for (size_t c = 0; c < count; ++c) components[c] = channels[c][p];
-        if (layer.hasShare() && !isValue(layer, components)) continue;
-        std::copy_n(components, count, &texels[4 * p]);
-        if (layer.hasShare()) texels[4 * p + count] = 1.0f;
+    for (size_t c = 0; c < count; ++c)
+        reader(std::string(layer.name) + "." + layer.suffixes[c], std::span(texels).subspan(c), 4);
+    for (size_t at = 0; layer.hasShare() && at < texels.size(); at += 4) {
+        const bool isThere = isValue(layer, &texels[at]);
+        if (!isThere) std::fill_n(&texels[at], count, 0.0f);
+        texels[at + count] = isThere ? 1.0f : 0.0f;
     }
-    if (layer.varianceOf != VarianceOf::Nothing) addVariance(file, layer, texels);
+    if (layer.varianceOf != VarianceOf::Nothing) addVariance(file, reader, layer, texels);
 }
 
 /// Reads instance numbers, two integers per pixel. In files 0 is a miss, and an instance is its number plus
 /// one.
-void read(const LayeredImage& file, const LayerInfo& layer, std::vector<uint32_t>& ids) {
-    const std::vector<float>& numbers = file.find(std::string(layer.name) + "." + layer.suffixes[0])->values;
+void read(const LayeredImage& file, const ChannelReader& reader, const LayerInfo& layer,
+          std::vector<uint32_t>& ids) {
+    std::vector<float> numbers(size_t{file.width} * file.height);
+    reader(std::string(layer.name) + "." + layer.suffixes[0], numbers, 1);
     std::fill(ids.begin(), ids.end(), layout::NONE);
     for (size_t p = 0; p < numbers.size(); ++p) {
         const float number = numbers[p];
@@ -133,7 +143,8 @@ void requireVariances(const LayeredImage& file, const std::filesystem::path& nam
 }
 
 denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path& name, bool sequence,
-                           std::vector<const LayerInfo*>& lacking) {
+                           std::vector<const LayerInfo*>& lacking, const ChannelReader& reader) {
+    if (!reader) return frameOf(file, name, sequence, lacking, readerOf(file));
     requireLayers(file, name, sequence);
     denoise::HostFrame frame;
     frame.width = file.width;
@@ -148,7 +159,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
         if (has(file, layer)) {
             readers.push_back([&] {
                 makePixels(layer, texels);
-                read(file, layer, texels);
+                read(file, reader, layer, texels);
             });
         } else if (sequence && layer.need == Need::Advised) {
             lacking.push_back(&layer);

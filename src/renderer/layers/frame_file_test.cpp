@@ -86,6 +86,20 @@ TEST(FrameFile, EveryLayerComesBack) {
     EXPECT_TRUE(lacking.empty());
 }
 
+TEST(FrameFile, AReaderMayHaveTheValues) {
+    const RenderedLayers layers = twoPixels();
+    const LayeredImage full = fileOf(layers);
+    LayeredImage names = full;
+    for (image::Channel& channel : names.channels) channel.values.clear();
+    const ChannelReader reader = [&](const std::string& channel, std::span<float> to, size_t stride) {
+        for (size_t p = 0; p < 2; ++p) to[stride * p] = full.find(channel)->values[p];
+    };
+    std::vector<const LayerInfo*> lacking;
+    const HostFrame frame = frameOf(names, "x.exr", true, lacking, reader);
+    expectSame(frame, layers);
+    EXPECT_EQ(frame.ids, (std::vector<uint32_t>{7, UINT32_MAX, UINT32_MAX, UINT32_MAX}));
+}
+
 TEST(FrameFile, SharesAreDividedOut) {
     RenderedLayers layers = twoPixels();
     layers.depth[0] = 3.0f;

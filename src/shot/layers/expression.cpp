@@ -185,12 +185,16 @@ uint32_t LayerExpression::components() const {
 }
 
 image::Image LayerExpression::evaluate(image::ExrDocument& file) const {
-    image::Image sum(file.width(), file.height(), components());
+    image::Image sum;
     for (const Term& term : terms_) {
         image::Image product(file.width(), file.height(), components(), term.scale);
         for (const Factor& factor : term.factors) multiply(product, factor, file);
-        for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += product.pixels[i];
+        if (sum.pixels.empty())  // most have one term: no second image
+            sum = std::move(product);
+        else
+            for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += product.pixels[i];
     }
+    for (float& value : sum.pixels) value += 0.0f;  // no negative zeros
     return sum;
 }
 

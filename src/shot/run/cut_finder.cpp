@@ -7,13 +7,16 @@
 namespace limpid::shot {
 namespace {
 
-ShotLayers guidesOf(const ShotLayers& layers) {
-    ShotLayers guides;
-    guides.width = layers.width;
-    guides.height = layers.height;
-    for (const char* role : {"albedo", "normal", "motion"})
-        if (const image::Image* const image = layers.find(role)) guides.images[role] = *image;
-    return guides;
+/// Into memory that is there from the frame before.
+void copyGuides(const ShotLayers& from, ShotLayers& to) {
+    to.width = from.width;
+    to.height = from.height;
+    for (const char* role : {"albedo", "normal", "motion"}) {
+        if (const image::Image* const image = from.find(role))
+            to.images[role] = *image;
+        else
+            to.images.erase(role);
+    }
 }
 
 }  // namespace
@@ -26,12 +29,13 @@ bool CutFinder::isCut(const LoadedFrame& frame) {
         return std::find(job_.cutFrames.begin(), job_.cutFrames.end(), later) != job_.cutFrames.end();
     }
     if (frame.layers.empty()) return false;  // Limpid's files mark cuts in their motion
-    ShotLayers now = guidesOf(frame.layers.front());
+    const ShotLayers& now = frame.layers.front();
     const Encoding& encoding = frame.maps.front().encoding;
     const bool forwards = before < number_;
     const bool cut =
         last_ && (forwards ? shot::isCut(*last_, now, encoding) : shot::isCut(now, *last_, encoding));
-    last_ = std::move(now);
+    if (!last_) last_.emplace();
+    copyGuides(now, *last_);
     return cut;
 }
 

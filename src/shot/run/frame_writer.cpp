@@ -53,6 +53,7 @@ void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
     for (size_t i = 0; i < frame.pictures.size(); ++i) {
         shareOut(frame.pictures[i]);
         parts.merge(replacePicture(frame.file, frame.maps[i], frame.pictures[i]));
+        frame.pictures[i] = {};  // the file has it now
     }
     for (const size_t part : parts) {
         frame.file.setText(part, "limpid.denoiser", std::string(job.options.method->name));

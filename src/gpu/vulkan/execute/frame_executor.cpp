@@ -1,5 +1,7 @@
 #include "gpu/vulkan/execute/frame_executor.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/format.h"
 #include "gpu/vulkan/check.h"
@@ -44,6 +46,21 @@ VkImageLayout layoutDuring(const RecordedImage& recorded) {
 
 const AccelerationStorage& structuresOf(const BoundResource& resource) {
     return static_cast<const AccelerationStorage&>(*resource.structures);
+}
+
+/// Borrowed uploads are pictures of frames that come one by one: waiting for copies costs hardly any time
+/// then, and a staging buffer for all of them would take as much host memory as they do.
+constexpr uint64_t stagingBytes = uint64_t{64} << 20;
+
+/// How many uploads are staged together.
+size_t uploadsTogether(std::span<const RecordedUpload> uploads) {
+    const auto isBorrowed = [](const RecordedUpload& upload) { return upload.borrowed != nullptr; };
+    if (std::none_of(uploads.begin(), uploads.end(), isBorrowed)) return uploads.size();
+    size_t count = 1;
+    while (count < uploads.size() &&
+           uploads[count].at + uploads[count].size - uploads.front().at <= stagingBytes)
+        ++count;
+    return count;
 }
 
 }  // namespace
@@ -242,20 +259,32 @@ void FrameExecutor::clear(const RecordedFrame& frame, VkCommandBuffer commands) 
 
 void FrameExecutor::recordUploads(const RecordedFrame& frame, FrameSlot& slot) {
     if (frame.uploads.empty()) return;
-    const VkBuffer staging = slot.stage(frame.uploadData);
-    for (const RecordedUpload& upload : frame.uploads) {
-        const Image* image = upload.buffer ? nullptr : &frameImages_[upload.image].pooled->image;
-        if (image && !image->buffer) {
-            copyToImage(*context_, slot.commands(), staging, upload.at, *image);
-            continue;
-        }
-        const BufferStorage& buffer = image ? *image->buffer : storageOf(*upload.buffer);
-        const VkBufferCopy region{upload.at, upload.offset, upload.size};
-        context_->vk().CmdCopyBuffer(slot.commands(), staging, buffer.buffer.get(), 1, &region);
+    std::span<const RecordedUpload> rest = frame.uploads;
+    while (!rest.empty()) {
+        const size_t count = foreign_ ? rest.size() : uploadsTogether(rest);
+        recordCopies(frame, rest.first(count), slot);
+        rest = rest.subspan(count);
+        if (!rest.empty()) slot.flush();  // the staging buffer is used again
     }
     memoryBarrier(*context_, slot.commands(), VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                   VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                   VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+}
+
+void FrameExecutor::recordCopies(const RecordedFrame& frame, std::span<const RecordedUpload> uploads,
+                                 FrameSlot& slot) {
+    const VkBuffer staging = slot.stage(uploads, frame.uploadData);
+    for (const RecordedUpload& upload : uploads) {
+        const uint64_t from = upload.at - uploads.front().at;
+        const Image* image = upload.buffer ? nullptr : &frameImages_[upload.image].pooled->image;
+        if (image && !image->buffer) {
+            copyToImage(*context_, slot.commands(), staging, from, *image);
+            continue;
+        }
+        const BufferStorage& buffer = image ? *image->buffer : storageOf(*upload.buffer);
+        const VkBufferCopy region{from, upload.offset, upload.size};
+        context_->vk().CmdCopyBuffer(slot.commands(), staging, buffer.buffer.get(), 1, &region);
+    }
 }
 
 void FrameExecutor::checkGroups(const RecordedFrame& frame, size_t index) const {

@@ -56,6 +56,7 @@ class FrameExecutor {
     void clearHistories(const RecordedFrame& frame, VkCommandBuffer commands);
     void clearImage(const Image& image, VkCommandBuffer commands);
     void recordUploads(const RecordedFrame& frame, FrameSlot& slot);
+    void recordCopies(const RecordedFrame& frame, std::span<const RecordedUpload> uploads, FrameSlot& slot);
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot);

@@ -155,16 +155,18 @@ VkDescriptorBufferInfo FrameSlot::pushParams(std::span<const std::byte> params) 
     return {params_->buffer.get(), offset, params.size()};
 }
 
-VkBuffer FrameSlot::stage(std::span<const std::byte> data) {
-    if (!staging_ || staging_->size < data.size()) {
+VkBuffer FrameSlot::stage(std::span<const RecordedUpload> uploads, std::span<const std::byte> copies) {
+    const uint64_t first = uploads.front().at, bytes = uploads.back().at + uploads.back().size - first;
+    if (!staging_ || staging_->size < bytes) {
         staging_.reset();
         // Small uploads vary from frame to frame, so leave room; pictures do not vary and are too large for
         // that.
-        const uint64_t bytes = data.size() < (1u << 20) ? 2 * data.size() : data.size();
-        staging_ =
-            makeBuffer(context_, name("uploads"), BufferUse::Staging, std::max<uint64_t>(64 << 10, bytes));
+        staging_ = makeBuffer(context_, name("uploads"), BufferUse::Staging,
+                              std::max<uint64_t>(64 << 10, bytes < (1u << 20) ? 2 * bytes : bytes));
     }
-    std::memcpy(staging_->memory.mapped, data.data(), data.size());
+    for (const RecordedUpload& upload : uploads)
+        std::memcpy(staging_->memory.mapped + (upload.at - first),
+                    upload.borrowed ? upload.borrowed : copies.data() + upload.copied, upload.size);
     return staging_->buffer.get();
 }
 

@@ -27,8 +27,8 @@ class FrameSlot {
     VkDescriptorSet allocateSet(VkDescriptorSetLayout layout, const std::string& name);
     /// Copies a parameter struct into the uniform ring buffer.
     VkDescriptorBufferInfo pushParams(std::span<const std::byte> params);
-    /// Copies a frame's uploads into a staging buffer.
-    VkBuffer stage(std::span<const std::byte> data);
+    /// Copies uploads into a staging buffer, from its beginning. `copies` are those that are not borrowed.
+    VkBuffer stage(std::span<const RecordedUpload> uploads, std::span<const std::byte> copies);
     /// Writes a timestamp after the passes so far: number 0 before the first pass, number i + 1 after pass i.
     void writeTimestamp(uint32_t stamp);
     /// Returns the times of the slot's last frame. Waits for it if it was submitted here; otherwise it must

@@ -406,17 +406,33 @@ void ExrDocument::decode(size_t part) {
     if (!content_->isAttached(part)) content_->decoded(part);
 }
 
+uint64_t ExrDocument::decodedBytes(size_t part) const {
+    if (content_->isAttached(part) || !content_->parts[part].unreadable.empty()) return 0;
+    const ExrFrame& frame = content_->headers[part].frame;
+    return (static_cast<uint64_t>(frame.data.max.x - frame.data.min.x) + 1) *
+           (static_cast<uint64_t>(frame.data.max.y - frame.data.min.y) + 1) * frame.bytesPerPixel;
+}
+
 std::vector<float> ExrDocument::values(size_t part, std::string_view channel) {
+    std::vector<float> result(size_t{width()} * height());
+    read(part, channel, result, 1);
+    return result;
+}
+
+void ExrDocument::read(size_t part, std::string_view channel, std::span<float> to, size_t stride) {
     const size_t c = content_->channelOf(part, channel);
-    if (content_->isAttached(part))
-        return content_->attached[part - content_->headers.size()].channels[c].values;
+    if (size_t{width()} * height() > (to.size() + stride - 1) / stride)
+        throw Error("the target is too small");
+    if (content_->isAttached(part)) {
+        const auto& values = content_->attached[part - content_->headers.size()].channels[c].values;
+        for (size_t p = 0; p < values.size(); ++p) to[stride * p] = values[p];
+        return;
+    }
     const Storage storage = content_->parts[part].channels[c].storage;
     const Planes& planes = content_->decoded(part);
-    std::vector<float> result(size_t{width()} * height());
     planes.forShared(content_->display(), [&](size_t inPlane, size_t inDisplay) {
-        result[inDisplay] = planes.get(c, storage, inPlane);
+        to[stride * inDisplay] = planes.get(c, storage, inPlane);
     });
-    return result;
 }
 
 void ExrDocument::replace(size_t part, std::string_view channel, std::span<const float> values) {

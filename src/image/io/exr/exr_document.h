@@ -65,9 +65,15 @@ class ExrDocument {
     /// of it. Throws as values() does.
     void decode(size_t part);
 
+    /// The memory that decode() takes; 0 for parts that cannot be read.
+    uint64_t decodedBytes(size_t part) const;
+
     /// Returns width * height values; Uint as exact integers below 2^24. Throws InputError if the part cannot
     /// be read, and Error if there is no such channel.
     std::vector<float> values(size_t part, std::string_view channel);
+
+    /// The same into to[0], to[stride] and so on. Pixels outside the data window are left as they are.
+    void read(size_t part, std::string_view channel, std::span<float> to, size_t stride);
 
     /// Replaces width * height values, which are stored in the channel's type as writeExr() does.
     void replace(size_t part, std::string_view channel, std::span<const float> values);

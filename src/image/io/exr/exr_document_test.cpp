@@ -372,6 +372,14 @@ TEST(ExrDocument, ConvertsToAndFromTheTypeOfEachChannel) {
     document.write(folder / "a.exr");
     document = ExrDocument::read(folder / "a.exr");
     EXPECT_EQ(document.values(0, "f"), values);
+    EXPECT_EQ(document.decodedBytes(0), 6u * (2 + 4 + 4));
+    std::vector<float> pairs(12, 7.0f);
+    document.read(0, "f", std::span(pairs).subspan(1), 2);
+    for (size_t p = 0; p < 6; ++p) {
+        EXPECT_EQ(pairs[2 * p], 7.0f);
+        EXPECT_EQ(pairs[2 * p + 1], values[p]);
+    }
+    EXPECT_THROW(document.read(0, "f", std::span(pairs).first(10), 2), Error);
     EXPECT_EQ(document.values(0, "h"),
               (std::vector<float>{half(-2.6f), half(2.6f), 65504.0f, inf, -0.0f, half(0.1f)}));
     EXPECT_TRUE(std::signbit(document.values(0, "h")[4]));
