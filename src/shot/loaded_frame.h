@@ -26,11 +26,13 @@ struct LoadedFrame {
     /// variances.
     std::optional<denoise::HostFrame> own;
     std::vector<const LayerInfo*> lacking;  ///< of `own`: advised layers that are missing
+    /// For networks: the layers whose variances are estimated, as the file has none that are used.
+    std::vector<const LayerInfo*> estimated;
 };
 
 struct LoadOptions {
     Assignments assignments;
-    bool network = false;     ///< the denoiser needs variances
+    bool network = false;     ///< the denoiser reads variances, and no motion
     bool sequence = false;    ///< layers of a sequence are needed
     bool layersOnly = false;  ///< Limpid's own files are read as `layers`, too
     /// Files beside the frame's: their channels are like those of a part of this name.
@@ -44,8 +46,7 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
 /// The hash LoadedFrame::content, without decoding. Throws InputError if a file cannot be read.
 uint64_t contentOf(const std::filesystem::path& path, int number, const LoadOptions& options);
 
-/// Makes `layers` or `own` of the decoded file, which take more memory than it. Throws InputError, also if a
-/// network lacks layers.
+/// Makes `layers` or `own` of the decoded file, which take more memory than it. Throws InputError.
 void unpack(LoadedFrame& frame, const LoadOptions& options);
 
 }  // namespace limpid::shot

@@ -41,7 +41,7 @@ class ShotDenoiser {
   private:
     struct Picture;
     denoise::HostFrame hostFrame(LoadedFrame& frame, size_t index, Picture& picture, bool continues);
-    void cleanGroups(Picture& picture, const ShotLayers& layers, const denoise::HostFrame& frame,
+    void cleanGroups(Picture& picture, const LoadedFrame& file, size_t index, const denoise::HostFrame& frame,
                      bool continues, CleanPicture& result);
     CleanPicture clean(gpu::FrameGraph& graph, const denoise::HostFrame& frame, float framesOfEdges,
                        bool continues);

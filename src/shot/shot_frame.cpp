@@ -18,6 +18,9 @@ using image::Image;
 /// Half the horizontal angle of view that is supposed where nothing is known: 25 degrees.
 constexpr float supposedTangent = 0.4663f;
 
+/// Where the file does not tell: those that networks were trained with.
+constexpr uint32_t supposedSamples = 32;
+
 /// A camera with these axes (columns: right, up, towards the viewer).
 CameraParams cameraWith(const mat3& axes, const vec3& eye, float tangent, const ShotLayers& layers) {
     const float ratio = static_cast<float>(layers.height) / static_cast<float>(layers.width);
@@ -179,6 +182,7 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     denoise::HostFrame frame;
     frame.width = layers.width;
     frame.height = layers.height;
+    frame.samples = layers.samples > 0 ? layers.samples : supposedSamples;
     frame.camera = cameraOf(layers, given);
     const bool two = layers.find("diffuse") && layers.find("specular");
     frame.forEach([&](const LayerInfo& layer, auto& texels) {

@@ -18,6 +18,7 @@
 #include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "renderer/frame/frame_download.h"
+#include "shot/explain.h"
 #include "shot/motion_check.h"
 
 namespace limpid::cli {
@@ -255,10 +256,13 @@ class FrameWriter {
 void warnOf(const LoadedFrame& frame, const ShotJob& job) {
     for (const LayerInfo* layer : frame.lacking)
         log::warn("the layer '{}' is missing: {}", layer->name, layer->without);
+    if (const std::string variances = shot::explainVariances(frame); !variances.empty())
+        log::warn("{}", variances);
+    const bool needsMotion = job.load.sequence && !job.load.network;
     for (const shot::LayerMap& map : frame.maps)
         for (const shot::RoleInfo& role : shot::roles())
             if (!frame.own && !map.find(role.name) && role.isImportant &&
-                (job.load.sequence || role.name != "motion"))
+                (needsMotion || role.name != "motion"))
                 log::warn("the layer '{}' is missing: {}", role.name, role.without);
 }
 

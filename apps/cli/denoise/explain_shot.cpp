@@ -14,9 +14,14 @@ using shot::LoadedFrame;
 
 LoadedFrame load(const ShotJob& job, int frame) {
     shot::LoadOptions options = job.load;
+    LoadedFrame loaded = shot::loadFrame(job.input.format(std::max(frame, 0)), frame, options);
+    if (options.network) {  // which variances it lacks
+        shot::unpack(loaded, options);
+        loaded.own.reset();
+        loaded.layers.clear();
+    }
     options.layersOnly = true;
     options.network = false;
-    LoadedFrame loaded = shot::loadFrame(job.input.format(std::max(frame, 0)), frame, options);
     shot::unpack(loaded, options);
     return loaded;
 }
@@ -38,6 +43,8 @@ void explainShot(const ShotJob& job) {
     std::optional<LoadedFrame> second;
     if (job.frames.size() > 1) second = load(job, job.frames[1]);
     fmt::print("{}", shot::explainLayers(first));
+    if (const std::string variances = shot::explainVariances(first); !variances.empty())
+        fmt::print("    {}\n", variances);
     for (size_t i = 0; i < first.maps.size(); ++i) {
         if (first.maps.size() > 1) fmt::print("  picture '{}'\n", first.maps[i].title);
         shot::FrameConverter converter(first.maps[i]);
