@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shot/reflection_motion.h"
 #include "shot/variance_estimate.h"
 
 namespace limpid::shot {
@@ -94,7 +95,7 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
     return direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
-                                             : picture.converter.convertAlone(layers, given);
+                                             : picture.converter.convertAlone(layers, given, continues);
 }
 
 CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, float frames,
@@ -208,9 +209,15 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
             guides.height = host.height;
             guides.motion = host.motion;
             guides.depth = host.depth;
-            if (continues && picture.last)
+            guides.camera = host.camera;
+            // That of files leads to the frame before.
+            std::vector<float> reflectionMotion;
+            if (!own) reflectionMotion.swap(host.reflectionMotion);
+            if (continues && picture.last) {
                 turnAround(host, *picture.last);
-            else
+                host.reflectionMotion.swap(reflectionMotion);
+                dropMovingMirrors(picture.last->camera, host);
+            } else
                 std::fill(host.motion.begin(), host.motion.end(), 0.0f);
             picture.last = std::move(guides);
         }

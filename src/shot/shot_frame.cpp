@@ -9,6 +9,7 @@
 #include "shaders/common/scene_layout.h"
 #include "shot/camera/camera_solve.h"
 #include "shot/pixel_layers.h"
+#include "shot/reflection_motion.h"
 
 namespace limpid::shot {
 namespace {
@@ -169,8 +170,9 @@ void FrameConverter::addMotion(const ShotLayers& layers, const View& view, denoi
 }
 
 denoise::HostFrame FrameConverter::convertAlone(const ShotLayers& layers,
-                                                const std::optional<CameraParams>& given) {
+                                                const std::optional<CameraParams>& given, bool continues) {
     alone_ = true;
+    reflects_ = continues;
     denoise::HostFrame frame = convert(layers, given, false);
     alone_ = false;
     return frame;
@@ -197,6 +199,7 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     View view{frame.camera, distancesOf(layers, map_.encoding, frame.camera),
               report_.camera != CameraSource::Supposed};
     report_.lightShare = addLight(layers, view.distance, frame);
+    addMirroredEmission(layers, map_.encoding, view.distance, frame);
     addAlbedo(layers, frame);
     divideByAlpha(layers, view.distance, frame);
     addGeometry(layers, map_, view.distance, frame);
@@ -204,9 +207,13 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
         frame.roughness.resize(4 * frame.pixelCount());
         forEachPixel(frame.pixelCount(), [&](size_t p) { frame.roughness[4 * p] = roughness->pixels[p]; });
     }
+    const bool comparable =
+        last_ && view.comparable && last_->comparable && last_->distance.size() == view.distance.size();
+    if (comparable && (alone_ ? reflects_ : continues_)) addReflectionMotion(layers, last_->camera, frame);
     addSeen(layers, map_, frame);
     frame.previousNormal = frame.normal;  // files do not tell how surfaces turn
     if (continues_ || alone_) addMotion(layers, view, frame);
+    if (!alone_ && last_) dropMovingMirrors(last_->camera, frame);
     report_.horizontalFov = frame.camera.orthographic != 0
                                 ? 0.0f
                                 : glm::degrees(2.0f * std::atan(glm::length(frame.camera.right)));

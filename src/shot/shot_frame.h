@@ -62,8 +62,10 @@ class FrameConverter {
                                bool continues);
 
     /// The same for frames in any order: motion has no difference of distances, and it is kept although no
-    /// frame came before. A camera that only a shot in order tells stands still.
-    denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given);
+    /// frame came before. A camera that only a shot in order tells stands still. The motion of reflections
+    /// is that from the frame that was converted last, if `continues`.
+    denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given,
+                                    bool continues);
 
     const FrameReport& report() const { return report_; }
 
@@ -82,7 +84,7 @@ class FrameConverter {
     FrameReport report_;
     std::optional<View> last_;
     bool continues_ = false;
-    bool alone_ = false;
+    bool alone_ = false, reflects_ = false;
 };
 
 }  // namespace limpid::shot
