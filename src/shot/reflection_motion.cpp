@@ -115,48 +115,6 @@ bool isSmooth(const ShotLayers& layers, size_t p) {
     return !diffuse || sumAt(*diffuse, p) < 0.05f * sumAt(*layers.find("albedoSpecular"), p);
 }
 
-/// Tells mirrored lamps from noisy highlights of metal that is a little rough, which Cycles calls smooth,
-/// too. Pixels of noise have other values than their neighbours.
-class Calmness {
-  public:
-    explicit Calmness(const image::Image& light) : light_(light), calm_(light.pixels.size() / 3) {
-        forEachPixel(calm_.size(), [&](size_t p) {
-            int alike = 0;
-            forEachAround(p, 1, [&](size_t q) { alike += p != q && isAlike(p, q) ? 1 : 0; });
-            calm_[p] = alike >= 3 ? 1 : 0;
-        });
-    }
-
-    /// True if most of the lit pixels around have values like those beside them.
-    bool at(size_t p) const {
-        int lit = 0, calm = 0;
-        forEachAround(p, 3, [&](size_t q) {
-            if (!(sumAt(light_, q) > 0.0f)) return;
-            ++lit;
-            calm += calm_[q];
-        });
-        return 2 * calm > lit;
-    }
-
-  private:
-    bool isAlike(size_t p, size_t q) const {
-        const float own = sumAt(light_, p), other = sumAt(light_, q);
-        return own > 0.0f && std::abs(own - other) < 0.1f * std::max(own, other);
-    }
-
-    template <typename Action>
-    void forEachAround(size_t p, int64_t reach, Action action) const {
-        const int64_t width = light_.width, height = light_.height;
-        const auto x = static_cast<int64_t>(p) % width, y = static_cast<int64_t>(p) / width;
-        for (int64_t v = std::max<int64_t>(y - reach, 0); v <= std::min(y + reach, height - 1); ++v)
-            for (int64_t u = std::max<int64_t>(x - reach, 0); u <= std::min(x + reach, width - 1); ++u)
-                action(static_cast<size_t>(v * width + u));
-    }
-
-    const image::Image& light_;
-    std::vector<uint8_t> calm_;
-};
-
 }  // namespace
 
 void addMirroredEmission(const ShotLayers& layers, const Encoding& encoding,
@@ -172,16 +130,14 @@ void addMirroredEmission(const ShotLayers& layers, const Encoding& encoding,
     const auto vectorOf = [](const image::Image& image, size_t p, const vec3& scale) {
         return vec3(image.pixels[3 * p], image.pixels[3 * p + 1], image.pixels[3 * p + 2]) * scale;
     };
-    const Calmness calmness(*light);
     forEachPixel(distance.size(), [&](size_t p) {
-        if (!(distance[p] > 0.0f && sumAt(*light, p) > 0.0f) || !reflects(layers, p, 0.95f)) return;
+        if (!(distance[p] > 0.0f) || !reflects(layers, p, 0.95f)) return;
         // The normal is that of what the mirror shows, or none where it shows the sky. At the mirror's edge
         // the pixel scatters, too.
         const vec3 own = vectorOf(*normal, p, encoding.normalScale);
         const vec3 shown = axes * vectorOf(*seen, p, encoding.cameraNormalScale);
         const bool goesOn = length->pixels[p] > 1.02f * distance[p] && isSmooth(layers, p);
         if (!goesOn && !(glm::distance(own, shown) > 0.25f)) return;
-        if (!calmness.at(p)) return;
         for (size_t c = 0; c < 3; ++c) {
             const float emitted = light->pixels[3 * p + c];
             frame.emission[4 * p + c] += emitted;
