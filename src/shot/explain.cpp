@@ -100,6 +100,14 @@ std::string explainMotion(const MotionCheck& check, int before, int now) {
     return text;
 }
 
+std::string explainVariances(const LoadedFrame& frame) {
+    std::string names;
+    for (const LayerInfo* layer : frame.estimated)
+        names += (names.empty() ? "" : ", ") + std::string(layer->name);
+    if (names.empty()) return {};
+    return "variances are estimated from the neighbourhood: no layers are known for those of " + names;
+}
+
 std::string explainView(const FrameReport& report) {
     std::string text;
     if (report.camera == CameraSource::Given) {

@@ -15,6 +15,9 @@ std::string explainLayers(const LoadedFrame& frame);
 /// One or two lines.
 std::string explainMotion(const MotionCheck& check, int before, int now);
 
+/// Which variances are estimated for a network; empty if none are.
+std::string explainVariances(const LoadedFrame& frame);
+
 /// One line each on the camera, and on light that no layer explains.
 std::string explainView(const FrameReport& report);
 

@@ -132,19 +132,22 @@ uint64_t contentOf(const std::filesystem::path& path, int number, const LoadOpti
 }
 
 void unpack(LoadedFrame& frame, const LoadOptions& options) {
+    const bool sequence = options.sequence && !options.network;
     const bool asWritten = options.assignments.empty() && options.files.empty() && !options.layersOnly &&
-                           isOwn(frame.file, options.sequence);
-    if (asWritten || options.network) {
-        const std::filesystem::path& path = frame.file.name();
+                           isOwn(frame.file, sequence);
+    if (asWritten) {
         const image::LayeredImage picture = layeredImage(frame.file, options.network);
-        if (options.network) requireVariances(picture, path);
+        if (options.network) frame.estimated = lackingVariances(picture);
         frame.file.decode(0);  // before several threads read it
         const ChannelReader reader = [&](const std::string& channel, std::span<float> to, size_t stride) {
             frame.file.read(0, channel, to, stride);
         };
-        frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking, reader);
+        frame.own = frameOf(picture, frame.file.name(), sequence, frame.lacking, reader);
         return;
     }
+    if (options.network)
+        for (const LayerInfo& layer : frameLayers)
+            if (layer.varianceInFiles) frame.estimated.push_back(&layer);
     const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
     for (const LayerMap& map : frame.maps) {
         frame.layers.push_back(readLayers(frame.file, map));

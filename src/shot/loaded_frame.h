@@ -26,11 +26,13 @@ struct LoadedFrame {
     /// variances.
     std::optional<denoise::HostFrame> own;
     std::vector<const LayerInfo*> lacking;  ///< of `own`: advised layers that are missing
+    /// For networks: the layers whose variances are estimated, as the file has none that are used.
+    std::vector<const LayerInfo*> estimated;
 };
 
 struct LoadOptions {
     Assignments assignments;
-    bool network = false;     ///< the denoiser needs variances
+    bool network = false;     ///< the denoiser reads variances, and no motion
     bool sequence = false;    ///< layers of a sequence are needed
     bool layersOnly = false;  ///< Limpid's own files are read as `layers`, too
     /// Files beside the frame's: their channels are like those of a part of this name.
@@ -45,7 +47,7 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
 uint64_t contentOf(const std::filesystem::path& path, int number, const LoadOptions& options);
 
 /// Makes `layers` or `own` of the file, decoding it if loadFrame() did not; they take more memory than it.
-/// Throws InputError, also if a network lacks layers.
+/// Throws InputError.
 void unpack(LoadedFrame& frame, const LoadOptions& options);
 
 }  // namespace limpid::shot

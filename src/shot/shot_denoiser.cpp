@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shot/reflection_motion.h"
+#include "shot/variance_estimate.h"
+
 namespace limpid::shot {
 namespace {
 
@@ -16,6 +19,16 @@ constexpr float framesOfEdges = 2.0f;
 constexpr uint32_t smoothSamples = 8;
 /// On transparent film, where coverage is noisy, so many samples are averaged; chosen on the shot `hair`.
 constexpr float samplesOfCoverage = 16.0f;
+
+/// Where a surface has hardly any diffuse light, networks are shown the albedo of its other light: of metal,
+/// or of what mirrors and glass show.
+void showSpecularAlbedo(HostFrame& frame) {
+    for (size_t p = 0; 4 * p < frame.albedoSpecular.size(); ++p) {
+        const float *specular = &frame.albedoSpecular[4 * p], *diffuse = &frame.albedo[4 * p];
+        if (diffuse[0] + diffuse[1] + diffuse[2] < 0.05f * (specular[0] + specular[1] + specular[2]))
+            std::copy_n(specular, 3, &frame.albedo[4 * p]);
+    }
+}
 
 /// Each frame is downloaded before the next one, so a second one would only take memory.
 const gpu::GraphOptions oneFrame{.framesInFlight = 1};
@@ -39,9 +52,10 @@ bool isAlike(const LayerMap& a, const LayerMap& b) {
 }
 
 /// How many frames anti-aliasing averages. It would mix covered and empty pixels of transparent film.
-float edgeFrames(const ShotLayers& layers) {
+/// Networks take each frame by itself.
+float edgeFrames(const ShotLayers& layers, const denoise::Denoiser& method) {
     const bool few = layers.samples > 0 && layers.samples < smoothSamples;
-    return few && !layers.isTransparent ? framesOfEdges : 1.0f;
+    return few && !layers.isTransparent && !method.network ? framesOfEdges : 1.0f;
 }
 
 /// Where light was divided by it: where a surface is seen.
@@ -80,8 +94,7 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     std::optional<CameraParams> given;
     const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
-    return picture.converter.convertUsingUp(
-        layers, given, direction_ == Direction::Forwards ? std::optional(continues) : std::nullopt);
+    return picture.converter.convertUsingUp(layers, given, continues, direction_ == Direction::Backwards);
 }
 
 CleanPicture ShotDenoiser::clean(gpu::FrameGraph& graph, const HostFrame& frame, float frames,
@@ -137,7 +150,8 @@ void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const H
     const auto samples = static_cast<float>(layers.samples);
     const float framesOfCoverage =
         samples > 0.0f ? std::max(samplesOfCoverage / std::max(samples, 2.0f), 1.0f) : 1.0f;
-    if (options_.keepsAntialiasing || framesOfCoverage <= 1.0f) return;
+    const bool alone = options_.keepsAntialiasing || options_.method->network;
+    if (alone || framesOfCoverage <= 1.0f) return;
     result.beauty =
         smoothed(picture.coveredColors, frame, std::move(result.beauty), framesOfCoverage, continues);
     std::vector<float> shares(4 * alpha.pixels.size());
@@ -148,8 +162,9 @@ void ShotDenoiser::coverFilm(Picture& picture, const ShotLayers& layers, const H
 
 /// Each group is one signal with the frame's guides. Its light takes the place of the frame's, since a copy
 /// would take much memory.
-void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, HostFrame& one, bool continues,
-                               CleanPicture& result) {
+void ShotDenoiser::cleanGroups(Picture& picture, const LoadedFrame& file, size_t index, HostFrame& one,
+                               bool continues, CleanPicture& result) {
+    const ShotLayers& layers = file.layers[index];
     for (size_t i = 0; i < one.albedoSpecular.size(); ++i) one.albedo[i] += one.albedoSpecular[i];
     one.specular.clear();
     one.albedoSpecular.clear();
@@ -167,8 +182,10 @@ void ShotDenoiser::cleanGroups(Picture& picture, const ShotLayers& layers, HostF
                 if (g < layers.groups.size()) rest.pixels[3 * p + c] -= value;
             }
         }
+        if (!file.estimated.empty()) estimateVariances(one, file.estimated);
         if (g == picture.groups.size()) picture.groups.push_back(std::make_unique<gpu::FrameGraph>(oneFrame));
-        result.groups.push_back(clean(*picture.groups[g], one, edgeFrames(layers), continues).beauty);
+        result.groups.push_back(
+            clean(*picture.groups[g], one, edgeFrames(layers, *options_.method), continues).beauty);
     }
 }
 
@@ -183,23 +200,31 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
         Picture& picture = *pictures_[i];
         const bool own = frame.own.has_value();
         HostFrame host = hostFrame(frame, i, picture, continues);
+        if (options_.method->network && !own) showSpecularAlbedo(host);
+        if (!frame.estimated.empty()) estimateVariances(host, frame.estimated);
         if (direction_ == Direction::Backwards) {
             HostFrame guides;  // before the motion is inverted: the next call needs this frame's
             guides.width = host.width;
             guides.height = host.height;
             guides.motion = host.motion;
             guides.depth = host.depth;
-            if (continues && picture.last)
+            guides.camera = host.camera;
+            // That of files leads to the frame before.
+            std::vector<float> reflectionMotion;
+            if (!own) reflectionMotion.swap(host.reflectionMotion);
+            if (continues && picture.last) {
                 turnAround(host, *picture.last);
-            else
+                host.reflectionMotion.swap(reflectionMotion);
+                dropMovingMirrors(picture.last->camera, host);
+            } else
                 std::fill(host.motion.begin(), host.motion.end(), 0.0f);
             picture.last = std::move(guides);
         }
-        CleanPicture& result = results.emplace_back(
-            clean(picture.graph, host, own ? 1.0f : edgeFrames(frame.layers[i]), continues));
+        CleanPicture& result = results.emplace_back(clean(
+            picture.graph, host, own ? 1.0f : edgeFrames(frame.layers[i], *options_.method), continues));
         result.report = picture.converter.report();
         if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
-            cleanGroups(picture, frame.layers[i], host, continues, result);
+            cleanGroups(picture, frame, i, host, continues, result);
         if (!own && frame.layers[i].isTransparent)
             coverFilm(picture, frame.layers[i], host, continues, result);
         if (!own) frame.layers[i] = {};

@@ -41,8 +41,8 @@ class ShotDenoiser {
   private:
     struct Picture;
     denoise::HostFrame hostFrame(LoadedFrame& frame, size_t index, Picture& picture, bool continues);
-    void cleanGroups(Picture& picture, const ShotLayers& layers, denoise::HostFrame& one, bool continues,
-                     CleanPicture& result);
+    void cleanGroups(Picture& picture, const LoadedFrame& file, size_t index, denoise::HostFrame& one,
+                     bool continues, CleanPicture& result);
     CleanPicture clean(gpu::FrameGraph& graph, const denoise::HostFrame& frame, float framesOfEdges,
                        bool continues);
     std::vector<float> smoothed(gpu::FrameGraph& graph, const denoise::HostFrame& frame,

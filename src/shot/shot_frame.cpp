@@ -10,6 +10,7 @@
 #include "shot/camera/camera_solve.h"
 #include "shot/emitters.h"
 #include "shot/pixel_layers.h"
+#include "shot/reflection_motion.h"
 
 namespace limpid::shot {
 namespace {
@@ -18,6 +19,9 @@ using image::Image;
 
 /// Half the horizontal angle of view that is supposed where nothing is known: 25 degrees.
 constexpr float supposedTangent = 0.4663f;
+
+/// Where the file does not tell: those that networks were trained with.
+constexpr uint32_t supposedSamples = 32;
 
 /// A camera with these axes (columns: right, up, towards the viewer).
 CameraParams cameraWith(const mat3& axes, const vec3& eye, float tangent, const ShotLayers& layers) {
@@ -93,9 +97,8 @@ void makeGeometry(denoise::HostFrame& frame) {
     });
 }
 
-void freeLight(ShotLayers& layers) {
-    for (const char* role : {"diffuse", "specular", "emission", "background", "albedo", "albedoSpecular"})
-        layers.images.erase(role);
+void freeRoles(ShotLayers& layers, std::initializer_list<const char*> which) {
+    for (const char* role : which) layers.images.erase(role);
 }
 
 }  // namespace
@@ -203,18 +206,20 @@ void FrameConverter::addMotion(const ShotLayers& layers, const View& view, denoi
 }
 
 denoise::HostFrame FrameConverter::convertAlone(const ShotLayers& layers,
-                                                const std::optional<CameraParams>& given) {
+                                                const std::optional<CameraParams>& given, bool continues) {
     alone_ = true;
+    reflects_ = continues;
     denoise::HostFrame frame = convert(layers, given, false);
     alone_ = false;
     return frame;
 }
 
 denoise::HostFrame FrameConverter::convertUsingUp(ShotLayers& layers,
-                                                  const std::optional<CameraParams>& given,
-                                                  std::optional<bool> continues) {
+                                                  const std::optional<CameraParams>& given, bool continues,
+                                                  bool alone) {
     used_ = &layers;
-    denoise::HostFrame frame = continues ? convert(layers, given, *continues) : convertAlone(layers, given);
+    denoise::HostFrame frame =
+        alone ? convertAlone(layers, given, continues) : convert(layers, given, continues);
     used_ = nullptr;
     std::erase_if(layers.images,
                   [](const auto& layer) { return layer.first != "beauty" && layer.first != "alpha"; });
@@ -227,6 +232,7 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
     denoise::HostFrame frame;
     frame.width = layers.width;
     frame.height = layers.height;
+    frame.samples = layers.samples > 0 ? layers.samples : supposedSamples;
     frame.camera = cameraOf(layers, given);
     const bool two = layers.find("diffuse") && layers.find("specular");
     makeLight(frame, two);
@@ -234,18 +240,24 @@ denoise::HostFrame FrameConverter::convert(const ShotLayers& layers, const std::
               report_.camera != CameraSource::Supposed};
     if (!layers.find("emission")) hideEmitters(layers, view.distance);
     report_.lightShare = addLight(layers, view.distance, frame);
+    addMirroredEmission(layers, map_.encoding, view.distance, frame);
     addAlbedo(layers, frame);
     divideByAlpha(layers, view.distance, frame);
-    if (used_) freeLight(*used_);
+    if (used_) freeRoles(*used_, {"diffuse", "specular", "emission", "background", "mirroredEmission"});
     makeGeometry(frame);
     addGeometry(layers, map_, view.distance, frame);
     if (const Image* const roughness = layers.find("roughness"); roughness && two) {
         frame.roughness.resize(4 * frame.pixelCount());
         forEachPixel(frame.pixelCount(), [&](size_t p) { frame.roughness[4 * p] = roughness->pixels[p]; });
     }
+    const bool comparable =
+        last_ && view.comparable && last_->comparable && last_->distance.size() == view.distance.size();
+    if (comparable && (alone_ ? reflects_ : continues_)) addReflectionMotion(layers, last_->camera, frame);
+    if (used_) freeRoles(*used_, {"albedo", "albedoSpecular", "albedoReflected"});
     addSeen(layers, map_, frame);
     frame.previousNormal = frame.normal;  // files do not tell how surfaces turn
     if (continues_ || alone_) addMotion(layers, view, frame);
+    if (!alone_ && last_) dropMovingMirrors(last_->camera, frame);
     report_.horizontalFov = frame.camera.orthographic != 0
                                 ? 0.0f
                                 : glm::degrees(2.0f * std::atan(glm::length(frame.camera.right)));

@@ -62,13 +62,15 @@ class FrameConverter {
                                bool continues);
 
     /// The same for frames in any order: motion has no difference of distances, and it is kept although no
-    /// frame came before. A camera that only a shot in order tells stands still.
-    denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given);
+    /// frame came before. A camera that only a shot in order tells stands still. The motion of reflections
+    /// is that from the frame that was converted last, if `continues`.
+    denoise::HostFrame convertAlone(const ShotLayers& layers, const std::optional<CameraParams>& given,
+                                    bool continues);
 
-    /// convert(), or convertAlone() if `continues` is empty, for frames whose layers nobody else needs: frees
-    /// all but the beauty and alpha, those of light before those of geometry are made.
+    /// convert(), or convertAlone() if `alone`, for frames whose layers nobody else needs: frees all but the
+    /// beauty and alpha, those of light before those of geometry are made.
     denoise::HostFrame convertUsingUp(ShotLayers& layers, const std::optional<CameraParams>& given,
-                                      std::optional<bool> continues);
+                                      bool continues, bool alone);
 
     const FrameReport& report() const { return report_; }
 
@@ -87,7 +89,7 @@ class FrameConverter {
     FrameReport report_;
     std::optional<View> last_;
     bool continues_ = false;
-    bool alone_ = false;
+    bool alone_ = false, reflects_ = false;
     ShotLayers* used_ = nullptr;  ///< in convertUsingUp()
 };
 

@@ -181,8 +181,8 @@ TEST(ShotFrame, MotionIsConvertedAndHasTheDifferenceOfDistances) {
 
 TEST(ShotFrame, BackwardsMotionLeadsToTheNextFrame) {
     FrameConverter converter(planar());
-    HostFrame now = converter.convertAlone(layersOf(2.0f), cameraAt(0).params(columns, rows));
-    const HostFrame next = converter.convertAlone(layersOf(2.0f), cameraAt(0).params(columns, rows));
+    HostFrame now = converter.convertAlone(layersOf(2.0f), cameraAt(0).params(columns, rows), false);
+    const HostFrame next = converter.convertAlone(layersOf(2.0f), cameraAt(0).params(columns, rows), false);
     EXPECT_EQ(next.motion[4 * at(5, 9)], 2.0f);
     turnAround(now, next);
     EXPECT_EQ(now.motion[4 * at(9, 9)], -2.0f);

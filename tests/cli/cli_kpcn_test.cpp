@@ -9,6 +9,7 @@ namespace limpid {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string smallWeights =
     " --weights '" + std::string(LIMPID_SOURCE_DIR) + "/tests/data/kpcn_small.safetensors' ";
@@ -78,16 +79,31 @@ TEST_F(CliKpcnTest, RendersWhatDenoiseMakesOfItsFrames) {
     }
 }
 
-TEST_F(CliKpcnTest, MissingLayersAreNamed) {
-    mustRun("render builtin:cornell -o " + path("noisy.exr") + small +
-            "--spp 2 --aov diffuse,specular,emission,albedo,normal,depth");
-    const Result result =
-        run("denoise " + path("noisy.exr") + " -o " + path("clean.exr") + " --device cpu --denoiser kpcn");
-    EXPECT_EQ(result.code, 3);
-    EXPECT_THAT(
-        result.output,
-        HasSubstr("diffuse.variance, specular.variance, albedo.variance, normal.variance, depth.variance"));
-    EXPECT_FALSE(fs::exists(path("clean.exr")));
+TEST_F(CliKpcnTest, VariancesAreEstimatedWhereAFileHasNone) {
+    const std::string render = "render builtin:cornell-spheres" + std::string(larger) + "--jitter off -o ";
+    mustRun(render + path("with.exr") + " --spp 8 --aov all");
+    mustRun(render + path("without.exr") + " --spp 8 --aov diffuse,specular,emission,albedo,normal,depth");
+    mustRun(render + path("truth.exr") + " --spp 512 --seed 3");
+    const auto denoised = [&](const std::string& name) {
+        return run("denoise " + path(name) + " -o " + path("clean.exr") + " --device cpu --denoiser kpcn");
+    };
+    const image::Image truth = pictureOf("truth.exr");
+    EXPECT_THAT(denoised("with.exr").output, Not(HasSubstr("are estimated")));
+    const double known = image::relMse(pictureOf("clean.exr"), truth);
+    EXPECT_THAT(denoised("without.exr").output,
+                HasSubstr("variances are estimated from the neighbourhood: no layers are known for those of "
+                          "diffuse, specular, albedo, normal, depth"));
+    const double estimated = image::relMse(pictureOf("clean.exr"), truth);
+    const double noisy = image::relMse(pictureOf("without.exr"), truth);
+    RecordProperty("noisy", std::to_string(noisy));
+    RecordProperty("known", std::to_string(known));
+    RecordProperty("estimated", std::to_string(estimated));
+    EXPECT_LT(estimated, 1.1 * known);
+    EXPECT_LT(estimated, 0.3 * noisy);
+    EXPECT_NE(estimated, known);
+    const std::string explain = "denoise --explain --denoiser kpcn ";
+    EXPECT_THAT(run(explain + path("without.exr")).output, HasSubstr("are estimated"));
+    EXPECT_THAT(run(explain + path("with.exr")).output, Not(HasSubstr("are estimated")));
 }
 
 TEST_F(CliKpcnTest, BadWeightsAreRefused) {

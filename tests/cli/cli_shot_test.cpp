@@ -319,6 +319,32 @@ TEST_F(CliBlenderTest, GivenAndFoundCamerasAreTheSame) {
     }
 }
 
+/// A frame of Cycles has no variances, and the network takes it by itself.
+TEST_F(CliBlenderTest, TheNetworkCleansFramesWithoutVariances) {
+    for (const std::string name : {"camera", "objects", "glass", "hair"}) {
+        const std::string in =
+            fmt::format(fmt::runtime(std::string(LIMPID_TEST_DATA) + "/shots/{}.0014.exr"), name);
+        const Result result =
+            run("denoise " + shot(name) + " -o " + path("a.%04d.exr") + " --device cpu --denoiser kpcn");
+        ASSERT_EQ(result.code, 0) << result.output;
+        EXPECT_THAT(result.output, HasSubstr("variances are estimated from the neighbourhood"));
+        ASSERT_EQ(run("denoise " + in + " -o " + path("one.exr") + " --device cpu --denoiser kpcn").code, 0);
+        ASSERT_EQ(run("denoise " + shot(name) + " -o " + path("b.%04d.exr") + " --device cpu").code, 0);
+        const auto noisy = image::readExr(in).get("ViewLayer.Combined", "RGBA").pixels;
+        const auto clean = image::readExr(path("a.0014.exr")).get("ViewLayer.Combined", "RGBA").pixels;
+        const auto other = image::readExr(path("b.0014.exr")).get("ViewLayer.Combined", "RGBA").pixels;
+        EXPECT_EQ(clean, image::readExr(path("one.exr")).get("ViewLayer.Combined", "RGBA").pixels)
+            << name << " has no history";
+        for (const float value : clean) ASSERT_TRUE(std::isfinite(value)) << name;
+        EXPECT_LT(meanError(clean, other), 0.9 * meanError(noisy, other))
+            << name << ": nearer to another method";
+    }
+    EXPECT_THAT(run("denoise --explain --denoiser kpcn " + shot("glass")).output,
+                HasSubstr("variances are estimated from the neighbourhood: no layers are known for those of "
+                          "diffuse, specular, albedo, normal, depth"));
+    EXPECT_THAT(run("denoise --explain " + shot("glass")).output, Not(HasSubstr("variances are")));
+}
+
 TEST_F(CliBlenderTest, OnlyTransparentFilmGetsANewAlpha) {
     for (const char* name : {"hair", "camera"}) {
         const Result result =

@@ -28,7 +28,7 @@ bool has(const LayeredImage& file, const LayerInfo& layer) {
     });
 }
 
-/// "albedo.variance": the channel's name in files of Limpid 0.2, and in messages.
+/// "albedo.variance": the channel's name in files of Limpid 0.2.
 std::string shortVarianceName(const LayerInfo& layer) {
     const std::string name = varianceChannel(layer);
     return name.substr(0, name.rfind('.'));
@@ -132,14 +132,11 @@ void read(const LayeredImage& file, const ChannelReader& reader, const LayerInfo
 
 }  // namespace
 
-void requireVariances(const LayeredImage& file, const std::filesystem::path& name) {
-    std::string missing;
-    for (const LayerInfo& layer : frameLayers) {
-        if (layer.varianceInFiles && !varianceOf(file, layer)) addName(missing, shortVarianceName(layer));
-    }
-    if (!missing.empty())
-        throw InputError(name, "lacks the layers " + missing +
-                                   ", which networks need ('limpid render --spp 32 --aov all' writes them)");
+std::vector<const LayerInfo*> lackingVariances(const LayeredImage& file) {
+    std::vector<const LayerInfo*> lacking;
+    for (const LayerInfo& layer : frameLayers)
+        if (layer.varianceInFiles && !varianceOf(file, layer)) lacking.push_back(&layer);
+    return lacking;
 }
 
 denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path& name, bool sequence,

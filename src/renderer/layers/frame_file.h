@@ -25,8 +25,7 @@ using ChannelReader = std::function<void(const std::string& channel, std::span<f
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<const LayerInfo*>& lacking, const ChannelReader& reader = {});
 
-/// Throws InputError with a list of the missing variance layers (LayerInfo::varianceInFiles), which networks
-/// need.
-void requireVariances(const image::LayeredImage& file, const std::filesystem::path& name);
+/// The layers that have a variance (LayerInfo::varianceInFiles) which the file lacks.
+std::vector<const LayerInfo*> lackingVariances(const image::LayeredImage& file);
 
 }  // namespace limpid

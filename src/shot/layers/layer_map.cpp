@@ -33,6 +33,8 @@ constexpr std::array roleTable{
     RoleInfo{"id", "objects that touch share their light at the edge", 1, false},
     RoleInfo{"roughness", "glossy and rough reflections are filtered alike", 1, false},
     RoleInfo{"alpha", "", 1, false},
+    RoleInfo{"albedoReflected", "", 3, false},
+    RoleInfo{"mirroredEmission", "", 3, false},
     RoleInfo{"background", "", 3, false},
     RoleInfo{"position", "", 3, false},
     RoleInfo{"distance", "", 1, false},

@@ -46,6 +46,8 @@ struct Encoding {
 ///     `alpha` replaces it. `distance` is along the ray, from the near plane, and goes on behind mirrors and
 ///     smooth glass. So do `cameraNormal` (with Encoding::cameraNormalScale) and `seenAlbedo`: there they
 ///     replace `normal` and `albedoSpecular`.
+///   - `albedoReflected` is the share of `albedoSpecular` that is not refracted: it tells mirrors.
+///   - `mirroredEmission` is what smooth mirrors show of lamps and sky: light that they reflect directly.
 ///   - `position` (in the world), `distance` and `cameraNormal` tell the camera (camera_solve.h).
 struct RoleInfo {
     std::string_view name;     ///< as in --map

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "renderer/layers/picture_name.h"
+#include "shot/explain.h"
 #include "shot/run/cut_finder.h"
 #include "shot/run/frame_reader.h"
 #include "shot/run/frame_writer.h"
@@ -22,10 +23,12 @@ constexpr size_t blockFrames = 32;
 void warnOf(const LoadedFrame& frame, const ShotJob& job) {
     for (const LayerInfo* layer : frame.lacking)
         warn(job, fmt::format("the layer '{}' is missing: {}", layer->name, layer->without));
+    if (const std::string variances = explainVariances(frame); !variances.empty()) warn(job, variances);
+    const bool needsMotion = job.load.sequence && !job.load.network;
     for (const LayerMap& map : frame.maps)
         for (const RoleInfo& role : roles())
             if (!frame.own && !map.find(role.name) && role.isImportant &&
-                (job.load.sequence || role.name != "motion"))
+                (needsMotion || role.name != "motion"))
                 warn(job, fmt::format("the layer '{}' is missing: {}", role.name, role.without));
 }
 

@@ -10,9 +10,14 @@ namespace {
 
 LoadedFrame load(const ShotJob& job, int frame) {
     LoadOptions options = job.load;
+    LoadedFrame loaded = loadFrame(inputOf(job, frame), frame, options);
+    if (options.network) {  // which variances it lacks
+        unpack(loaded, options);
+        loaded.own.reset();
+        loaded.layers.clear();
+    }
     options.layersOnly = true;
     options.network = false;
-    LoadedFrame loaded = loadFrame(inputOf(job, frame), frame, options);
     unpack(loaded, options);
     return loaded;
 }
@@ -34,6 +39,8 @@ std::string explainShot(const ShotJob& job) {
     std::optional<LoadedFrame> second;
     if (job.frames.size() > 1) second = load(job, job.frames[1]);
     std::string text = explainLayers(first);
+    if (const std::string variances = explainVariances(first); !variances.empty())
+        text += fmt::format("    {}\n", variances);
     for (size_t i = 0; i < first.maps.size(); ++i) {
         if (first.maps.size() > 1) text += fmt::format("  picture '{}'\n", first.maps[i].title);
         FrameConverter converter(first.maps[i]);
