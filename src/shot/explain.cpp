@@ -40,7 +40,7 @@ std::set<std::string> channelsOf(const LayerMap& map) {
 
 std::string explainPicture(const LayerMap& map) {
     std::string text;
-    if (!map.title.empty()) text += fmt::format("  picture '{}'\n", map.title);
+    if (!map.title.empty() || !map.view.empty()) text += pictureLine(map);
     for (const RoleInfo& role : roles()) {
         const LayerExpression* const layer = map.find(role.name);
         if (!layer) continue;
@@ -57,6 +57,12 @@ std::string explainPicture(const LayerMap& map) {
 }
 
 }  // namespace
+
+std::string pictureLine(const LayerMap& map) {
+    if (map.view.empty()) return fmt::format("  picture '{}'\n", map.title);
+    return fmt::format("  {}view '{}' (names are given without it)\n",
+                       map.title.empty() ? "" : fmt::format("picture '{}', ", map.title), map.view);
+}
 
 std::string explainLayers(const LoadedFrame& frame) {
     const auto parts = frame.file.parts();

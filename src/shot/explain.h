@@ -12,6 +12,9 @@ namespace limpid::shot {
 /// that costs, and channels that are not used.
 std::string explainLayers(const LoadedFrame& frame);
 
+/// The heading of a picture: its view layer and view.
+std::string pictureLine(const LayerMap& map);
+
 /// One or two lines.
 std::string explainMotion(const MotionCheck& check, int before, int now);
 

@@ -135,10 +135,9 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
         frame.own = frameOf(picture, path, options.sequence && !options.network, frame.lacking);
         return;
     }
-    const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
     for (const LayerMap& map : frame.maps) {
         frame.layers.push_back(readLayers(frame.file, map));
-        frame.layers.back().camera = camera;
+        frame.layers.back().camera = cameraOfAttributes(frame.file, map.view);
         frame.layers.back().samples = samplesOf(frame.file);
     }
 }

@@ -30,7 +30,7 @@ bool isAlike(const LayerMap& a, const LayerMap& b) {
     const auto sameText = [](const LayerExpression& x, const LayerExpression& y) {
         return x.text() == y.text();
     };
-    return a.prefix == b.prefix &&
+    return a.prefix == b.prefix && a.view == b.view &&
            std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
                       [&](const auto& x, const auto& y) {
                           return x.first == y.first && sameText(x.second, y.second);

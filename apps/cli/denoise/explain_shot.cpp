@@ -39,7 +39,7 @@ void explainShot(const ShotJob& job) {
     if (job.frames.size() > 1) second = load(job, job.frames[1]);
     fmt::print("{}", shot::explainLayers(first));
     for (size_t i = 0; i < first.maps.size(); ++i) {
-        if (first.maps.size() > 1) fmt::print("  picture '{}'\n", first.maps[i].title);
+        if (first.maps.size() > 1) fmt::print("{}", shot::pictureLine(first.maps[i]));
         shot::FrameConverter converter(first.maps[i]);
         shot::FrameReport report = viewOf(converter, first, i, job, false);
         const bool pair = second && i < second->maps.size();

@@ -60,6 +60,7 @@ const RoleInfo* findRole(std::string_view name);
 /// One picture of a file: a view layer, or an eye of a stereo pair.
 struct LayerMap {
     std::string title;     ///< of the picture, empty if the file has one
+    std::string view;      ///< "left", for stereo; empty without views. Texts of layers are without it
     std::string prefix;    ///< what precedes its layers' names
     std::string renderer;  ///< whose conventions were recognised
     std::map<std::string, LayerExpression, std::less<>> layers;  ///< by role
