@@ -11,6 +11,7 @@ namespace {
 std::string encodingOf(std::string_view role, const Encoding& e) {
     if (role == "normal") {
         std::string text = e.normalSpace == NormalSpace::World ? "world space" : "camera space";
+        if (e.normalSpace == NormalSpace::World && e.worldUp == UpAxis::Z) text += ", z up";
         const vec3 s = e.normalScale;
         if (s != vec3(1.0f)) text += fmt::format(", times {},{},{}", s.x, s.y, s.z);
         return text;

@@ -78,7 +78,8 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     if (frame.own) return std::move(*frame.own);
     ShotLayers& layers = frame.layers[index];
     std::optional<CameraParams> given;
-    const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
+    const auto camera =
+        options_.cameras ? options_.cameras->at(frame.number, picture.map.encoding.worldUp) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
     return direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
                                              : picture.converter.convertAlone(layers, given);

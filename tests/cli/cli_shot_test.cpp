@@ -319,6 +319,30 @@ TEST_F(CliBlenderTest, GivenAndFoundCamerasAreTheSame) {
     }
 }
 
+/// glTF has y up and Blender's layers z up, and it has no cameras for other frames than it animates.
+TEST_F(CliBlenderTest, TheCameraOfAGltfFileIsThatOfTheCamerasFile) {
+    const std::string cameras = std::string(LIMPID_TEST_DATA) + "/shots/camera";
+    const auto clean = [&](const std::string& options) {
+        const Result result =
+            run("denoise " + shot("camera") + " -o " + path("a.%04d.exr") + " --device cpu " + options);
+        EXPECT_EQ(result.code, 0) << result.output;
+        return std::pair(image::readExr(path("a.0014.exr")).get("ViewLayer.Combined", "RGB").pixels,
+                         result.output);
+    };
+    const auto [json, silent] = clean("--camera " + cameras + ".camera.json");
+    const auto [gltf, silentToo] = clean("--camera " + cameras + ".glb");
+    EXPECT_LT(meanError(json, gltf), 1e-5);
+    EXPECT_THAT(silent + silentToo, Not(HasSubstr("has no camera for")));
+    const auto [turned, other] = clean("--camera " + cameras + ".glb --map world.up=y --camera-start 10");
+    EXPECT_GT(meanError(json, turned), 1e-4);
+    const auto [late, warned] = clean("--camera " + cameras + ".glb --fps 12");
+    EXPECT_THAT(warned, HasSubstr("camera.glb has no camera for frames 13-14"));
+    EXPECT_THAT(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb#camera").output,
+                HasSubstr("camera: given, 62.0 degrees wide"));
+    EXPECT_EQ(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb#other").code, 3);
+    EXPECT_EQ(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb --fps 0").code, 2);
+}
+
 TEST_F(CliBlenderTest, OnlyTransparentFilmGetsANewAlpha) {
     for (const char* name : {"hair", "camera"}) {
         const Result result =

@@ -31,6 +31,7 @@ struct DenoiseOptions {
     std::vector<std::string> assignments, map, files;
     DeviceChoice device;
     float strength = 1.0f;
+    shot::GltfTiming cameraTiming;
     bool json = false, explain = false, bidirectional = false, resume = false;
 };
 
@@ -109,12 +110,11 @@ void chooseShard(const std::string& text, ShotJob& job) {
 
 /// What the result depends on besides the input.
 std::string settingsText(const DenoiseOptions& o) {
-    const std::string cameras = o.cameras.empty() ? "" : hashText(hashOfFile(o.cameras));
     const std::string mapFile = o.mapFile.empty() ? "" : hashText(hashOfFile(o.mapFile));
     const std::string weights = o.weights.empty() ? "" : hashText(hashOfFile(o.weights));
-    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, weights,
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, weights,
                        fmt::join(o.assignments, " "), fmt::join(o.map, " "), fmt::join(o.files, " "), mapFile,
-                       cameras, o.cuts, o.bidirectional, o.strength);
+                       o.cuts, o.bidirectional, o.strength);
 }
 
 /// Parses "auto", "none" or "12,40".
@@ -211,14 +211,24 @@ void report(const DenoiseOptions& o, const ShotJob& job, const ShotSummary& summ
     }
 }
 
+/// Reads the cameras, if there are any, which stay in `cameras`.
+void addCameras(const DenoiseOptions& o, std::optional<shot::CameraTrack>& cameras, ShotJob& job) {
+    if (o.cameras.empty()) return;
+    cameras = shot::CameraTrack::read(o.cameras, o.cameraTiming);
+    job.options.cameras = &*cameras;
+    job.settingsText += " " + hashText(cameras->hash());
+    if (!job.input.numbered()) return;
+    const std::vector<int> lacking = cameras->lacking(job.frames);
+    if (!lacking.empty()) log::warn("{} has no camera for frames {}", o.cameras, describeFrames(lacking));
+}
+
 void denoiseFiles(const DenoiseOptions& o) {
     parseExposure(o.exposure);
     if (!o.explain && o.output.empty()) throw UsageError("--output is missing");
     if (!o.explain) checkPictureOutput(FramePattern(o.output).format(0), false);
     ShotJob job = jobOf(o);
     std::optional<shot::CameraTrack> cameras;
-    if (!o.cameras.empty()) cameras = shot::CameraTrack::read(o.cameras);
-    job.options.cameras = cameras ? &*cameras : nullptr;
+    addCameras(o, cameras, job);
     if (o.explain) return explainShot(job);
     const OpenDevice device = openDevice(o.device);
     job.options.networks = loadNetworks(*device, job.options.method, o.weights, job.options.settings);
@@ -247,7 +257,15 @@ void addFileOptions(CLI::App& command, DenoiseOptions& o) {
         "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR, PNG (repeatable)");
     command.add_option("--map-file", o.mapFile, "Read assignments of --map from a JSON file");
     command.add_option("--camera", o.cameras,
-                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md)");
+                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md), or a glTF file; "
+                       "scene.glb#NAME chooses one of its cameras");
+    command
+        .add_option("--fps", o.cameraTiming.framesPerSecond,
+                    "Frames per second of the animation in --camera scene.glb; default 24")
+        ->check(CLI::Range(1e-3f, 1e6f));
+    command.add_option(
+        "--camera-start", o.cameraTiming.firstFrame,
+        "Frame at time 0 of the animation in --camera scene.glb; default 0, as Blender exports");
     command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
     command.add_flag("--bidirectional", o.bidirectional,
                      "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "

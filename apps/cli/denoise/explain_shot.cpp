@@ -25,7 +25,9 @@ shot::FrameReport viewOf(shot::FrameConverter& converter, const LoadedFrame& fra
                          const ShotJob& job, bool continues) {
     const shot::ShotLayers& layers = frame.layers[picture];
     std::optional<CameraParams> given;
-    const auto camera = job.options.cameras ? job.options.cameras->at(frame.number) : std::nullopt;
+    const auto camera = job.options.cameras
+                            ? job.options.cameras->at(frame.number, frame.maps[picture].encoding.worldUp)
+                            : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
     converter.convert(layers, given, continues);
     return converter.report();

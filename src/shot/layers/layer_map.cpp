@@ -39,8 +39,8 @@ constexpr std::array roleTable{
     RoleInfo{"seenAlbedo", "", 3, false},
 };
 
-constexpr std::array otherKeys{"normal.space", "normal.scale", "depth.kind",
-                               "depth.far",    "motion.unit",  "motion.scale"};
+constexpr std::array otherKeys{"normal.space", "normal.scale", "depth.kind", "depth.far",
+                               "motion.unit",  "motion.scale", "world.up"};
 
 template <size_t N>
 std::array<float, N> numbersOf(std::string_view key, std::string_view text) {
@@ -75,6 +75,7 @@ void setEncoding(Encoding& e, std::string_view key, std::string_view value) {
         e.depthKind = choiceOf(key, value, "distance", DepthKind::Distance, "planar", DepthKind::Planar);
     if (key == "motion.unit")
         e.motionUnit = choiceOf(key, value, "pixels", MotionUnit::Pixels, "picture", MotionUnit::Picture);
+    if (key == "world.up") e.worldUp = choiceOf(key, value, "y", UpAxis::Y, "z", UpAxis::Z);
     if (key == "depth.far") e.farDepth = numbersOf<1>(key, value)[0];
     if (key == "normal.scale") {
         const auto [x, y, z] = numbersOf<3>(key, value);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "shot/camera/camera_track.h"
 #include "shot/layers/expression.h"
 
 namespace limpid::shot {
@@ -29,6 +30,7 @@ enum class MotionUnit {
 
 /// How the values of normal, depth and motion are meant. The defaults are Limpid's (docs/layers.md).
 struct Encoding {
+    UpAxis worldUp = UpAxis::Y;  ///< of the world of normals and positions, for cameras of glTF files
     NormalSpace normalSpace = NormalSpace::World;
     vec3 normalScale{1.0f, 1.0f, 1.0f};
     vec3 cameraNormalScale{1.0f, 1.0f, 1.0f};  ///< what makes of `cameraNormal` NormalSpace::Camera
@@ -79,6 +81,7 @@ struct LayerMap {
 ///     normal.space = world | camera         normal.scale = X,Y,Z
 ///     depth.kind = distance | planar        depth.far = DEPTH
 ///     motion.unit = pixels | picture        motion.scale = X,Y
+///     world.up = y | z
 ///
 /// An empty expression removes the role.
 using Assignments = std::vector<std::pair<std::string, std::string>>;
