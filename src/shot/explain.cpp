@@ -51,7 +51,7 @@ std::string explainPicture(const LayerMap& map) {
     }
     for (const RoleInfo& role : roles())
         if (!map.find(role.name) && !role.without.empty())
-            text += fmt::format("    no {:<12} {}\n", role.name, role.without);
+            text += fmt::format("    no {:<12} {}\n", role.name, withoutRole(map, role));
     for (const LayerExpression& group : map.groups)
         text += fmt::format("    light group     {}\n", group.text());
     return text;
@@ -95,12 +95,15 @@ std::string explainLayers(const LoadedFrame& frame) {
     return text;
 }
 
-std::string explainMotion(const MotionCheck& check, int before, int now) {
+std::string explainMotion(const MotionCheck& check, int before, int now, bool searched) {
     if (check.still())
         return fmt::format("    motion: frames {} and {} hardly differ, so it cannot be checked\n", before,
                            now);
     std::string text = fmt::format("    motion explains {:.0f} % of the change between frames {} and {}\n",
                                    100.0 * check.explained, before, now);
+    if (searched)
+        return fmt::format("    searched motion is found for {:.0f} % of the pixels\n", 100.0 * check.share) +
+               text;
     if (!check.better.empty())
         text += fmt::format("    is its sign right? --map {} would explain {:.0f} %\n", check.better,
                             100.0 * check.betterExplained);

@@ -15,8 +15,8 @@ std::string explainLayers(const LoadedFrame& frame);
 /// The heading of a picture: its view layer and view.
 std::string pictureLine(const LayerMap& map);
 
-/// One or two lines.
-std::string explainMotion(const MotionCheck& check, int before, int now);
+/// One or two lines. `searched`: the motion is of MotionSearch, so that its sign is no question.
+std::string explainMotion(const MotionCheck& check, int before, int now, bool searched = false);
 
 /// One line each on the camera, and on light that no layer explains.
 std::string explainView(const FrameReport& report);

@@ -113,7 +113,16 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     }
     frame.content = content.value();
     frame.maps = recognise(frame.file, options.assignments);
-    for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
+    for (LayerMap& map : frame.maps) {
+        decodeParts(frame.file, map);
+        if (map.find("motion") || !options.searchMotion || !options.sequence) continue;
+        map.searchesMotion = map.find("albedo") || map.find("normal");
+        // What is found is in pixels; the encoding that belongs to the renderer's layer does not apply.
+        const Encoding plain;
+        map.encoding.motionUnit = plain.motionUnit;
+        map.encoding.motionScale = plain.motionScale;
+        map.encoding.noMotion = plain.noMotion;
+    }
     return frame;
 }
 

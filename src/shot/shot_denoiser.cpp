@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shot/motion/motion_search.h"
+
 namespace limpid::shot {
 namespace {
 
@@ -54,12 +56,28 @@ void multiplyByAlpha(const image::Image& alpha, const HostFrame& frame, CleanPic
     for (std::vector<float>& group : picture.groups) multiply(group);
 }
 
+/// Motion that leads to `other` gets the differences of distances.
+void addDistances(HostFrame& frame, const std::optional<HostFrame>& other) {
+    if (!other || other->width != frame.width || other->height != frame.height) return;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        if (!(frame.motion[4 * p + 3] > 0.0f)) continue;
+        const float x = std::floor(static_cast<float>(p % frame.width) + frame.motion[4 * p] + 0.5f);
+        const float y = std::floor(static_cast<float>(p / frame.width) + frame.motion[4 * p + 1] + 0.5f);
+        if (!(x >= 0.0f && y >= 0.0f && x < static_cast<float>(frame.width) &&
+              y < static_cast<float>(frame.height)))
+            continue;
+        const size_t q = static_cast<size_t>(y) * frame.width + static_cast<size_t>(x);
+        frame.motion[4 * p + 2] = distanceOf(*other, q) - distanceOf(frame, p);
+    }
+}
+
 }  // namespace
 
 struct ShotDenoiser::Picture {
     explicit Picture(const LayerMap& of) : map(of), converter(of) {}
     LayerMap map;
     FrameConverter converter;
+    MotionSearch search;  ///< for files without motion
     gpu::FrameGraph graph{oneFrame};
     gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
@@ -81,6 +99,9 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     const auto camera =
         options_.cameras ? options_.cameras->at(frame.number, picture.map.encoding.worldUp) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
+    if (frame.maps[index].searchesMotion)
+        if (auto motion = picture.search.next(layers, continues))
+            layers.images["motion"] = std::move(*motion);
     return direction_ == Direction::Forwards ? picture.converter.convert(layers, given, continues)
                                              : picture.converter.convertAlone(layers, given);
 }
@@ -190,7 +211,9 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
             guides.height = host.height;
             guides.motion = host.motion;
             guides.depth = host.depth;
-            if (continues && picture.last)
+            if (frame.maps[i].searchesMotion && !own) {
+                addDistances(host, picture.last);  // it leads to the frame after already
+            } else if (continues && picture.last)
                 turnAround(host, *picture.last);
             else
                 std::fill(host.motion.begin(), host.motion.end(), 0.0f);

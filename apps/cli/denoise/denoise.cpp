@@ -27,7 +27,7 @@ namespace {
 
 struct DenoiseOptions {
     std::string input, output, denoiser, exposure = "auto", dump, weights, preset;
-    std::string mapFile, cameras, frames, shard, cuts = "auto", onError = "stop";
+    std::string mapFile, cameras, frames, shard, cuts = "auto", motion = "auto", onError = "stop";
     std::vector<std::string> assignments, map, files;
     DeviceChoice device;
     float strength = 1.0f;
@@ -112,9 +112,9 @@ void chooseShard(const std::string& text, ShotJob& job) {
 std::string settingsText(const DenoiseOptions& o) {
     const std::string mapFile = o.mapFile.empty() ? "" : hashText(hashOfFile(o.mapFile));
     const std::string weights = o.weights.empty() ? "" : hashText(hashOfFile(o.weights));
-    return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, weights,
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, o.denoiser, o.preset, weights,
                        fmt::join(o.assignments, " "), fmt::join(o.map, " "), fmt::join(o.files, " "), mapFile,
-                       o.cuts, o.bidirectional, o.strength);
+                       o.cuts, o.motion, o.bidirectional, o.strength);
 }
 
 /// Parses "auto", "none" or "12,40".
@@ -169,6 +169,8 @@ ShotJob jobOf(const DenoiseOptions& o) {
     job.load.assignments = mapOf(o);
     job.load.network = job.options.method->network;
     job.load.files = filesOf(o, job.input.numbered());
+    if (o.motion != "auto" && o.motion != "none") throw UsageError("--motion is 'auto' or 'none'");
+    job.load.searchMotion = o.motion == "auto";
     if (o.onError != "stop" && o.onError != "skip") throw UsageError("--on-error is 'stop' or 'skip'");
     job.skipUnreadable = o.onError == "skip";
     job.strength = o.strength;
@@ -281,6 +283,9 @@ void addFileOptions(CLI::App& command, DenoiseOptions& o) {
         "Go on after the last complete output: EXR files say of which input and options they are");
     command.add_option("--cuts", o.cuts,
                        "Where the shot changes: auto (default), none, or the first frames after cuts: 12,40");
+    command.add_option("--motion", o.motion,
+                       "For sequences without a layer of motion: auto (default) searches it on albedo and "
+                       "normals, none denoises each frame alone");
     command.add_option(
         "--on-error", o.onError,
         "What an unreadable frame does: stop (default), or skip, which also allows missing frames");

@@ -259,7 +259,7 @@ void warnOf(const LoadedFrame& frame, const ShotJob& job) {
         for (const shot::RoleInfo& role : shot::roles())
             if (!frame.own && !map.find(role.name) && role.isImportant &&
                 (job.load.sequence || role.name != "motion"))
-                log::warn("the layer '{}' is missing: {}", role.name, role.without);
+                log::warn("the layer '{}' is missing: {}", role.name, shot::withoutRole(map, role));
 }
 
 class ShotRun {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "shot/explain.h"
+#include "shot/motion/motion_search.h"
 #include "shot/motion_check.h"
 
 namespace limpid::cli {
@@ -45,11 +46,18 @@ void explainShot(const ShotJob& job) {
         shot::FrameConverter converter(first.maps[i]);
         shot::FrameReport report = viewOf(converter, first, i, job, false);
         const bool pair = second && i < second->maps.size();
+        const bool searched = pair && first.maps[i].searchesMotion && second->maps[i].searchesMotion;
+        if (searched) {
+            shot::MotionSearch search;
+            search.next(first.layers[i], false);
+            if (auto motion = search.next(second->layers[i], true))
+                second->layers[i].images["motion"] = std::move(*motion);
+        }
         if (pair) report = viewOf(converter, *second, i, job, true);
         fmt::print("{}", shot::explainView(report));
         if (!pair) continue;
         const auto check = shot::checkMotion(first.layers[i], second->layers[i], first.maps[i].encoding);
-        if (check) fmt::print("{}", shot::explainMotion(*check, first.number, second->number));
+        if (check) fmt::print("{}", shot::explainMotion(*check, first.number, second->number, searched));
     }
 }
 

@@ -115,6 +115,13 @@ std::span<const RoleInfo> roles() {
     return roleTable;
 }
 
+std::string_view withoutRole(const LayerMap& map, const RoleInfo& role) {
+    if (role.name != "motion" || !map.searchesMotion) return role.without;
+    if (!map.find("normal")) return "it is searched by block matching on albedo";
+    if (!map.find("albedo")) return "it is searched by block matching on normals";
+    return "it is searched by block matching on albedo and normals";
+}
+
 const RoleInfo* findRole(std::string_view name) {
     const auto found = std::find_if(roleTable.begin(), roleTable.end(),
                                     [&](const RoleInfo& role) { return role.name == name; });

@@ -67,6 +67,7 @@ struct LayerMap {
     std::string renderer;  ///< whose conventions were recognised
     std::map<std::string, LayerExpression, std::less<>> layers;  ///< by role
     Encoding encoding;
+    bool searchesMotion = false;  ///< the file has none: it is searched on albedo and normals
     /// Light groups: colours by group of lamps, whose sum is (nearly) the beauty.
     std::vector<LayerExpression> groups;
 
@@ -75,6 +76,9 @@ struct LayerMap {
         return found == layers.end() ? nullptr : &found->second;
     }
 };
+
+/// Says what it costs that the picture lacks a role.
+std::string_view withoutRole(const LayerMap& map, const RoleInfo& role);
 
 /// Assignments of --map and --map-file: a role and an expression, or one of
 ///
