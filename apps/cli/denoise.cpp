@@ -102,7 +102,15 @@ void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
         "A layer in a file of its own: albedo=albedo.%04d.pfm; EXR, PFM, HDR, PNG (repeatable)");
     command.add_option("--map-file", o.mapFile, "Read assignments of --map from a JSON file");
     command.add_option("--camera", o.cameras,
-                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md)");
+                       "Cameras of the frames: a JSON file (docs/denoise-your-renders.md), or a glTF file; "
+                       "scene.glb#NAME chooses one of its cameras");
+    command
+        .add_option("--fps", o.cameraTiming.framesPerSecond,
+                    "Frames per second of the animation in --camera scene.glb; default 24")
+        ->check(CLI::Range(1e-3f, 1e6f));
+    command.add_option(
+        "--camera-start", o.cameraTiming.firstFrame,
+        "Frame at time 0 of the animation in --camera scene.glb; default 0, as Blender exports");
     command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
     command.add_flag("--bidirectional", o.bidirectional,
                      "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
@@ -124,6 +132,9 @@ void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
         "Go on after the last complete output: EXR files say of which input and options they are");
     command.add_option("--cuts", o.cuts,
                        "Where the shot changes: auto (default), none, or the first frames after cuts: 12,40");
+    command.add_option("--motion", o.motion,
+                       "For sequences without a layer of motion: auto (default) searches it on albedo and "
+                       "normals, none denoises each frame alone");
     command.add_option(
         "--on-error", o.onError,
         "What an unreadable frame does: stop (default), or skip, which also allows missing frames");

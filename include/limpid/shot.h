@@ -47,7 +47,10 @@ typedef struct limpid_shot_desc {
     limpid_texts map;      /* which layers are what: "albedo=MyAlbedo.RGB" */
     const char* map_file;  /* a JSON file of the same */
     limpid_texts files;    /* layers in files of their own: "albedo=albedo.%04d.pfm" */
-    const char* cameras;   /* a file of the frames' cameras */
+    const char* cameras;   /* a file of the frames' cameras: JSON, or glTF ("scene.glb#NAME" chooses one) */
+    float fps;             /* of the animation in a glTF file of cameras, frames per second; 0: 24 */
+    int32_t camera_start;  /* the frame at time 0 of that animation */
+    const char* motion;    /* where files have no motion: "auto" (default) searches it, "none" does without */
     const char* frames;    /* "10-20" or "7": only these */
     const char* shard;     /* "2/4": only the second of four parts */
     const char* cuts;      /* "auto" (default), "none", or the first frames after cuts: "12,40" */

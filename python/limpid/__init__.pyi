@@ -204,6 +204,9 @@ def denoise_shot(
     map_file: _Path | None = None,
     files: Mapping[str, _Path] | None = None,
     cameras: _Path | None = None,
+    fps: float = 24.0,
+    camera_start: int = 0,
+    motion: Literal["auto"] | None = "auto",
     frames: int | tuple[int, int] | None = None,
     shard: tuple[int, int] | None = None,
     cuts: Literal["auto"] | Sequence[int] = "auto",
@@ -223,6 +226,9 @@ def explain_shot(
     map_file: _Path | None = None,
     files: Mapping[str, _Path] | None = None,
     cameras: _Path | None = None,
+    fps: float = 24.0,
+    camera_start: int = 0,
+    motion: Literal["auto"] | None = "auto",
     frames: int | tuple[int, int] | None = None,
 ) -> str: ...
 def parameters(method: _StillMethod = "svgf") -> dict[str, Parameter]: ...

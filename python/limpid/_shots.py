@@ -32,13 +32,15 @@ def _pairs(values):
     return [f"{name}={text(value)}" for name, value in (values or {}).items()]
 
 
-def _inputs(input, map, map_file, files, cameras, frames, **rest):
+def _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames, **rest):
     options = _module().Options()
     options.input = _path(input)
     options.map = _pairs(map)
     options.map_file = _path(map_file)
     options.files = _pairs(files)
     options.cameras = _path(cameras)
+    options.fps, options.camera_start = float(fps), int(camera_start)
+    options.motion = motion or "none"
     if frames is not None:
         first, last = (frames, frames) if isinstance(frames, int) else frames
         options.frames = f"{first:d}-{last:d}"
@@ -47,17 +49,18 @@ def _inputs(input, map, map_file, files, cameras, frames, **rest):
     return options
 
 
-def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, frames=None):
+def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, fps=24.0, camera_start=0, motion="auto",
+                 frames=None):
     """Returns several lines: how each layer of a shot's files is understood, what is missing and what that costs,
     where the camera is from, and how much of the change between two frames the motion explains.
 
     The arguments are those of denoise_shot().
     """
-    return _module().explain(_inputs(input, map, map_file, files, cameras, frames))
+    return _module().explain(_inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames))
 
 
 def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, weights=None, map=None, map_file=None,
-                 files=None, cameras=None, frames=None, shard=None, cuts="auto", skip_unreadable=False,
+                 files=None, cameras=None, fps=24.0, camera_start=0, motion="auto", frames=None, shard=None, cuts="auto", skip_unreadable=False,
                  bidirectional=False, strength=1.0, preserve=0.0, resume=False, exposure="auto", device=None, progress=None):
     """Denoises the frames of a shot of any renderer as `limpid denoise` does (docs/denoise-your-renders.md).
 
@@ -70,7 +73,9 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     weights: path of weights for "kpcn" instead of those that come with Limpid.
     map: a dict of what layers are: {"albedo": "MyAlbedo.RGB"}. map_file: path of a JSON file of the same.
     files: a dict of layers in files of their own: {"albedo": "albedo.%04d.pfm"}.
-    cameras: path of a file of the frames' cameras.
+    cameras: path of a file of the frames' cameras: JSON, or glTF ("scene.glb#NAME" chooses one of its cameras).
+    fps, camera_start: frames per second of the animation in a glTF file, and the frame at its time 0.
+    motion: where files have no motion: "auto" searches it on albedo and normals, None denoises each frame alone.
     frames: the only frames to denoise: a number, or (first, last).
     shard: (2, 4) denoises only the second of four parts.
     cuts: "auto", or a list of the first frames after cuts, which may be empty.
@@ -95,7 +100,7 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     if not 0.0 < strength <= 1.0:
         raise ValueError(f"strength: {strength!r} is not above 0 and at most 1")
     select = device.name if isinstance(device, Device) else "" if device is None else str(device)
-    options = _inputs(input, map, map_file, files, cameras, frames, output=_path(output), denoiser=denoiser or "",
+    options = _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames, output=_path(output), denoiser=denoiser or "",
                       preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
                       shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
                       cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",

@@ -41,7 +41,9 @@ struct Options {
     std::string input, output, denoiser, preset, weights, mapFile, cameras, frames, shard, cuts, onError,
         exposure;
     std::vector<std::string> settings, map, files;
-    float strength = 1.0f, preserve = 0.0f;
+    std::string motion;
+    float strength = 1.0f, preserve = 0.0f, fps = 0.0f;
+    int cameraStart = 0;
     bool bidirectional = false, resume = false;
 };
 
@@ -62,6 +64,9 @@ void withDesc(const Options& o, const Use& use) {
     desc.map_file = text(o.mapFile);
     desc.files = files.texts();
     desc.cameras = text(o.cameras);
+    desc.fps = o.fps;
+    desc.camera_start = o.cameraStart;
+    desc.motion = text(o.motion);
     desc.frames = text(o.frames);
     desc.shard = text(o.shard);
     desc.cuts = text(o.cuts);
@@ -152,6 +157,9 @@ PYBIND11_MODULE(_shot, m) {
         .def_readwrite("weights", &Options::weights)
         .def_readwrite("map_file", &Options::mapFile)
         .def_readwrite("cameras", &Options::cameras)
+        .def_readwrite("fps", &Options::fps)
+        .def_readwrite("camera_start", &Options::cameraStart)
+        .def_readwrite("motion", &Options::motion)
         .def_readwrite("frames", &Options::frames)
         .def_readwrite("shard", &Options::shard)
         .def_readwrite("cuts", &Options::cuts)

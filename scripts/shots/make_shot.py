@@ -416,6 +416,7 @@ def arguments():
     parser.add_argument("--width", type=int, default=320, help="default: 320")
     parser.add_argument("--height", type=int, default=180, help="default: 180")
     parser.add_argument("--half", action="store_true", help="store 16-bit instead of 32-bit floats")
+    parser.add_argument("--stereo", action="store_true", help="render two views, left and right, into the same files")
     parser.add_argument("--reference", action="store_true", help="store only the picture, without further passes")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
 
@@ -441,6 +442,7 @@ def set_output(scene, given):
     render.filepath = os.path.join(os.path.abspath(given.out), given.shot + ".####.exr")
     image.file_format, image.color_mode, image.exr_codec = "OPEN_EXR_MULTILAYER", "RGBA", "ZIP"
     image.color_depth = "16" if given.half else "32"
+    render.use_multiview, image.views_format = given.stereo, "MULTIVIEW" if given.stereo else "INDIVIDUAL"
     scene.frame_start, scene.frame_end = given.first, given.last
 
 

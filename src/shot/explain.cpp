@@ -11,6 +11,7 @@ namespace {
 std::string encodingOf(std::string_view role, const Encoding& e) {
     if (role == "normal") {
         std::string text = e.normalSpace == NormalSpace::World ? "world space" : "camera space";
+        if (e.normalSpace == NormalSpace::World && e.worldUp == UpAxis::Z) text += ", z up";
         const vec3 s = e.normalScale;
         if (s != vec3(1.0f)) text += fmt::format(", times {},{},{}", s.x, s.y, s.z);
         return text;
@@ -40,7 +41,7 @@ std::set<std::string> channelsOf(const LayerMap& map) {
 
 std::string explainPicture(const LayerMap& map) {
     std::string text;
-    if (!map.title.empty()) text += fmt::format("  picture '{}'\n", map.title);
+    if (!map.title.empty() || !map.view.empty()) text += pictureLine(map);
     for (const RoleInfo& role : roles()) {
         const LayerExpression* const layer = map.find(role.name);
         if (!layer) continue;
@@ -50,13 +51,19 @@ std::string explainPicture(const LayerMap& map) {
     }
     for (const RoleInfo& role : roles())
         if (!map.find(role.name) && !role.without.empty())
-            text += fmt::format("    no {:<12} {}\n", role.name, role.without);
+            text += fmt::format("    no {:<12} {}\n", role.name, withoutRole(map, role));
     for (const LayerExpression& group : map.groups)
         text += fmt::format("    light group     {}\n", group.text());
     return text;
 }
 
 }  // namespace
+
+std::string pictureLine(const LayerMap& map) {
+    if (map.view.empty()) return fmt::format("  picture '{}'\n", map.title);
+    return fmt::format("  {}view '{}' (names are given without it)\n",
+                       map.title.empty() ? "" : fmt::format("picture '{}', ", map.title), map.view);
+}
 
 std::string explainLayers(const LoadedFrame& frame) {
     const auto parts = frame.file.parts();
@@ -88,12 +95,15 @@ std::string explainLayers(const LoadedFrame& frame) {
     return text;
 }
 
-std::string explainMotion(const MotionCheck& check, int before, int now) {
+std::string explainMotion(const MotionCheck& check, int before, int now, bool searched) {
     if (check.still())
         return fmt::format("    motion: frames {} and {} hardly differ, so it cannot be checked\n", before,
                            now);
     std::string text = fmt::format("    motion explains {:.0f} % of the change between frames {} and {}\n",
                                    100.0 * check.explained, before, now);
+    if (searched)
+        return fmt::format("    searched motion is found for {:.0f} % of the pixels\n", 100.0 * check.share) +
+               text;
     if (!check.better.empty())
         text += fmt::format("    is its sign right? --map {} would explain {:.0f} %\n", check.better,
                             100.0 * check.betterExplained);

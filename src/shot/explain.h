@@ -12,8 +12,11 @@ namespace limpid::shot {
 /// that costs, and channels that are not used.
 std::string explainLayers(const LoadedFrame& frame);
 
-/// One or two lines.
-std::string explainMotion(const MotionCheck& check, int before, int now);
+/// The heading of a picture: its view layer and view.
+std::string pictureLine(const LayerMap& map);
+
+/// One or two lines. `searched`: the motion is of MotionSearch, so that its sign is no question.
+std::string explainMotion(const MotionCheck& check, int before, int now, bool searched = false);
 
 /// Which variances are estimated for a network; empty if none are.
 std::string explainVariances(const LoadedFrame& frame);

@@ -118,8 +118,17 @@ LoadedFrame loadFrame(const std::filesystem::path& path, int number, const LoadO
     }
     frame.content = content.value();
     frame.maps = recognise(frame.file, options.assignments);
-    if (isDecodedAhead(frame.file))
-        for (const LayerMap& map : frame.maps) decodeParts(frame.file, map);
+    const bool decodes = isDecodedAhead(frame.file);
+    for (LayerMap& map : frame.maps) {
+        if (decodes) decodeParts(frame.file, map);
+        if (map.find("motion") || !options.searchMotion || !options.sequence || options.network) continue;
+        map.searchesMotion = map.find("albedo") || map.find("normal");
+        // What is found is in pixels; the encoding that belongs to the renderer's layer does not apply.
+        const Encoding plain;
+        map.encoding.motionUnit = plain.motionUnit;
+        map.encoding.motionScale = plain.motionScale;
+        map.encoding.noMotion = plain.noMotion;
+    }
     return frame;
 }
 
@@ -148,10 +157,9 @@ void unpack(LoadedFrame& frame, const LoadOptions& options) {
     if (options.network)
         for (const LayerInfo& layer : frameLayers)
             if (layer.varianceInFiles) frame.estimated.push_back(&layer);
-    const std::optional<CameraParams> camera = cameraOfAttributes(frame.file);
     for (const LayerMap& map : frame.maps) {
         frame.layers.push_back(readLayers(frame.file, map));
-        frame.layers.back().camera = camera;
+        frame.layers.back().camera = cameraOfAttributes(frame.file, map.view);
         frame.layers.back().samples = samplesOf(frame.file);
     }
 }

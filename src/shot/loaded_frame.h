@@ -32,9 +32,10 @@ struct LoadedFrame {
 
 struct LoadOptions {
     Assignments assignments;
-    bool network = false;     ///< the denoiser reads variances, and no motion
-    bool sequence = false;    ///< layers of a sequence are needed
-    bool layersOnly = false;  ///< Limpid's own files are read as `layers`, too
+    bool network = false;      ///< the denoiser reads variances, and no motion
+    bool sequence = false;     ///< layers of a sequence are needed
+    bool searchMotion = true;  ///< in sequences whose files have no motion
+    bool layersOnly = false;   ///< Limpid's own files are read as `layers`, too
     /// Files beside the frame's: their channels are like those of a part of this name.
     std::vector<std::pair<std::string, FramePattern>> files;
 };

@@ -145,6 +145,8 @@ std::optional<MotionCheck> checkMotion(const ShotLayers& before, const ShotLayer
     if (sums.pixels == 0) return std::nullopt;
     MotionCheck check;
     check.change = sums.still / static_cast<double>(sums.pixels);
+    const size_t looked = (size_t{now.width} * now.height + strideOf(now) - 1) / strideOf(now);
+    check.share = static_cast<double>(sums.pixels) / static_cast<double>(looked);
     check.explained = sums.explained();
     check.betterExplained = check.explained + 0.2;
     const bool pixels = encoding.motionUnit == MotionUnit::Pixels;

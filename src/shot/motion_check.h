@@ -11,6 +11,7 @@ namespace limpid::shot {
 /// Means over the pixels with motion, of the differences of albedo and normal to the most similar of the 3x3
 /// pixels at the same place, and of those to which the motion points.
 struct MotionCheck {
+    double share = 0.0;      ///< of the pixels that were looked at: those with motion
     double change = 0.0;     ///< between this frame and the previous one
     double explained = 0.0;  ///< share of it that is gone if the previous frame is moved; may be below 0
     /// What explains at least a fifth more, as assignments for --map; empty if nothing does.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shot/motion/motion_search.h"
 #include "shot/reflection_motion.h"
 #include "shot/variance_estimate.h"
 
@@ -43,7 +44,7 @@ bool isAlike(const LayerMap& a, const LayerMap& b) {
     const auto sameText = [](const LayerExpression& x, const LayerExpression& y) {
         return x.text() == y.text();
     };
-    return a.prefix == b.prefix &&
+    return a.prefix == b.prefix && a.view == b.view &&
            std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
                       [&](const auto& x, const auto& y) {
                           return x.first == y.first && sameText(x.second, y.second);
@@ -68,12 +69,28 @@ void multiplyByAlpha(const image::Image& alpha, const HostFrame& frame, CleanPic
     for (std::vector<float>& group : picture.groups) multiply(group);
 }
 
+/// Motion that leads to `other` gets the differences of distances.
+void addDistances(HostFrame& frame, const std::optional<HostFrame>& other) {
+    if (!other || other->width != frame.width || other->height != frame.height) return;
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        if (!(frame.motion[4 * p + 3] > 0.0f)) continue;
+        const float x = std::floor(static_cast<float>(p % frame.width) + frame.motion[4 * p] + 0.5f);
+        const float y = std::floor(static_cast<float>(p / frame.width) + frame.motion[4 * p + 1] + 0.5f);
+        if (!(x >= 0.0f && y >= 0.0f && x < static_cast<float>(frame.width) &&
+              y < static_cast<float>(frame.height)))
+            continue;
+        const size_t q = static_cast<size_t>(y) * frame.width + static_cast<size_t>(x);
+        frame.motion[4 * p + 2] = distanceOf(*other, q) - distanceOf(frame, p);
+    }
+}
+
 }  // namespace
 
 struct ShotDenoiser::Picture {
     explicit Picture(const LayerMap& of) : map(of), converter(of) {}
     LayerMap map;
     FrameConverter converter;
+    MotionSearch search;  ///< for files without motion
     gpu::FrameGraph graph{oneFrame};
     gpu::FrameGraph coveredColors{oneFrame}, coverage{oneFrame};  ///< of transparent film
     std::vector<std::unique_ptr<gpu::FrameGraph>> groups;
@@ -92,8 +109,12 @@ HostFrame ShotDenoiser::hostFrame(LoadedFrame& frame, size_t index, Picture& pic
     if (frame.own) return std::move(*frame.own);
     ShotLayers& layers = frame.layers[index];
     std::optional<CameraParams> given;
-    const auto camera = options_.cameras ? options_.cameras->at(frame.number) : std::nullopt;
+    const auto camera =
+        options_.cameras ? options_.cameras->at(frame.number, picture.map.encoding.worldUp) : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
+    if (frame.maps[index].searchesMotion)
+        if (auto motion = picture.search.next(layers, continues))
+            layers.images["motion"] = std::move(*motion);
     return picture.converter.convertUsingUp(layers, given, continues, direction_ == Direction::Backwards);
 }
 
@@ -212,7 +233,9 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
             // That of files leads to the frame before.
             std::vector<float> reflectionMotion;
             if (!own) reflectionMotion.swap(host.reflectionMotion);
-            if (continues && picture.last) {
+            if (frame.maps[i].searchesMotion && !own) {
+                addDistances(host, picture.last);  // it leads to the frame after already
+            } else if (continues && picture.last) {
                 turnAround(host, *picture.last);
                 host.reflectionMotion.swap(reflectionMotion);
                 dropMovingMirrors(picture.last->camera, host);

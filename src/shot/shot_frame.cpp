@@ -166,6 +166,10 @@ CameraParams FrameConverter::solvedCamera(const ShotLayers& layers) {
     const vec3 eye = last_ ? last_->camera.origin : vec3(0.0f);
     const mat3 axes = turn.value_or(before);
     if (!depth || !layers.find("motion") || !continues_) return cameraWith(axes, eye, t, layers);
+    if (map_.searchesMotion) {  // too coarse to tell how the camera moves
+        report_.camera = CameraSource::Supposed;
+        return cameraWith(axes, eye, t, layers);
+    }
     const auto move = cameraMove(trackedPoints(layers, map_.encoding, t),
                                  0.5f * t / static_cast<float>(layers.width), glm::transpose(before) * axes);
     if (!move) {

@@ -345,6 +345,30 @@ TEST_F(CliBlenderTest, TheNetworkCleansFramesWithoutVariances) {
     EXPECT_THAT(run("denoise --explain " + shot("glass")).output, Not(HasSubstr("variances are")));
 }
 
+/// glTF has y up and Blender's layers z up, and it has no cameras for other frames than it animates.
+TEST_F(CliBlenderTest, TheCameraOfAGltfFileIsThatOfTheCamerasFile) {
+    const std::string cameras = std::string(LIMPID_TEST_DATA) + "/shots/camera";
+    const auto clean = [&](const std::string& options) {
+        const Result result =
+            run("denoise " + shot("camera") + " -o " + path("a.%04d.exr") + " --device cpu " + options);
+        EXPECT_EQ(result.code, 0) << result.output;
+        return std::pair(image::readExr(path("a.0014.exr")).get("ViewLayer.Combined", "RGB").pixels,
+                         result.output);
+    };
+    const auto [json, silent] = clean("--camera " + cameras + ".camera.json");
+    const auto [gltf, silentToo] = clean("--camera " + cameras + ".glb");
+    EXPECT_LT(meanError(json, gltf), 1e-5);
+    EXPECT_THAT(silent + silentToo, Not(HasSubstr("has no camera for")));
+    const auto [turned, other] = clean("--camera " + cameras + ".glb --map world.up=y --camera-start 10");
+    EXPECT_GT(meanError(json, turned), 1e-4);
+    const auto [late, warned] = clean("--camera " + cameras + ".glb --fps 12");
+    EXPECT_THAT(warned, HasSubstr("camera.glb has no camera for frames 13-14"));
+    EXPECT_THAT(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb#camera").output,
+                HasSubstr("camera: given, 62.0 degrees wide"));
+    EXPECT_EQ(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb#other").code, 3);
+    EXPECT_EQ(run("denoise --explain " + shot("camera") + " --camera " + cameras + ".glb --fps 0").code, 2);
+}
+
 TEST_F(CliBlenderTest, OnlyTransparentFilmGetsANewAlpha) {
     for (const char* name : {"hair", "camera"}) {
         const Result result =
@@ -360,6 +384,52 @@ TEST_F(CliBlenderTest, OnlyTransparentFilmGetsANewAlpha) {
                 << channel.name;
         }
     }
+}
+
+/// Two frames that Blender rendered with "Stereoscopy", two views in a file.
+TEST_F(CliBlenderTest, EachViewOfAStereoFileIsDenoisedLikeAFileOfItsOwn) {
+    const Result explained = run("denoise --explain " + shot("stereo"));
+    ASSERT_EQ(explained.code, 0) << explained.output;
+    for (const char* view : {"left", "right"})
+        EXPECT_THAT(explained.output, HasSubstr(fmt::format("picture 'ViewLayer', view '{}'", view)));
+    EXPECT_THAT(explained.output, Not(HasSubstr("not used: ViewLayer.Combined")));
+    EXPECT_THAT(explained.output, Not(HasSubstr("is its sign right")));
+    ASSERT_EQ(run("denoise " + shot("stereo") + " -o " + path("both.%04d.exr") + " --device cpu").code, 0);
+    const auto input = [&](int frame) {
+        return fmt::format(fmt::runtime(LIMPID_TEST_DATA "/shots/stereo.{:04}.exr"), frame);
+    };
+    for (const std::string view : {"left", "right"}) {
+        for (const int frame : {13, 14}) {  // a file with this view's channels, named as without views
+            const LayeredImage stereo = image::readExr(input(frame));
+            LayeredImage one = stereo;
+            one.channels.clear();
+            for (image::Channel channel : stereo.channels)
+                if (const size_t at = channel.name.find("." + view + "."); at != std::string::npos) {
+                    channel.name.erase(at, view.size() + 1);
+                    one.channels.push_back(std::move(channel));
+                }
+            image::writeExr(path(fmt::format("{}.{:04}.exr", view, frame)), one);
+        }
+        ASSERT_EQ(run("denoise " + path(view + ".%04d.exr") + " -o " + path(view + "-clean.%04d.exr") +
+                      " --device cpu")
+                      .code,
+                  0);
+        const auto alone =
+            image::readExr(path(view + "-clean.0014.exr")).get("ViewLayer.Combined", "RGB").pixels;
+        const auto both =
+            image::readExr(path("both.0014.exr")).get("ViewLayer.Combined." + view, "RGB").pixels;
+        const auto noisy = image::readExr(input(14)).get("ViewLayer.Combined." + view, "RGB").pixels;
+        EXPECT_LT(meanError(alone, both), 1e-6) << view;
+        EXPECT_GT(meanError(noisy, both), 0.01) << view;
+    }
+    image::ExrDocument before = image::ExrDocument::read(input(14)),
+                       after = image::ExrDocument::read(path("both.0014.exr"));
+    ASSERT_EQ(after.parts()[0].channels.size(), before.parts()[0].channels.size());
+    EXPECT_EQ(after.parts()[0].views, (std::vector<std::string>{"left", "right"}));
+    for (const auto& channel : before.parts()[0].channels)
+        EXPECT_EQ(before.values(0, channel.name) == after.values(0, channel.name),
+                  !channel.name.starts_with("ViewLayer.Combined.") || channel.name.ends_with(".A"))
+            << channel.name;
 }
 
 }  // namespace

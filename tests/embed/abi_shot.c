@@ -22,6 +22,9 @@ int main(void) {
     MEMBER(limpid_shot_desc, map_file);
     MEMBER(limpid_shot_desc, files);
     MEMBER(limpid_shot_desc, cameras);
+    MEMBER(limpid_shot_desc, fps);
+    MEMBER(limpid_shot_desc, camera_start);
+    MEMBER(limpid_shot_desc, motion);
     MEMBER(limpid_shot_desc, frames);
     MEMBER(limpid_shot_desc, shard);
     MEMBER(limpid_shot_desc, cuts);

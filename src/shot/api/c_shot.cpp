@@ -37,6 +37,9 @@ shot::ShotRequest requestOf(const limpid_shot_desc& d) {
     read(d.map_file, request.mapFile);
     request.files = listOf(d.files, "limpid_shot_desc::files");
     read(d.cameras, request.cameras);
+    if (d.fps != 0.0f) request.cameraTiming.framesPerSecond = d.fps;
+    request.cameraTiming.firstFrame = d.camera_start;
+    read(d.motion, request.motion);
     read(d.frames, request.frames);
     read(d.shard, request.shard);
     read(d.cuts, request.cuts);

@@ -10,11 +10,18 @@
 namespace limpid::shot {
 namespace {
 
-/// Finds an attribute in the first part that has it.
+/// A file, and which of its views is meant.
+struct Source {
+    const image::ExrDocument& file;
+    std::string_view view;
+};
+
+/// Finds an attribute in the first part that has it and is not of another view.
 template <typename Map>
-auto find(const image::ExrDocument& file, Map image::ExrPart::*attributes, const char* name)
+auto find(const Source& source, Map image::ExrPart::*attributes, const char* name)
     -> std::optional<typename Map::mapped_type> {
-    for (const image::ExrPart& part : file.parts()) {
+    for (const image::ExrPart& part : source.file.parts()) {
+        if (!part.view.empty() && !source.view.empty() && part.view != source.view) continue;
         const auto found = (part.*attributes).find(name);
         if (found != (part.*attributes).end()) return found->second;
     }
@@ -35,13 +42,12 @@ glm::mat4 toGlm(const std::array<float, 16>& m, bool forColumns) {
 }
 
 /// The tangent of half the horizontal angle of view.
-std::optional<float> tangentOf(const image::ExrDocument& file, const glm::mat4& worldToCamera,
-                               bool forColumns) {
-    if (const auto degrees = find(file, &image::ExrPart::numbers, "CameraFov"))
+std::optional<float> tangentOf(const Source& source, const glm::mat4& worldToCamera, bool forColumns) {
+    if (const auto degrees = find(source, &image::ExrPart::numbers, "CameraFov"))
         if (*degrees > 0.0 && *degrees < 180.0)
             return static_cast<float>(std::tan(glm::radians(*degrees) / 2.0));
     for (const char* name : {"worldToScreen", "worldToNDC"}) {
-        const auto matrix = find(file, &image::ExrPart::matrices, name);
+        const auto matrix = find(source, &image::ExrPart::matrices, name);
         if (!matrix) continue;
         const glm::mat4 projection = toGlm(*matrix, forColumns) * glm::inverse(worldToCamera);
         // From -1 to 1 the axis is at 0; from 0 to 1 at one half of w.
@@ -54,19 +60,20 @@ std::optional<float> tangentOf(const image::ExrDocument& file, const glm::mat4& 
 
 }  // namespace
 
-std::optional<CameraParams> cameraOfAttributes(const image::ExrDocument& file) {
-    if (const auto text = find(file, &image::ExrPart::texts, cameraAttribute)) {
+std::optional<CameraParams> cameraOfAttributes(const image::ExrDocument& file, std::string_view view) {
+    const Source source{file, view};
+    if (const auto text = find(source, &image::ExrPart::texts, cameraAttribute)) {
         const std::optional<CameraParams> camera = parseCameraText(*text);
         if (!camera)
             throw InputError(file.name(), std::string("'") + cameraAttribute + "' is not a camera: " + *text);
         return camera;
     }
-    const auto matrix = find(file, &image::ExrPart::matrices, "worldToCamera");
+    const auto matrix = find(source, &image::ExrPart::matrices, "worldToCamera");
     if (!matrix) return std::nullopt;
     const bool forColumns = isForColumns(*matrix);
     const glm::mat4 worldToCamera = toGlm(*matrix, forColumns);
     const glm::mat4 toWorld = glm::inverse(worldToCamera);
-    const auto tangent = tangentOf(file, worldToCamera, forColumns);
+    const auto tangent = tangentOf(source, worldToCamera, forColumns);
     const auto finite = [](const vec4& v) { return std::isfinite(v.x + v.y + v.z + v.w); };
     if (!tangent || !finite(toWorld[0]) || !finite(toWorld[1]) || !finite(toWorld[2]) || !finite(toWorld[3]))
         return std::nullopt;

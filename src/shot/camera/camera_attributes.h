@@ -12,7 +12,8 @@ namespace limpid::shot {
 /// Limpid's own attribute (docs/layers.md), or "worldToCamera" with an angle of view: "CameraFov" (degrees,
 /// horizontal) or "worldToScreen" or "worldToNDC". The matrices are for row vectors, as the OpenEXR standard
 /// says (camera space: x right, y up, z forwards), or for column vectors (pbrt), which their last row and
-/// column tell. None if the file says too little. Throws InputError if Limpid's attribute is no camera.
-std::optional<CameraParams> cameraOfAttributes(const image::ExrDocument& file);
+/// column tell. None if the file says too little. Parts of another view than `view` (if it is given) are left
+/// out. Throws InputError if Limpid's attribute is no camera.
+std::optional<CameraParams> cameraOfAttributes(const image::ExrDocument& file, std::string_view view = {});
 
 }  // namespace limpid::shot

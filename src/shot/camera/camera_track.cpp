@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "base/hash.h"
 
 namespace limpid::shot {
 namespace {
@@ -106,7 +109,17 @@ CameraParams ShotCamera::params(uint32_t width, uint32_t height) const {
     return result;
 }
 
-CameraTrack CameraTrack::read(const std::filesystem::path& file) {
+CameraTrack CameraTrack::read(const std::string& source, const GltfTiming& timing) {
+    const size_t sign = std::filesystem::exists(source) ? std::string::npos : source.rfind('#');
+    const std::filesystem::path file = source.substr(0, sign);
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".gltf" && extension != ".glb") return readJson(source);
+    return readGltf(file, sign == std::string::npos ? "" : source.substr(sign + 1), timing);
+}
+
+CameraTrack CameraTrack::readJson(const std::filesystem::path& file) {
     const std::vector<std::byte> bytes = readFile(file, uint64_t{1} << 30);
     const auto* const begin = reinterpret_cast<const char*>(bytes.data());
     const json root = json::parse(begin, begin + bytes.size(), nullptr, false);
@@ -129,9 +142,42 @@ CameraTrack CameraTrack::read(const std::filesystem::path& file) {
     return track;
 }
 
-std::optional<ShotCamera> CameraTrack::at(int frame) const {
-    const auto found = frames_.find(frame);
-    return found == frames_.end() ? all_ : std::optional(found->second);
+std::optional<ShotCamera> CameraTrack::at(int frame, UpAxis up) const {
+    std::optional<ShotCamera> camera = all_;
+    if (const auto found = frames_.find(frame); found != frames_.end()) {
+        camera = found->second;
+    } else if (yIsUp_ && !frames_.empty()) {
+        camera = frame < frames_.begin()->first ? frames_.begin()->second : frames_.rbegin()->second;
+    }
+    if (camera && yIsUp_ && up == UpAxis::Z)
+        for (vec3* vector : {&camera->eye, &camera->forward, &camera->up})
+            *vector = {vector->x, -vector->z, vector->y};
+    return camera;
+}
+
+std::vector<int> CameraTrack::lacking(std::span<const int> frames) const {
+    std::vector<int> result;
+    if (all_) return result;
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(result),
+                 [&](int frame) { return !frames_.contains(frame); });
+    return result;
+}
+
+uint64_t CameraTrack::hash() const {
+    Hash64 hash;
+    const auto add = [&](const ShotCamera& camera) {
+        for (const vec3& v : {camera.eye, camera.forward, camera.up, vec3(camera.shift, 0.0f)})
+            for (const float value : {v.x, v.y, v.z}) hash.addValue(value);
+        hash.addValue(camera.verticalFov);
+        hash.addValue(camera.orthographicHeight);
+    };
+    hash.addValue(yIsUp_ ? 1 : 0);
+    if (all_) add(*all_);
+    for (const auto& [frame, camera] : frames_) {
+        hash.addValue(frame);
+        add(camera);
+    }
+    return hash.value();
 }
 
 }  // namespace limpid::shot

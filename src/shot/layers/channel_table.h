@@ -30,7 +30,8 @@ struct LayerChannels {
 /// out. Attached parts always have their name before, and hide channels of that name.
 class ChannelTable {
   public:
-    explicit ChannelTable(std::span<const image::ExrPart> parts);
+    /// With a view, only that view's channels are in the table, and their names are without the view.
+    explicit ChannelTable(std::span<const image::ExrPart> parts, const std::string& view = {});
 
     /// Returns null if there is no channel of this name.
     const ChannelPlace* find(std::string_view name) const;
@@ -43,6 +44,14 @@ class ChannelTable {
     std::map<std::string, ChannelPlace, std::less<>> channels_;
     std::vector<LayerChannels> layers_;
 };
+
+/// The views of a stereo (or multi-view) file, the default view first; empty if the file has none. The names
+/// are from the attribute "multiView" of a part, or from the attribute "view" of each part. What lies in
+/// which view follows https://openexr.com/en/latest/MultiViewOpenEXR.html:
+///   - a part with the attribute "view" lies in that view;
+///   - else "layer.view.channel", and "view.channel", are of that view;
+///   - else all is of the default view, unless the part's name ends with another view ("albedo.right").
+std::vector<std::string> viewsOf(std::span<const image::ExrPart> parts);
 
 /// "Combined.R": the layer "Combined", the component "R". The layer is empty without a dot.
 struct ChannelName {

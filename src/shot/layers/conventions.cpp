@@ -66,6 +66,7 @@ Convention cycles() {
                  .encodingRules = {{"depth", "Depth.?", planarDepth},
                                    {"normal", "Denoising Normal.XYZ", normalInCamera}},
                  .group = "Combined_"};
+    c.encoding.worldUp = UpAxis::Z;
     c.encoding.cameraNormalScale = {1.0f, 1.0f, -1.0f};
     c.encoding.motionScale = {1.0f, -1.0f};  // y points up
     return c;

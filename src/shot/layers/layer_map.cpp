@@ -42,8 +42,8 @@ constexpr std::array roleTable{
     RoleInfo{"seenAlbedo", "", 3, false},
 };
 
-constexpr std::array otherKeys{"normal.space", "normal.scale", "depth.kind",
-                               "depth.far",    "motion.unit",  "motion.scale"};
+constexpr std::array otherKeys{"normal.space", "normal.scale", "depth.kind", "depth.far",
+                               "motion.unit",  "motion.scale", "world.up"};
 
 template <size_t N>
 std::array<float, N> numbersOf(std::string_view key, std::string_view text) {
@@ -78,6 +78,7 @@ void setEncoding(Encoding& e, std::string_view key, std::string_view value) {
         e.depthKind = choiceOf(key, value, "distance", DepthKind::Distance, "planar", DepthKind::Planar);
     if (key == "motion.unit")
         e.motionUnit = choiceOf(key, value, "pixels", MotionUnit::Pixels, "picture", MotionUnit::Picture);
+    if (key == "world.up") e.worldUp = choiceOf(key, value, "y", UpAxis::Y, "z", UpAxis::Z);
     if (key == "depth.far") e.farDepth = numbersOf<1>(key, value)[0];
     if (key == "normal.scale") {
         const auto [x, y, z] = numbersOf<3>(key, value);
@@ -115,6 +116,13 @@ std::string textOf(const nlohmann::json& value) {
 
 std::span<const RoleInfo> roles() {
     return roleTable;
+}
+
+std::string_view withoutRole(const LayerMap& map, const RoleInfo& role) {
+    if (role.name != "motion" || !map.searchesMotion) return role.without;
+    if (!map.find("normal")) return "it is searched by block matching on albedo";
+    if (!map.find("albedo")) return "it is searched by block matching on normals";
+    return "it is searched by block matching on albedo and normals";
 }
 
 const RoleInfo* findRole(std::string_view name) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "shot/camera/camera_track.h"
 #include "shot/layers/expression.h"
 
 namespace limpid::shot {
@@ -29,6 +30,7 @@ enum class MotionUnit {
 
 /// How the values of normal, depth and motion are meant. The defaults are Limpid's (docs/layers.md).
 struct Encoding {
+    UpAxis worldUp = UpAxis::Y;  ///< of the world of normals and positions, for cameras of glTF files
     NormalSpace normalSpace = NormalSpace::World;
     vec3 normalScale{1.0f, 1.0f, 1.0f};
     vec3 cameraNormalScale{1.0f, 1.0f, 1.0f};  ///< what makes of `cameraNormal` NormalSpace::Camera
@@ -62,10 +64,12 @@ const RoleInfo* findRole(std::string_view name);
 /// One picture of a file: a view layer, or an eye of a stereo pair.
 struct LayerMap {
     std::string title;     ///< of the picture, empty if the file has one
+    std::string view;      ///< "left", for stereo; empty without views. Texts of layers are without it
     std::string prefix;    ///< what precedes its layers' names
     std::string renderer;  ///< whose conventions were recognised
     std::map<std::string, LayerExpression, std::less<>> layers;  ///< by role
     Encoding encoding;
+    bool searchesMotion = false;  ///< the file has none: it is searched on albedo and normals
     /// Light groups: colours by group of lamps, whose sum is (nearly) the beauty.
     std::vector<LayerExpression> groups;
 
@@ -75,11 +79,15 @@ struct LayerMap {
     }
 };
 
+/// Says what it costs that the picture lacks a role.
+std::string_view withoutRole(const LayerMap& map, const RoleInfo& role);
+
 /// Assignments of --map and --map-file: a role and an expression, or one of
 ///
 ///     normal.space = world | camera         normal.scale = X,Y,Z
 ///     depth.kind = distance | planar        depth.far = DEPTH
 ///     motion.unit = pixels | picture        motion.scale = X,Y
+///     world.up = y | z
 ///
 /// An empty expression removes the role.
 using Assignments = std::vector<std::pair<std::string, std::string>>;

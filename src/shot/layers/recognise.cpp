@@ -83,30 +83,49 @@ std::vector<LayerMap> mapsBy(const Convention& convention, const image::ExrDocum
     return maps;
 }
 
-}  // namespace
-
-std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignments& assignments) {
-    const ChannelTable table(file.parts());
+/// The pictures of one view, by the first convention that finds any.
+std::vector<LayerMap> mapsOfView(const image::ExrDocument& file, const ChannelTable& table,
+                                 const std::string& view) {
     std::vector<LayerMap> maps;
     for (const Convention& convention : conventions()) {
         maps = mapsBy(convention, file, table);
         if (!maps.empty()) break;
     }
-    if (maps.empty()) {
-        const bool named = std::any_of(assignments.begin(), assignments.end(),
-                                       [](const auto& a) { return a.first == "beauty"; });
-        for (const image::ExrPart& part : file.parts())
-            if (!named && !part.unreadable.empty())
-                throw InputError(file.name(), part.unreadable + ", which is not supported");
-        if (!named)
-            throw InputError(file.name(), "has no layer of colours; --map beauty=LAYER.RGB names one");
-        maps.emplace_back();
-    }
-    for (LayerMap& map : maps) {
-        apply(assignments, table, file.name(), map);
-        if (!map.find("beauty")) throw UsageError("--map: the beauty is needed");
-    }
+    for (LayerMap& map : maps) map.view = view;
     return maps;
+}
+
+/// What a file without colours is: an error, unless assignments name its beauty.
+void requireBeauty(const image::ExrDocument& file, const Assignments& assignments) {
+    if (std::any_of(assignments.begin(), assignments.end(),
+                    [](const auto& a) { return a.first == "beauty"; }))
+        return;
+    for (const image::ExrPart& part : file.parts())
+        if (!part.unreadable.empty())
+            throw InputError(file.name(), part.unreadable + ", which is not supported");
+    throw InputError(file.name(), "has no layer of colours; --map beauty=LAYER.RGB names one");
+}
+
+}  // namespace
+
+std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignments& assignments) {
+    std::vector<std::string> views = viewsOf(file.parts());
+    if (views.empty()) views.emplace_back();
+    std::vector<LayerMap> result;
+    for (const std::string& view : views) {
+        const ChannelTable table(file.parts(), view);
+        std::vector<LayerMap> maps = mapsOfView(file, table, view);
+        if (maps.empty() && &view == &views.back() && result.empty()) {
+            requireBeauty(file, assignments);
+            maps.emplace_back().view = view;
+        }
+        for (LayerMap& map : maps) {
+            apply(assignments, table, file.name(), map);
+            if (!map.find("beauty")) throw UsageError("--map: the beauty is needed");
+            result.push_back(std::move(map));
+        }
+    }
+    return result;
 }
 
 }  // namespace limpid::shot

@@ -9,6 +9,7 @@
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <fstream>
@@ -31,6 +32,8 @@ struct TestPart {
     std::vector<std::string> channels;  ///< all float
     std::vector<std::pair<std::string, std::string>> texts;
     std::vector<std::pair<std::string, Imath::M44f>> matrices;
+    std::string view;                ///< the part's; none if empty
+    std::vector<std::string> views;  ///< the attribute "multiView"; none if empty
 };
 
 inline Imf::Header headerOf(const TestPart& part, uint32_t width, uint32_t height) {
@@ -40,6 +43,8 @@ inline Imf::Header headerOf(const TestPart& part, uint32_t width, uint32_t heigh
         header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, text] : part.texts) header.insert(name, Imf::StringAttribute(text));
     for (const auto& [name, matrix] : part.matrices) header.insert(name, Imf::M44fAttribute(matrix));
+    if (!part.view.empty()) header.setView(part.view);
+    if (!part.views.empty()) Imf::addMultiView(header, part.views);
     return header;
 }
 

@@ -23,13 +23,14 @@ constexpr size_t blockFrames = 32;
 void warnOf(const LoadedFrame& frame, const ShotJob& job) {
     for (const LayerInfo* layer : frame.lacking)
         warn(job, fmt::format("the layer '{}' is missing: {}", layer->name, layer->without));
+    for (const std::string& text : job.warnings) warn(job, text);
     if (const std::string variances = explainVariances(frame); !variances.empty()) warn(job, variances);
     const bool needsMotion = job.load.sequence && !job.load.network;
     for (const LayerMap& map : frame.maps)
         for (const RoleInfo& role : roles())
             if (!frame.own && !map.find(role.name) && role.isImportant &&
                 (needsMotion || role.name != "motion"))
-                warn(job, fmt::format("the layer '{}' is missing: {}", role.name, role.without));
+                warn(job, fmt::format("the layer '{}' is missing: {}", role.name, withoutRole(map, role)));
 }
 
 class ShotRun {

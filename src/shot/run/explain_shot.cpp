@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "shot/explain.h"
+#include "shot/motion/motion_search.h"
 #include "shot/motion_check.h"
 
 namespace limpid::shot {
@@ -26,7 +27,9 @@ FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t p
                    bool continues) {
     const ShotLayers& layers = frame.layers[picture];
     std::optional<CameraParams> given;
-    const auto camera = job.options.cameras ? job.options.cameras->at(frame.number) : std::nullopt;
+    const auto camera = job.options.cameras
+                            ? job.options.cameras->at(frame.number, frame.maps[picture].encoding.worldUp)
+                            : std::nullopt;
     if (camera) given = camera->params(layers.width, layers.height);
     converter.convert(layers, given, continues);
     return converter.report();
@@ -42,15 +45,22 @@ std::string explainShot(const ShotJob& job) {
     if (const std::string variances = explainVariances(first); !variances.empty())
         text += fmt::format("    {}\n", variances);
     for (size_t i = 0; i < first.maps.size(); ++i) {
-        if (first.maps.size() > 1) text += fmt::format("  picture '{}'\n", first.maps[i].title);
+        if (first.maps.size() > 1) text += pictureLine(first.maps[i]);
         FrameConverter converter(first.maps[i]);
         FrameReport report = viewOf(converter, first, i, job, false);
         const bool pair = second && i < second->maps.size();
+        const bool searched = pair && first.maps[i].searchesMotion && second->maps[i].searchesMotion;
+        if (searched) {
+            MotionSearch search;
+            search.next(first.layers[i], false);
+            if (auto motion = search.next(second->layers[i], true))
+                second->layers[i].images["motion"] = std::move(*motion);
+        }
         if (pair) report = viewOf(converter, *second, i, job, true);
         text += explainView(report);
         if (!pair) continue;
         const auto check = checkMotion(first.layers[i], second->layers[i], first.maps[i].encoding);
-        if (check) text += explainMotion(*check, first.number, second->number);
+        if (check) text += explainMotion(*check, first.number, second->number, searched);
     }
     return text;
 }

@@ -24,7 +24,8 @@ struct ShotJob {
     bool resume = false;  ///< begin at the first frame whose output is not that of its input and the settings
     LoadOptions load;
     ShotOptions options;
-    std::string weights;  ///< of a network; empty: those that come with Limpid
+    std::vector<std::string> warnings;  ///< to say when the run begins
+    std::string weights;                ///< of a network; empty: those that come with Limpid
     bool bidirectional = false;
     float strength = 1.0f;  ///< share of the clean picture in the result
     float preserve = 0.0f;  ///< share of filtered detail that is given back; keep_input.h

@@ -102,7 +102,7 @@ std::string settingsText(const ShotRequest& r) {
     };
     return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", LIMPID_VERSION, r.denoiser, r.preset,
                        hashed(r.weights), fmt::join(r.settings, " "), fmt::join(r.map, " "),
-                       fmt::join(r.files, " "), hashed(r.mapFile), hashed(r.cameras), r.cuts, r.bidirectional,
+                       fmt::join(r.files, " "), hashed(r.mapFile), r.cuts, r.motion, r.bidirectional,
                        r.strength, r.preserve);
 }
 
@@ -149,13 +149,22 @@ void chooseMethod(const ShotRequest& r, ShotJob& job) {
     job.options.keepsAntialiasing =
         !r.preset.empty() || std::any_of(r.settings.begin(), r.settings.end(),
                                          [](const std::string& text) { return text.starts_with("taa."); });
-    if (!r.cameras.empty())
-        job.options.cameras = std::make_shared<const CameraTrack>(CameraTrack::read(r.cameras));
     job.weights = r.weights;
     job.bidirectional = r.bidirectional && job.input.numbered();
     if (job.bidirectional && (job.options.method->network || job.options.method->name == "bilateral"))
         throw UsageError(
             fmt::format("--bidirectional: --denoiser {} has no history", job.options.method->name));
+}
+
+void addCameras(const ShotRequest& r, ShotJob& job) {
+    if (r.cameras.empty()) return;
+    auto cameras = std::make_shared<const CameraTrack>(CameraTrack::read(r.cameras, r.cameraTiming));
+    job.settingsText += " " + hashText(cameras->hash());
+    const std::vector<int> lacking = job.input.numbered() ? cameras->lacking(job.frames) : std::vector<int>{};
+    if (!lacking.empty())
+        job.warnings.push_back(
+            fmt::format("{} has no camera for frames {}", r.cameras, describeFrames(lacking)));
+    job.options.cameras = std::move(cameras);
 }
 
 void chooseFrames(const ShotRequest& r, ShotJob& job) {
@@ -195,8 +204,11 @@ ShotJob jobOf(const ShotRequest& r) {
     job.load.assignments = mapOf(r);
     job.load.network = job.options.method->network;
     job.load.files = filesOf(r, job.input.numbered());
+    if (r.motion != "auto" && r.motion != "none") throw UsageError("--motion is 'auto' or 'none'");
+    job.load.searchMotion = r.motion == "auto";
     job.load.sequence = job.frames.size() > 1;
     job.settingsText = settingsText(r);
+    addCameras(r, job);
     checkFiles(r, job);
     return job;
 }

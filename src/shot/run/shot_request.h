@@ -18,7 +18,9 @@ struct ShotRequest {
     std::vector<std::string> map;       ///< "albedo=MyAlbedo.RGB"
     std::string mapFile;
     std::vector<std::string> files;  ///< "albedo=albedo.%04d.pfm"
-    std::string cameras;
+    std::string cameras;             ///< a JSON or glTF file
+    GltfTiming cameraTiming;
+    std::string motion = "auto";   ///< or "none": where files have no motion
     std::string frames;            ///< "10-20" or "7"
     std::string shard;             ///< "2/4"
     std::string cuts = "auto";     ///< "none", or "12,40"

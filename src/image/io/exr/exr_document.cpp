@@ -19,6 +19,7 @@
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
 #include <ImfTiledInputPart.h>
 #include <ImfTiledOutputFile.h>
 #include <ImfTiledOutputPart.h>
@@ -64,6 +65,8 @@ std::array<float, 16> elements(const Matrix& matrix) {
 void addAttribute(ExrPart& part, const std::string& name, const Imf::Attribute& attribute) {
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
         part.texts[name] = text->value();
+    } else if (const auto* list = dynamic_cast<const Imf::StringVectorAttribute*>(&attribute)) {
+        if (name == "multiView") part.views = list->value();
     } else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&attribute)) {
         part.numbers[name] = static_cast<double>(single->value());
     } else if (const auto* number = dynamic_cast<const Imf::DoubleAttribute*>(&attribute)) {

@@ -21,12 +21,13 @@ struct ExrPart {
         std::string name;
         Storage storage = Storage::Half;
     };
-    std::string name;               ///< empty in most files with one part
-    std::string view;               ///< "left", for stereo; empty without views
-    std::vector<Channel> channels;  ///< in the file's (alphabetical) order
-    std::string compression;        ///< "zip", as in OpenEXR's documentation
-    bool attached = false;          ///< not of the file: ExrDocument::attach()
-    std::string unreadable;         ///< why its pixels cannot be read: "is deep"; empty if they can
+    std::string name;                ///< empty in most files with one part
+    std::string view;                ///< "left", for stereo; empty without views
+    std::vector<std::string> views;  ///< of the attribute "multiView": those that channels' names tell
+    std::vector<Channel> channels;   ///< in the file's (alphabetical) order
+    std::string compression;         ///< "zip", as in OpenEXR's documentation
+    bool attached = false;           ///< not of the file: ExrDocument::attach()
+    std::string unreadable;          ///< why its pixels cannot be read: "is deep"; empty if they can
     std::map<std::string, std::string> texts;
     std::map<std::string, double> numbers;
     std::map<std::string, std::array<float, 16>> matrices;  ///< row by row, as stored
