@@ -96,15 +96,15 @@ std::string explainLayers(const LoadedFrame& frame) {
 }
 
 std::string explainMotion(const MotionCheck& check, int before, int now, bool searched) {
-    if (check.still())
-        return fmt::format("    motion: frames {} and {} hardly differ, so it cannot be checked\n", before,
-                           now);
-    std::string text = fmt::format("    motion explains {:.0f} % of the change between frames {} and {}\n",
-                                   100.0 * check.explained, before, now);
+    std::string text;
     if (searched)
-        return fmt::format("    searched motion is found for {:.0f} % of the pixels\n", 100.0 * check.share) +
-               text;
-    if (!check.better.empty())
+        text = fmt::format("    searched motion is found for {:.0f} % of the pixels\n", 100.0 * check.share);
+    if (check.still())
+        return text + fmt::format("    motion: frames {} and {} hardly differ, so it cannot be checked\n",
+                                  before, now);
+    text += fmt::format("    motion explains {:.0f} % of the change between frames {} and {}\n",
+                        100.0 * check.explained, before, now);
+    if (!check.better.empty() && !searched)
         text += fmt::format("    is its sign right? --map {} would explain {:.0f} %\n", check.better,
                             100.0 * check.betterExplained);
     return text;
