@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t received = 0;
+std::array<struct sigaction, 3> actionsBefore{};
 bool said = false;
 
 void (*volatile beforeEnd)() = nullptr;
@@ -40,19 +41,19 @@ extern "C" void onSignal(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-    for (const int signal : signals) {
+    struct sigaction action {};
+    action.sa_handler = onSignal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : signals) ::sigaddset(&action.sa_mask, signal);
+    for (size_t i = 0; i < signals.size(); ++i) {
+        ::sigaction(signals[i], &action, &actionsBefore[i]);
         // A process in the background ignores Ctrl-C, and should go on doing so.
-        struct sigaction action {};
-        action.sa_handler = onSignal;
-        action.sa_flags = SA_RESTART;
-        struct sigaction before {};
-        ::sigaction(signal, &action, &before);
-        if (before.sa_handler == SIG_IGN) ::sigaction(signal, &before, nullptr);
+        if (actionsBefore[i].sa_handler == SIG_IGN) ::sigaction(signals[i], &actionsBefore[i], nullptr);
     }
 }
 
 InterruptGuard::~InterruptGuard() {
-    for (const int signal : signals) std::signal(signal, SIG_DFL);
+    for (size_t i = 0; i < signals.size(); ++i) ::sigaction(signals[i], &actionsBefore[i], nullptr);
 }
 
 bool interrupted() {

@@ -60,7 +60,7 @@ typedef struct limpid_shot_desc {
     float preserve;        /* share of filtered detail that is given back, 0 to 1: more detail and more noise */
     int32_t bidirectional; /* not 0: denoise forwards and backwards, and merge both; takes twice as long */
     int32_t resume;        /* not 0: go on after the last complete output (EXR) */
-    /* Called on the calling thread after each frame that is written. Not 0 stops the run: frames so far are complete.
+    /* Called on the calling thread after each frame that is denoised. Not 0 stops the run: frames so far are written.
      * May be NULL. */
     int32_t (*progress)(void* user, uint32_t done, uint32_t total);
     void* progress_user;

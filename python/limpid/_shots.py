@@ -60,8 +60,9 @@ def explain_shot(input, *, map=None, map_file=None, files=None, cameras=None, fp
 
 
 def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, weights=None, map=None, map_file=None,
-                 files=None, cameras=None, fps=24.0, camera_start=0, motion="auto", frames=None, shard=None, cuts="auto", skip_unreadable=False,
-                 bidirectional=False, strength=1.0, preserve=0.0, resume=False, exposure="auto", device=None, progress=None):
+                 files=None, cameras=None, fps=24.0, camera_start=0, motion="auto", frames=None, shard=None,
+                 cuts="auto", skip_unreadable=False, bidirectional=False, strength=1.0, preserve=0.0, resume=False,
+                 exposure="auto", device=None, progress=None):
     """Denoises the frames of a shot of any renderer as `limpid denoise` does (docs/denoise-your-renders.md).
 
     input: path of a frame, or of all frames of a shot: "shot.%04d.exr". EXR, PFM, HDR or PNG.
@@ -100,11 +101,12 @@ def denoise_shot(input, output, *, denoiser=None, preset=None, parameters=None, 
     if not 0.0 < strength <= 1.0:
         raise ValueError(f"strength: {strength!r} is not above 0 and at most 1")
     select = device.name if isinstance(device, Device) else "" if device is None else str(device)
-    options = _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames, output=_path(output), denoiser=denoiser or "",
-                      preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
+    options = _inputs(input, map, map_file, files, cameras, fps, camera_start, motion, frames,
+                      output=_path(output), denoiser=denoiser or "", preset=preset or "", settings=_pairs(parameters), weights=_path(weights),
                       shard="" if shard is None else f"{shard[0]:d}/{shard[1]:d}",
                       cuts=cuts if isinstance(cuts, str) else ",".join(f"{c:d}" for c in cuts) or "none",
-                      on_error="skip" if skip_unreadable else "stop", strength=float(strength), preserve=float(preserve),
+                      on_error="skip" if skip_unreadable else "stop", strength=float(strength),
+                      preserve=float(preserve),
                       bidirectional=bool(bidirectional), resume=bool(resume), exposure=str(exposure))
     summary = _module().denoise(options, select, progress)
     for message in summary.pop("warnings"):

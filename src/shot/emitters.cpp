@@ -55,11 +55,12 @@ bool isLike(const vec3& a, const vec3& b) {
 
 }  // namespace
 
-std::vector<uint8_t> findEmitters(const image::Image& beauty) {
+std::vector<uint8_t> findEmitters(const image::Image& beauty, const std::vector<float>& distance) {
     const Picture picture(beauty);
     const float least = aboveMedian * picture.median();
     std::vector<uint8_t> inside(picture.size()), all;
     forEachPixel(inside.size(), [&](size_t p) {
+        if (!(distance[p] > 0.0f)) return;
         if (!(picture.luminance(p) > least && std::isfinite(picture.luminance(p)))) return;
         int alike = 0;
         picture.forNeighbours(p, [&](size_t q) { alike += isLike(picture.at(p), picture.at(q)); });

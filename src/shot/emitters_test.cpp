@@ -33,25 +33,29 @@ Image pictureWithLamp(float lamp) {
     return picture;
 }
 
+std::vector<uint8_t> found(const Image& picture) {
+    return findEmitters(picture, std::vector<float>(picture.pixels.size() / 3, 1.0f));
+}
+
 TEST(Emitters, ALampIsFoundWithItsEdgeAndNoiseIsNot) {
-    const std::vector<uint8_t> found = findEmitters(pictureWithLamp(20.0f));
+    const std::vector<uint8_t> lamps = found(pictureWithLamp(20.0f));
     for (uint32_t y = 0; y < size; ++y)
         for (uint32_t x = 0; x < size; ++x)
-            EXPECT_EQ(found[y * size + x] != 0, x >= 20 && x < 28 && y >= 10 && y < 16) << x << ", " << y;
+            EXPECT_EQ(lamps[y * size + x] != 0, x >= 20 && x < 28 && y >= 10 && y < 16) << x << ", " << y;
 }
 
 TEST(Emitters, AnEvenWallInTheDarkIsNoLamp) {
-    const std::vector<uint8_t> found = findEmitters(pictureWithLamp(0.5f));
-    EXPECT_EQ(std::count(found.begin(), found.end(), 1), 0);
-    const std::vector<uint8_t> flat = findEmitters(Image(size, size, 3, 1.0f));
+    const std::vector<uint8_t> lamps = found(pictureWithLamp(0.5f));
+    EXPECT_EQ(std::count(lamps.begin(), lamps.end(), 1), 0);
+    const std::vector<uint8_t> flat = found(Image(size, size, 3, 1.0f));
     EXPECT_EQ(std::count(flat.begin(), flat.end(), 1), 0);
 }
 
 TEST(Emitters, ASingleBrightPixelIsNoLamp) {
     Image picture = pictureWithLamp(0.5f);
     for (uint32_t c = 0; c < 3; ++c) picture.at(40, 40, c) = 1000.0f;
-    const std::vector<uint8_t> found = findEmitters(picture);
-    EXPECT_EQ(found[40 * size + 40], 0);
+    const std::vector<uint8_t> lamps = found(picture);
+    EXPECT_EQ(lamps[40 * size + 40], 0);
 }
 
 TEST(Emitters, ValuesThatAreNotFiniteAreNoLamps) {
@@ -59,10 +63,19 @@ TEST(Emitters, ValuesThatAreNotFiniteAreNoLamps) {
     for (uint32_t y = 40; y < 44; ++y)
         for (uint32_t x = 40; x < 44; ++x)
             for (uint32_t c = 0; c < 3; ++c) picture.at(x, y, c) = y < 42 ? NAN : INFINITY;
-    const std::vector<uint8_t> found = findEmitters(picture);
-    EXPECT_EQ(std::count(found.begin(), found.end(), 1), 8 * 6);
-    const std::vector<uint8_t> nothing = findEmitters(Image(4, 4, 3, NAN));
+    const std::vector<uint8_t> lamps = found(picture);
+    EXPECT_EQ(std::count(lamps.begin(), lamps.end(), 1), 8 * 6);
+    const std::vector<uint8_t> nothing = found(Image(4, 4, 3, NAN));
     EXPECT_EQ(std::count(nothing.begin(), nothing.end(), 1), 0);
+}
+
+TEST(Emitters, ABrightSkyIsNoLamp) {
+    const Image picture = pictureWithLamp(20.0f);
+    std::vector<float> distance(size * size, 1.0f);
+    for (uint32_t y = 10; y < 16; ++y)
+        for (uint32_t x = 20; x < 27; ++x) distance[y * size + x] = 0.0f;
+    const std::vector<uint8_t> lamps = findEmitters(picture, distance);
+    EXPECT_EQ(std::count(lamps.begin(), lamps.end(), 1), 0) << "neither the sky nor what stands before it";
 }
 
 TEST(Emitters, WithoutALayerOfEmissionALampIsNotFiltered) {

@@ -68,7 +68,7 @@ float distanceAt(const std::vector<float>& distance, const ShotLayers& layers, c
 
 /// What is behind everything is not filtered, and neither are lamps.
 void hideEmitters(const ShotLayers& layers, std::vector<float>& distance) {
-    const std::vector<uint8_t> emits = findEmitters(layers.images.at("beauty"));
+    const std::vector<uint8_t> emits = findEmitters(layers.images.at("beauty"), distance);
     for (size_t p = 0; p < emits.size(); ++p)
         if (emits[p]) distance[p] = 0.0f;
 }

@@ -77,6 +77,7 @@ void give(const shot::ShotSummary& result, limpid_shot_summary* summary) {
 
 void denoiseShot(const limpid_device_desc* on, const limpid_shot_desc& desc, limpid_shot_summary* summary) {
     silenceLog();
+    if (summary) wholeStruct(summary, "limpid_shot_summary");  // before hours of work
     const shot::ShotRequest request = requestOf(desc);
     if (request.output.empty()) throw UsageError("limpid_shot_desc::output is NULL");
     shot::ShotJob job = shot::jobOf(request);

@@ -53,6 +53,9 @@ class CameraTrack {
     /// has not begun or is over.
     std::vector<int> lacking(std::span<const int> frames) const;
 
+    /// Of a glTF file.
+    bool ofAnimation() const { return yIsUp_; }
+
     /// Changes with any camera.
     uint64_t hash() const;
 

@@ -65,7 +65,7 @@ CameraTrack CameraTrack::readGltf(const std::filesystem::path& file, const std::
     constexpr double slack = 0.01;
     const double first = std::ceil(static_cast<double>(movement.firstKey()) * fps - slack);
     const double last = std::floor(static_cast<double>(movement.lastKey()) * fps + slack);
-    if (last - first > maxFrames || std::abs(last + timing.firstFrame) > 2e9)
+    if (last - first > maxFrames || std::max(std::abs(first), std::abs(last)) > 1e9)
         throw InputError(file, fmt::format("its animation is too long: {:.0f} frames", last - first));
     for (double frame = first; frame <= std::max(first, last); frame += 1.0)
         track.frames_[static_cast<int>(frame) + timing.firstFrame] = shotCamera(movement.at(frame / fps));

@@ -17,9 +17,6 @@
 namespace limpid::shot {
 namespace {
 
-/// Frames of a block of bidirectional shots. (Its backward run starts runUpFrames behind its end.)
-constexpr size_t blockFrames = 32;
-
 void warnOf(const LoadedFrame& frame, const ShotJob& job) {
     for (const LayerInfo* layer : frame.lacking)
         warn(job, fmt::format("the layer '{}' is missing: {}", layer->name, layer->without));
@@ -56,7 +53,7 @@ class ShotRun {
             std::optional<LoadedFrame> frame = reader_.read(i, readsOn ? std::optional(i + 1) : std::nullopt);
             if (frame) goForwards(std::move(*frame), i >= first_);
             if (i >= first_ && job_.progress && !job_.progress(i + 1 - first_, job_.endWritten - first_)) {
-                summary_.stopped = true;
+                summary_.stopped = i + 1 < job_.endWritten;
                 break;
             }
         }

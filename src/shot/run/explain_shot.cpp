@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "shot/explain.h"
 #include "shot/motion/motion_search.h"
 #include "shot/motion_check.h"
@@ -40,7 +41,13 @@ FrameReport viewOf(FrameConverter& converter, const LoadedFrame& frame, size_t p
 std::string explainShot(const ShotJob& job) {
     const LoadedFrame first = load(job, job.frames.front());
     std::optional<LoadedFrame> second;
-    if (job.frames.size() > 1) second = load(job, job.frames[1]);
+    if (job.frames.size() > 1 && job.frames[1] == job.frames[0] + 1) {
+        try {
+            second = load(job, job.frames[1]);
+        } catch (const InputError&) {
+            if (!job.skipUnreadable) throw;
+        }
+    }
     std::string text = explainLayers(first);
     if (const std::string variances = explainVariances(first); !variances.empty())
         text += fmt::format("    {}\n", variances);

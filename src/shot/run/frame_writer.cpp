@@ -62,19 +62,23 @@ void writeFrame(const fs::path& path, FrameToWrite frame, const ShotJob& job) {
     frame.file.write(path);
 }
 
-/// True if the output of this frame is complete: it says that it is of this input and these settings.
-bool isComplete(int frame, const ShotJob& job) {
+enum class OutputState { Missing, Complete, Other };
+
+/// Complete if it says that it is of this input and these settings.
+OutputState stateOf(int frame, const ShotJob& job) {
     const fs::path output = outputOf(job, frame);
-    if (!fs::exists(output)) return false;
+    if (!fs::exists(output)) return OutputState::Missing;
     try {
         const image::ExrDocument file = image::ExrDocument::read(output);
         const std::string identity = identityOf(contentOf(inputOf(job, frame), frame, job.load), job);
-        return std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
-            const auto text = part.texts.find(inputAttribute);
-            return text != part.texts.end() && text->second == identity;
-        });
+        const bool complete =
+            std::any_of(file.parts().begin(), file.parts().end(), [&](const image::ExrPart& part) {
+                const auto text = part.texts.find(inputAttribute);
+                return text != part.texts.end() && text->second == identity;
+            });
+        return complete ? OutputState::Complete : OutputState::Other;
     } catch (const InputError&) {
-        return false;
+        return OutputState::Other;
     }
 }
 
@@ -105,9 +109,14 @@ std::vector<float> surfacesOf(const LoadedFrame& frame) {
 }
 
 size_t firstIncomplete(const ShotJob& job) {
-    size_t i = job.firstWritten;
-    while (i < job.endWritten && isComplete(job.frames[i], job)) ++i;
-    return i;
+    for (size_t i = job.firstWritten; i < job.endWritten; ++i) {
+        const OutputState state = stateOf(job.frames[i], job);
+        if (state == OutputState::Complete) continue;
+        // Where frames are denoised backwards, too, those before a frame that has changed show its old light.
+        const size_t reach = job.bidirectional && state == OutputState::Other ? blockFrames + runUpFrames : 0;
+        return std::max(i, job.firstWritten + reach) - reach;
+    }
+    return job.endWritten;
 }
 
 }  // namespace limpid::shot

@@ -35,7 +35,8 @@ struct ShotJob {
     std::optional<float> exposure;  ///< of PNG files, stops; none: measured
 
     MessageCallback messages;
-    /// Called after each frame that is written; false stops the run. `done` of `total` frames are finished.
+    /// Called after each frame that is denoised; false stops the run, and frames so far are written. `done`
+    /// of `total` frames are finished.
     std::function<bool(size_t done, size_t total)> progress;
     /// Called after each frame that is written, with the graph of its first picture.
     std::function<void(int frame, gpu::FrameGraph& graph)> afterFrame;
@@ -44,6 +45,9 @@ struct ShotJob {
 /// How many frames before its first one a part of a shot needs, so that histories are nearly as long as they
 /// get.
 inline constexpr size_t runUpFrames = 16;
+
+/// Frames of a block of bidirectional shots. (Its backward run starts runUpFrames behind its end.)
+inline constexpr size_t blockFrames = 32;
 
 inline std::filesystem::path inputOf(const ShotJob& job, int frame) {
     return job.input.format(std::max(frame, 0));

@@ -158,12 +158,22 @@ void chooseMethod(const ShotRequest& r, ShotJob& job) {
 
 void addCameras(const ShotRequest& r, ShotJob& job) {
     if (r.cameras.empty()) return;
+    const float fps = r.cameraTiming.framesPerSecond;
+    if (!(fps >= 1e-3f && fps <= 1e6f))
+        throw UsageError(fmt::format("--fps {}: it is from 0.001 to 1e6", fps));
+    if (std::abs(static_cast<int64_t>(r.cameraTiming.firstFrame)) > 1000000000)
+        throw UsageError("--camera-start is from -1e9 to 1e9");
     auto cameras = std::make_shared<const CameraTrack>(CameraTrack::read(r.cameras, r.cameraTiming));
     job.settingsText += " " + hashText(cameras->hash());
     const std::vector<int> lacking = job.input.numbered() ? cameras->lacking(job.frames) : std::vector<int>{};
-    if (!lacking.empty())
-        job.warnings.push_back(
-            fmt::format("{} has no camera for frames {}", r.cameras, describeFrames(lacking)));
+    if (!lacking.empty()) {
+        const char* const text =
+            cameras->ofAnimation()
+                ? "{}: its animation does not reach frames {}; the camera stands still there "
+                  "(--fps, --camera-start)"
+                : "{} has no camera for frames {}";
+        job.warnings.push_back(fmt::format(fmt::runtime(text), r.cameras, describeFrames(lacking)));
+    }
     job.options.cameras = std::move(cameras);
 }
 

@@ -42,6 +42,21 @@ int main(int argc, char** argv) {
     } catch (const limpid::Error& error) {
         expect(error.result() == LIMPID_ERROR_INVALID_ARGUMENT, "an unknown denoiser is an invalid argument");
     }
+    shot.denoiser = nullptr;
+    shot.cameras = "missing.glb";
+    shot.fps = -1.0f;
+    try {
+        limpid::denoiseShot(shot, cpu);
+        expect(false, "a negative frame rate is refused");
+    } catch (const limpid::Error& error) {
+        expect(error.result() == LIMPID_ERROR_INVALID_ARGUMENT,
+               "a negative frame rate is an invalid argument");
+    }
+    shot.cameras = nullptr;
+    shot.fps = 0.0f;
+    limpid_shot_summary wrong{};
+    expect(limpid_shot_denoise(&cpu, &shot, &wrong) == LIMPID_ERROR_INVALID_ARGUMENT,
+           "a summary without size");
     shot.input = "missing.exr";
     shot.denoiser = nullptr;
     try {
