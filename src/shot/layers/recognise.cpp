@@ -95,6 +95,13 @@ std::vector<LayerMap> mapsOfView(const image::ExrDocument& file, const ChannelTa
     return maps;
 }
 
+/// Whether assignments name a layer of this view as its beauty.
+bool namesBeauty(const Assignments& assignments, const ChannelTable& table) {
+    return std::any_of(assignments.begin(), assignments.end(), [&](const auto& a) {
+        return a.first == "beauty" && LayerExpression::resolve(a.second, table);
+    });
+}
+
 /// What a file without colours is: an error, unless assignments name its beauty.
 void requireBeauty(const image::ExrDocument& file, const Assignments& assignments) {
     if (std::any_of(assignments.begin(), assignments.end(),
@@ -115,10 +122,9 @@ std::vector<LayerMap> recognise(const image::ExrDocument& file, const Assignment
     for (const std::string& view : views) {
         const ChannelTable table(file.parts(), view);
         std::vector<LayerMap> maps = mapsOfView(file, table, view);
-        if (maps.empty() && &view == &views.back() && result.empty()) {
-            requireBeauty(file, assignments);
-            maps.emplace_back().view = view;
-        }
+        const bool nothing = maps.empty() && result.empty() && &view == &views.back();
+        if (nothing) requireBeauty(file, assignments);
+        if (nothing || (maps.empty() && namesBeauty(assignments, table))) maps.emplace_back().view = view;
         for (LayerMap& map : maps) {
             apply(assignments, table, file.name(), map);
             if (!map.find("beauty")) throw UsageError("--map: the beauty is needed");

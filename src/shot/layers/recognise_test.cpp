@@ -320,6 +320,20 @@ TEST_F(RecogniseTest, TheDefaultViewNeedsNoName) {
     EXPECT_EQ(placeOf(one[0], "beauty"), "0 V.Combined.R");
 }
 
+TEST_F(RecogniseTest, ANamedBeautyIsThatOfEachViewThatHasIt) {
+    const std::string left = "foo.left.R foo.left.G foo.left.B ",
+                      right = "foo.right.R foo.right.G foo.right.B";
+    const auto both = recognise(file({{.channels = names(left + right), .views = {"left", "right"}}}),
+                                {{"beauty", "foo.RGB"}});
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(placeOf(both[0], "beauty"), "0 foo.left.R");
+    EXPECT_EQ(placeOf(both[1], "beauty"), "0 foo.right.R");
+    const auto one =
+        recognise(file({{.channels = names(left), .views = {"left", "right"}}}), {{"beauty", "foo.RGB"}});
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_EQ(one[0].view, "left");
+}
+
 /// Parts with the attribute "view", as OpenEXR's ImfPartHelper.h splits channels. A camera is of its view.
 TEST_F(RecogniseTest, PartsMayBeViews) {
     const Imath::M44f at5(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 5, 1),
