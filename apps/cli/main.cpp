@@ -67,9 +67,6 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", LIMPID_VERSION);
     app.require_subcommand(1);
     app.formatter(helpFormat());  // subcommands inherit it
-    app.footer(
-        "'limpid SCENE' opens a scene in the window, like 'limpid view SCENE'.\n"
-        "'limpid COMMAND --help' explains the options of a command.");
     addRenderCommand(app);
     addMergeCommand(app);
     addDenoiseCommand(app);
@@ -79,6 +76,10 @@ int run(int argc, char** argv) {
     addViewCommand(app);
     addInfoCommand(app);
     addManualCommands(app);
+    // After the commands, which would inherit it.
+    app.footer(
+        "'limpid SCENE' opens a scene in the window, like 'limpid view SCENE'.\n"
+        "'limpid COMMAND --help' explains the options of a command.");
     refuseNonFinite(app);
     try {
         app.parse(wordsOf(argc, argv));
