@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "cli/commands.h"
+#include "cli/help_text.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/options/device_options.h"
@@ -94,6 +95,10 @@ void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
         ->required();
     command.add_option("-o,--output", o.output,
                        "Output: EXR (everything that the input has, with a new beauty) or PNG");
+}
+
+void addLayerOptions(CLI::App& command, shot::ShotRequest& o) {
+    const OptionGroup group(command, "Layers and cameras");
     command.add_option("--map", o.map,
                        "Say which layer something is: albedo=MyAlbedo.RGB, normal.space=camera; "
                        "docs/denoise-your-renders.md lists all (repeatable)");
@@ -111,6 +116,10 @@ void addFileOptions(CLI::App& command, shot::ShotRequest& o) {
     command.add_option(
         "--camera-start", o.cameraTiming.firstFrame,
         "Frame at time 0 of the animation in --camera scene.glb; default 0, as Blender exports");
+}
+
+void addFilmOptions(CLI::App& command, shot::ShotRequest& o) {
+    const OptionGroup group(command, "Films");
     command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
     command.add_flag("--bidirectional", o.bidirectional,
                      "Denoise forwards and backwards and merge both, so that no frame lacks a history; takes "
@@ -146,6 +155,8 @@ void addDenoiseCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("denoise", "Denoise EXR frames of any renderer");
     auto o = std::make_shared<DenoiseOptions>();
     addFileOptions(*command, o->request);
+    addLayerOptions(*command, o->request);
+    addFilmOptions(*command, o->request);
     command->add_flag(
         "--explain", o->explain,
         "Print how each layer of the input is understood, what is missing and what that costs, and "
