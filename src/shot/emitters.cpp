@@ -20,7 +20,7 @@ class Picture {
     vec3 at(size_t p) const {
         return {image_.pixels[3 * p], image_.pixels[3 * p + 1], image_.pixels[3 * p + 2]};
     }
-    float luminance(size_t p) const { return glm::dot(at(p), vec3(0.2126f, 0.7152f, 0.0722f)); }
+    float luminance(size_t p) const { return shot::luminance(at(p)); }
 
     /// Of the pixels that get light.
     float median() const {

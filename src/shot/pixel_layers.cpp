@@ -13,10 +13,6 @@ vec3 vectorAt(const Image& image, size_t p) {
     return {image.pixels[3 * p], image.pixels[3 * p + 1], image.pixels[3 * p + 2]};
 }
 
-float luminance(const vec3& c) {
-    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-}
-
 /// The normals in world space. A pixel at an edge has a mean of several normals, which is shorter than 1 and
 /// fits none of its neighbours: it gets that of the neighbour at the most similar distance.
 class Normals {

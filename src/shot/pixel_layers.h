@@ -21,6 +21,11 @@ void forEachPixel(size_t count, Action action) {
                       });
 }
 
+/// Of Rec. 709 primaries.
+inline float luminance(const vec3& c) {
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
+
 /// A pixel's centre in [-1, 1]^2, y up.
 vec2 onScreen(size_t p, const ShotLayers& layers);
 /// Through that point; its component along the camera's axis is 1.

@@ -210,6 +210,29 @@ void ShotDenoiser::cleanGroups(Picture& picture, const LoadedFrame& file, size_t
     }
 }
 
+/// Lets the frame's motion lead to the frame after, which was denoised before it.
+void ShotDenoiser::goBackwards(HostFrame& host, Picture& picture, bool continues, bool own, bool searched) {
+    HostFrame guides;  // before the motion is inverted: the next call needs this frame's
+    guides.width = host.width;
+    guides.height = host.height;
+    guides.motion = host.motion;
+    guides.depth = host.depth;
+    guides.camera = host.camera;
+    // That of other renderers' files leads to the frame after already, which was converted before.
+    std::vector<float> reflectionMotion;
+    if (!own) reflectionMotion.swap(host.reflectionMotion);
+    if (searched && !own) {
+        addDistances(host, picture.last);  // it leads to the frame after already
+    } else if (continues && picture.last) {
+        turnAround(host, *picture.last);
+        host.reflectionMotion.swap(reflectionMotion);
+        dropMovingMirrors(picture.last->camera, host);
+    } else {
+        std::fill(host.motion.begin(), host.motion.end(), 0.0f);
+    }
+    picture.last = std::move(guides);
+}
+
 std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continues) {
     std::vector<CleanPicture> results;
     const size_t count = frame.own ? 1 : frame.maps.size();  // other layers of Limpid's files are no pictures
@@ -223,26 +246,8 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
         HostFrame host = hostFrame(frame, i, picture, continues);
         if (options_.method->network && !own) showSpecularAlbedo(host);
         if (!frame.estimated.empty()) estimateVariances(host, frame.estimated);
-        if (direction_ == Direction::Backwards) {
-            HostFrame guides;  // before the motion is inverted: the next call needs this frame's
-            guides.width = host.width;
-            guides.height = host.height;
-            guides.motion = host.motion;
-            guides.depth = host.depth;
-            guides.camera = host.camera;
-            // That of files leads to the frame before.
-            std::vector<float> reflectionMotion;
-            if (!own) reflectionMotion.swap(host.reflectionMotion);
-            if (frame.maps[i].searchesMotion && !own) {
-                addDistances(host, picture.last);  // it leads to the frame after already
-            } else if (continues && picture.last) {
-                turnAround(host, *picture.last);
-                host.reflectionMotion.swap(reflectionMotion);
-                dropMovingMirrors(picture.last->camera, host);
-            } else
-                std::fill(host.motion.begin(), host.motion.end(), 0.0f);
-            picture.last = std::move(guides);
-        }
+        if (direction_ == Direction::Backwards)
+            goBackwards(host, picture, continues, own, frame.maps[i].searchesMotion);
         CleanPicture& result = results.emplace_back(clean(
             picture.graph, host, own ? 1.0f : edgeFrames(frame.layers[i], *options_.method), continues));
         result.report = picture.converter.report();

@@ -41,6 +41,8 @@ class ShotDenoiser {
   private:
     struct Picture;
     denoise::HostFrame hostFrame(LoadedFrame& frame, size_t index, Picture& picture, bool continues);
+    static void goBackwards(denoise::HostFrame& host, Picture& picture, bool continues, bool own,
+                            bool searched);
     void cleanGroups(Picture& picture, const LoadedFrame& file, size_t index, denoise::HostFrame& one,
                      bool continues, CleanPicture& result);
     CleanPicture clean(gpu::FrameGraph& graph, const denoise::HostFrame& frame, float framesOfEdges,
