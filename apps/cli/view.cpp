@@ -12,9 +12,9 @@
 #include "commands.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
+#include "studio/command_line.h"
+#include "studio/kept_settings.h"
 #ifdef LIMPID_HAVE_VIEWER
-#include "viewer/command_line.h"
-#include "viewer/panel/kept_settings.h"
 #include "viewer/viewer.h"
 #endif
 
@@ -45,33 +45,35 @@ std::string eyeOptions(const SceneChoice& choice) {
 
 /// Returns the saved settings, overridden by the command line.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
-    viewer::ViewSettings settings{.source = o.scene.source,
-                                  .animation = o.animation,
-                                  .render = {},
-                                  .preview = o.preview,
-                                  .controls = o.controls,
-                                  .weights = o.weights,
-                                  .shaders = o.shaders,
-                                  .quitAfter = o.frames,
-                                  .loseDeviceAt = o.loseDeviceAt,
-                                  .screenshot = o.screenshot};
+    viewer::ViewSettings view{.studio = {}, .controls = o.controls, .kept = {}};
     if (o.settings != "none")
-        settings.kept = o.settings == "auto" ? viewer::keptSettingsFile() : std::filesystem::path(o.settings);
-    restoreSettings(settings.kept, settings);
+        view.kept = o.settings == "auto" ? studio::keptSettingsFile() : std::filesystem::path(o.settings);
+    studio::StudioSettings& settings = view.studio;
+    settings.source = o.scene.source;
+    settings.animation = o.animation;
+    settings.preview = o.preview;
+    settings.weights = o.weights;
+    settings.shaders = o.shaders;
+    settings.quitAfter = o.frames;
+    settings.loseDeviceAt = o.loseDeviceAt;
+    settings.screenshot = o.screenshot;
+    restoreSettings(view.kept, settings);
     settings.samples = o.samples.value_or(settings.samples);
     settings.maxSamples = o.maxSamples.value_or(settings.maxSamples);
-    settings.shrink = o.shrink.value_or(settings.shrink);
+    if (o.shrink) settings.resolution = static_cast<studio::Resolution>(*o.shrink + 1);
+    // A given number of frames is for scripts, which want the same pictures on every device.
+    if (o.frames > 0 && !o.shrink) settings.resolution = studio::Resolution::Full;
     settings.render.extent = {o.width, o.height};
     settings.render.pipeline = pipelineFor(o.preset, o.pipeline, settings.render.pipeline);
     settings.render.seed = o.seed;
-    if (!o.scene.camera.empty()) settings.startCamera = "--camera " + viewer::quoted(o.scene.camera);
+    if (!o.scene.camera.empty()) settings.startCamera = "--camera " + studio::quoted(o.scene.camera);
     if (!o.scene.eye.empty()) settings.startCamera += eyeOptions(o.scene);
     if (!o.preset.empty()) {
         applyOnlyPreset(settings.render, o.preset);
         settings.jitter = settings.render.jitter;
     }
     for (const std::string& text : o.assignments) assign(settings.render, text);
-    return settings;
+    return view;
 }
 #endif
 

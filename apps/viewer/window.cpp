@@ -151,6 +151,10 @@ void Window::close() {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
+void Window::wake() const {
+    glfwPostEmptyEvent();
+}
+
 bool Window::poll(double wait) {
     betweenPolls_ = glfwGetTime() - polled_;
     if (wait > 0.0)

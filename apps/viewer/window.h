@@ -47,6 +47,8 @@ class Window {
     /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may
     /// have.
     bool poll(double wait = 0.0);
+    /// Ends a wait of poll(). May be called on any thread.
+    void wake() const;
     /// What has been dropped on it since the last call.
     std::vector<std::string> takeDropped() { return std::exchange(dropped_, {}); }
     InputQueue& input() { return input_; }

@@ -3,44 +3,33 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include <cmath>
-
 namespace limpid::viewer {
 namespace {
 
-constexpr float radiansAPixel = 0.005f;
-constexpr float zoomAStep = 0.85f;
+constexpr float radiansPerPixel = 0.005f;
 
 }  // namespace
 
-Steering Steering::now() {
+studio::Gesture gestureNow(float seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     // Movement before the button went down is not a drag.
     const auto held = [&](int button) { return io.MouseDown[button] && io.MouseDownDuration[button] > 0.0f; };
-    return {.left = held(ImGuiMouseButton_Left),
-            .middle = held(ImGuiMouseButton_Middle),
-            .right = held(ImGuiMouseButton_Right),
-            .x = io.MouseDelta.x,
-            .y = io.MouseDelta.y,
-            .height = io.DisplaySize.y,
-            .wheel = io.MouseWheel};
-}
-
-void Steering::apply(FlyCamera& camera, float seconds, float& speed) const {
-    if (left) camera.orbit(radiansAPixel * x, -radiansAPixel * y);
-    if (middle) camera.pan(x / height, -y / height);
-    if (!right) {
-        if (wheel != 0.0f) camera.zoom(std::pow(zoomAStep, wheel));
-        return;
+    const vec2 moved(io.MouseDelta.x, -io.MouseDelta.y);
+    studio::Gesture gesture;
+    if (held(ImGuiMouseButton_Left)) gesture.orbit = radiansPerPixel * moved;
+    if (held(ImGuiMouseButton_Middle)) gesture.pan = moved / io.DisplaySize.y;
+    if (!held(ImGuiMouseButton_Right)) {
+        gesture.zoom = io.MouseWheel;
+        return gesture;
     }
-    camera.look(radiansAPixel * x, -radiansAPixel * y);
-    if (wheel != 0.0f) speed *= std::pow(1.0f / zoomAStep, wheel);
+    gesture.look = radiansPerPixel * moved;
+    gesture.speed = io.MouseWheel;
     const auto axis = [](int more, int less) {
         return (ImGui::IsKeyDown(more) ? 1.0f : 0.0f) - (ImGui::IsKeyDown(less) ? 1.0f : 0.0f);
     };
-    camera.move(
-        speed * seconds *
-        vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_W, GLFW_KEY_S)));
+    gesture.fly = seconds * vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                                 axis(GLFW_KEY_W, GLFW_KEY_S));
+    return gesture;
 }
 
 }  // namespace limpid::viewer

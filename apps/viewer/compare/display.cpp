@@ -26,6 +26,17 @@ gpu::Extent extentOf(const gpu::Pane& pane) {
     return pane.graph->extent(pane.picture);
 }
 
+void drawArrows(const image::Image& motion) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    for (const Arrow& arrow : motionArrows(motion, size.x, size.y)) {
+        const ImVec2 from{arrow.from.x, arrow.from.y}, to{arrow.to.x, arrow.to.y};
+        marks.AddLine(from, to, shadowColor, 3.0f);
+        marks.AddLine(from, to, lineColor, 1.0f);
+        marks.AddCircleFilled(to, 2.5f, lineColor);
+    }
+}
+
 void drawLabel(ImDrawList& marks, ImVec2 at, const std::string& text) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     marks.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, shadowColor);
@@ -77,7 +88,7 @@ Display::Display(Window& window, gpu::Device& device)
 
 bool Display::dragsDivider(PanelState& panel, Controls& controls) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!panel.comparison.isOn() || io.DisplaySize.x <= 0.0f) {
+    if (!panel.state.comparison.isOn() || io.DisplaySize.x <= 0.0f) {
         dragging_ = false;
         return false;
     }
@@ -92,63 +103,44 @@ bool Display::dragsDivider(PanelState& panel, Controls& controls) {
     return dragging_;
 }
 
-std::array<uint32_t, 2> Display::pixelUnderMouse(gpu::Extent picture) const {
+std::array<float, 2> Display::mousePosition() const {
     const ImGuiIO& io = ImGui::GetIO();
-    const auto along = [](float mouse, float window, uint32_t pixels) {
-        return static_cast<uint32_t>(std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f) *
-                                     length(pixels));
+    const auto along = [](float mouse, float window) {
+        return std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f);
     };
-    return {along(io.MousePos.x, io.DisplaySize.x, picture.width),
-            along(io.MousePos.y, io.DisplaySize.y, picture.height)};
+    return {along(io.MousePos.x, io.DisplaySize.x), along(io.MousePos.y, io.DisplaySize.y)};
+}
+
+std::array<uint32_t, 2> Display::pixelUnderMouse(gpu::Extent picture) const {
+    const auto [x, y] = mousePosition();
+    return {static_cast<uint32_t>(x * length(picture.width)),
+            static_cast<uint32_t>(y * length(picture.height))};
 }
 
 std::string Display::probeOf(const image::Image& picture) const {
     const auto [x, y] = pixelUnderMouse({picture.width, picture.height});
-    return fmt::format("({}, {}):{}", x, y, valuesAt(picture, x, y));
-}
-
-std::string Display::valuesAt(const image::Image& picture, uint32_t x, uint32_t y) {
-    std::string text;
+    std::string text = fmt::format("({}, {}):", x, y);
     for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
     return text;
 }
 
-std::string Display::probeAll(LiveRender& main) const {
-    const auto [x, y] = pixelUnderMouse(main.settings().extent);
-    std::string text = fmt::format("pixel ({}, {})\n", x, y);
-    std::vector<std::string> seen;
-    for (const gpu::RecordedPass& pass : main.renderer().graph().passes()) {
-        if (main.renderer().graph().imagesWrittenBy(pass.name).empty()) continue;
-        for (const auto& [name, picture] : main.renderer().dump(pass.name)) {
-            if (std::ranges::find(seen, name) != seen.end()) continue;
-            seen.push_back(name);
-            const bool same = gpu::Extent{picture.width, picture.height} == main.settings().extent;
-            text += name + (same ? ":" + valuesAt(picture, x, y) : " " + probeOf(picture)) + "\n";
-        }
-    }
-    return text;
+/// Uploads the image of a pass, if one is shown instead of the picture.
+void Display::inspect(PanelState& panel, const studio::Shown& shown) {
+    const bool same = shown.inspected == inspected_ && panel.state.view == inspectedBy_;
+    inspected_ = shown.inspected;
+    inspectedBy_ = panel.state.view;
+    panel.probe.clear();
+    if (!inspected_) return;
+    if (!same)
+        inspector_.show(device_, shownTexels(*inspected_, inspectedBy_),
+                        {inspected_->width, inspected_->height});
+    panel.probe = probeOf(*inspected_);
 }
 
-/// Shows an image of a pass instead of the picture. Returns false if there is none to show.
-bool Display::inspect(PanelState& panel, PanelFacts& facts, LiveRender& main) {
-    if (panel.pass.empty() || !main) return false;
-    const auto wanted = std::tuple(main.frames(), panel.pass, panel.image, panel.view);
-    if (wanted != inspected_) {
-        try {
-            images_ = main.renderer().dump(panel.pass);
-        } catch (const UsageError&) {  // the pass belongs to another integrator or denoiser
-            panel.pass.clear();
-            return false;
-        }
-        facts.images.clear();
-        for (const auto& [name, picture] : images_) facts.images.push_back(name);
-        panel.image = std::min(panel.image, static_cast<int>(images_.size()) - 1);
-        const image::Image& shown = images_[static_cast<size_t>(panel.image)].second;
-        inspector_.show(device_, shownTexels(shown, panel.view), {shown.width, shown.height});
-        inspected_ = wanted;
-    }
-    facts.probe = probeOf(images_[static_cast<size_t>(panel.image)].second);
-    return true;
+void Display::Uploaded::show(gpu::Device& device, const std::shared_ptr<const studio::Picture>& now) {
+    if (picture == now || !now) return;
+    picture = now;
+    texels.show(device, now->texels, now->extent);
 }
 
 void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const {
@@ -178,7 +170,8 @@ void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) 
     }
 }
 
-void Display::drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const {
+void Display::drawDivider(const std::string& left, const PanelState& panel,
+                          const studio::Facts& facts) const {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList& marks = *ImGui::GetBackgroundDrawList();
     const float at = panel.divider * size.x;
@@ -189,39 +182,27 @@ void Display::drawDivider(const std::string& left, const PanelState& panel, cons
     drawLabel(marks, {at + 12.0f, 8.0f}, facts.comparedWith);
 }
 
-void Display::drawArrows(LiveRender& main) {
-    if (std::exchange(motionOf_, main.frames()) != main.frames()) motion_ = main.renderer().motion();
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
-    for (const Arrow& arrow : motionArrows(motion_, size.x, size.y)) {
-        const ImVec2 from{arrow.from.x, arrow.from.y}, to{arrow.to.x, arrow.to.y};
-        marks.AddLine(from, to, shadowColor, 3.0f);
-        marks.AddLine(from, to, lineColor, 1.0f);
-        marks.AddCircleFilled(to, 2.5f, lineColor);
-    }
-}
-
-void Display::present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other) {
-    const bool inspects = inspect(panel, facts, main);
+void Display::present(PanelState& panel, const studio::Shown& shown) {
+    inspect(panel, shown);
+    main_.show(device_, shown.picture);
+    compared_.show(device_, shown.compared);
     std::vector<gpu::Pane> panes;
-    if (inspects)
+    if (inspected_)
         panes.push_back(inspector_.pane());
-    else if (main)
-        panes.push_back(main.pane());
-    if (panes.empty()) {
-        interface_.end();
-        return;
-    }
-    const gpu::Extent picture = extentOf(panes.front());
-    if (panel.arrows) drawArrows(main);
-    if (other && *other) {
+    else if (shown.picture)
+        panes.push_back(main_.texels.pane());
+    const gpu::Extent picture = panes.empty() ? gpu::Extent{} : extentOf(panes.front());
+    if (shown.motion) drawArrows(*shown.motion);
+    if (shown.compared && !panes.empty()) {
         const gpu::Pane whole = panes.front();
-        const auto both = splitPanes(whole, other->pane(), picture, panel.divider);
+        const auto both = splitPanes(whole, compared_.texels.pane(), picture, panel.divider);
         panes.assign(both.begin(), both.end());
-        drawDivider(inspects ? facts.images[static_cast<size_t>(panel.image)] : panel.render.pipeline.title(),
-                    panel, facts);
+        const bool named = inspected_ && !shown.facts.images.empty();
+        drawDivider(named ? shown.facts.images[static_cast<size_t>(shown.state.image)]
+                          : shown.state.render.pipeline.title(),
+                    panel, shown.facts);
     }
-    if (panel.magnifier) drawMagnifier(panes, picture);
+    if (panel.magnifier && !panes.empty()) drawMagnifier(panes, picture);
     presenter_.present(panes, window_.pixels(), interface_.end());
 }
 

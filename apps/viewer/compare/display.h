@@ -2,11 +2,12 @@
 // arrows; and the panel over them.
 #pragma once
 
-#include <tuple>
+#include <array>
+#include <memory>
 
-#include "viewer/compare/inspector.h"
+#include "studio/compare/inspector.h"
+#include "studio/live_render.h"
 #include "viewer/compare/texels.h"
-#include "viewer/live_render.h"
 #include "viewer/panel/interface.h"
 #include "viewer/panel/panel.h"
 
@@ -31,31 +32,34 @@ class Display {
     bool clickedTwice() const { return interface_.clickedTwice(); }
     /// Whether the mouse moves the divider, and so not the camera.
     bool dragsDivider(PanelState& panel, Controls& controls);
-    /// The frame ends and is shown. `other`: what the picture is compared with, or null.
-    void present(PanelState& panel, PanelFacts& facts, LiveRender& main, LiveRender* other);
-    /// Of all images of all passes, the values under the mouse, one a line.
-    std::string probeAll(LiveRender& main) const;
-    /// The pixel of the picture under the mouse.
-    std::array<uint32_t, 2> pixelUnderMouse(gpu::Extent picture) const;
+    /// The frame ends and is shown.
+    void present(PanelState& panel, const studio::Shown& shown);
+    /// The mouse's position in the picture, 0 to 1.
+    std::array<float, 2> mousePosition() const;
 
   private:
-    bool inspect(PanelState& panel, PanelFacts& facts, LiveRender& main);
+    void inspect(PanelState& panel, const studio::Shown& shown);
     std::string probeOf(const image::Image& picture) const;
-    static std::string valuesAt(const image::Image& picture, uint32_t x, uint32_t y);
     void drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const;
     /// `left` and the comparison's name stand beside it.
-    void drawDivider(const std::string& left, const PanelState& panel, const PanelFacts& facts) const;
-    void drawArrows(LiveRender& main);
+    void drawDivider(const std::string& left, const PanelState& panel, const studio::Facts& facts) const;
+    std::array<uint32_t, 2> pixelUnderMouse(gpu::Extent picture) const;
+
+    /// A picture on the device of this window.
+    struct Uploaded {
+        std::shared_ptr<const studio::Picture> picture;
+        Texels texels;
+        void show(gpu::Device& device, const std::shared_ptr<const studio::Picture>& now);
+    };
 
     Window& window_;
     gpu::Device& device_;
     gpu::Presenter presenter_;
     Interface interface_;
+    Uploaded main_, compared_;
     Texels inspector_;
-    std::vector<std::pair<std::string, image::Image>> images_;  ///< of the pass that is inspected
-    std::tuple<uint64_t, std::string, int, InspectorView> inspected_;
-    image::Image motion_;
-    uint64_t motionOf_ = 0;
+    std::shared_ptr<const image::Image> inspected_;
+    studio::InspectorView inspectedBy_;
     bool dragging_ = false;
 };
 

@@ -5,12 +5,8 @@
 #include <vector>
 
 #include "gpu/present/presenter.h"
-#include "image/io/png/png.h"
 
 namespace limpid::viewer {
-
-/// RGBA8, red in the lowest byte; opaque where the image has three components.
-std::vector<uint32_t> packedTexels(const image::ByteImage& bytes);
 
 class Texels {
   public:

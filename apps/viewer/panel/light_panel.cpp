@@ -6,11 +6,12 @@ namespace limpid::viewer {
 namespace {
 
 using scene::LightControl;
+using studio::Request;
 using Lamp = scene::PunctualLight::Kind;
 
 const Range brightnessRange(0.0, 1e9, {0.0, 100.0, SliderScale::Logarithmic, 0.01});
 
-void drawPlace(LightControl& light, const PanelFacts& facts, Controls& controls) {
+void drawPlace(LightControl& light, const studio::Facts& facts, Controls& controls) {
     if (light.kind == LightControl::Kind::Environment) {
         controls.slider("turn", light.turn, {-360.0, 360.0, {-180.0, 180.0}}, "{:.1f}");
         return;
@@ -25,7 +26,7 @@ void drawPlace(LightControl& light, const PanelFacts& facts, Controls& controls)
 }
 
 /// Returns true if the light is to be removed.
-bool drawLight(LightControl& light, bool added, const PanelFacts& facts, Controls& controls) {
+bool drawLight(LightControl& light, bool added, const studio::Facts& facts, Controls& controls) {
     ImGui::PushID(light.index + 1'000'000 * static_cast<int>(light.kind));
     controls.setGroup("light." + light.name);
     controls.checkbox("##on", light.on);
@@ -42,38 +43,40 @@ bool drawLight(LightControl& light, bool added, const PanelFacts& facts, Control
     return removed;
 }
 
-void drawBackground(PanelState& state, Controls& controls) {
-    LightDesk& desk = state.lights;
-    bool& changed = state.asked.relight;
-    changed |= controls.checkbox("background of its own", desk.hasBackground);
+void drawBackground(PanelState& panel, Controls& controls) {
+    studio::LightDesk& desk = panel.state.lights;
+    controls.checkbox("background of its own", desk.hasBackground);
     if (!desk.hasBackground) return;
     const char* const names[] = {"red", "green", "blue"};
     for (int i = 0; i < 3; ++i) {
         controls.slider(names[i], desk.background[i],
                         {0.0, 1e9, {0.0, 100.0, SliderScale::Logarithmic, 0.01}});
-        changed |= ImGui::IsItemDeactivatedAfterEdit();
     }
 }
 
 }  // namespace
 
-void drawLights(PanelState& state, const PanelFacts& facts, Controls& controls) {
+void drawLights(PanelState& panel, const studio::Facts& facts, Controls& controls) {
     controls.setGroup("");
     if (!controls.header("light")) return;
     controls.setGroup("light");
-    PanelRequests& asked = state.asked;
-    asked.addPoint |= controls.button("add a point");
+    const auto ask = [&](const char* name, Request::Kind kind) {
+        if (controls.button(name)) panel.asked.push_back({.kind = kind});
+        ImGui::SameLine();
+    };
+    studio::LightDesk& desk = panel.state.lights;
+    ask("add a point", Request::Kind::AddPoint);
+    ask("add a sun", Request::Kind::AddSun);
+    if (controls.button("as loaded")) desk.reset();
     ImGui::SameLine();
-    asked.addSun |= controls.button("add a sun");
-    ImGui::SameLine();
-    if (controls.button("as loaded")) state.lights.reset();
-    ImGui::SameLine();
-    asked.saveLights |= controls.button("save lights");
-    for (LightControl& light : state.lights.lights) {
-        if (drawLight(light, state.lights.isAdded(light), facts, controls)) asked.removeLamp = light.index;
+    ask("save lights", Request::Kind::SaveLights);
+    ImGui::NewLine();
+    for (LightControl& light : desk.lights) {
+        if (drawLight(light, desk.isAdded(light), facts, controls))
+            panel.asked.push_back({.kind = Request::Kind::RemoveLamp, .index = light.index});
     }
     controls.setGroup("light");
-    drawBackground(state, controls);
+    drawBackground(panel, controls);
     controls.setGroup("");
 }
 

@@ -8,6 +8,6 @@ namespace limpid::viewer {
 
 /// Changes of a light take effect with the next frame; a lamp or a background that is added or taken away
 /// loads the scene again.
-void drawLights(PanelState& state, const PanelFacts& facts, Controls& controls);
+void drawLights(PanelState& panel, const studio::Facts& facts, Controls& controls);
 
 }  // namespace limpid::viewer

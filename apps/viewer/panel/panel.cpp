@@ -13,7 +13,19 @@
 #include "viewer/panel/light_panel.h"
 
 namespace limpid::viewer {
+
+using studio::Facts;
+using studio::PassTrack;
+using studio::Request;
+using studio::State;
+using studio::Track;
+
 namespace {
+
+/// A button that asks for something to be done once.
+void ask(PanelState& panel, Controls& controls, const char* name, Request::Kind kind) {
+    if (controls.button(name)) panel.asked.push_back({.kind = kind});
+}
 
 const Range stopsRange(-32.0, 32.0, {-16.0, 16.0});
 
@@ -75,7 +87,7 @@ void drawDenoisers(Pipeline& chosen, Controls& controls) {
         ImGui::SetTooltip("%s", std::string(chosen.denoiser->help).c_str());
 }
 
-void drawPipelines(PanelState& state, Controls& controls) {
+void drawPipelines(State& state, Controls& controls) {
     Pipeline chosen = state.render.pipeline;
     drawIntegrators(chosen, controls);
     drawDenoisers(chosen, controls);
@@ -90,14 +102,14 @@ void drawPipelines(PanelState& state, Controls& controls) {
 }
 
 /// A click applies the whole preset, including its integrator and denoiser.
-void drawPresets(PanelState& state, Controls& controls) {
+void drawPresets(State& state, Controls& controls) {
     if (!controls.header("presets")) return;
     for (const Preset& preset : presets()) {
         if (controls.button(preset.name.c_str())) {
             const bool fits = preset.isFor(state.render.pipeline);
             if (!fits) state.render.pipeline = preset.pipeline();
             applyOnlyPreset(state.render, preset.name);
-            state.jitter = jitterChoice(preset.jitter, state.render.pipeline);
+            state.jitter = studio::jitterChoice(preset.jitter, state.render.pipeline);
         }
         if (ImGui::IsItemHovered()) {
             ImGui::BeginTooltip();
@@ -110,14 +122,14 @@ void drawPresets(PanelState& state, Controls& controls) {
 }
 
 /// Draws the controls for the pass that is selected in the list.
-void drawInspector(PanelState& state, const PanelFacts& facts, Controls& controls) {
+void drawInspector(State& state, const std::string& probe, const Facts& facts, Controls& controls) {
     if (state.pass.empty() || facts.images.empty()) return;
     state.image = std::min(state.image, static_cast<int>(facts.images.size()) - 1);
     controls.choice("image", facts.images, state.image);
     controls.choice("channels", {"color", "red", "green", "blue", "alpha"}, state.view.channels);
     controls.slider("brightness, stops", state.view.stops, stopsRange, "{:.2f}");
     controls.checkbox("false color", state.view.falseColor);
-    ImGui::TextUnformatted(facts.probe.c_str());
+    ImGui::TextUnformatted(probe.c_str());
 }
 
 void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {
@@ -127,9 +139,9 @@ void plot(const char* name, const Track& track, ImVec2 size, const char* text = 
 }
 
 /// A click on a pass shows its images; another click shows the picture again.
-void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) {
+void drawPasses(State& state, const std::string& probe, const Facts& facts, Controls& controls) {
     if (!controls.header("passes")) return;
-    drawInspector(state, facts, controls);
+    drawInspector(state, probe, facts, controls);
     const std::string last = fmt::format("{:.1f} ms a frame", facts.timings.frames().last());
     plot("##frames", facts.timings.frames(),
          {ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetTextLineHeight()}, last.c_str());
@@ -158,8 +170,8 @@ void drawPasses(PanelState& state, const PanelFacts& facts, Controls& controls) 
     ImGui::EndTable();
 }
 
-void drawComparison(PanelState& state, const PanelFacts& facts, Controls& controls) {
-    controls.choice("compare with", comparisonNames(), state.comparison.with);
+void drawComparison(State& state, const Facts& facts, Controls& controls) {
+    controls.choice("compare with", studio::comparisonNames(), state.comparison.with);
     if (!state.comparison.isOn()) return;
     if (state.comparison.isReference())
         controls.slider("reference samples", state.comparison.referenceSamples,
@@ -168,14 +180,14 @@ void drawComparison(PanelState& state, const PanelFacts& facts, Controls& contro
     controls.note("scores", facts.scores);
 }
 
-void drawLooking(PanelState& state, Controls& controls) {
-    controls.checkbox("magnifier", state.magnifier);
+void drawLooking(PanelState& panel, Controls& controls) {
+    controls.checkbox("magnifier", panel.magnifier);
     ImGui::SameLine();
-    controls.checkbox("arrows", state.arrows);
+    controls.checkbox("arrows", panel.state.arrows);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("motion since the frame before, with a denoiser");
 }
 
-void drawSampling(PanelState& state, Controls& controls) {
+void drawSampling(State& state, Controls& controls) {
     drawPipelines(state, controls);
     int samples = static_cast<int>(state.samples), seed = static_cast<int>(state.render.seed);
     if (controls.slider("samples a frame", samples, {1, 64, {1, 64, SliderScale::Logarithmic}}))
@@ -184,65 +196,78 @@ void drawSampling(PanelState& state, Controls& controls) {
     if (controls.slider("seed", seed, {0, 0x7fffffff, {0, 1000}}))
         state.render.seed = static_cast<uint32_t>(seed);
     controls.choice("jitter", {"as the pipeline needs it", "pixel", "frame", "off"}, state.jitter);
-    controls.choice("resolution", {"full", "1/2", "1/4", "1/8"}, state.shrink);
+    auto resolution = static_cast<int>(state.resolution);
+    if (controls.choice("resolution", {"automatic", "full", "1/2", "1/4", "1/8"}, resolution))
+        state.resolution = static_cast<studio::Resolution>(resolution);
 }
 
-void drawDisplay(PanelState& state, Controls& controls) {
-    PanelRequests& asked = state.asked;
-    controls.slider("exposure, stops", state.exposure, stopsRange, "{:.2f}");
-    asked.measureExposure |= controls.button("measure exposure");
+void drawDisplay(PanelState& panel, Controls& controls) {
+    controls.slider("exposure, stops", panel.state.exposure, stopsRange, "{:.2f}");
+    ask(panel, controls, "measure exposure", Request::Kind::MeasureExposure);
     ImGui::SameLine();
-    asked.screenshot |= controls.button("screenshot");
+    ask(panel, controls, "screenshot", Request::Kind::SavePng);
     ImGui::SameLine();
-    asked.exr |= controls.button("EXR");
+    ask(panel, controls, "EXR", Request::Kind::SaveExr);
     ImGui::SameLine();
-    controls.checkbox("layers", state.render.layers);
+    controls.checkbox("layers", panel.state.render.layers);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("in the EXR file; the path tracer alone is slower with them");
-    asked.command |= controls.button("copy command line");
+    ask(panel, controls, "copy command line", Request::Kind::CommandLine);
 }
 
-void drawTime(PanelState& state, const PanelFacts& facts, Controls& controls) {
-    PanelRequests& asked = state.asked;
+void drawTime(PanelState& panel, const Facts& facts, Controls& controls) {
+    State& state = panel.state;
     controls.checkbox("running", state.running);
     ImGui::SameLine();
-    asked.step |= controls.button("step");
+    ask(panel, controls, "step", Request::Kind::Step);
     ImGui::SameLine();
-    asked.reset |= controls.button("reset");
+    ask(panel, controls, "reset", Request::Kind::Reset);
     if (facts.duration <= 0.0) return;
     ImGui::SameLine();
     controls.checkbox("playing", state.playing);
-    asked.seek |= controls.slider("time, s", state.time, {0.0, facts.duration}, "{:.3f}");
+    controls.slider("time, s", state.time, {0.0, facts.duration}, "{:.3f}");
 }
 
-void drawCamera(PanelState& state, const PanelFacts& facts, Controls& controls) {
-    PanelRequests& asked = state.asked;
-    asked.choosePose |= controls.choice("camera", facts.cameras, state.camera);
+void drawCamera(PanelState& panel, const Facts& facts, Controls& controls) {
+    State& state = panel.state;
+    if (!facts.cameras.empty()) controls.choice("camera", facts.cameras, state.camera);
     controls.slider("field of view", state.fovDegrees, {0.01, 179.0, {5.0, 150.0}}, "{:.1f}");
     // Dragging about a thousand pixels crosses the scene.
     const float speed = 0.002f * facts.sceneRadius;
-    asked.place |= controls.vector("eye", state.pose.eye, speed);
-    asked.place |= controls.vector("target", state.pose.target, speed);
-    asked.place |= controls.vector("up", state.pose.up, 0.01f);
-    state.holdsPose = ImGui::IsAnyItemActive();
-    asked.resetCamera |= controls.button("reset camera");
+    controls.vector("eye", state.pose.eye, speed);
+    controls.vector("target", state.pose.target, speed);
+    controls.vector("up", state.pose.up, 0.01f);
+    panel.holdsPose = ImGui::IsAnyItemActive();
+    ask(panel, controls, "reset camera", Request::Kind::ResetCamera);
     ImGui::SameLine();
-    asked.seeAll |= controls.button("see everything");
+    ask(panel, controls, "see everything", Request::Kind::SeeAll);
     ImGui::SameLine();
-    asked.savePath |= controls.button("save path flown");
+    ask(panel, controls, "save path flown", Request::Kind::SavePath);
 }
 
-void drawOpen(PanelState& state, Controls& controls) {
+void drawOpen(PanelState& panel, Controls& controls) {
     std::array<char, 1024> text{};
-    state.file.copy(text.data(), text.size() - 1);
-    if (ImGui::InputText("open", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue))
-        state.asked.open = true;
+    panel.file.copy(text.data(), text.size() - 1);
+    const bool entered =
+        ImGui::InputText("open", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     controls.note("open");
-    state.file = text.data();
+    panel.file = text.data();
+    if (entered) panel.asked.push_back({.kind = Request::Kind::Open, .file = panel.file});
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("a scene, or an environment (.hdr, .exr); or drop it here");
 }
 
-void drawFacts(const PanelState& state, const PanelFacts& facts) {
+/// What takes longer than a frame.
+void drawActivity(PanelState& panel, const Facts& facts, Controls& controls) {
+    if (!facts.activity.empty()) {
+        ImGui::TextUnformatted(facts.activity.c_str());
+        ImGui::SameLine();
+        ask(panel, controls, "cancel", Request::Kind::CancelLoading);
+    } else {
+        ImGui::TextUnformatted(facts.computing ? "computing" : "finished");
+    }
+}
+
+void drawFacts(const State& state, const Facts& facts) {
     ImGui::TextUnformatted(facts.device.c_str());
     ImGui::Text("%ux%u, %.1f ms a frame, frame %llu", state.render.extent.width, state.render.extent.height,
                 static_cast<double>(facts.timings.frames().last()),
@@ -254,7 +279,7 @@ void drawFacts(const PanelState& state, const PanelFacts& facts) {
 }
 
 /// Drawn in a separate corner, so that no control moves away under the mouse.
-void drawMessages(const PanelFacts& facts) {
+void drawMessages(const Facts& facts) {
     const std::string message = facts.messageIsOld ? std::string() : facts.message;
     if (message.empty() && facts.fault.empty() && facts.allValues.empty()) return;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -277,29 +302,27 @@ void drawMessages(const PanelFacts& facts) {
 
 }  // namespace
 
-int jitterChoice(Jitter jitter, const Pipeline& pipeline) {
-    return jitter == defaultJitter(pipeline) ? 0 : 1 + static_cast<int>(jitter);
-}
-
-void drawPanel(PanelState& state, const PanelFacts& facts, Controls& controls) {
+void drawPanel(PanelState& panel, const Facts& facts, Controls& controls) {
     drawMessages(facts);
-    if (!state.shown) return;
+    if (!panel.shown) return;
     ImGui::SetNextWindowPos({8, 8}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(
         {29.0f * ImGui::GetFontSize(), std::max(ImGui::GetIO().DisplaySize.y - 16.0f, 120.0f)},
         ImGuiCond_FirstUseEver);
     ImGui::Begin("Limpid");
     ImGui::PushItemWidth(-11.0f * ImGui::GetFontSize());  // leaves room for the names
+    State& state = panel.state;
     drawFacts(state, facts);
+    drawActivity(panel, facts, controls);
     drawSampling(state, controls);
-    drawDisplay(state, controls);
-    drawTime(state, facts, controls);
-    drawCamera(state, facts, controls);
-    drawOpen(state, controls);
-    drawLooking(state, controls);
+    drawDisplay(panel, controls);
+    drawTime(panel, facts, controls);
+    drawCamera(panel, facts, controls);
+    drawOpen(panel, controls);
+    drawLooking(panel, controls);
     drawComparison(state, facts, controls);
-    drawLights(state, facts, controls);
-    drawPasses(state, facts, controls);
+    drawLights(panel, facts, controls);
+    drawPasses(state, panel.probe, facts, controls);
     drawPresets(state, controls);
     for (const ParamGroup& group : paramGroups()) drawGroup(state.render, group, controls);
     ImGui::PopItemWidth();

@@ -261,6 +261,7 @@ class FrameGraph {
     /// Returns the pixels of an image of the last executed frame, all components, row 0 first. Waits for the
     /// device.
     std::vector<float> downloadFloat(Device& device, ImageHandle image);
+    /// The same for unsigned integers, and for RGBA8Unorm: a whole pixel each, red in the lowest byte.
     std::vector<uint32_t> downloadUint(Device& device, ImageHandle image);
     /// Returns the image behind a handle of the last executed frame. Only for code in src/gpu.
     const Image& imageOnDevice(Device& device, ImageHandle image);

@@ -125,6 +125,7 @@ std::vector<uint32_t> FrameGraph::downloadUint(Device& device, ImageHandle image
         case Format::R32Uint:
         case Format::RG32Uint:
         case Format::RGBA32Uint:
+        case Format::RGBA8Unorm:
             return reinterpretAs<uint32_t>(downloadPixels(*impl_, device, image));
         default:
             throw Error(

@@ -1,0 +1,64 @@
+#include "studio/compare/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace limpid::studio {
+namespace {
+
+TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
+    ComparisonChoice choice;
+    choice.with = static_cast<int>(comparisonNames().size()) - 1;
+    ASSERT_TRUE(choice.isReference());
+    RenderSettings settings;
+    settings.pipeline = parsePipeline("path", "svgf");
+    settings.jitter = Jitter::Off;
+    settings.seed = 7;
+    RenderSettings other = comparisonSettings(choice, settings);
+    EXPECT_EQ(other.pipeline, Pipeline{});
+    EXPECT_EQ(other.jitter, Jitter::Off);
+    EXPECT_EQ(other.seed, 8u);
+    settings.jitter = Jitter::Frame;
+    EXPECT_EQ(comparisonSettings(choice, settings).jitter, Jitter::Pixel);
+    settings.pipeline = parsePipeline("ao", "svgf");
+    EXPECT_EQ(comparisonSettings(choice, settings).pipeline, parsePipeline("ao"));
+    settings.pipeline = parsePipeline("gbuffer");
+    EXPECT_EQ(comparisonSettings(choice, settings).pipeline, Pipeline{});
+}
+
+TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
+    const std::vector<std::string> names = comparisonNames();
+    ASSERT_EQ(names.size(), 2 + integrators().size() + denoise::denoisers().size());
+    RenderSettings settings;
+    settings.pipeline = parsePipeline("ao", "atrous");
+    for (size_t i = 1; i + 1 < names.size(); ++i) {
+        const Pipeline chosen = comparisonSettings({.with = static_cast<int>(i)}, settings).pipeline;
+        EXPECT_EQ(chosen,
+                  denoise::findDenoiser(names[i]) ? parsePipeline("ao", names[i]) : parsePipeline(names[i]));
+    }
+    settings.pipeline = parsePipeline("preview");
+    const int last = static_cast<int>(names.size()) - 2;
+    EXPECT_EQ(comparisonSettings({.with = last}, settings).pipeline,
+              parsePipeline("path", names.at(names.size() - 2)));
+}
+
+TEST(LiveScores, AreThoseOfTheDisplayedPictures) {
+    // 0.25 and 0.36 of linear light, two stops darker: sRGB values 0.2771 and 0.3317.
+    const image::Image test(16, 16, 3, 0.25f), reference(16, 16, 3, 0.36f);
+    LiveScores scores;
+    scores.compare(test, reference, -2.0f);
+    while (!scores.finish()) std::this_thread::yield();
+    EXPECT_EQ(scores.text().substr(0, 10), "PSNR 25.27");
+}
+
+TEST(LiveScores, WhatIsNoLongerWantedIsDiscarded) {
+    LiveScores scores;
+    scores.compare(image::Image(16, 16, 3, 0.25f), image::Image(16, 16, 3, 0.36f), 0.0f);
+    scores.clear();
+    while (scores.busy()) EXPECT_FALSE(scores.finish());
+    EXPECT_EQ(scores.text(), "");
+}
+
+}  // namespace
+}  // namespace limpid::studio

@@ -1,0 +1,81 @@
+// Files and texts that are written on request: pictures, camera paths, lights, commands.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/files/file.h"
+#include "command_line.h"
+#include "scene/model/light_file.h"
+#include "studio/compare/picture_files.h"
+#include "studio/light_desk.h"
+#include "studio/render_loop.h"
+
+namespace limpid::studio {
+namespace {
+
+constexpr const char* pathFile = "flown.json";
+constexpr const char* lightFile = "lights.json";
+
+}  // namespace
+
+/// Writes the pictures that were asked for, once there is one of the full resolution.
+void RenderLoop::saveWhatIsAsked() {
+    if (toSave_.empty() || !main_ || resolution_.isCoarse()) return;
+    for (const std::string& extension : std::exchange(toSave_, {}))
+        attempt([&] { save(unusedFile("limpid", extension)); });
+}
+
+/// Writes the picture that the studio ends with, in the full resolution.
+void RenderLoop::saveScreenshot() {
+    if (resolution_.isCoarse()) {
+        state_.resolution = Resolution::Full;
+        renderWhatIsDue();
+    }
+    save(settings_.screenshot);
+}
+
+void RenderLoop::save(const std::filesystem::path& file) {
+    savePicture(file, main_, stopsOf(main_.settings().pipeline));
+    say("wrote " + file.string());
+    log::info("{}", facts_.message);
+}
+
+void RenderLoop::makeCommand() {
+    if (!main_ || playback_.frames() == 0) throw Error("there is no frame yet");
+    if (rig_.isFree() && rig_.hand().camera().orthographic)
+        throw Error("the command line has no orthographic camera of one's own");
+    const scene::Scene& scene = stage_->scene();
+    ShownFrame frame{.source = settings_.source,
+                     .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
+                     .weights = settings_.weights.string(),
+                     .settings = main_.settings(),
+                     .samples = state_.samples,
+                     .samplesInMean = main_.samples(),
+                     .camera = rig_.option(settings_.startCamera),
+                     .fovDegrees = fovOfLast_};
+    frame.source.lightFile = state_.lights.isChanged() ? lightFile : "";
+    const CommandLine command = commandLineOf(frame, playback_, pathFile);
+    if (!command.problem.empty()) throw Error(command.problem);
+    if (state_.lights.isChanged()) saveLights();
+    if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
+    facts_.command = command.text;
+    ++facts_.commands;
+    say(command.text);
+    log::info("{}", command.text);
+}
+
+void RenderLoop::savePath() {
+    if (!rig_.isFree()) throw Error("only what the hand has flown can be saved");
+    if (flight_.cameras().empty()) throw Error("nothing was flown since the last reset, or too much");
+    writeTextAtomically(pathFile, pathText(flight_, fovOfLast_));
+    say(fmt::format("wrote {}: {} frames, for --camera-path", pathFile, flight_.cameras().size()));
+}
+
+void RenderLoop::saveLights() {
+    const LightDesk& desk = state_.lights;
+    if (!desk.isChanged()) throw Error("no light was changed");
+    writeTextAtomically(lightFile, scene::lightFileText(desk.lights, desk.original));
+    say(fmt::format("wrote {}, for --lights", lightFile));
+}
+
+}  // namespace limpid::studio

@@ -1,0 +1,46 @@
+// How a studio starts.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "gpu/vulkan/device.h"
+#include "renderer/frame/settings.h"
+#include "scene/device/tracer.h"
+#include "scene/model/scene.h"
+#include "scene/model/scene_source.h"
+#include "studio/state.h"
+
+namespace limpid::studio {
+
+struct StudioSettings {
+    scene::SceneSource source;
+    std::string startCamera;       ///< options of the command line that chose the camera of the first scene;
+                                   ///< empty: its first
+    std::string animation;         ///< clip by name or number, or "all"; empty: the first one
+    RenderSettings render;         ///< its extent is the viewport's at first
+    std::optional<Jitter> jitter;  ///< empty: as the pipeline needs it
+    bool preview = false;          ///< starts with the integrator `preview` instead of the chosen one
+    uint32_t samples = 1;          ///< per pixel and frame
+    /// Samples per pixel at which a picture in which nothing changes is finished.
+    uint64_t maxSamples = 4096;
+    Resolution resolution = Resolution::Automatic;
+    std::filesystem::path weights;     ///< of networks; empty: those that come with Limpid
+    std::filesystem::path shaders;     ///< Limpid's src: shaders are compiled anew when saved; empty: not
+    uint64_t quitAfter = 0;            ///< frames, which are rendered also where nothing changes; 0: no limit
+    std::filesystem::path screenshot;  ///< .png or .exr, written when the studio ends; empty: none
+    uint64_t loseDeviceAt = 0;         ///< for tests: after so many frames, as if; 0: never
+};
+
+/// How rays are traced on the device that there is.
+using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
+
+/// Returns a complete scene (scene/model/prepare.h). Throws InputError and UsageError.
+using SceneLoader = std::function<scene::Scene(const scene::SceneSource& source)>;
+
+/// Returns the camera that the first scene is seen by. Throws UsageError.
+using CameraStart = std::function<scene::Camera(const scene::Scene&)>;
+
+}  // namespace limpid::studio
