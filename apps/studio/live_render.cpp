@@ -15,6 +15,7 @@ bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t 
     }
     renderer_.emplace(device_, stage.onDevice(), settings, samples);
     renderer_->graph().setReplacements(&shaders_);
+    renderer_->graph().setInterruption(interrupted_);
     renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
         if (images.beauty) return tonemap(graph, images.beauty, exposure_);
         return tonemap(graph, images.diffuse, exposure_, images.emission);

@@ -1,6 +1,7 @@
 // A picture that is rendered on and on: one integrator, denoiser and settings, frame after frame.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -16,6 +17,8 @@ class LiveRender {
     LiveRender(gpu::Device& device, const gpu::ShaderReplacements& shaders)
         : device_(device), shaders_(shaders) {}
 
+    /// Lets render() throw gpu::Interrupted; then drop() must be called.
+    void setInterruption(std::function<bool()> interrupted) { interrupted_ = std::move(interrupted); }
     /// Before the scene goes, or to start anew.
     void drop() { renderer_.reset(); }
     /// It has rendered a frame since.
@@ -50,6 +53,7 @@ class LiveRender {
   private:
     gpu::Device& device_;
     const gpu::ShaderReplacements& shaders_;
+    std::function<bool()> interrupted_;
     std::optional<FrameRenderer> renderer_;
     RenderSettings settings_;  ///< of the last frame
     RenderSettings next_;

@@ -25,15 +25,6 @@ void RenderLoop::saveWhatIsAsked() {
         attempt([&] { save(unusedFile("limpid", extension)); });
 }
 
-/// Writes the picture that the studio ends with, in the full resolution.
-void RenderLoop::saveScreenshot() {
-    if (resolution_.isCoarse()) {
-        state_.resolution = Resolution::Full;
-        renderWhatIsDue();
-    }
-    save(settings_.screenshot);
-}
-
 void RenderLoop::save(const std::filesystem::path& file) {
     savePicture(file, main_, stopsOf(main_.settings().pipeline));
     say("wrote " + file.string());

@@ -37,12 +37,13 @@ bool RenderLoop::isOther(const CameraParams& camera) const {
 bool RenderLoop::mustRender() {
     if (state_.viewport.width == 0 || state_.viewport.height == 0) return false;
     const std::tuple work{wanted_.pipeline, state_.samples, state_.comparison.isOn(), facts_.scenesShown};
-    if (!main_ || std::exchange(work_, work) != work) resolution_.forget();
+    if (std::exchange(work_, work) != work) resolution_.forget();
     if (main_) wanted_.extent = main_.settings().extent;
     const bool other = !main_ || isOther(cameraNow());
     const auto now = Clock::now();
     if (other) changed_ = now;
     const bool moves = std::chrono::duration<double>(now - changed_).count() < settleSeconds;
+    interruptible_ = !moves;
     wanted_.extent = resolution_.choose(state_.viewport, state_.resolution, moves);
     const bool resized = main_ && wanted_.extent != main_.settings().extent;
     if (other || resized) {
@@ -60,28 +61,34 @@ bool RenderLoop::renderWhatIsDue() {
     const bool main = mustRender();
     if (wanted_.extent.width == 0 || wanted_.extent.height == 0) return false;
     const CameraParams camera = cameraNow();
-    const auto begin = Clock::now();
-    const size_t pipelines = device_.pipelineCount();
-    bool other = false;
-    if (main) {
-        if (!facts_.computing) announce();
-        render(camera);
-    } else if (main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false)) {
-        comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
-        other = true;
+    const bool other =
+        !main && main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false);
+    try {
+        if (main && !facts_.computing) announce();
+        if (main) renderTimed(camera);
+        if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
+    } catch (const gpu::Interrupted&) {
+        playback_.reset(playback_.time());
+        main_.drop();
+        comparison_.drop();
+        return true;
     }
     measureExposure();
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
-    if (main) {
-        main_.picture();  // waits for the device
-        // A frame that had to compile shaders says nothing of the others.
-        if (device_.pipelineCount() == pipelines)
-            resolution_.note(uint64_t{wanted_.extent.width} * wanted_.extent.height, secondsSince(begin));
-    }
     noteTimes(main);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
     return main || other;
+}
+
+void RenderLoop::renderTimed(const CameraParams& camera) {
+    const auto begin = Clock::now();
+    const size_t pipelines = device_.pipelineCount();
+    render(camera);
+    main_.picture();  // waits for the device
+    // A frame that had to compile shaders says nothing of the others.
+    if (device_.pipelineCount() == pipelines)
+        resolution_.note(uint64_t{wanted_.extent.width} * wanted_.extent.height, secondsSince(begin));
 }
 
 void RenderLoop::render(const CameraParams& camera) {

@@ -1,10 +1,35 @@
 #include "studio/mailbox.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <string_view>
 
 namespace limpid::studio {
 
 using nlohmann::json;
+
+namespace {
+
+/// Fields that a picture can be shown otherwise by, without another frame.
+constexpr std::array<std::string_view, 11> harmless{
+    "exposure", "pass",        "image",   "view.channels",     "view.stops", "view.false_color",
+    "arrows",   "max_samples", "running", "reference_samples", "compare"};
+
+bool isUrgent(const Message& message) {
+    if (std::holds_alternative<Gesture>(message.content)) return true;
+    if (const Request* const request = std::get_if<Request>(&message.content)) {
+        using Kind = Request::Kind;
+        return request->kind == Kind::Reset || request->kind == Kind::ResetCamera ||
+               request->kind == Kind::SeeAll || request->kind == Kind::Focus;
+    }
+    const json& changes = std::get<json>(message.content);
+    return std::ranges::any_of(changes.items(), [](const auto& item) {
+        return std::ranges::find(harmless, item.key()) == harmless.end();
+    });
+}
+
+}  // namespace
 
 uint64_t Mailbox::post(std::variant<json, Gesture, Request> content) {
     uint64_t number = 0;
@@ -32,9 +57,9 @@ std::deque<Message> Mailbox::take(double seconds) {
     return std::exchange(messages_, {});
 }
 
-bool Mailbox::hasMail() const {
+bool Mailbox::hasUrgentMail() const {
     const std::lock_guard lock(mutex_);
-    return !messages_.empty();
+    return std::ranges::any_of(messages_, isUrgent);
 }
 
 void Mailbox::close() {

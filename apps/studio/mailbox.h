@@ -28,8 +28,8 @@ class Mailbox {
     uint64_t post(std::variant<nlohmann::json, Gesture, Request> content);
     /// All messages since the last call. Waits until there is one, close() is called, or the time is over.
     std::deque<Message> take(double seconds);
-    /// Whether there is a message.
-    bool hasMail() const;
+    /// Whether there is a message that makes the frame that is being rendered useless.
+    bool hasUrgentMail() const;
     void close();
     bool isClosed() const;
 

@@ -41,6 +41,12 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     state_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
     state_.resolution = settings.resolution;
     facts_.device = device_.info().name;
+    const auto interrupted = [this] {
+        const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
+        return interruptible_ && (ends || mailbox_.hasUrgentMail());
+    };
+    main_.setInterruption(interrupted);
+    comparison_.setInterruption(interrupted);
 }
 
 void RenderLoop::say(const std::string& message) {
@@ -91,11 +97,7 @@ void RenderLoop::run() {
     bool rests = false;
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
         const bool waits = comparison_.isScoring() || loading_.has_value() || resolution_.isCoarse();
-        for (const Message& message : mailbox_.take(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds)) {
-            handle(message);
-            messages_ = message.number;
-            changedFacts_ = true;
-        }
+        handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
         finishLoading();
         changedFacts_ |= reloadShaders();
         changedFacts_ |= messageAges();
@@ -105,7 +107,28 @@ void RenderLoop::run() {
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
     }
-    if (main_ && !settings_.screenshot.empty()) saveScreenshot();
+    finish();
+}
+
+void RenderLoop::handleMessages(double patience) {
+    for (const Message& message : mailbox_.take(patience)) {
+        handle(message);
+        messages_ = message.number;
+        changedFacts_ = true;
+    }
+}
+
+/// Does what was asked for last: pictures are not lost because the window was closed.
+void RenderLoop::finish() {
+    handleMessages(0.0);
+    if (main_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
+        if (resolution_.isCoarse()) {
+            state_.resolution = Resolution::Full;
+            renderWhatIsDue();
+        }
+        saveWhatIsAsked();
+        if (!settings_.screenshot.empty()) save(settings_.screenshot);
+    }
     device_.waitIdle();
     if (device_.validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device_.validationMessages()));

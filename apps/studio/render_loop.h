@@ -51,6 +51,7 @@ class RenderLoop {
     void takeOver(const Standing& standing);
 
   private:
+    void finish();
     void loadFirst();
     void load(const scene::SceneSource& source, bool relights, std::string message);
     void finishLoading();
@@ -64,6 +65,7 @@ class RenderLoop {
     void changeBackground();
     void startAnew();
 
+    void handleMessages(double patience);
     void handle(const Message& message);
     void edit(const nlohmann::json& changes);
     void steer(const Gesture& gesture);
@@ -83,6 +85,7 @@ class RenderLoop {
     bool isOther(const CameraParams& camera) const;
     bool mustRender();
     bool renderWhatIsDue();
+    void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
     void noteTimes(bool rendered);
     void measureExposure();
@@ -93,7 +96,6 @@ class RenderLoop {
     void announce();
 
     void saveWhatIsAsked();
-    void saveScreenshot();
     void save(const std::filesystem::path& file);
     void makeCommand();
     void savePath();
@@ -140,6 +142,9 @@ class RenderLoop {
     uint64_t messages_ = 0;                           ///< number of the last one that was handled
     uint64_t publications_ = 0;
     bool changedFacts_ = true;  ///< something is to be published, though no frame was rendered
+    /// The frame is one of a picture that rests. Those of a moving one are short, and are all finished: else
+    /// a hand that moves on would never see one.
+    bool interruptible_ = false;
     bool step_ = false, measureExposure_ = false;
     std::vector<std::string> toSave_;  ///< extensions of pictures that were asked for
     float fovOfLast_ = 0.0f;           ///< degrees

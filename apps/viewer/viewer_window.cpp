@@ -61,6 +61,8 @@ void ViewerWindow::run(studio::Studio& studio) {
         --restless;
     }
     studio.removeListener(listener);
+    shown_ = studio.shown();
+    takeState();
 }
 
 void ViewerWindow::finish() {

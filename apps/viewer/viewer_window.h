@@ -24,6 +24,8 @@ class ViewerWindow {
     ViewerWindow(const gpu::DeviceOptions& options, const ViewSettings& settings);
     /// Until it is closed, or the studio ends.
     void run(studio::Studio& studio);
+    /// As the user left it.
+    const studio::State& state() const { return panel_.state; }
     /// Throws Error if the validation layer has reported anything about the window's device.
     void finish();
 

@@ -18,6 +18,10 @@ class LiveComparison {
     LiveComparison(gpu::Device& device, const gpu::ShaderReplacements& shaders, const Networks& networks)
         : other_(device, shaders), networks_(networks) {}
 
+    /// As LiveRender has it.
+    void setInterruption(std::function<bool()> interrupted) {
+        other_.setInterruption(std::move(interrupted));
+    }
     /// Before the scene goes, to start anew, or because nothing is compared any more.
     void drop();
     /// Something is another than it was.

@@ -28,6 +28,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "gpu/graph/resources.h"
 #include "gpu/graph/shader.h"
 
@@ -162,6 +163,12 @@ struct GraphOptions {
     bool shareMemory = false;
 };
 
+/// Thrown by FrameGraph::execute() where its caller interrupted it.
+class Interrupted : public Error {
+  public:
+    Interrupted() : Error("the frame was interrupted") {}
+};
+
 class FrameGraph {
   public:
     explicit FrameGraph(GraphOptions options = {});
@@ -187,6 +194,12 @@ class FrameGraph {
 
     /// Invalidates every history from the next frame on (scene cut, changed settings).
     void resetHistories();
+
+    /// Makes execute() interruptible on CPUs, whose frames can take seconds: it cuts the frame into short
+    /// submissions that it waits for, asks `interrupted` between them on its own thread, and throws
+    /// Interrupted if that returns true. Histories are undefined then: use another graph. None (the default):
+    /// frames run as a whole. Other devices ignore it.
+    void setInterruption(std::function<bool()> interrupted);
 
     /// From the next dispatch on, replaces shaders by those of the same name. They must outlive their use,
     /// may change between frames, and must have the same interface (sameInterface()) as the originals.

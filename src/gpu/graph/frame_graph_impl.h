@@ -150,6 +150,7 @@ struct FrameGraph::Impl {
     bool resetRequested = false;
     std::map<std::string, std::shared_ptr<const Shader>, std::less<>> shaders;
     const ShaderReplacements* replacements = nullptr;
+    std::function<bool()> interrupted;   ///< see setInterruption()
     std::vector<ResourceUse> imageUses;  ///< of the images' memory
     std::map<const BufferResource*, ResourceUse> bufferUses;
     size_t lastBarrier = 0;                   ///< the last pass that waits: all passes before it are finished

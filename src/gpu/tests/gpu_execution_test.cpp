@@ -64,6 +64,58 @@ TEST_F(GpuTest, ReadsAndWritesOneImage) {
     EXPECT_EQ(graph.downloadFloat(device(), a)[0], 6.0f);
 }
 
+/// Frames that are cut into short submissions: cheap passes together, and what has no known time yet alone.
+TEST_F(GpuTest, InterruptibleFramesComputeTheSame) {
+    constexpr Extent extent{700, 300};
+    const auto run = [&](bool interruptible) {
+        FrameGraph graph;
+        int asked = 0;
+        if (interruptible) graph.setInterruption([&] { return ++asked, false; });
+        std::vector<float> pixels;
+        for (int frame = 0; frame < 3; ++frame) {
+            graph.beginFrame();
+            const ImageHandle a = graph.transient("a", rgba, extent), b = graph.transient("b", rgba, extent);
+            FillParams params{.step = 0.5f};
+            fill(graph, "fill", a, params);
+            scale(graph, "scale", a, b);
+            const History history = accumulate(graph, extent);
+            graph.execute(device());
+            pixels = graph.downloadFloat(device(), b);
+            const std::vector<float> counted = graph.downloadFloat(device(), history.current);
+            pixels.insert(pixels.end(), counted.begin(), counted.end());
+        }
+        EXPECT_EQ(asked > 3, interruptible && this->device().isCpu());
+        return pixels;
+    };
+    EXPECT_EQ(run(true), run(false));
+}
+
+TEST_F(GpuTest, AnInterruptedFrameEndsAtOnce) {
+    if (!device().isCpu()) GTEST_SKIP() << "NOT TESTED: only frames on CPUs can be interrupted.";
+    constexpr Extent extent{700, 300};
+    int asked = 0;
+    {
+        FrameGraph graph;
+        graph.setInterruption([&] { return ++asked == 3; });
+        graph.beginFrame();
+        const ImageHandle a = graph.transient("a", rgba, extent);
+        fill(graph, "fill", a);
+        for (int i = 0; i < 20; ++i)
+            graph.dispatch({.pass = "increment",
+                            .shader = shaders::test_increment_comp,
+                            .bindings = {{"value", a}},
+                            .extent = extent});
+        EXPECT_THROW(graph.execute(device()), Interrupted);
+    }
+    EXPECT_EQ(asked, 3);
+    FrameGraph graph;  // the device works as before
+    graph.beginFrame();
+    const ImageHandle a = graph.transient("a", rgba, odd);
+    fill(graph, "fill", a);
+    graph.execute(device());
+    EXPECT_EQ(graph.downloadFloat(device(), a)[0], 1.0f);
+}
+
 TEST_F(GpuTest, HistoriesLiveAcrossFrames) {
     FrameGraph graph;
     for (int frame = 1; frame <= 7; ++frame) {
@@ -285,6 +337,10 @@ TEST_F(GpuTest, DownloadsEveryFormat) {
             ASSERT_EQ(values.size(), size_t{odd.width} * odd.height * components);
             for (uint32_t c = 0; c < components; ++c)
                 EXPECT_EQ(values[at + c], expected[c]) << toString(format);
+            if (unorm) {  // whole pixels, red in the lowest byte
+                EXPECT_EQ(graph.downloadUint(device(), images[i])[at / 4], 0xff00ff14u);
+                continue;
+            }
             EXPECT_THAT(faultOf([&] { graph.downloadUint(device(), images[i]); }),
                         HasSubstr("use downloadFloat"));
         }

@@ -1,6 +1,7 @@
 #include "gpu/vulkan/execute/frame_executor.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "base/error.h"
 #include "base/text/format.h"
@@ -313,13 +314,10 @@ void FrameExecutor::recordPass(const RecordedFrame& frame, size_t index, FrameSl
     const RecordedDispatch& dispatch = frame.dispatches[index];
     if (dispatch.host) return runOnHost(frame, index, slot);
     const VkCommandBuffer commands = slot.commands();
-    beginLabel(commands, pass.name);
     if (!pass.hazards.empty()) passBarrier(*context_, commands);
-    if (dispatch.shader) {
-        recordDispatch(frame, index, slot);
-    } else {
-        structuresOf(dispatch.resources.front()).recordRebuild(commands);
-    }
+    if (dispatch.shader) return recordDispatch(frame, index, slot);
+    beginLabel(commands, pass.name);
+    structuresOf(dispatch.resources.front()).recordRebuild(commands);
     endLabel(commands);
 }
 
@@ -346,19 +344,69 @@ void FrameExecutor::recordDispatch(const RecordedFrame& frame, size_t index, Fra
     const VkCommandBuffer commands = slot.commands();
     const PipelineCache::Pipeline pipeline = pipelines_->get(dispatch);
     const VkDescriptorSet set = writeDescriptors(frame, index, pipeline.setLayout, slot);
-    const ShaderTable* table = pipeline.table;
-    const VkPipelineBindPoint point =
-        table ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
-    context_->vk().CmdBindPipeline(commands, point, pipeline.pipeline);
-    context_->vk().CmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
+    if (slices_ && !pipeline.table) return recordSlices(frame, index, pipeline, set, slot);
+    beginLabel(commands, frame.passes[index].name);
+    bind(commands, pipeline, set);
     const auto& groups = dispatch.groups;
-    if (table) {
+    if (const ShaderTable* const table = pipeline.table) {
         const VkStridedDeviceAddressRegionKHR callable{};
         context_->vk().CmdTraceRaysKHR(commands, &table->rayGeneration, &table->miss, &table->hit, &callable,
                                        groups[0], groups[1], groups[2]);
     } else {
         context_->vk().CmdDispatch(commands, groups[0], groups[1], groups[2]);
     }
+    endLabel(commands);
+}
+
+void FrameExecutor::bind(VkCommandBuffer commands, const PipelineCache::Pipeline& pipeline,
+                         VkDescriptorSet set) const {
+    const VkPipelineBindPoint point =
+        pipeline.table ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE;
+    context_->vk().CmdBindPipeline(commands, point, pipeline.pipeline);
+    context_->vk().CmdBindDescriptorSets(commands, point, pipeline.layout, 0, 1, &set, 0, nullptr);
+}
+
+/// Short passes are submitted together; each slice of a long one alone, which also orders it after the one
+/// before.
+void FrameExecutor::recordSlices(const RecordedFrame& frame, size_t index,
+                                 const PipelineCache::Pipeline& pipeline, VkDescriptorSet set,
+                                 FrameSlot& slot) {
+    const std::string& pass = frame.passes[index].name;
+    const auto& groups = frame.dispatches[index].groups;
+    const uint64_t groupsPerRow = uint64_t{groups[0]} * groups[2];
+    for (uint32_t row = 0; row < groups[1];) {
+        const uint32_t rows = slices_->rows(pass, groupsPerRow, groups[1] - row);
+        const double expected = slices_->seconds(pass, groupsPerRow * rows);
+        const bool alone = expected == 0.0 || rows < groups[1];
+        if (slices_->pending > 0.0 && (alone || slices_->pending + expected > TimeSlices::sliceSeconds))
+            submitSlice(slot);
+        const VkCommandBuffer commands = slot.commands();
+        beginLabel(commands, pass);
+        bind(commands, pipeline, set);
+        context_->vk().CmdDispatchBase(commands, 0, row, 0, groups[0], rows, groups[2]);
+        endLabel(commands);
+        slices_->pending += expected;
+        if (alone) slices_->note(pass, groupsPerRow * rows, submitSlice(slot));
+        row += rows;
+    }
+}
+
+/// Submits what was recorded, and waits. Returns the seconds that it took. Throws Interrupted.
+double FrameExecutor::submitSlice(FrameSlot& slot) {
+    const auto begin = std::chrono::steady_clock::now();
+    slot.flush();
+    slices_->pending = 0.0;
+    if (slices_->interrupted()) throw Interrupted();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void FrameExecutor::setInterruption(std::function<bool()> interrupted) {
+    if (!interrupted)
+        slices_.reset();
+    else if (!slices_)
+        slices_.emplace(std::move(interrupted));
+    else
+        slices_->interrupted = std::move(interrupted);
 }
 
 VkDescriptorSet FrameExecutor::writeDescriptors(const RecordedFrame& frame, size_t index,

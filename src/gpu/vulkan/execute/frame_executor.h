@@ -10,9 +10,13 @@
 // are no queue-ownership transfers, events or semaphores.
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "gpu/vulkan/device_impl.h"
 #include "gpu/vulkan/execute/frame_slot.h"
 #include "gpu/vulkan/execute/pipeline_cache.h"
+#include "gpu/vulkan/execute/time_slices.h"
 #include "gpu/vulkan/memory/image_pool.h"
 
 namespace limpid::gpu {
@@ -26,6 +30,8 @@ class FrameExecutor {
     const Context& context() const { return *context_; }
     void execute(const RecordedFrame& frame);
     void record(const RecordedFrame& frame, VkCommandBuffer commands);
+    /// See FrameGraph::setInterruption().
+    void setInterruption(std::function<bool()> interrupted);
     /// Creates the frame's images that no frame has used yet, and records their clearing. Executes no pass.
     void clear(const RecordedFrame& frame, VkCommandBuffer commands);
     /// Returns the device image behind an image of an executed frame.
@@ -60,6 +66,10 @@ class FrameExecutor {
     void recordPass(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void runOnHost(const RecordedFrame& frame, size_t index, FrameSlot& slot);
     void recordDispatch(const RecordedFrame& frame, size_t index, FrameSlot& slot);
+    void recordSlices(const RecordedFrame& frame, size_t index, const PipelineCache::Pipeline& pipeline,
+                      VkDescriptorSet set, FrameSlot& slot);
+    double submitSlice(FrameSlot& slot);
+    void bind(VkCommandBuffer commands, const PipelineCache::Pipeline& pipeline, VkDescriptorSet set) const;
     VkDescriptorSet writeDescriptors(const RecordedFrame& frame, size_t index, VkDescriptorSetLayout layout,
                                      FrameSlot& slot);
     void checkGroups(const RecordedFrame& frame, size_t index) const;
@@ -74,6 +84,7 @@ class FrameExecutor {
     std::vector<FrameImage> frameImages_;  ///< by index of the recorded image
     bool foreign_ = false;                 ///< frames are recorded into the caller's commands
     std::vector<PassTime> foreignTimes_;   ///< of the latest frame known to be finished
+    std::optional<TimeSlices> slices_;     ///< set: frames can be interrupted
     uint64_t submitted_ = 0;               ///< number of frames so far
     size_t cleared_ = 0;
 };

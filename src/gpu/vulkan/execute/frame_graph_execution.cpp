@@ -80,8 +80,14 @@ FrameExecutor& FrameGraph::Impl::readyToRun(Device& device) {
 }
 
 void FrameGraph::execute(Device& device) {
-    impl_->readyToRun(device).execute(impl_->frame);
+    FrameExecutor& executor = impl_->readyToRun(device);
+    executor.setInterruption(device.isCpu() ? impl_->interrupted : nullptr);
+    executor.execute(impl_->frame);
     impl_->frame.executed = true;
+}
+
+void FrameGraph::setInterruption(std::function<bool()> interrupted) {
+    impl_->interrupted = std::move(interrupted);
 }
 
 void FrameGraph::record(Device& device, VkCommandBuffer commands) {

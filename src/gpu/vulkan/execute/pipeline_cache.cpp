@@ -263,6 +263,8 @@ UniqueShaderModule PipelineCache::makeModule(const Shader& shader, const Shader:
 UniquePipeline PipelineCache::makeComputePipeline(const VkPipelineShaderStageCreateInfo& stage,
                                                   VkPipelineLayout layout) const {
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    // Frames on CPUs can be cut into slices (time_slices.h).
+    if (context_->info().type == DeviceType::Cpu) info.flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT;
     info.stage = stage;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
