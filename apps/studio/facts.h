@@ -16,7 +16,7 @@ struct Facts {
     int scenesShown = 0;  ///< number of scenes that were loaded so far
     std::string
         activity;        ///< what takes longer than a frame now, such as "loading helmet.glb"; empty: nothing
-    gpu::Extent extent;  ///< of the last frame
+    gpu::Extent extent;  ///< of the frame that is computed, or was last
     uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
     uint64_t frames = 0;         ///< since the last reset
     uint64_t framesEver = 0;

@@ -51,8 +51,10 @@ bool RenderLoop::mustRender() {
         comparison_.noteChange();
     }
     if (std::exchange(step_, false) || other || resized) return true;
-    return state_.running &&
-           (settings_.quitAfter > 0 || main_.samples() < static_cast<uint64_t>(state_.maxSamples));
+    // Nothing is known of the device's speed yet: the coarse picture is not the last one.
+    const bool unmeasured = !moves && resolution_.isCoarse();
+    return state_.running && (unmeasured || settings_.quitAfter > 0 ||
+                              main_.samples() < static_cast<uint64_t>(state_.maxSamples));
 }
 
 /// Renders the next frame, or another one of the comparison alone. Returns false if neither is needed.
@@ -64,7 +66,8 @@ bool RenderLoop::renderWhatIsDue() {
     const bool other =
         !main && main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false);
     try {
-        if (main && !facts_.computing) announce();
+        const bool news = !facts_.computing || !main_ || wanted_.extent != main_.settings().extent;
+        if (main && news) announce();
         if (main) renderTimed(camera);
         if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
     } catch (const gpu::Interrupted&) {

@@ -43,7 +43,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     facts_.device = device_.info().name;
     const auto interrupted = [this] {
         const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
-        return interruptible_ && (ends || mailbox_.hasUrgentMail());
+        return interruptible_ && !ending_ && (ends || mailbox_.hasUrgentMail());
     };
     main_.setInterruption(interrupted);
     comparison_.setInterruption(interrupted);
@@ -121,8 +121,9 @@ void RenderLoop::handleMessages(double patience) {
 /// Does what was asked for last: pictures are not lost because the window was closed.
 void RenderLoop::finish() {
     handleMessages(0.0);
-    if (main_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
-        if (resolution_.isCoarse()) {
+    ending_ = true;
+    if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
+        if (!main_ || resolution_.isCoarse()) {
             state_.resolution = Resolution::Full;
             renderWhatIsDue();
         }

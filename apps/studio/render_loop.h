@@ -145,6 +145,7 @@ class RenderLoop {
     /// The frame is one of a picture that rests. Those of a moving one are short, and are all finished: else
     /// a hand that moves on would never see one.
     bool interruptible_ = false;
+    bool ending_ = false;
     bool step_ = false, measureExposure_ = false;
     std::vector<std::string> toSave_;  ///< extensions of pictures that were asked for
     float fovOfLast_ = 0.0f;           ///< degrees

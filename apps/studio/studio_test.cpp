@@ -1,0 +1,175 @@
+// A whole studio on the test device: messages in, snapshots out.
+#include "studio/studio.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "base/error.h"
+#include "image/io/picture.h"
+#include "studio/state_json.h"
+
+namespace limpid::studio {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using Kind = Request::Kind;
+
+class StudioTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (gpu::enumerateDevices().empty()) GTEST_SKIP() << "NOT TESTED: this machine has no Vulkan device.";
+    }
+
+    static std::string wantedDevice() {
+        const char* const variable = std::getenv("LIMPID_TEST_DEVICE");
+        return variable ? variable : "cpu";
+    }
+    static std::unique_ptr<Studio> make(StudioSettings settings, SceneLoader load = scene::openScene) {
+        settings.maxSamples = std::min<uint64_t>(settings.maxSamples, 2);
+        return std::make_unique<Studio>(
+            gpu::DeviceOptions{.select = wantedDevice()},
+            [](const gpu::Device&) { return scene::Tracer::Compute; }, std::move(load),
+            [](const scene::Scene& scene) { return scene.cameras.front(); }, settings);
+    }
+    static StudioSettings small(const char* scene = "builtin:cornell") {
+        StudioSettings settings;
+        settings.source.scene = scene;
+        settings.render.extent = {64, 48};
+        return settings;
+    }
+    /// The first snapshot that fits, which also includes a message.
+    template <typename Fits>
+    static std::shared_ptr<const Shown> wait(const Studio& studio, uint64_t message, const Fits& fits) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+        while (std::chrono::steady_clock::now() < end && !studio.hasEnded()) {
+            auto shown = studio.shown();
+            if (shown->messages >= message && fits(*shown)) return shown;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        ADD_FAILURE() << "waited in vain: " << toJson(studio.shown()->facts).dump();
+        return studio.shown();
+    }
+    static std::shared_ptr<const Shown> rest(const Studio& studio, uint64_t message = 0) {
+        return wait(studio, message, [](const Shown& s) {
+            return s.picture && !s.facts.computing && s.picture->extent == s.state.viewport;
+        });
+    }
+};
+
+TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
+    const auto studio = make(small());
+    const auto first = rest(*studio);
+    EXPECT_EQ(first->picture->extent, (gpu::Extent{64, 48}));
+    EXPECT_THAT(first->facts.scene, HasSubstr("ornell"));
+
+    const auto seeded = rest(*studio, studio->edit({{"seed", 9}}));
+    EXPECT_NE(seeded->picture->texels, first->picture->texels);
+    EXPECT_EQ(rest(*studio, studio->edit({{"seed", 0}}))->picture->texels, first->picture->texels);
+
+    const auto orbited = rest(*studio, studio->steer({.orbit = {0.3f, 0.1f}}));
+    EXPECT_NE(orbited->state.pose, first->state.pose);
+    EXPECT_NE(orbited->picture->texels, first->picture->texels);
+    const auto placed = rest(*studio, studio->edit({{"eye", toJson(first->state)["eye"]}}));
+    EXPECT_LT(glm::length(placed->state.pose.eye - first->state.pose.eye), 1e-4f);
+    rest(*studio, studio->ask({Kind::ResetCamera}));
+
+    const auto resized = rest(*studio, studio->edit({{"viewport", {40, 30}}}));
+    EXPECT_EQ(resized->picture->extent, (gpu::Extent{40, 30}));
+
+    const auto bad = wait(*studio, studio->edit({{"exposure", "bright"}}),
+                          [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(bad->facts.fault, HasSubstr("exposure"));
+    const auto good = rest(*studio, studio->edit({{"exposure", 3.0}}));
+    EXPECT_TRUE(good->facts.fault.empty()) << "the old error stays";
+    EXPECT_NE(good->picture->texels, resized->picture->texels);
+    EXPECT_EQ(good->facts.frames, resized->facts.frames) << "another exposure needs no frame";
+    studio->finish();
+}
+
+/// The old scene is shown until the new one is there; one that fails changes nothing.
+TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
+    std::atomic<bool> go = false;
+    const auto slow = [&](const scene::SceneSource& source) {
+        if (source.scene == "builtin:lab-mirror") {
+            while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return scene::openScene(source);
+    };
+    const auto studio = make(small(), slow);
+    const auto first = rest(*studio);
+    wait(*studio, studio->ask({.kind = Kind::Open, .file = "builtin:lab-mirror"}),
+         [](const Shown& s) { return s.facts.activity == "loading builtin:lab-mirror"; });
+    const auto still = rest(*studio, studio->edit({{"seed", 3}}));
+    EXPECT_EQ(still->facts.scene, first->facts.scene);
+    EXPECT_NE(still->picture->texels, first->picture->texels);
+    const auto cancelled = wait(*studio, studio->ask({Kind::CancelLoading}),
+                                [](const Shown& s) { return s.facts.activity.empty(); });
+    EXPECT_EQ(cancelled->facts.scene, first->facts.scene);
+    const auto failed = wait(*studio, studio->ask({.kind = Kind::Open, .file = "none.gltf"}),
+                             [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(failed->facts.fault, HasSubstr("none.gltf"));
+    EXPECT_EQ(failed->facts.scenesShown, 1);
+    go = true;
+    const auto opened = wait(*studio, studio->ask({.kind = Kind::Open, .file = "builtin:lab-mirror"}),
+                             [](const Shown& s) { return s.facts.scenesShown == 2; });
+    EXPECT_NE(opened->facts.scene, first->facts.scene);
+    EXPECT_TRUE(opened->facts.fault.empty());
+    studio->finish();
+}
+
+TEST_F(StudioTest, TheFirstSceneEndsIt) {
+    const auto studio = make(small("none.gltf"));
+    EXPECT_THROW(
+        {
+            while (!studio->hasEnded()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            studio->finish();
+        },
+        InputError);
+}
+
+/// A picture that takes many seconds is given up for the camera, and the next one is coarse.
+TEST_F(StudioTest, AHandInterruptsAPictureThatRests) {
+    if (wantedDevice() != "cpu") GTEST_SKIP() << "NOT TESTED: only frames on CPUs are interrupted.";
+    StudioSettings settings = small();
+    settings.render.extent = {1600, 1200};
+    settings.samples = 16;
+    const auto studio = make(settings);
+    // The coarse picture is there, and the full one is computed.
+    const auto coarse = wait(*studio, 0, [](const Shown& s) {
+        return s.picture && s.facts.computing && s.facts.extent == s.state.viewport;
+    });
+    EXPECT_LT(coarse->picture->extent.width, 1600u);
+    const auto moved = wait(*studio, studio->steer({.orbit = {0.1f, 0.0f}}),
+                            [&](const Shown& s) { return s.picture && s.picture != coarse->picture; });
+    EXPECT_LT(moved->picture->extent.width, 1600u) << "the full picture was waited for";
+    EXPECT_NE(moved->state.pose, coarse->state.pose);
+    studio->finish();
+}
+
+/// Also on a slow device, and where the window is closed at once.
+TEST_F(StudioTest, PicturesAreSavedInFullSize) {
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("limpid_studio_test." + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(folder);
+    const auto studio = make(small());
+    wait(*studio, 0, [](const Shown& s) { return s.picture != nullptr; });
+    studio->steer({.orbit = {0.2f, 0.0f}});
+    studio->ask({Kind::SavePng});
+    studio->finish();
+    const image::Image saved = image::readPicture(folder / "limpid.png").linear;
+    EXPECT_EQ(saved.width, 64u);
+    EXPECT_EQ(saved.height, 48u);
+    std::filesystem::current_path(before);
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace limpid::studio
