@@ -6,6 +6,7 @@
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
 #include "studio/command_line.h"
+#include "studio/state_file.h"
 
 namespace limpid::cli {
 namespace {
@@ -28,6 +29,10 @@ void addStudioOptions(CLI::App& command, StudioChoice& choice) {
                        "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
     command.add_option("--set", choice.assignments,
                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command.add_option(
+        "--state", choice.state,
+        "State of a window, as 'copy command line' writes it: camera, lights, method and look; over the "
+        "other options");
     command.add_option("--weights", choice.weights,
                        "Weights file for kpcn instead of the one that comes with Limpid");
     command.add_option("--width", choice.width, "Width at first, pixels (1280)")->check(CLI::Range(1, 16384));
@@ -74,6 +79,7 @@ void apply(const StudioChoice& choice, studio::StudioSettings& settings) {
         settings.jitter = settings.render.jitter;
     }
     for (const std::string& text : choice.assignments) assign(settings.render, text);
+    if (!choice.state.empty()) settings.state = studio::readStateFile(choice.state);
 }
 
 studio::TracerChoice tracerChoice(const StudioChoice& choice) {
