@@ -32,7 +32,7 @@ struct ViewOptions {
     std::string settings = "auto", animation, weights, screenshot, controls, shaders;
     std::string preset;
     std::vector<std::string> assignments;
-    uint32_t width = 1280, height = 720, seed = 0;
+    uint32_t width = 1000, height = 720, seed = 0;
     uint64_t frames = 0, loseDeviceAt = 0;
 };
 
@@ -98,9 +98,11 @@ void run([[maybe_unused]] const ViewOptions& o) {
 
 void addViewCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "view", "Open a window to fly through a scene and try every integrator, denoiser and parameter");
+        "view",
+        "Open a window to fly through a scene and try every integrator, denoiser and parameter; without a "
+        "SCENE, a page to choose one from");
     auto o = std::make_shared<ViewOptions>();
-    addSceneOptions(*command, o->scene);
+    addSceneOptions(*command, o->scene, false);
     addPipelineOptions(*command, o->pipeline, "the last one; at first path", "the last one; at first none");
     command->add_flag("--preview", o->preview,
                       "Start with the fast preview: first hits, shaded by a light at the camera");
@@ -110,8 +112,9 @@ void addViewCommand(CLI::App& app) {
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
     command->add_option("--weights", o->weights,
                         "Weights file for kpcn instead of the one that comes with Limpid");
-    command->add_option("--width", o->width, "Window width, pixels (1280)")->check(CLI::Range(1, 16384));
-    command->add_option("--height", o->height, "Window height, pixels (720)")->check(CLI::Range(1, 16384));
+    command->add_option("--width", o->width, "Picture width, pixels (1000); the panel comes beside it")
+        ->check(CLI::Range(1, 16384));
+    command->add_option("--height", o->height, "Picture height, pixels (720)")->check(CLI::Range(1, 16384));
     command->add_option("--spp", o->samples, "Samples per pixel and frame; more is less noisy and slower (1)")
         ->check(CLI::Range(1, 64));
     command

@@ -135,6 +135,18 @@ gpu::Extent Window::size() const {
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
+void Window::resize(gpu::Extent size) const {
+    glfwSetWindowSize(window_, static_cast<int>(size.width), static_cast<int>(size.height));
+}
+
+int Window::keyOf(char letter) {
+    for (int key = GLFW_KEY_A; key <= GLFW_KEY_Z; ++key) {
+        const char* const name = glfwGetKeyName(key, 0);
+        if (name && name[0] == letter && name[1] == '\0') return key;
+    }
+    return GLFW_KEY_A + (letter - 'a');
+}
+
 void Window::setClipboard(const std::string& text) const {
     glfwSetClipboardString(window_, text.c_str());
 }
