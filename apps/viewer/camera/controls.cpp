@@ -43,7 +43,7 @@ void Controls::note(const std::string& name, const std::string& value, float lef
 }
 
 bool Controls::button(const char* name) {
-    const bool pressed = ImGui::SmallButton(name);
+    const bool pressed = ImGui::Button(name);
     note(name);
     return pressed;
 }

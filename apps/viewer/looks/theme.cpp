@@ -53,7 +53,9 @@ void setColors(const Palette& p) {
     set({ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive, ImGuiCol_ScrollbarGrabActive},
         p.active);
     set({ImGuiCol_ScrollbarBg}, none);
-    set({ImGuiCol_SliderGrab, ImGuiCol_CheckMark, ImGuiCol_PlotLines, ImGuiCol_SeparatorHovered}, p.accent);
+    set({ImGuiCol_CheckMark, ImGuiCol_PlotLines, ImGuiCol_SeparatorHovered}, p.accent);
+    // The number behind it stays legible.
+    set({ImGuiCol_SliderGrab}, {p.accent.x, p.accent.y, p.accent.z, 0.7f});
     set({ImGuiCol_SliderGrabActive, ImGuiCol_SeparatorActive, ImGuiCol_PlotLinesHovered}, p.accentHovered);
     ImVec4 selected = p.accent;
     selected.w = 0.45f;

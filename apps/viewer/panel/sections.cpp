@@ -18,11 +18,21 @@ namespace {
 
 using studio::State;
 
+/// A section in another one.
+bool subsection(const Drawing& with, const std::string& name) {
+    with.controls.setGroup("");
+    bool& now = with.panel.memory.open.try_emplace(name, false).first->second;
+    ImGui::PushStyleColor(ImGuiCol_Header, ImVec4{0, 0, 0, 0});
+    const bool open = with.controls.header(name.c_str(), name, now);
+    ImGui::PopStyleColor();
+    return open;
+}
+
 /// Whether a section is open, which the user may change. `open`: at first.
-bool section(const Drawing& with, const std::string& name, const std::string& noted, bool open) {
+bool section(const Drawing& with, const std::string& name, bool open) {
     with.controls.setGroup("");
     bool& now = with.panel.memory.open.try_emplace(name, open).first->second;
-    return with.controls.header(name.c_str(), noted, now);
+    return with.controls.header(name.c_str(), "section " + name, now);
 }
 
 /// A list whose choice is opened.
@@ -36,7 +46,7 @@ void drawOpenList(const Drawing& with, const char* name, const char* first,
 }
 
 void drawScene(const Drawing& with) {
-    if (!section(with, "scene", "section scene", true)) return;
+    if (!section(with, "scene", true)) return;
     PanelState& panel = with.panel;
     beginRows();
     ImGui::SetNextItemWidth(-1.0f);
@@ -57,19 +67,20 @@ void drawScene(const Drawing& with) {
             names.push_back(std::filesystem::path(file).filename().string());
         drawOpenList(with, "recent", "open it again", names, panel.memory.recent);
     }
+    drawField(with, "camera");
     endRows();
 }
 
 void drawCamera(const Drawing& with) {
-    if (!section(with, "camera", "section camera", false)) return;
+    if (!section(with, "camera", false)) return;
     beginRows();
-    for (const char* key : {"camera", "fov", "eye", "target", "up", "playing", "time"}) drawField(with, key);
+    for (const char* key : {"fov", "eye", "target", "up", "playing", "time"}) drawField(with, key);
     drawActions(with, "camera");
     endRows();
 }
 
 void drawLights(const Drawing& with) {
-    if (!section(with, "light", "section light", false)) return;
+    if (!section(with, "light", false)) return;
     with.controls.setGroup("light");
     beginRows();
     drawActions(with, "light");
@@ -83,7 +94,7 @@ void drawLights(const Drawing& with) {
 
 /// A click applies the whole preset, including its integrator and denoiser.
 void drawPresets(const Drawing& with) {
-    if (!section(with, "presets", "presets", false)) return;
+    if (!subsection(with, "presets")) return;
     State& state = with.panel.state;
     beginRows();
     for (const Preset& preset : presets()) {
@@ -99,7 +110,7 @@ void drawPresets(const Drawing& with) {
 }
 
 void drawGroup(const Drawing& with, const ParamGroup& group) {
-    if (!section(with, group.name, group.name, false)) return;
+    if (!subsection(with, group.name)) return;
     with.controls.setGroup(group.name);
     ImGui::PushID(group.name.c_str());
     beginRows();
@@ -121,7 +132,7 @@ void drawParameters(const Drawing& with) {
     };
     for (const ParamGroup& group : paramGroups())
         if (takesPart(group)) drawGroup(with, group);
-    if (!section(with, "other parameters", "other parameters", false)) return;
+    if (!subsection(with, "other parameters")) return;
     ImGui::TextDisabled("of methods that take no part in this picture");
     for (const ParamGroup& group : paramGroups())
         if (!takesPart(group)) drawGroup(with, group);
@@ -135,7 +146,7 @@ void drawPreview(const Drawing& with) {
 }
 
 void drawMethod(const Drawing& with) {
-    if (!section(with, "method", "section method", true)) return;
+    if (!section(with, "method", true)) return;
     beginRows();
     drawField(with, "integrator");
     drawField(with, "denoiser");
@@ -152,7 +163,7 @@ void drawMagnifier(const Drawing& with) {
 }
 
 void drawLook(const Drawing& with) {
-    if (!section(with, "look", "section look", true)) return;
+    if (!section(with, "look", true)) return;
     beginRows();
     drawField(with, "exposure");
     drawActions(with, "look");
@@ -168,7 +179,7 @@ void drawScores(const Drawing& with) {
 }
 
 void drawCompare(const Drawing& with) {
-    if (!section(with, "compare", "section compare", true)) return;
+    if (!section(with, "compare", true)) return;
     const studio::ComparisonChoice& choice = with.panel.state.comparison;
     beginRows();
     drawField(with, "compare");
@@ -178,7 +189,7 @@ void drawCompare(const Drawing& with) {
 }
 
 void drawOutput(const Drawing& with) {
-    if (!section(with, "output", "section output", true)) return;
+    if (!section(with, "output", true)) return;
     beginRows();
     drawActions(with, "output");
     drawField(with, "layers");
@@ -194,7 +205,7 @@ void drawTheme(const Drawing& with) {
 }
 
 void drawWindow(const Drawing& with) {
-    if (!section(with, "window", "section window", false)) return;
+    if (!section(with, "window", false)) return;
     beginRows();
     drawTheme(with);
     endRows();
@@ -209,7 +220,7 @@ void drawSections(const Drawing& with) {
     drawMethod(with);
     drawLook(with);
     drawCompare(with);
-    if (section(with, "passes", "section passes", false)) drawPasses(with);
+    if (section(with, "passes", false)) drawPasses(with);
     drawOutput(with);
     drawWindow(with);
 }

@@ -48,9 +48,10 @@ void drawStatus(const Drawing& with) {
     with.controls.note("status",
                        facts.activity.empty() ? facts.computing ? "computing" : "finished" : facts.activity);
     const studio::State& state = with.panel.state;
-    drawText(colors.quiet,
-             fmt::format("{}x{}, {:.1f} ms a frame, {}", state.render.extent.width,
-                         state.render.extent.height, facts.timings.frames().last(), facts.device));
+    if (facts.scenesShown > 0)
+        drawText(colors.quiet,
+                 fmt::format("{}x{}, {:.1f} ms a frame, {}", state.render.extent.width,
+                             state.render.extent.height, facts.timings.frames().last(), facts.device));
     if (!facts.fault.empty()) {
         drawText(colors.fault, facts.fault);
         with.controls.note("error", facts.fault);
