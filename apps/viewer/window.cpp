@@ -60,7 +60,11 @@ void Window::listen() {
         of(window).input_.add({.kind = Kind::Move, .x = static_cast<float>(x), .y = static_cast<float>(y)});
     });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
-        if (!entered) of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
+        if (!entered) return of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
+        // GLFW does not report a position at which it was seen last.
+        double x = 0.0, y = 0.0;
+        glfwGetCursorPos(window, &x, &y);
+        of(window).input_.add({.kind = Kind::Move, .x = static_cast<float>(x), .y = static_cast<float>(y)});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
         Window& self = of(window);

@@ -7,6 +7,7 @@
 #include "image/io/picture.h"
 #include "image/metrics/metrics.h"
 #include "tests/viewer/view_fixture.h"
+#include "tests/viewer/window_pixels.h"
 
 namespace limpid {
 namespace {
@@ -112,37 +113,6 @@ TEST_F(ViewToolsTest, FindsNoDifferenceToItself) {
 }
 
 #ifdef LIMPID_WINDOW_PIXELS
-/// The window's pixels as X shows them.
-class WindowPixels {
-  public:
-    WindowPixels(const DrivenViewer& viewer, const fs::path& file) {
-        viewer.run(std::string("'") + LIMPID_WINDOW_PIXELS + "' " + viewer.window() + " > '" + file.string() +
-                   "'");
-        std::ifstream stream(file, std::ios::binary);
-        std::string magic;
-        int most = 0;
-        stream >> magic >> width_ >> height_ >> most;
-        stream.get();
-        bytes_.assign(std::istreambuf_iterator<char>(stream), {});
-    }
-    /// Returns the largest difference of a channel, in steps of 1/255, from a pixel of an encoded picture.
-    int difference(uint32_t x, uint32_t y, const image::Image& picture, uint32_t px, uint32_t py) const {
-        int most = 0;
-        for (uint32_t c = 0; c < 3; ++c) {
-            const auto shown = static_cast<unsigned char>(bytes_.at(3 * (size_t{y} * width_ + x) + c));
-            most = std::max(
-                most, std::abs(int{shown} - static_cast<int>(std::lround(255.0f * picture.at(px, py, c)))));
-        }
-        return most;
-    }
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
-
-  private:
-    uint32_t width_ = 0, height_ = 0;
-    std::string bytes_;
-};
-
 TEST_F(ViewToolsTest, TheWindowShowsThePicture) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1", 0);
     viewer.settledPicture();
