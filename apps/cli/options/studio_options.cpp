@@ -20,7 +20,7 @@ std::string eyeOptions(const SceneChoice& choice) {
 }  // namespace
 
 void addStudioOptions(CLI::App& command, StudioChoice& choice) {
-    addSceneOptions(command, choice.scene);
+    addSceneOptions(command, choice.scene, false);
     addPipelineOptions(command, choice.pipeline, "the last one; at first path",
                        "the last one; at first none");
     command.add_flag("--preview", choice.preview,
@@ -35,8 +35,9 @@ void addStudioOptions(CLI::App& command, StudioChoice& choice) {
         "other options");
     command.add_option("--weights", choice.weights,
                        "Weights file for kpcn instead of the one that comes with Limpid");
-    command.add_option("--width", choice.width, "Width at first, pixels (1280)")->check(CLI::Range(1, 16384));
-    command.add_option("--height", choice.height, "Height at first, pixels (720)")
+    command.add_option("--width", choice.width, "Picture width at first, pixels (1000)")
+        ->check(CLI::Range(1, 16384));
+    command.add_option("--height", choice.height, "Picture height at first, pixels (720)")
         ->check(CLI::Range(1, 16384));
     command
         .add_option("--spp", choice.samples, "Samples per pixel and frame; more is less noisy and slower (1)")

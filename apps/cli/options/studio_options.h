@@ -24,7 +24,7 @@ struct StudioChoice {
     std::optional<int> shrink;  ///< 0 to 3; empty: automatic
     std::string animation, weights, shaders, preset, state;
     std::vector<std::string> assignments;
-    uint32_t width = 1280, height = 720, seed = 0;
+    uint32_t width = 1000, height = 720, seed = 0;
 };
 
 void addStudioOptions(CLI::App& command, StudioChoice& choice);
