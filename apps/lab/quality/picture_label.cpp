@@ -63,7 +63,7 @@ void drawLabel(image::ByteImage& picture, const LabelPlace& place, const std::ve
     // One cell row and column of margin at the left and the top.
     const uint32_t columns = longest(lines) * cellWidth + 2;
     const uint32_t rows = static_cast<uint32_t>(lines.size()) * cellHeight + 2;
-    const uint32_t scale = std::max(1u, std::min(place.width / columns, place.height / 5 / rows));
+    const uint32_t scale = std::max(1u, std::min(place.width / columns, place.height / 4 / rows));
     const uint32_t width = std::min(place.width, columns * scale),
                    height = std::min(place.height, rows * scale);
     for (uint32_t y = 0; y < height; ++y) {

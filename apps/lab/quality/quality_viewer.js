@@ -358,8 +358,7 @@ class Viewer {
       return element('tr', {}, element('td', {}, swatch, picture.name), cell(rgb.join(' ')),
         cell(rgb.map(byte => number(linearOf(byte), 3)).join(' ')), cell(error ? number(error[offset] / 255, 3) : '\u2013'));
     });
-    this.readout.replaceChildren(table([`pixel ${this.probe.x}, ${this.probe.y}`, 'sRGB, 0 to 255', 'linear, 1: white',
-      'FLIP'], rows));
+    this.readout.replaceChildren(table([`pixel ${this.probe.x}, ${this.probe.y}`, 'sRGB', 'linear', 'FLIP'], rows));
   }
 
   // ---------------------------------------------------------------- view
