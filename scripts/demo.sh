@@ -10,12 +10,12 @@ scripts/install.sh
 scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNITY=ON
 
 mkdir -p out
-build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 288 --height 162 \
-    --frames 24 --first 20 --reference-spp 400 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
+build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 256 --height 144 \
+    --frames 24 --first 21 --reference-spp 512 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
     --report out/quality.html | tee out/quality.txt
 echo
 build/release/limpid bench quality --scene builtin:cornell-spheres --width 240 --height 136 --first 0 --frames 1 --spp 32 \
-    --reference-spp 1024 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
+    --reference-spp 768 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
 echo
 build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 240 --height 136 \
     --spp 1024 --out out | tee out/convergence.txt
