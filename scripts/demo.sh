@@ -2,7 +2,7 @@
 # Installs what is missing, builds the program (Release), and demonstrates the main uses of Limpid. Results are in out/:
 # - moving sequences of one sample per pixel and frame, denoised, with references, PSNR and FLIP;
 # - a frame of 32 samples per pixel, denoised by the network;
-# - stills, noisy and converged, with samples, seconds and PSNR.
+# - a still, noisy and converged, with samples, seconds and PSNR.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh
@@ -14,11 +14,11 @@ build/release/limpid bench quality --scene builtin:cornell --scene builtin:corne
     --frames 24 --first 21 --reference-spp 512 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
     --report out/quality.html | tee out/quality.txt
 echo
-build/release/limpid bench quality --scene builtin:cornell-spheres --width 240 --height 136 --first 0 --frames 1 --spp 32 \
+build/release/limpid bench quality --scene builtin:cornell --width 240 --height 136 --first 0 --frames 1 --spp 32 \
     --reference-spp 768 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
 echo
-build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 240 --height 136 \
-    --spp 1024 --out out | tee out/convergence.txt
+build/release/limpid bench convergence --scene builtin:cornell --width 240 --height 136 \
+    --spp 2048 --out out | tee out/convergence.txt
 echo
 echo "Denoised: out/quality.*.png (noisy, temporal, a-trous, SVGF, reference, side by side, labelled); the table: out/quality.txt; a page to look around in: out/quality.html"
 echo "One frame of 32 samples, and the network: out/network/*.png (noisy, a-trous, SVGF, KPCN, reference); the table: out/network.txt"
