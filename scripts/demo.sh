@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh
-# The program alone, with precompiled headers and several files at once, which saves most of the time.
+# The program alone, with precompiled headers and several files at once: see cmake/LimpidTargets.cmake.
 scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNITY=ON
 
 mkdir -p out
