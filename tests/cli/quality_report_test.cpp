@@ -159,7 +159,7 @@ TEST(PictureLabel, IsInsideItsPlaceAndReadable) {
         for (uint32_t x = 22; x < 27; ++x) rows += at(x, y) == 255 ? '#' : at(x, y) == 25 ? '.' : '?';
         rows += ' ';
     }
-    EXPECT_EQ(rows, ".###. ..#.. ..#.. ..#.. ..#.. ..#.. .###. ");
+    EXPECT_EQ(rows, "###.. .#... .#... .#... .#... .#... ###.. ");
     for (uint32_t x = 0; x < 40; ++x) {
         for (uint32_t y = 0; y < 60; ++y) {
             const bool inside = x >= 20 && x < 36 && y >= 5;

@@ -14,9 +14,9 @@ struct LabelPlace {
 };
 
 /// Writes lines at the top left of `place`, light on a darkened band that is as wide as the longest line. The
-/// letters have 5x7 cells, enlarged by a whole factor: the largest with which the lines take at most the
-/// width and a quarter of the height, at least 1. Text beyond the place is cut off. ASCII; other bytes become
-/// '?'.
+/// letters are those of stb_easy_font, enlarged by a whole factor: the largest with which the lines take at
+/// most the width and a quarter of the height, at least 1. Text beyond the place is cut off. ASCII; other
+/// bytes become '?'.
 void drawLabel(image::ByteImage& picture, const LabelPlace& place, const std::vector<std::string>& lines);
 
 }  // namespace limpid::cli

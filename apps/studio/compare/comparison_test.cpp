@@ -11,7 +11,7 @@ namespace {
 
 TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
     ComparisonChoice choice;
-    choice.with = static_cast<int>(comparisonNames().size()) - 1;
+    choice.with = static_cast<int>(comparisonNames().size()) - 2;
     ASSERT_TRUE(choice.isReference());
     RenderSettings settings;
     settings.pipeline = parsePipeline("path", "svgf");
