@@ -1,0 +1,36 @@
+// Keys: those of the picture while nothing is typed, and undo everywhere but in fields of text.
+
+import {byId} from './dom.js';
+
+const writes = element => element.matches('input:not([type=checkbox], [type=range], [type=color]), textarea');
+/// Controls that use keys themselves.
+const usesKeys = element => element.matches('input, select, textarea, button, summary, a, [role=slider]');
+
+export function makeKeys({store, stage, picture, ask, toolbar}) {
+  let pointer = [0.5, 0.5];
+  stage.addEventListener('pointermove', event => { pointer = picture.positionAt(event.clientX, event.clientY); });
+  const byCharacter = {
+    ' ': () => toolbar.toggle('running'),
+    v: toolbar.togglePreview,
+    p: () => ask('probe', {position: pointer}),
+    c: toolbar.togglePanel,
+    '?': () => byId('keys').showModal(),
+    '+': () => picture.zoomBy(2),
+    '-': () => picture.zoomBy(0.5),
+    0: () => picture.unzoom(),
+    '/': () => byId('search').focus(),
+  };
+  document.addEventListener('keydown', event => {
+    if (byId('keys').open) return;
+    const {target} = event;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z' && !writes(target)) {
+      event.preventDefault();
+      return event.shiftKey ? store.redo() : store.undo();
+    }
+    if (event.ctrlKey || event.metaKey || event.altKey || usesKeys(target)) return;
+    const run = byCharacter[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!run) return;
+    event.preventDefault();
+    run();
+  });
+}
