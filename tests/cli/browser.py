@@ -1,0 +1,125 @@
+"""Chromium, driven by the DevTools protocol as a user would: with a real mouse, fingers and keys. For tests of pages."""
+
+import base64
+import json
+import os
+import select
+import shutil
+import subprocess
+import time
+
+NOT_TESTED = 77  # exit code of a test that finds no Chromium
+
+
+def chromium():
+    """The program's path, or None, which is reported."""
+    program = next(filter(None, map(shutil.which, ('chromium', 'chromium-browser', 'google-chrome'))), None)
+    if not program:
+        print('NOT TESTED: there is no Chromium on this machine (Debian: chromium)')
+    return program
+
+
+class Browser:
+    """Chromium and one page of it, by the DevTools protocol over a pair of pipes."""
+
+    def __init__(self, program, profile):
+        to_browser, self.output = os.pipe()
+        self.input, from_browser = os.pipe()
+
+        def place_pipes():
+            # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
+            reading, writing = os.dup(to_browser), os.dup(from_browser)
+            os.dup2(reading, 3)
+            os.dup2(writing, 4)
+
+        arguments = ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe', '--no-first-run',
+                     '--disable-background-networking', '--disable-component-update', '--disable-dev-shm-usage',
+                     '--force-device-scale-factor=1', f'--user-data-dir={profile}', 'about:blank']
+        self.process = subprocess.Popen([program, *arguments], preexec_fn=place_pipes, close_fds=False,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.rest = b''
+        self.number = 0
+        self.session = None
+        self.events = []
+        targets = self.call('Target.getTargets')['targetInfos']
+        page = next(target['targetId'] for target in targets if target['type'] == 'page')
+        self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
+
+    def message(self, deadline):
+        while b'\0' not in self.rest:
+            ready, _, _ = select.select([self.input], [], [], max(0, deadline - time.monotonic()))
+            data = os.read(self.input, 1 << 20) if ready else b''
+            if not data:
+                raise RuntimeError('the browser does not answer')
+            self.rest += data
+        text, self.rest = self.rest.split(b'\0', 1)
+        return json.loads(text)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        command = {'id': self.number, 'method': method, 'params': parameters}
+        if self.session:
+            command['sessionId'] = self.session
+        data = json.dumps(command).encode() + b'\0'
+        while data:
+            data = data[os.write(self.output, data):]
+        deadline = time.monotonic() + 60
+        while True:
+            message = self.message(deadline)
+            if message.get('id') == self.number:
+                if 'error' in message:
+                    raise RuntimeError(f'{method}: {message["error"]}')
+                return message['result']
+            self.events.append(message)
+
+    def evaluate(self, expression):
+        result = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
+        if 'exceptionDetails' in result:
+            raise RuntimeError(f'{expression}: {result["exceptionDetails"]}')
+        return result['result'].get('value')
+
+    def size(self, width, height):
+        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def mouse(self, kind, x, y, buttons):
+        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=1)
+
+    def drag(self, start, end):
+        self.mouse('mouseMoved', *start, 0)
+        self.mouse('mousePressed', *start, 1)
+        for step in range(1, 6):
+            self.mouse('mouseMoved', *(a + (b - a) * step / 5 for a, b in zip(start, end)), 1)
+        self.mouse('mouseReleased', *end, 0)
+
+    def touch(self, start, end):
+        self.call('Input.dispatchTouchEvent', type='touchStart', touchPoints=[{'x': start[0], 'y': start[1]}])
+        for step in range(1, 6):
+            x, y = (a + (b - a) * step / 5 for a, b in zip(start, end))
+            self.call('Input.dispatchTouchEvent', type='touchMove', touchPoints=[{'x': x, 'y': y}])
+        self.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
+
+    def key(self, name):
+        for kind in ('keyDown', 'keyUp'):
+            self.call('Input.dispatchKeyEvent', type=kind, key=name, code=name)
+
+    def picture(self, box):
+        clip = {'x': box['left'], 'y': box['top'], 'width': box['width'], 'height': box['height'], 'scale': 1}
+        return base64.b64decode(self.call('Page.captureScreenshot', format='png', clip=clip)['data'])
+
+    def close(self):
+        try:
+            self.session = None
+            self.call('Browser.close')
+            self.process.wait(20)
+        except (RuntimeError, OSError, subprocess.TimeoutExpired):
+            self.process.kill()
+            self.process.wait()
+        os.close(self.input)
+        os.close(self.output)
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
