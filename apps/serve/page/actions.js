@@ -27,12 +27,11 @@ async function copy(text) {
 
 class CommandLine {
   constructor(store, ask) {
-    this.seen = null;
     this.text = make('code', {id: 'command', tabIndex: 0});
     this.copy = make('button', {type: 'button', textContent: 'copy', click: () => copy(this.text.textContent)});
     this.box = make('div', {className: 'command', hidden: true}, this.text, this.copy);
-    this.element = make('div', {}, make('button', {type: 'button', textContent: 'command line',
-        title: 'The limpid render command that makes this frame again', click: () => ask('command_line')}), this.box);
+    this.button = make('button', {type: 'button', textContent: 'command line', click: () => ask('command_line'),
+                                  title: 'The limpid render command that makes this frame again'});
     store.addEventListener('facts', () => this.show(store.facts));
   }
 
@@ -72,7 +71,7 @@ export function makeActions(store, connection, ask, status) {
     scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element,
                 row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
                                     title: 'The picture as it is shown, lossless', click: () => downloadPng(connection)}),
-                    button('reset', 'start anew', 'Histories and means begin again')), command.element),
+                    button('reset', 'start anew', 'Histories and means begin again'), command.button), command.box),
     camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start'),
                 button('see_all', 'see everything', 'To where the whole scene is seen'),
                 button('step', 'one frame', 'Renders one frame, also while rendering is stopped')),

@@ -121,7 +121,7 @@ export class Panel {
   }
 
   countChanges(name, details) {
-    const count = this.store.fields.filter(f => f.section === name && this.store.differs(f.key)).length;
+    const count = this.store.fields.filter(f => f.section === name && this.#rows.has(f.key) && this.store.differs(f.key)).length;
     const place = details.querySelector('.count');
     setText(place, count ? `${count} changed` : '');
     details.classList.toggle('changed', count > 0);

@@ -13,8 +13,12 @@ export function watchViewport(stage, picture, store) {
   const sendLater = debounced(150, send);
   const measure = ([entry]) => {
     const exact = entry?.devicePixelContentBoxSize?.[0], box = stage.getBoundingClientRect();
-    const width = exact?.inlineSize ?? box.width * devicePixelRatio;
-    const height = exact?.blockSize ?? box.height * devicePixelRatio;
+    const pixels = (measured, length) => {
+      const about = length * devicePixelRatio;
+      // Where the ratio is emulated, as in developers' tools, what is measured does not know of it.
+      return Math.abs(measured - about) < 2 ? measured : about;
+    };
+    const width = pixels(exact?.inlineSize, box.width), height = pixels(exact?.blockSize, box.height);
     picture.resize(Math.max(Math.round(width), 1), Math.max(Math.round(height), 1));
     size = [evenFrom(width), evenFrom(height)];
     sendLater();
