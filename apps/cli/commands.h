@@ -11,6 +11,7 @@ void addDenoiseCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addDatasetCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addServeCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 /// Hidden: what the installation and packages are made with. Last, since it lists the others.

@@ -74,6 +74,7 @@ int run(int argc, char** argv) {
     addDatasetCommand(app);
     addBenchCommand(app);
     addViewCommand(app);
+    addServeCommand(app);
     addInfoCommand(app);
     addManualCommands(app);
     // After the commands, which would inherit it.

@@ -176,10 +176,13 @@ Entry viewportEntry() {
                 return json::array({s.viewport.width, s.viewport.height});
             },
             [](State& s, const json& v) {
-                const auto size = v.get<std::vector<uint32_t>>();
+                const bool whole = v.is_array() && std::ranges::all_of(v, [](const json& n) {
+                                       return n.is_number_unsigned();
+                                   });
+                const auto size = whole ? v.get<std::vector<uint64_t>>() : std::vector<uint64_t>();
                 if (size.size() != 2 || size[0] > 16384 || size[1] > 16384)
                     refuse("viewport", "width and height are needed, each at most 16384");
-                s.viewport = {size[0], size[1]};
+                s.viewport = {static_cast<uint32_t>(size[0]), static_cast<uint32_t>(size[1])};
             }};
 }
 

@@ -1,0 +1,71 @@
+// `limpid serve`: the window in a browser.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "cli/options/studio_options.h"
+#include "commands.h"
+#include "interrupt.h"
+#ifdef LIMPID_HAVE_SERVE
+#include "serve/serve.h"
+#include "studio/studio.h"
+#endif
+
+namespace limpid::cli {
+namespace {
+
+struct ServeOptions {
+    StudioChoice studio;
+    std::string bind = "127.0.0.1", certificate, key, files;
+    uint16_t port = 8080;
+};
+
+void run([[maybe_unused]] const ServeOptions& o) {
+#ifdef LIMPID_HAVE_SERVE
+    if (o.certificate.empty() != o.key.empty())
+        throw UsageError("--certificate and --key belong together: give both or none");
+    studio::StudioSettings settings;
+    apply(o.studio, settings);
+    const InterruptGuard guard;
+    studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
+                          cameraStart(o.studio), settings);
+    const auto stop = [&] { return interrupted() || studio.hasEnded(); };
+    serve::serve(
+        studio,
+        {.bind = o.bind, .port = o.port, .certificate = o.certificate, .key = o.key, .files = o.files}, stop,
+        [](const std::string& url) {
+            fmt::print("{}\n", url);
+            std::fflush(stdout);
+        });
+    studio.finish();
+#else
+    throw Error(
+        "Limpid was built without libwebsockets-dev and libvpx-dev, which a window in a browser needs; "
+        "'limpid view' opens "
+        "one here, and 'limpid render' writes pictures");
+#endif
+}
+
+}  // namespace
+
+void addServeCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "serve", "Show a scene in a browser: the window of 'limpid view', also where there is no screen");
+    auto o = std::make_shared<ServeOptions>();
+    addStudioOptions(*command, o->studio);
+    command->add_option("--port", o->port, "Port to listen on; 0: a free one (8080)");
+    command->add_option(
+        "--bind", o->bind,
+        "Address to listen on; others than this machine's own can be reached from elsewhere, and need "
+        "--certificate (127.0.0.1)");
+    command->add_option("--certificate", o->certificate,
+                        "PEM file with the certificate, for HTTPS; with --key");
+    command->add_option("--key", o->key, "PEM file with the certificate's private key");
+    command->add_option("--files", o->files,
+                        "Folder whose scenes may be opened in the browser; default: none");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

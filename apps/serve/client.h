@@ -1,0 +1,52 @@
+// What the server knows of one WebSocket: its limits, what it was told, and what it still has to be told.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "serve/scene_files.h"
+#include "serve/streamer.h"
+#include "studio/session.h"
+
+namespace limpid::serve {
+
+class Client {
+  public:
+    /// All outlive this.
+    Client(studio::Session& session, Streamer& streamer, const SceneFiles& files);
+    ~Client();
+    Client(const Client&) = delete;
+    Client& operator=(const Client&) = delete;
+
+    /// Part of a text. Returns false if the client is to be disconnected: it says too much.
+    bool receive(std::string_view part, bool last);
+    /// The next text to send, if there is one now.
+    std::optional<std::string> nextText();
+    /// The next picture to send, if there is one now.
+    std::optional<Packet> nextPacket() { return streamer_.take(stream_); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    bool isWithinRate();
+    void handle(std::string_view text);
+    std::string stateText(const studio::Shown& shown);
+
+    studio::Session& session_;
+    Streamer& streamer_;
+    const SceneFiles& files_;
+    Streamer::ClientId stream_;
+    bool greeted_ = false;
+    std::string partial_;  ///< of a text that has not ended
+    std::deque<std::string> replies_;
+    double allowance_;  ///< messages that the client may still send now
+    Clock::time_point allowanceAt_ = Clock::now();
+    nlohmann::json state_, facts_;  ///< as they were told last
+    uint64_t snapshot_ = 0, message_ = 0;
+    Clock::time_point factsAt_{};
+};
+
+}  // namespace limpid::serve

@@ -1,0 +1,235 @@
+#include "serve/protocol.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "renderer/frame/parameters.h"
+#include "studio/state_json.h"
+
+namespace limpid::serve {
+namespace {
+
+using nlohmann::json;
+using studio::Field;
+using studio::Gesture;
+using studio::Request;
+
+/// What one message may do to the camera: a hand does less in a second.
+constexpr float largestMovement = 100.0f;
+
+constexpr std::array<std::pair<const char*, Request::Kind>, 12> requests{{
+    {"reset", Request::Kind::Reset},
+    {"step", Request::Kind::Step},
+    {"measure_exposure", Request::Kind::MeasureExposure},
+    {"reset_camera", Request::Kind::ResetCamera},
+    {"see_all", Request::Kind::SeeAll},
+    {"focus", Request::Kind::Focus},
+    {"probe", Request::Kind::Probe},
+    {"cancel_loading", Request::Kind::CancelLoading},
+    {"add_point", Request::Kind::AddPoint},
+    {"add_sun", Request::Kind::AddSun},
+    {"remove_lamp", Request::Kind::RemoveLamp},
+    {"command_line", Request::Kind::CommandLine},
+}};
+
+float movementOf(const json& value) {
+    const float number = value.get<float>();
+    if (!(std::abs(number) <= largestMovement)) throw UsageError("a movement is too large");
+    return number;
+}
+
+/// Others than whole numbers would be converted with undefined results.
+uint64_t wholeNumberOf(const json& value, uint64_t largest) {
+    if (!value.is_number_unsigned() || value.get<uint64_t>() > largest)
+        throw UsageError("a whole number is needed that is not negative");
+    return value.get<uint64_t>();
+}
+
+template <int N>
+glm::vec<N, float> movementsOf(const json& message, const char* key) {
+    glm::vec<N, float> result(0.0f);
+    const auto found = message.find(key);
+    if (found == message.end()) return result;
+    if (!found->is_array() || found->size() != N)
+        throw UsageError(std::string(key) + ": wrong number of values");
+    for (int i = 0; i < N; ++i) result[i] = movementOf(found->at(static_cast<size_t>(i)));
+    return result;
+}
+
+Gesture gestureOf(const json& message) {
+    Gesture gesture{.orbit = movementsOf<2>(message, "orbit"),
+                    .look = movementsOf<2>(message, "look"),
+                    .pan = movementsOf<2>(message, "pan"),
+                    .fly = movementsOf<3>(message, "fly")};
+    if (message.contains("zoom")) gesture.zoom = movementOf(message.at("zoom"));
+    if (message.contains("speed")) gesture.speed = movementOf(message.at("speed"));
+    return gesture;
+}
+
+Request requestOf(const json& message) {
+    const auto name = message.at("request").get<std::string>();
+    const auto found =
+        std::ranges::find_if(requests, [&](const auto& request) { return name == request.first; });
+    if (found == requests.end()) throw UsageError("there is no request '" + name.substr(0, 40) + "'");
+    Request request{.kind = found->second};
+    if (message.contains("index"))
+        request.index = static_cast<int>(wholeNumberOf(message.at("index"), 1 << 20));
+    if (const auto position = message.find("position"); position != message.end()) {
+        if (!position->is_array() || position->size() != 2)
+            throw UsageError("position: two numbers are needed");
+        for (size_t i = 0; i < 2; ++i) {
+            const float value = position->at(i).get<float>();
+            if (!(value >= 0.0f && value <= 1.0f)) throw UsageError("position: not between 0 and 1");
+            request.position[i] = value;
+        }
+    }
+    return request;
+}
+
+Start startOf(const json& message) {
+    for (const json& codec : message.at("codecs")) {
+        if (codec == "vp9") return {true};
+        if (codec == "jpeg") return {false};
+    }
+    throw UsageError("none of the codecs is known");
+}
+
+ClientMessage messageOf(const json& message) {
+    const auto type = message.at("type").get<std::string>();
+    ClientMessage result;
+    if (message.contains("id")) result.id = wholeNumberOf(message.at("id"), UINT64_MAX);
+    if (type == "start")
+        result.content = startOf(message);
+    else if (type == "received")
+        result.content = Received{static_cast<uint32_t>(wholeNumberOf(message.at("frame"), UINT32_MAX))};
+    else if (type == "edit")
+        result.content = Edit{message.at("changes")};
+    else if (type == "steer")
+        result.content = gestureOf(message);
+    else if (type == "ask")
+        result.content = requestOf(message);
+    else if (type == "open")
+        result.content = Open{message.at("scene").get<std::string>()};
+    else
+        throw UsageError("there is no message '" + type.substr(0, 40) + "'");
+    return result;
+}
+
+/// Nested arrays cost a stack frame each when they are read.
+bool isTooDeep(std::string_view text) {
+    int depth = 0, deepest = 0;
+    for (const char c : text) {
+        if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+        if (c == ']' || c == '}') --depth;
+    }
+    return deepest > 32;
+}
+
+const char* nameOf(Field::Kind kind) {
+    constexpr std::array names{"bool",   "int",  "float",  "choice",     "index",
+                               "vector", "text", "lights", "background", "extent"};
+    return names.at(static_cast<size_t>(kind));
+}
+
+json describe(const Field& field) {
+    return {{"key", field.key},
+            {"section", field.section},
+            {"label", field.label},
+            {"help", field.help},
+            {"unit", field.unit},
+            {"kind", nameOf(field.kind)},
+            {"minimum", field.minimum},
+            {"maximum", field.maximum},
+            {"slider",
+             {{"min", field.slider.min},
+              {"max", field.slider.max},
+              {"scale", field.slider.scale == SliderScale::Linear ? "linear" : "logarithmic"},
+              {"smallest", field.slider.smallest}}},
+            {"choices", field.choices},
+            {"default", field.defaultValue}};
+}
+
+/// The groups of parameters that take part in each pipeline.
+json groupsByPipeline() {
+    json result = json::object();
+    for (const Integrator integrator : integrators()) {
+        for (const std::string_view denoiser : denoiserNames()) {
+            if (denoiser != "none" && !canBeDenoised(integrator)) continue;
+            const Pipeline pipeline{integrator, parseDenoiser(denoiser)};
+            const std::string name = std::string(limpid::nameOf(integrator)) + "+" + std::string(denoiser);
+            result[name] = groupsOf(pipeline);
+        }
+    }
+    return result;
+}
+
+template <typename T>
+void put(std::span<std::byte> bytes, size_t at, T value) {
+    for (size_t i = 0; i < sizeof(T); ++i)
+        bytes[at + i] = static_cast<std::byte>(uint64_t{value} >> 8 * i & 0xff);
+}
+
+template <typename T>
+T take(std::span<const std::byte> bytes, size_t at) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < sizeof(T); ++i)
+        value |= uint64_t{std::to_integer<uint8_t>(bytes[at + i])} << 8 * i;
+    return static_cast<T>(value);
+}
+
+}  // namespace
+
+ClientMessage parseMessage(std::string_view text) {
+    if (text.size() > maxTextBytes) throw UsageError("the message is too long");
+    if (isTooDeep(text)) throw UsageError("the message is too deep");
+    try {
+        return messageOf(json::parse(text));
+    } catch (const json::exception&) {
+        throw UsageError("the message is not one of the protocol");
+    }
+}
+
+json helloMessage(const std::vector<std::string>& scenes) {
+    json fields = json::array(), names = json::array();
+    for (const Field& field : studio::fields()) fields.push_back(describe(field));
+    for (const auto& [name, kind] : requests) names.push_back(name);
+    return {{"type", "hello"},
+            {"version", 1},
+            {"fields", std::move(fields)},
+            {"requests", std::move(names)},
+            {"scenes", scenes},
+            {"groups", groupsByPipeline()}};
+}
+
+std::array<std::byte, frameHeaderBytes> packed(const FrameHeader& header) {
+    std::array<std::byte, frameHeaderBytes> bytes{};
+    const std::span<std::byte> out(bytes);
+    put(out, 0, static_cast<uint8_t>(header.codec));
+    put(out, 1,
+        static_cast<uint8_t>(int{header.key} | int{header.compared} << 1 | int{header.lossless} << 2));
+    put(out, 4, header.width);
+    put(out, 6, header.height);
+    put(out, 8, header.frame);
+    put(out, 16, header.message);
+    put(out, 24, header.snapshot);
+    return bytes;
+}
+
+FrameHeader unpackedHeader(std::span<const std::byte> bytes) {
+    if (bytes.size() < frameHeaderBytes) throw Error("the picture has no header");
+    const auto codec = take<uint8_t>(bytes, 0), flags = take<uint8_t>(bytes, 1);
+    if (codec < 1 || codec > 3) throw Error("the picture is of an unknown kind");
+    return {.codec = static_cast<Codec>(codec),
+            .key = (flags & 1) != 0,
+            .compared = (flags & 2) != 0,
+            .lossless = (flags & 4) != 0,
+            .width = take<uint16_t>(bytes, 4),
+            .height = take<uint16_t>(bytes, 6),
+            .frame = take<uint32_t>(bytes, 8),
+            .message = take<uint64_t>(bytes, 16),
+            .snapshot = take<uint64_t>(bytes, 24)};
+}
+
+}  // namespace limpid::serve

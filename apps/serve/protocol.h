@@ -1,0 +1,58 @@
+// The messages of docs/serve-protocol.md, to and from bytes. Knows no network.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "studio/session.h"
+
+namespace limpid::serve {
+
+inline constexpr size_t maxTextBytes = 65536;
+
+enum class Codec : uint8_t { Vp9 = 1, Jpeg = 2, Png = 3 };
+
+struct Start {
+    bool vp9 = false;  ///< false: JPEG
+};
+struct Received {
+    uint32_t frame = 0;
+};
+struct Edit {
+    nlohmann::json changes;
+};
+struct Open {
+    std::string scene;
+};
+struct ClientMessage {
+    uint64_t id = 0;  ///< chosen by the client
+    std::variant<Start, Received, Edit, studio::Gesture, studio::Request, Open> content;
+};
+
+/// Throws UsageError, with a text for the client, where the message is not one of the protocol.
+ClientMessage parseMessage(std::string_view text);
+
+/// The description of the state's fields for clients. `scenes`: those that may be opened.
+nlohmann::json helloMessage(const std::vector<std::string>& scenes);
+
+struct FrameHeader {
+    Codec codec = Codec::Jpeg;
+    bool key = true, compared = false, lossless = false;
+    uint16_t width = 0, height = 0;
+    uint32_t frame = 0;
+    uint64_t message = 0, snapshot = 0;
+    bool operator==(const FrameHeader&) const = default;
+};
+inline constexpr size_t frameHeaderBytes = 32;
+
+std::array<std::byte, frameHeaderBytes> packed(const FrameHeader& header);
+/// Throws Error if these are not the bytes of a header.
+FrameHeader unpackedHeader(std::span<const std::byte> bytes);
+
+}  // namespace limpid::serve

@@ -1,0 +1,31 @@
+#include "serve/serve.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "serve/access.h"
+#include "serve/token.h"
+#include "serve/web_server.h"
+
+namespace limpid::serve {
+
+void serve(studio::Session& session, const ServeSettings& settings, const std::function<bool()>& stop,
+           const std::function<void(const std::string& url)>& ready) {
+    const bool tls = !settings.certificate.empty();
+    if (!isLoopback(settings.bind) && !tls)
+        log::warn(
+            "{} can be reached from other machines, and without TLS everybody on the way can read and change "
+            "what "
+            "is sent, the token too; use --certificate and --key, or the default address and 'ssh -L'",
+            settings.bind);
+    const SceneFiles files(settings.files);
+    const std::string token = makeToken();
+    WebServer server(session, settings, files, token);
+    const std::string host =
+        settings.bind.find(':') == std::string::npos ? settings.bind : "[" + settings.bind + "]";
+    ready(fmt::format("{}://{}:{}/?token={}", tls ? "https" : "http", host, server.port(), token));
+    server.run(stop);
+}
+
+}  // namespace limpid::serve

@@ -1,0 +1,349 @@
+#include "serve/web_server.h"
+
+#include <fmt/format.h>
+#include <libwebsockets.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "base/error.h"
+#include "serve/access.h"
+#include "serve/client.h"
+#include "serve/page_files.h"
+#include "serve/streamer.h"
+#include "serve/token.h"
+
+namespace limpid::serve {
+namespace {
+
+constexpr unsigned maxConnections = 1200;  ///< open sockets, most of which say nothing
+constexpr size_t maxClients = 32;          ///< WebSockets
+constexpr unsigned headerSeconds = 10;     ///< for a connection to say what it wants
+constexpr int stillSeconds = 60;           ///< for /picture.png
+constexpr size_t chunkBytes = 65536;
+constexpr lws_usec_t tick = LWS_USEC_PER_SEC / 20;
+
+/// No script, style or connection but this server's own; no other page may frame it.
+constexpr const char* policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
+    "'self'; "
+    "worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+struct Extra {
+    const char *name, *value;
+};
+constexpr std::array<Extra, 6> securityHeaders{{{"content-security-policy:", policy},
+                                                {"x-content-type-options:", "nosniff"},
+                                                {"referrer-policy:", "no-referrer"},
+                                                {"cross-origin-opener-policy:", "same-origin"},
+                                                {"cross-origin-resource-policy:", "same-origin"},
+                                                {"cache-control:", "no-store"}}};
+
+std::string headerOf(lws* wsi, lws_token_indexes which) {
+    const int length = lws_hdr_total_length(wsi, which);
+    if (length <= 0 || length > 1024) return {};
+    std::string text(static_cast<size_t>(length) + 1, '\0');
+    const int copied = lws_hdr_copy(wsi, text.data(), length + 1, which);
+    text.resize(static_cast<size_t>(std::max(copied, 0)));
+    return text;
+}
+
+/// A parameter of the address.
+std::string argumentOf(lws* wsi, const char* name) {
+    std::array<char, 256> buffer{};
+    const char* const value = lws_get_urlarg_by_name(wsi, name, buffer.data(), buffer.size() - 1);
+    return value ? std::string(value) : std::string();
+}
+
+/// An answer that is being sent.
+struct Answer {
+    Bytes body;
+    size_t sent = 0;
+};
+
+}  // namespace
+
+struct WebServer::Impl {
+    studio::Session& session;
+    const ServeSettings& settings;
+    const SceneFiles& files;
+    std::string token;
+    bool tls;
+    lws_context* context = nullptr;
+    std::map<lws*, std::unique_ptr<Client>> clients;
+    std::map<lws*, Answer> answers;
+    std::set<lws*> waiting;  ///< for /picture.png
+    std::mutex stillMutex;
+    Bytes still;  ///< for all that wait
+    bool stillAsked = false;
+    std::array<lws_protocols, 3> protocols{};
+    lws_retry_bo_t idle{};
+    std::unique_ptr<Streamer> streamer;  ///< the last member: its thread uses the others
+    uint64_t listener = 0;
+
+    Impl(studio::Session& s, const ServeSettings& with, const SceneFiles& f, std::string t)
+        : session(s), settings(with), files(f), token(std::move(t)), tls(!with.certificate.empty()) {}
+
+    static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
+    void wake() const { lws_cancel_service(context); }
+
+    bool isAllowed(lws* wsi, bool withOrigin) const {
+        const std::string host = headerOf(wsi, WSI_TOKEN_HOST);
+        return isAllowedHost(host, settings.bind) &&
+               (!withOrigin || isAllowedOrigin(headerOf(wsi, WSI_TOKEN_ORIGIN), host, tls));
+    }
+    bool hasToken(lws* wsi) const { return sameToken(argumentOf(wsi, "token="), token); }
+
+    int refuse(lws* wsi, unsigned status) const;
+    int answer(lws* wsi, const char* type, Bytes body);
+    int sendAnswer(lws* wsi);
+    int http(lws* wsi, const std::string& path);
+    int confirmUpgrade(lws* wsi);
+    int askForStill(lws* wsi);
+    int sendToClient(lws* wsi, Client& client);
+    void afterWake();
+    static int onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length);
+    static int onSocket(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length);
+};
+
+int WebServer::Impl::refuse(lws* wsi, unsigned status) const {
+    lws_return_http_status(wsi, status, nullptr);
+    return -1;
+}
+
+int WebServer::Impl::answer(lws* wsi, const char* type, Bytes body) {
+    std::array<unsigned char, LWS_PRE + 2048> buffer{};
+    unsigned char *start = buffer.data() + LWS_PRE, *at = start, *end = buffer.data() + buffer.size() - 1;
+    if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, body->size(), &at, end)) return -1;
+    for (const Extra& extra : securityHeaders) {
+        if (lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(extra.name),
+                                        reinterpret_cast<const unsigned char*>(extra.value),
+                                        static_cast<int>(std::strlen(extra.value)), &at, end))
+            return -1;
+    }
+    if (lws_finalize_write_http_header(wsi, start, &at, end)) return -1;
+    answers[wsi] = {std::move(body), 0};
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+int WebServer::Impl::sendAnswer(lws* wsi) {
+    const auto found = answers.find(wsi);
+    if (found == answers.end()) return 0;
+    Answer& answer = found->second;
+    const size_t size = std::min(chunkBytes, answer.body->size() - answer.sent);
+    const bool last = answer.sent + size == answer.body->size();
+    std::vector<unsigned char> chunk(LWS_PRE + size);
+    if (size > 0) std::memcpy(chunk.data() + LWS_PRE, answer.body->data() + answer.sent, size);
+    if (lws_write(wsi, chunk.data() + LWS_PRE, size, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) <
+        static_cast<int>(size))
+        return -1;
+    answer.sent += size;
+    if (!last) {
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    answers.erase(found);
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+int WebServer::Impl::http(lws* wsi, const std::string& path) {
+    if (!isAllowed(wsi, false)) return refuse(wsi, 421);
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0) return refuse(wsi, 405);
+    if (path == "/picture.png") return hasToken(wsi) ? askForStill(wsi) : refuse(wsi, 403);
+    if (path == "/" && !hasToken(wsi)) return refuse(wsi, 403);
+    const std::string_view name = path == "/" ? "index.html" : std::string_view(path).substr(1);
+    for (const PageFile& file : pageFiles()) {
+        if (file.name != name) continue;
+        const auto* const begin = reinterpret_cast<const std::byte*>(file.text.data());
+        return answer(wsi, std::string(file.type).c_str(),
+                      std::make_shared<const std::vector<std::byte>>(begin, begin + file.text.size()));
+    }
+    return refuse(wsi, 404);
+}
+
+int WebServer::Impl::confirmUpgrade(lws* wsi) {
+    const std::string path = headerOf(wsi, WSI_TOKEN_GET_URI);
+    if (path != "/session") return refuse(wsi, 404);
+    if (!isAllowed(wsi, true) || !hasToken(wsi)) return refuse(wsi, 403);
+    if (clients.size() >= maxClients) return refuse(wsi, 503);
+    return 0;
+}
+
+int WebServer::Impl::askForStill(lws* wsi) {
+    waiting.insert(wsi);
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, stillSeconds);
+    const std::lock_guard lock(stillMutex);
+    if (std::exchange(stillAsked, true)) return 0;
+    streamer->requestStill([this](Bytes bytes) {
+        {
+            const std::lock_guard inner(stillMutex);
+            still = std::move(bytes);
+            stillAsked = false;
+        }
+        wake();
+    });
+    return 0;
+}
+
+/// On the server's thread, after another one has called wake().
+void WebServer::Impl::afterWake() {
+    for (const auto& [wsi, client] : clients) lws_callback_on_writable(wsi);
+    Bytes done;
+    {
+        const std::lock_guard lock(stillMutex);
+        done = std::exchange(still, nullptr);
+    }
+    if (!done) return;
+    for (lws* const wsi : std::exchange(waiting, {})) {
+        if (answer(wsi, "image/png", done) != 0)
+            lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+    }
+}
+
+int WebServer::Impl::sendToClient(lws* wsi, Client& client) {
+    std::vector<unsigned char> buffer;
+    lws_write_protocol kind = LWS_WRITE_TEXT;
+    if (const std::optional<std::string> text = client.nextText()) {
+        buffer.resize(LWS_PRE + text->size());
+        std::memcpy(buffer.data() + LWS_PRE, text->data(), text->size());
+    } else if (const std::optional<Packet> packet = client.nextPacket()) {
+        kind = LWS_WRITE_BINARY;
+        const auto header = packed(packet->header);
+        buffer.resize(LWS_PRE + header.size() + packet->bytes->size());
+        std::memcpy(buffer.data() + LWS_PRE, header.data(), header.size());
+        std::memcpy(buffer.data() + LWS_PRE + header.size(), packet->bytes->data(), packet->bytes->size());
+    } else {
+        return 0;
+    }
+    const size_t size = buffer.size() - LWS_PRE;
+    if (lws_write(wsi, buffer.data() + LWS_PRE, size, kind) < static_cast<int>(size)) return -1;
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+int WebServer::Impl::onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+    switch (reason) {
+        case LWS_CALLBACK_HTTP:
+            return of(wsi).http(wsi, std::string(static_cast<const char*>(in), length));
+        case LWS_CALLBACK_HTTP_WRITEABLE:
+            return of(wsi).sendAnswer(wsi);
+        case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+            return of(wsi).confirmUpgrade(wsi);
+        case LWS_CALLBACK_CLOSED_HTTP:
+        case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
+            of(wsi).answers.erase(wsi);
+            of(wsi).waiting.erase(wsi);
+            return 0;
+        case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+            of(wsi).afterWake();
+            return 0;
+        // The library's own handling would answer to more than this server has.
+        case LWS_CALLBACK_HTTP_BODY:
+        case LWS_CALLBACK_HTTP_BODY_COMPLETION:
+        case LWS_CALLBACK_HTTP_FILE_COMPLETION:
+            return -1;
+        default:
+            return lws_callback_http_dummy(wsi, reason, nullptr, in, length);
+    }
+}
+
+int WebServer::Impl::onSocket(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length) {
+    auto& clients = of(wsi).clients;
+    const auto found = clients.find(wsi);
+    Client* const client = found == clients.end() ? nullptr : found->second.get();
+    switch (reason) {
+        case LWS_CALLBACK_ESTABLISHED:
+            clients[wsi] = std::make_unique<Client>(of(wsi).session, *of(wsi).streamer, of(wsi).files);
+            lws_callback_on_writable(wsi);
+            return 0;
+        case LWS_CALLBACK_CLOSED:
+            if (client) clients.erase(found);
+            return 0;
+        case LWS_CALLBACK_SERVER_WRITEABLE:
+            return client ? of(wsi).sendToClient(wsi, *client) : -1;
+        case LWS_CALLBACK_RECEIVE: {
+            const bool last = lws_is_final_fragment(wsi) && lws_remaining_packet_payload(wsi) == 0;
+            if (client && !lws_frame_is_binary(wsi) &&
+                client->receive({static_cast<const char*>(in), length}, last)) {
+                lws_callback_on_writable(wsi);
+                return 0;
+            }
+            lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, nullptr, 0);
+            return -1;
+        }
+        default:
+            return 0;
+    }
+}
+
+WebServer::WebServer(studio::Session& session, const ServeSettings& settings, const SceneFiles& files,
+                     std::string token)
+    : impl_(std::make_unique<Impl>(session, settings, files, std::move(token))) {
+    Impl& self = *impl_;
+    lws_set_log_level(0, nullptr);
+    self.protocols[0] = {"http", &Impl::onHttp, 0, 0, 0, nullptr, 0};
+    self.protocols[1] = {"limpid", &Impl::onSocket, 0, 16384, 0, nullptr, 0};
+    self.idle.secs_since_valid_ping = 20;
+    self.idle.secs_since_valid_hangup = 45;
+    lws_context_creation_info info{};
+    info.iface = settings.bind.c_str();
+    info.port = settings.port;
+    info.protocols = self.protocols.data();
+    info.user = &self;
+    info.fd_limit_per_thread = maxConnections;
+    info.timeout_secs = headerSeconds;
+    info.keepalive_timeout = static_cast<int>(headerSeconds);
+    info.retry_and_idle_policy = &self.idle;
+    info.server_string = "limpid";
+    const std::string certificate = settings.certificate.string(), key = settings.key.string();
+    if (self.tls) {
+        info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+        info.ssl_cert_filepath = certificate.c_str();
+        info.ssl_private_key_filepath = key.c_str();
+        info.alpn = "http/1.1";
+    }
+    self.context = lws_create_context(&info);
+    if (!self.context)
+        throw Error(fmt::format("{}:{} cannot be served: the address is in use or not this machine's{}",
+                                settings.bind, settings.port,
+                                self.tls ? ", or the certificate or its key cannot be read" : ""));
+    self.streamer = std::make_unique<Streamer>(session, [&self] { self.wake(); });
+    self.listener = session.addListener([&self] { self.wake(); });
+}
+
+WebServer::~WebServer() {
+    impl_->session.removeListener(impl_->listener);
+    impl_->streamer->stop();
+    lws_context_destroy(impl_->context);
+}
+
+int WebServer::port() const {
+    return lws_get_vhost_listen_port(lws_get_vhost_by_name(impl_->context, "default"));
+}
+
+void WebServer::run(const std::function<bool()>& stop) {
+    // Ends the library's wait, so that `stop` is asked.
+    struct Timer {
+        lws_sorted_usec_list_t list{};
+        lws_context* context = nullptr;
+        static void ring(lws_sorted_usec_list_t* list) {
+            auto* const self = reinterpret_cast<Timer*>(list);
+            lws_sul_schedule(self->context, 0, list, &Timer::ring, tick);
+            lws_cancel_service(self->context);
+        }
+    } timer;
+    timer.context = impl_->context;
+    lws_sul_schedule(impl_->context, 0, &timer.list, &Timer::ring, tick);
+    while (!stop() && lws_service(impl_->context, 0) >= 0) {
+    }
+    lws_sul_schedule(impl_->context, 0, &timer.list, nullptr, LWS_SET_TIMER_USEC_CANCEL);
+}
+
+}  // namespace limpid::serve
