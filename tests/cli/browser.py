@@ -19,6 +19,11 @@ def chromium():
     return program
 
 
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
 class Browser:
     """Chromium and one page of it, by the DevTools protocol over a pair of pipes."""
 
@@ -80,11 +85,38 @@ class Browser:
             raise RuntimeError(f'{expression}: {result["exceptionDetails"]}')
         return result['result'].get('value')
 
-    def size(self, width, height):
-        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=False)
+    def open_tab(self):
+        """Another page, which commands go to from now on; the earlier one's session is returned."""
+        earlier, self.session = self.session, None
+        page = self.call('Target.createTarget', url='about:blank')['targetId']
+        self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
+        return earlier
 
-    def mouse(self, kind, x, y, buttons):
-        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=1)
+    def wait(self, expression, what, seconds=20):
+        """Until the expression is true in the page; its value is returned."""
+        deadline = time.monotonic() + seconds
+        while True:
+            value = self.evaluate(expression)
+            if value:
+                return value
+            check(time.monotonic() < deadline, f'{what}: {expression} stays {value!r}')
+            time.sleep(0.03)
+
+    def size(self, width, height, mobile=False):
+        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=mobile)
+        self.call('Emulation.setTouchEmulationEnabled', enabled=mobile)
+
+    def mouse(self, kind, x, y, buttons, count=1):
+        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=count)
+
+    def click(self, x, y, count=1):
+        for n in range(1, count + 1):
+            self.mouse('mousePressed', x, y, 1, n)
+            self.mouse('mouseReleased', x, y, 0, n)
+
+    def wheel(self, x, y, delta, control=False):
+        self.call('Input.dispatchMouseEvent', type='mouseWheel', x=x, y=y, deltaX=0, deltaY=delta,
+                  modifiers=2 if control else 0)
 
     def drag(self, start, end):
         self.mouse('mouseMoved', *start, 0)
@@ -100,9 +132,24 @@ class Browser:
             self.call('Input.dispatchTouchEvent', type='touchMove', touchPoints=[{'x': x, 'y': y}])
         self.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
 
-    def key(self, name):
+    def touches(self, kind, *points):
+        self.call('Input.dispatchTouchEvent', type=kind,
+                  touchPoints=[{'x': x, 'y': y, 'id': i} for i, (x, y) in enumerate(points)])
+
+    def key(self, name, modifiers=0):
+        """A key without a character, or with modifiers: 2 is Ctrl, 8 Shift."""
+        numbers = {'Tab': 9, 'Enter': 13, 'Escape': 27, 'ArrowLeft': 37, 'ArrowUp': 38, 'ArrowRight': 39, 'ArrowDown': 40}
+        code = 'Key' + name.upper() if len(name) == 1 else name
+        text = {'text': '\r'} if name == 'Enter' else {}
         for kind in ('keyDown', 'keyUp'):
-            self.call('Input.dispatchKeyEvent', type=kind, key=name, code=name)
+            self.call('Input.dispatchKeyEvent', type=kind, key=name, code=code, modifiers=modifiers,
+                      windowsVirtualKeyCode=numbers.get(name, ord(name.upper()) if len(name) == 1 else 0), **text)
+
+    def type(self, text):
+        for character in text:
+            code = f'Key{character.upper()}' if character.isalpha() else 'Space' if character == ' ' else ''
+            self.call('Input.dispatchKeyEvent', type='keyDown', key=character, code=code, text=character)
+            self.call('Input.dispatchKeyEvent', type='keyUp', key=character, code=code)
 
     def picture(self, box):
         clip = {'x': box['left'], 'y': box['top'], 'width': box['width'], 'height': box['height'], 'scale': 1}
@@ -118,8 +165,3 @@ class Browser:
             self.process.wait()
         os.close(self.input)
         os.close(self.output)
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)

@@ -9,10 +9,11 @@ const usesKeys = element => element.matches('input, select, textarea, button, su
 export function makeKeys({store, stage, picture, ask, toolbar}) {
   let pointer = [0.5, 0.5];
   stage.addEventListener('pointermove', event => { pointer = picture.positionAt(event.clientX, event.clientY); });
+  const pointerInside = () => pointer.map(v => Math.min(Math.max(v, 0), 1));
   const byCharacter = {
     ' ': () => toolbar.toggle('running'),
     v: toolbar.togglePreview,
-    p: () => ask('probe', {position: pointer}),
+    p: () => ask('probe', {position: pointerInside()}),
     c: toolbar.togglePanel,
     '?': () => byId('keys').showModal(),
     '+': () => picture.zoomBy(2),

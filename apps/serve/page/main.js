@@ -61,12 +61,14 @@ const gestures = new Gestures(stage, picture, {
     return true;
   },
   focus: position => {
+    if (!isInside(position)) return;
     movements.begin();
     ask('focus', {position});
   },
   touchesPixels: toolbar.touchesPixels,
 });
 
+const isInside = position => position.every(v => v >= 0 && v <= 1);
 const viewport = watchViewport(stage, picture, store);
 makeKeys({store, stage, picture, ask, toolbar});
 
