@@ -35,7 +35,7 @@ class Server:
         environment = {**os.environ, 'LIMPID_SERVE_TOKEN': '0123456789abcdef' * 2}
         self.process = subprocess.Popen(
             [self.program, 'serve', SCENE, '--port', str(self.port), '--device', 'cpu', '--max-spp', str(SAMPLES),
-             '--settings', 'none', *options], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+             *options], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         if not self.address:
             raise RuntimeError(self.process.stderr.read())
@@ -127,7 +127,7 @@ def open_page(browser, address):
     for domain in ('Page', 'Runtime', 'Network', 'Log'):
         browser.call(f'{domain}.enable')
     browser.call('Page.navigate', url=address)
-    browser.wait("document.querySelector('#stage.has-picture')", 'the first picture', 40)
+    browser.wait("document.querySelector('#stage.has-picture') !== null", 'the first picture', 40)
 
 
 def fit_stage(browser, width=480, height=200):
@@ -137,6 +137,8 @@ def fit_stage(browser, width=480, height=200):
         browser.size(*window)
         box = browser.evaluate("[document.getElementById('stage').clientWidth, document.getElementById('stage').clientHeight]")
         window = [window[0] + width - box[0], window[1] + height - box[1]]
+    browser.wait(f"document.getElementById('picture').width === {width}", 'the size of the canvas')
+    browser.wait(f"document.getElementById('fact-size').textContent === '{width} × {height}'", 'the size of the picture', 40)
 
 
 # ---- The tests
@@ -191,7 +193,7 @@ def test_against_window(browser, program, folder, extent):
         number = os.read(reading, 20).decode().strip()
         result = subprocess.run(
             [program, 'view', SCENE, '--device', 'cpu', '--max-spp', str(SAMPLES), '--settings', 'none', '--shrink', '0',
-             '--width', str(extent[0]), '--height', str(extent[1]), '--frames', str(SAMPLES + 1), '--screenshot',
+             '--width', str(extent[0]), '--height', str(extent[1]), '--frames', str(SAMPLES), '--screenshot',
              str(screenshot)], env={**os.environ, 'DISPLAY': ':' + number}, capture_output=True, text=True, timeout=60)
     finally:
         os.close(reading)

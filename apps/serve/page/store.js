@@ -3,7 +3,7 @@
 
 import {same} from './dom.js';
 
-const mergeMilliseconds = 800; // edits of the same fields within this time are one step of undo
+const mergeMilliseconds = 800; // edits by one drag that follow one another so soon are one step of undo
 
 export class Store extends EventTarget {
   fields = [];
@@ -110,8 +110,8 @@ export class Store extends EventTarget {
   /// A step that undo() takes back: edit() remembers by itself; movements of the camera are remembered when they end.
   remember(before, after) {
     const last = this.#undo.at(-1), now = performance.now();
-    const keys = Object.keys(after).join();
-    if (last && last.keys === keys && now - last.time < mergeMilliseconds) {
+    const keys = Object.keys(after).join(), isHeld = Object.keys(after).some(key => this.#held.has(key));
+    if (isHeld && last?.keys === keys && now - last.time < mergeMilliseconds) {
       last.after = after;
       last.time = now;
     } else {
