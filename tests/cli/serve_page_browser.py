@@ -92,8 +92,11 @@ def choose(browser, key, text):
 
 
 PIXELS = '''const canvas = document.getElementById('picture');
-const pixels = () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() =>
-    done(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height)))));
+const pixels = () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', {willReadFrequently: true});
+  copy.drawImage(canvas, 0, 0);
+  done(copy.getImageData(0, 0, canvas.width, canvas.height));
+})));
 const difference = (a, b) => {
   let sum = 0, largest = 0, mean = 0;
   for (let i = 0; i < a.data.length; ++i) {
@@ -354,6 +357,7 @@ def test_two_tabs(browser, address):
     browser.session = second
     browser.wait(f"Math.abs(document.getElementById('field-exposure-number').valueAsNumber - {held}) < 1e-3", 'the slider')
     type_into(browser, '#field-exposure-number', '-2')
+    check(value_of(browser, 'exposure') == -2, 'what was typed is lost')
     browser.session = first
     time.sleep(0.5)
     check(value_of(browser, 'exposure') == held, 'a held slider jumps')

@@ -41,26 +41,28 @@ function select({id, describedBy, change}, choices) {
   return {element: input, setChoices, show: value => { input.selectedIndex = values.findIndex(([v]) => v === value); }};
 }
 
-/// A number to type; it is taken when the user leaves the field, presses Enter, or uses its arrows.
-function numberField({id, label, describedBy, minimum, maximum, whole, change, hold}) {
+/// A number to type; it is taken when the user leaves the field, presses Enter, or uses its arrows. What is being typed
+/// stays, whatever states arrive.
+function numberField({id, label, describedBy, minimum, maximum, whole, change}) {
   const input = make('input', {type: 'number', id, 'aria-label': label, 'aria-describedby': describedBy, min: minimum,
                                max: maximum, step: whole ? 1 : 'any', inputMode: whole ? 'numeric' : 'decimal'});
-  input.addEventListener('change', () => {
-    const value = input.valueAsNumber;
-    if (Number.isNaN(value)) return show(shown);
-    change(clamp(whole ? Math.round(value) : value, minimum ?? -Infinity, maximum ?? Infinity));
-  });
-  if (hold) {
-    input.addEventListener('focus', () => hold(true));
-    input.addEventListener('blur', () => hold(false));
-  }
-  let shown = 0;
+  let shown = 0, typing = false;
   const show = value => {
     shown = value;
     const text = numberText(value);
-    if (document.activeElement === input && Number(input.value) === Number(text)) return;
-    if (input.value !== text) input.value = text;
+    if (!typing && input.value !== text) input.value = text;
   };
+  const take = () => {
+    typing = false;
+    const value = input.valueAsNumber;
+    if (Number.isNaN(value)) return show(shown);
+    const allowed = clamp(whole ? Math.round(value) : value, minimum ?? -Infinity, maximum ?? Infinity);
+    show(allowed);
+    change(allowed);
+  };
+  input.addEventListener('input', () => { typing = true; });
+  input.addEventListener('change', take);
+  input.addEventListener('blur', () => typing && take());
   return {element: input, show};
 }
 
@@ -101,10 +103,10 @@ function slider(options) {
 }
 
 /// Three numbers.
-function vector({id, label, describedBy, change, hold}) {
+function vector({id, label, describedBy, change}) {
   let current = [0, 0, 0];
   const axes = ['x', 'y', 'z'].map((axis, i) => numberField({
-    id: i === 0 ? id : `${id}-${axis}`, label: `${label} ${axis}`, describedBy, hold,
+    id: i === 0 ? id : `${id}-${axis}`, label: `${label} ${axis}`, describedBy,
     change: value => change(current.map((v, j) => j === i ? value : v))}));
   return {element: make('div', {className: 'vector', role: 'group', 'aria-label': label}, ...axes.map(a => a.element)),
           show: value => {
