@@ -96,7 +96,7 @@ read.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME limpid)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libvulkan1, limpid-weights (= ${LIMPID_DEB_VERSION})")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS mesa-vulkan-drivers)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "mesa-vulkan-drivers, fonts-inter | fonts-roboto-unhinted | fonts-dejavu-core")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any Vulkan device
 Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
 pictures, on GPUs and on CPUs.")

@@ -28,6 +28,7 @@ void run([[maybe_unused]] const ServeOptions& o) {
         throw UsageError("--certificate and --key belong together: give both or none");
     studio::StudioSettings settings;
     apply(o.studio, settings);
+    settings.writesFiles = false;  // clients are elsewhere
     const InterruptGuard guard;
     studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
                           cameraStart(o.studio), settings);

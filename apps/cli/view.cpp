@@ -50,7 +50,9 @@ void run([[maybe_unused]] const ViewOptions& o) {
 
 void addViewCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "view", "Open a window to fly through a scene and try every integrator, denoiser and parameter");
+        "view",
+        "Open a window to fly through a scene and try every integrator, denoiser and parameter; without a "
+        "SCENE, a page to choose one from");
     auto o = std::make_shared<ViewOptions>();
     addStudioOptions(*command, o->studio);
     command->add_option(

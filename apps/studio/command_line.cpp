@@ -83,6 +83,15 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
     return result;
 }
 
+std::string stateCommandOf(const ShownFrame& frame, const std::string& stateFile) {
+    scene::SceneSource source = frame.source;
+    source.lightFile.clear();  // the state has the lights
+    std::string text = "limpid view " + studio::quoted(source.scene) + sourceOptions(source);
+    if (!frame.clip.empty()) text += " --animation " + quoted(frame.clip);
+    if (!frame.weights.empty()) text += " --weights " + quoted(frame.weights);
+    return text + " --state " + quoted(stateFile);
+}
+
 std::string pathText(const Playback& playback, float fovDegrees) {
     nlohmann::json keys = nlohmann::json::array();
     for (const scene::CameraKey& key : playback.cameras())

@@ -9,12 +9,14 @@
 #include "studio/compare/picture_files.h"
 #include "studio/light_desk.h"
 #include "studio/render_loop.h"
+#include "studio/state_file.h"
 
 namespace limpid::studio {
 namespace {
 
 constexpr const char* pathFile = "flown.json";
 constexpr const char* lightFile = "lights.json";
+constexpr const char* stateFile = "state.json";
 
 }  // namespace
 
@@ -33,8 +35,6 @@ void RenderLoop::save(const std::filesystem::path& file) {
 
 void RenderLoop::makeCommand() {
     if (!main_ || playback_.frames() == 0) throw Error("there is no frame yet");
-    if (rig_.isFree() && rig_.hand().camera().orthographic)
-        throw Error("the command line has no orthographic camera of one's own");
     const scene::Scene& scene = stage_->scene();
     ShownFrame frame{.source = settings_.source,
                      .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",
@@ -45,14 +45,30 @@ void RenderLoop::makeCommand() {
                      .camera = rig_.option(settings_.startCamera),
                      .fovDegrees = fovOfLast_};
     frame.source.lightFile = state_.lights.isChanged() ? lightFile : "";
-    const CommandLine command = commandLineOf(frame, playback_, pathFile);
-    if (!command.problem.empty()) throw Error(command.problem);
+    CommandLine command = commandLineOf(frame, playback_, pathFile);
+    if (rig_.isFree() && rig_.hand().camera().orthographic)
+        command.problem = "the command line has no orthographic camera of one's own";
+    const bool needsFiles = state_.lights.isChanged() || command.needsPath;
+    if (!command.problem.empty() || (needsFiles && !settings_.writesFiles))
+        return makeStateCommand(frame, command);
     if (state_.lights.isChanged()) saveLights();
     if (command.needsPath) writeTextAtomically(pathFile, pathText(playback_, fovOfLast_));
-    facts_.command = command.text;
+    giveCommand(command.text, command.text);
+}
+
+/// For frames that no command line makes again: the same view, to go on from.
+void RenderLoop::makeStateCommand(const ShownFrame& frame, const CommandLine& command) {
+    if (settings_.writesFiles) writeStateFile(stateFile, state_);
+    const std::string text = stateCommandOf(frame, stateFile);
+    giveCommand(text,
+                command.problem.empty() ? text : text + "\n(no 'limpid render': " + command.problem + ")");
+}
+
+void RenderLoop::giveCommand(const std::string& text, const std::string& message) {
+    facts_.command = text;
     ++facts_.commands;
-    say(command.text);
-    log::info("{}", command.text);
+    say(message);
+    log::info("{}", text);
 }
 
 void RenderLoop::savePath() {

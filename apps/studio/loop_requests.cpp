@@ -70,6 +70,7 @@ void RenderLoop::steer(const Gesture& gesture) {
 void RenderLoop::carryOut(const Request& request) {
     using Kind = Request::Kind;
     const Kind kind = request.kind;
+    facts_.fault.clear();  // something new is being done
     if (kind == Kind::Open || kind == Kind::OpenDropped)
         return void(attempt([&] { open(request.file, kind == Kind::OpenDropped); }));
     if (kind == Kind::CancelLoading && loading_) {

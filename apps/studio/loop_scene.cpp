@@ -21,6 +21,10 @@ void RenderLoop::loadFirst() {
         state_.lights.lights = scene::readLightFile(settings_.source.lightFile, state_.lights.original);
     goTo(home);
     facts_.activity.clear();
+    if (settings_.state.is_null()) return;
+    if (settings_.state.contains("exposure")) measureExposure_ = false;
+    edit(std::exchange(settings_.state, {}));
+    if (!facts_.fault.empty()) throw UsageError("--state: " + facts_.fault);
 }
 
 /// Begins to load a scene, while the old one is shown. A scene that is being loaded already is given up.

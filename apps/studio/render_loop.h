@@ -14,6 +14,7 @@
 #include "renderer/frame/pipeline_store.h"
 #include "studio/camera/camera_rig.h"
 #include "studio/camera/picker.h"
+#include "studio/command_line.h"
 #include "studio/compare/live_comparison.h"
 #include "studio/live_render.h"
 #include "studio/mailbox.h"
@@ -98,6 +99,8 @@ class RenderLoop {
     void saveWhatIsAsked();
     void save(const std::filesystem::path& file);
     void makeCommand();
+    void makeStateCommand(const ShownFrame& frame, const CommandLine& command);
+    void giveCommand(const std::string& text, const std::string& message);
     void savePath();
     void saveLights();
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,9 @@ struct StudioSettings {
     /// Samples per pixel at which a picture in which nothing changes is finished.
     uint64_t maxSamples = 4096;
     Resolution resolution = Resolution::Automatic;
+    /// Fields that are set once the first scene is there (state_json.h); null: none.
+    nlohmann::json state;
+    bool writesFiles = true;           ///< requests may write into the working folder
     std::filesystem::path weights;     ///< of networks; empty: those that come with Limpid
     std::filesystem::path shaders;     ///< Limpid's src: shaders are compiled anew when saved; empty: not
     uint64_t quitAfter = 0;            ///< frames, which are rendered also where nothing changes; 0: no limit

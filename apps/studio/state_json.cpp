@@ -177,7 +177,7 @@ Entry viewportEntry() {
             },
             [](State& s, const json& v) {
                 const bool whole = v.is_array() && std::ranges::all_of(v, [](const json& n) {
-                                       return n.is_number_unsigned();
+                                       return n.is_number_integer() && n >= 0;
                                    });
                 const auto size = whole ? v.get<std::vector<uint64_t>>() : std::vector<uint64_t>();
                 if (size.size() != 2 || size[0] > 16384 || size[1] > 16384)

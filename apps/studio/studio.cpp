@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "base/log.h"
+#include "studio/priority.h"
 #include "studio/render_loop.h"
 
 namespace limpid::studio {
@@ -49,6 +50,7 @@ struct Studio::Impl {
     }
 
     void run() {
+        lowerPriority();
         try {
             work();
         } catch (...) {

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "base/error.h"
 #include "image/io/picture.h"
+#include "studio/state_file.h"
 #include "studio/state_json.h"
 
 namespace limpid::studio {
@@ -150,6 +152,62 @@ TEST_F(StudioTest, AHandInterruptsAPictureThatRests) {
     EXPECT_LT(moved->picture->extent.width, 1600u) << "the full picture was waited for";
     EXPECT_NE(moved->state.pose, coarse->state.pose);
     studio->finish();
+}
+
+/// What no `limpid render` makes again is written as a state, which shows the same picture.
+TEST_F(StudioTest, TheCommandLineAlwaysWorks) {
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("limpid_state_test." + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(folder);
+    const auto commandOf = [](Studio& studio) {
+        return wait(studio, studio.ask({Kind::CommandLine}),
+                    [](const Shown& s) { return s.facts.commands > 0; })
+            ->facts.command;
+    };
+    StudioSettings settings = small("builtin:cornell-moving");
+    settings.render.pipeline = parsePipeline("path", "svgf");
+    auto studio = make(settings);
+    rest(*studio);
+    studio->steer({.orbit = {0.2f, 0.0f}});
+    json lights = toJson(rest(*studio)->state)["lights"];
+    lights[0]["brightness"] = 3.0;
+    rest(*studio, studio->edit({{"lights", lights}, {"exposure", 1.25}, {"svgf.levels", 3}, {"seed", 4}}));
+    const std::string command = commandOf(*studio);
+    EXPECT_THAT(command, HasSubstr("limpid view builtin:cornell-moving"));
+    EXPECT_THAT(command, HasSubstr("--state state.json"));
+    const auto shown = rest(*studio);
+    studio->finish();
+
+    StudioSettings again = small("builtin:cornell-moving");
+    again.state = readStateFile("state.json");
+    studio = make(again);
+    const auto same = rest(*studio);
+    json expected = toJson(shown->state), got = toJson(same->state);
+    for (const char* const key : {"eye", "target", "up"}) {  // through sines and cosines
+        for (size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(got[key][i].get<float>(), expected[key][i].get<float>(), 1e-5f) << key;
+        got.erase(key);
+        expected.erase(key);
+    }
+    EXPECT_EQ(got, expected);
+    studio->finish();
+
+    again.state = {{"lights", json::array()}};
+    studio = make(again);
+    EXPECT_THROW(
+        {
+            while (!studio->hasEnded()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            studio->finish();
+        },
+        UsageError);
+    std::ofstream("bad.json") << R"({"limpid_state": 1, "samples": "many"})";
+    EXPECT_THROW(readStateFile("bad.json"), InputError);
+    std::ofstream("none.json") << "[";
+    EXPECT_THROW(readStateFile("none.json"), InputError);
+    std::filesystem::current_path(before);
+    std::filesystem::remove_all(folder);
 }
 
 /// Also on a slow device, and where the window is closed at once.

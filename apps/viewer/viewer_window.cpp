@@ -3,8 +3,10 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>  // closes popups
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +14,8 @@
 #include "base/log.h"
 #include "studio/state_json.h"
 #include "viewer/camera/steering.h"
+#include "viewer/panel/key_map.h"
+#include "viewer/start/start_page.h"
 
 namespace limpid::viewer {
 namespace {
@@ -29,6 +33,17 @@ gpu::DeviceOptions presenting(gpu::DeviceOptions options) {
     return options;
 }
 
+/// The size of a window whose picture has the extent that was asked for.
+gpu::Extent withPanel(const ViewSettings& settings, const Memory& memory) {
+    gpu::Extent size = settings.studio.render.extent;
+    size.width += static_cast<uint32_t>(memory.panelWidth > 0.0f ? memory.panelWidth : usualPanelWidth);
+    return size;
+}
+
+uint32_t pixelsOf(float length, float scale) {
+    return static_cast<uint32_t>(std::lround(length * scale));
+}
+
 }  // namespace
 
 ViewerWindow::Screen::Screen(Window& window, const gpu::DeviceOptions& options)
@@ -37,9 +52,16 @@ ViewerWindow::Screen::Screen(Window& window, const gpu::DeviceOptions& options)
 ViewerWindow::ViewerWindow(const gpu::DeviceOptions& options, const ViewSettings& settings)
     : options_(options),
       settings_(settings),
-      window_("Limpid", settings.studio.render.extent),
+      window_("Limpid", withPanel(settings, readMemory(memoryFile(settings.kept)))),
       screen_(std::make_unique<Screen>(window_, options)),
-      shown_(std::make_shared<studio::Shown>()) {}
+      shown_(std::make_shared<studio::Shown>()) {
+    panel_.memory = readMemory(memoryFile(settings.kept));
+    const float scale = screen_->display.interface().scale();
+    if (panel_.memory.panelWidth == 0.0f && scale > 1.0f) {
+        const gpu::Extent size = window_.size();
+        window_.resize({size.width + static_cast<uint32_t>((scale - 1.0f) * usualPanelWidth), size.height});
+    }
+}
 
 void ViewerWindow::run(studio::Studio& studio) {
     const uint64_t listener = studio.addListener([&] { window_.wake(); });
@@ -63,6 +85,11 @@ void ViewerWindow::run(studio::Studio& studio) {
     studio.removeListener(listener);
     shown_ = studio.shown();
     takeState();
+    try {
+        writeMemory(memoryFile(settings_.kept), panel_.memory);
+    } catch (const Error& fault) {
+        log::warn("{}", fault.what());
+    }
 }
 
 void ViewerWindow::finish() {
@@ -79,15 +106,28 @@ bool ViewerWindow::hasNews(const studio::Session& session) {
 void ViewerWindow::draw(studio::Session& session, double seconds) {
     shown_ = session.shown();
     takeState();
-    const nlohmann::json before = studio::toJson(panel_.state);
-    screen_->display.begin();
+    panel_.values = studio::toJson(panel_.state);
+    Display& display = screen_->display;
+    display.begin(panel_.memory.dark);
     controls_.begin();
+    controls_.setGroup("");
+    const ImGuiIO& io = ImGui::GetIO();
+    const float scale = display.interface().scale();
+    panel_.area = pictureArea(panel_, io.DisplaySize.x, io.DisplaySize.y, scale);
     panel_.state.viewport = window_.pixels();
+    if (panel_.state.viewport.width > 0)
+        panel_.state.viewport = {pixelsOf(panel_.area.width, io.DisplayFramebufferScale.x),
+                                 pixelsOf(panel_.area.height, io.DisplayFramebufferScale.y)};
     handleInput(session, seconds);
-    drawPanel(panel_, shown_->facts, controls_);
-    sendChanges(session, before);
+    const Drawing with{panel_, shown_->facts, controls_};
+    if (shown_->facts.scenesShown == 0) drawStartPage(with, display.interface().thumbnails());
+    drawPanel(with, scale);
+    if (panel_.showsKeys) drawKeyMap(controls_);
+    sendChanges(session);
+    noteOpened();
     noteCommand();
-    screen_->display.present(panel_, *shown_);
+    noteLayout();
+    display.present(panel_, *shown_);
     writeControls();
 }
 
@@ -106,36 +146,92 @@ void ViewerWindow::takeState() {
     if (panel_.holdsPose) panel_.state.pose = held;
 }
 
-void ViewerWindow::sendChanges(studio::Session& session, const nlohmann::json& before) {
-    nlohmann::json changes = studio::changesOf(before, studio::toJson(panel_.state));
+void ViewerWindow::sendChanges(studio::Session& session) {
+    nlohmann::json changes = studio::changesOf(panel_.values, studio::toJson(panel_.state));
     if (!changes.empty()) {
+        noteStep(changes);
         const uint64_t number = session.edit(changes);
         pending_.push_back({number, std::move(changes)});
     }
+    if (!ImGui::IsAnyItemActive() && !ImGui::IsAnyMouseDown()) panel_.history.endStep();
+    for (const std::string& file : window_.takeDropped())
+        panel_.asked.push_back({.kind = Request::Kind::OpenDropped, .file = file});
+    panel_.steps = false;
     for (Request& request : panel_.asked) session.ask(std::move(request));
     panel_.asked.clear();
-    for (const std::string& file : window_.takeDropped())
-        session.ask({.kind = Request::Kind::OpenDropped, .file = file});
+}
+
+/// Keeps an edit for undo, unless it is one of undo itself. The window's size is no edit.
+void ViewerWindow::noteStep(nlohmann::json changes) {
+    changes.erase("viewport");
+    if (!panel_.steps) panel_.history.note(changes, panel_.values);
 }
 
 void ViewerWindow::handleInput(studio::Session& session, double seconds) {
+    handleKeys();
     const ImGuiIO& io = ImGui::GetIO();
-    studio::State& state = panel_.state;
     Display& display = screen_->display;
-    const auto pressed = [&](int key) { return !io.WantTextInput && ImGui::IsKeyPressed(key, false); };
-    const auto ask = [&](Request::Kind kind) {
-        panel_.asked.push_back({.kind = kind, .position = display.mousePosition()});
-    };
-    if (pressed(GLFW_KEY_ESCAPE)) window_.close();
-    if (pressed(GLFW_KEY_TAB)) panel_.shown = !panel_.shown;
-    if (pressed(GLFW_KEY_SPACE)) state.running = !state.running;
-    if (pressed(GLFW_KEY_P)) ask(Request::Kind::Probe);
-    if (pressed(GLFW_KEY_V)) state.setPreview(!state.isPreview());
     const bool divides = display.dragsDivider(panel_, controls_);
-    if (io.WantCaptureMouse || divides) return;
-    if (display.clickedTwice()) ask(Request::Kind::Focus);
+    if (io.WantCaptureMouse || divides || panel_.showsKeys) return;
+    if (display.interface().clickedTwice())
+        panel_.asked.push_back(
+            {.kind = Request::Kind::Focus, .position = Display::mousePosition(panel_.area)});
     if (const studio::Gesture gesture = gestureNow(static_cast<float>(seconds)); gesture.moves())
         session.steer(gesture);
+}
+
+void ViewerWindow::handleKeys() {
+    const ImGuiIO& io = ImGui::GetIO();
+    studio::State& state = panel_.state;
+    const auto pressed = [&](int key) { return !io.WantTextInput && ImGui::IsKeyPressed(key, false); };
+    if (screen_->display.interface().askedForKeys()) panel_.showsKeys = !panel_.showsKeys;
+    if (pressed(GLFW_KEY_ESCAPE)) handleEscape();
+    if (io.KeyCtrl) {
+        if (pressed(window_.keyOf('z'))) io.KeyShift ? redo(panel_) : undo(panel_);
+        if (pressed(window_.keyOf('f'))) panel_.shown = panel_.focusesSearch = true;
+        return;
+    }
+    if (pressed(GLFW_KEY_TAB)) panel_.shown = !panel_.shown;
+    if (pressed(GLFW_KEY_SPACE)) state.running = !state.running;
+    if (pressed(window_.keyOf('p')))
+        panel_.asked.push_back(
+            {.kind = Request::Kind::Probe, .position = Display::mousePosition(panel_.area)});
+    if (pressed(window_.keyOf('v'))) state.setPreview(!state.isPreview());
+}
+
+/// Closes what is open, one thing at a time, and then the window.
+void ViewerWindow::handleEscape() {
+    if (std::exchange(panel_.showsKeys, false)) return;
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return ImGui::ClosePopupToLevel(0, true);
+    if (!std::exchange(panel_.search, "").empty()) return;
+    window_.close();
+}
+
+/// Remembers scenes that were opened. The steps of another scene cannot be undone.
+void ViewerWindow::noteOpened() {
+    const studio::Facts& facts = shown_->facts;
+    if (std::exchange(scenesShown_, facts.scenesShown) == facts.scenesShown) return;
+    const std::string opened = "opened ";
+    if (scenesShown_ == 1 && !settings_.studio.source.scene.empty())
+        panel_.memory.addRecent(settings_.studio.source.scene);
+    else if (facts.message.starts_with(opened) && !facts.messageIsOld) {
+        panel_.memory.addRecent(facts.message.substr(opened.size()));
+    }
+    if (facts.scene != title_) panel_.history.clear();
+}
+
+/// An error, or values that were asked for, bring the panel back.
+void ViewerWindow::noteLayout() {
+    const studio::Facts& facts = shown_->facts;
+    const bool fault = std::exchange(fault_, facts.fault) != facts.fault && !fault_.empty(),
+               values = std::exchange(values_, facts.allValues) != facts.allValues && !values_.empty();
+    if (fault || values) panel_.shown = true;
+    const Area& area = panel_.area;
+    controls_.note("picture",
+                   fmt::format("{}x{}", shown_->state.viewport.width, shown_->state.viewport.height),
+                   area.left, area.top, area.left + area.width, area.top + area.height);
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    controls_.note("window", "", 0.0f, 0.0f, size.x, size.y);
 }
 
 /// Copies the command line that was asked for, and names the window after the scene.
@@ -158,7 +254,7 @@ void ViewerWindow::writeControls() {
             facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe, values,
             facts.comparedWith, facts.scenesShown, facts.activity,
             facts.computing || !pending_.empty() ? "yes" : "no") +
-        controls_.text();
+        controls_.lines();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);

@@ -40,9 +40,14 @@ class ViewerWindow {
     bool hasNews(const studio::Session& session);
     void draw(studio::Session& session, double seconds);
     void takeState();
-    void sendChanges(studio::Session& session, const nlohmann::json& before);
+    void sendChanges(studio::Session& session);
+    void noteStep(nlohmann::json changes);
     void handleInput(studio::Session& session, double seconds);
+    void handleKeys();
+    void handleEscape();
+    void noteOpened();
     void noteCommand();
+    void noteLayout();
     void writeControls();
 
     gpu::DeviceOptions options_;
@@ -62,6 +67,8 @@ class ViewerWindow {
     std::deque<Pending> pending_;
     uint64_t commands_ = 0;
     std::string title_;
+    int scenesShown_ = 0;
+    std::string fault_, values_;  ///< those of the snapshot before
 };
 
 }  // namespace limpid::viewer

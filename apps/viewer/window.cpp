@@ -60,7 +60,11 @@ void Window::listen() {
         of(window).input_.add({.kind = Kind::Move, .x = static_cast<float>(x), .y = static_cast<float>(y)});
     });
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
-        if (!entered) of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
+        if (!entered) return of(window).input_.add({.kind = Kind::Move, .x = outside, .y = outside});
+        // GLFW does not report a position at which it was seen last.
+        double x = 0.0, y = 0.0;
+        glfwGetCursorPos(window, &x, &y);
+        of(window).input_.add({.kind = Kind::Move, .x = static_cast<float>(x), .y = static_cast<float>(y)});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
         Window& self = of(window);
@@ -133,6 +137,18 @@ gpu::Extent Window::size() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+void Window::resize(gpu::Extent size) const {
+    glfwSetWindowSize(window_, static_cast<int>(size.width), static_cast<int>(size.height));
+}
+
+int Window::keyOf(char letter) {
+    for (int key = GLFW_KEY_A; key <= GLFW_KEY_Z; ++key) {
+        const char* const name = glfwGetKeyName(key, 0);
+        if (name && name[0] == letter && name[1] == '\0') return key;
+    }
+    return GLFW_KEY_A + (letter - 'a');
 }
 
 void Window::setClipboard(const std::string& text) const {

@@ -42,6 +42,9 @@ class Window {
     gpu::Extent size() const;    ///< in the units that it was made with
     /// How much larger than their nominal size letters should be, in the units of mouse positions.
     float scale() const;
+    void resize(gpu::Extent size) const;
+    /// GLFW's number of the key that types this letter with the keyboard's layout.
+    static int keyOf(char letter);
     bool closed() const;
     void close();
     /// Handles what has happened; `wait`: until something has, or for so many seconds. Whether something may

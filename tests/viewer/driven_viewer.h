@@ -31,9 +31,18 @@ class DrivenViewer {
         return {};
     }
 
-    /// Files go to `folder`. The window has 460x1700 pixels; one pixel of the picture covers 2^shrink of them
-    /// along each axis.
-    DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3) : folder_(folder) {
+    /// Where the panel's sections are open.
+    static constexpr const char* opened =
+        R"({"open": {"scene": true, "camera": true, "method": true, "look": true, "compare": true,
+                     "output": true, "other parameters": true}})";
+
+    /// Files go to `folder`. The picture has 460x1700 pixels of the window, and the panel is right of it; one
+    /// pixel of the picture covers 2^shrink of them along each axis. `memory`: the text of window.json,
+    /// unless there is one.
+    DrivenViewer(const fs::path& folder, const std::string& arguments, int shrink = 3,
+                 const std::string& memory = opened)
+        : folder_(folder) {
+        if (!fs::exists(folder / "window.json")) std::ofstream(folder / "window.json") << memory;
         const std::string in = "cd '" + folder_.string() + "' && ";
         // The display ends with its last client, so the viewer must stay connected all the time.
         shell(
@@ -53,7 +62,8 @@ class DrivenViewer {
                   (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +
                   "'",
               true);
-        waitFor("the panel", [&] { return number("frames") > 0; });
+        // Without a scene, there are no frames.
+        waitFor("the panel", [&] { return number("frames") > 0 || controls().contains("start.cornell"); });
         findWindow();
     }
     void findWindow() {
@@ -109,17 +119,30 @@ class DrivenViewer {
         return found->second;
     }
 
+    /// Scrolls the panel until the control lies in it.
+    Control reveal(const std::string& name) const {
+        for (int i = 0; i < 40; ++i) {
+            const Control c = at(name), panel = at("panel");
+            const bool isInPanel = c.left >= panel.left && name.find('=') == std::string::npos;
+            const bool isAbove = c.top<panel.top, isBelow = c.bottom> panel.bottom;
+            if (!isInPanel || !(isAbove || isBelow) || !scrolls(name)) return c;
+            xdotool("mousemove " + std::to_string(static_cast<int>(panel.left + 14)) + " " +
+                    std::to_string(static_cast<int>(0.5f * (panel.top + panel.bottom))) +
+                    " sleep 0.1 click " + (isAbove ? "4" : "5") + " sleep 0.2");
+        }
+        throw std::runtime_error("cannot scroll to '" + name + "'");
+    }
     void click(const std::string& name) const { press(name, 0.03); }
     /// Clicks at a fraction of the control's width.
     void press(const std::string& name, double share) const {
-        const Control c = at(name);
+        const Control c = reveal(name);
         xdotool("mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) +
                 " " + std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
                 " sleep 0.15 mousedown 1 sleep 0.15 mouseup 1 sleep 0.05");
     }
     /// Types a number into a slider or drag control, at a fraction of its width.
     void type(const std::string& name, const std::string& text, double share = 0.03) const {
-        const Control c = at(name);
+        const Control c = reveal(name);
         xdotool(
             "mousemove " + std::to_string(static_cast<int>(c.left + share * (c.right - c.left) + 3)) + " " +
             std::to_string(static_cast<int>(0.5f * (c.top + c.bottom))) +
@@ -186,6 +209,13 @@ class DrivenViewer {
     std::string get(const std::string& name) const { return slurp(folder_ / name); }
 
   private:
+    /// The panel's bar and status stay where they are.
+    static bool scrolls(const std::string& name) {
+        for (const char* fixed :
+             {"running", "step", "reset", "undo", "redo", "keys", "search", "cancel", "panel edge"})
+            if (name == fixed) return false;
+        return true;
+    }
     static std::string slurp(const fs::path& file) {
         std::ifstream stream(file);
         return {std::istreambuf_iterator<char>(stream), {}};

@@ -14,7 +14,7 @@ constexpr double farthest = 1e18;
 
 }  // namespace
 
-void addSceneOptions(CLI::App& command, SceneChoice& choice) {
+void addSceneOptions(CLI::App& command, SceneChoice& choice, bool required) {
     const OptionGroup group(command, "Scene and camera");
     std::string builtins;
     for (const scene::BuiltinInfo& info : scene::builtinScenes()) builtins += " builtin:" + info.name;
@@ -22,7 +22,7 @@ void addSceneOptions(CLI::App& command, SceneChoice& choice) {
         .add_option(
             "SCENE", choice.source.scene,
             "A .gltf, .glb or .obj file, or one of" + builtins + " builtin:room-N builtin:still-life-N")
-        ->required();
+        ->required(required);
     command.add_option("--env", choice.source.environment,
                        "Environment map: .hdr or .exr, latitude-longitude");
     command

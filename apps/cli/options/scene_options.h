@@ -17,7 +17,8 @@ struct SceneChoice {
     float fov = 0.0f;                ///< degrees, with these; 0: that of the camera
 };
 
-void addSceneOptions(CLI::App& command, SceneChoice& choice);
+/// `required`: SCENE must be given.
+void addSceneOptions(CLI::App& command, SceneChoice& choice, bool required = true);
 
 /// By name, or by number from 0; the first if none is chosen; or one that stands at `eye`. Throws UsageError,
 /// listing the cameras if there is none of that name.

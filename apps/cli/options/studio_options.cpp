@@ -6,6 +6,7 @@
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
 #include "studio/command_line.h"
+#include "studio/state_file.h"
 
 namespace limpid::cli {
 namespace {
@@ -19,7 +20,7 @@ std::string eyeOptions(const SceneChoice& choice) {
 }  // namespace
 
 void addStudioOptions(CLI::App& command, StudioChoice& choice) {
-    addSceneOptions(command, choice.scene);
+    addSceneOptions(command, choice.scene, false);
     addPipelineOptions(command, choice.pipeline, "the last one; at first path",
                        "the last one; at first none");
     command.add_flag("--preview", choice.preview,
@@ -28,10 +29,15 @@ void addStudioOptions(CLI::App& command, StudioChoice& choice) {
                        "Use all settings of a paper, course or tutorial; 'limpid info' lists them");
     command.add_option("--set", choice.assignments,
                        "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
+    command.add_option(
+        "--state", choice.state,
+        "State of a window, as 'copy command line' writes it: camera, lights, method and look; over the "
+        "other options");
     command.add_option("--weights", choice.weights,
                        "Weights file for kpcn instead of the one that comes with Limpid");
-    command.add_option("--width", choice.width, "Width at first, pixels (1280)")->check(CLI::Range(1, 16384));
-    command.add_option("--height", choice.height, "Height at first, pixels (720)")
+    command.add_option("--width", choice.width, "Picture width at first, pixels (1000)")
+        ->check(CLI::Range(1, 16384));
+    command.add_option("--height", choice.height, "Picture height at first, pixels (720)")
         ->check(CLI::Range(1, 16384));
     command
         .add_option("--spp", choice.samples, "Samples per pixel and frame; more is less noisy and slower (1)")
@@ -74,6 +80,7 @@ void apply(const StudioChoice& choice, studio::StudioSettings& settings) {
         settings.jitter = settings.render.jitter;
     }
     for (const std::string& text : choice.assignments) assign(settings.render, text);
+    if (!choice.state.empty()) settings.state = studio::readStateFile(choice.state);
 }
 
 studio::TracerChoice tracerChoice(const StudioChoice& choice) {

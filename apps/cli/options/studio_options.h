@@ -22,9 +22,9 @@ struct StudioChoice {
     std::optional<uint32_t> samples;
     std::optional<uint64_t> maxSamples;
     std::optional<int> shrink;  ///< 0 to 3; empty: automatic
-    std::string animation, weights, shaders, preset;
+    std::string animation, weights, shaders, preset, state;
     std::vector<std::string> assignments;
-    uint32_t width = 1280, height = 720, seed = 0;
+    uint32_t width = 1000, height = 720, seed = 0;
 };
 
 void addStudioOptions(CLI::App& command, StudioChoice& choice);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "viewer/compare/motion_arrows.h"
+#include "viewer/looks/theme.h"
 
 namespace limpid::viewer {
 namespace {
@@ -26,21 +27,66 @@ gpu::Extent extentOf(const gpu::Pane& pane) {
     return pane.graph->extent(pane.picture);
 }
 
-void drawArrows(const image::Image& motion) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
+void drawArrows(const image::Image& motion, const Area& area) {
     ImDrawList& marks = *ImGui::GetBackgroundDrawList();
-    for (const Arrow& arrow : motionArrows(motion, size.x, size.y)) {
-        const ImVec2 from{arrow.from.x, arrow.from.y}, to{arrow.to.x, arrow.to.y};
+    for (const Arrow& arrow : motionArrows(motion, area.width, area.height)) {
+        const ImVec2 from{area.left + arrow.from.x, area.top + arrow.from.y},
+            to{area.left + arrow.to.x, area.top + arrow.to.y};
         marks.AddLine(from, to, shadowColor, 3.0f);
         marks.AddLine(from, to, lineColor, 1.0f);
         marks.AddCircleFilled(to, 2.5f, lineColor);
     }
 }
 
+/// Where there is no picture yet.
+void drawStage(const PanelState& panel) {
+    const Area& area = panel.area;
+    ImGui::GetBackgroundDrawList()->AddRectFilled({area.left, area.top},
+                                                  {area.left + area.width, area.top + area.height},
+                                                  accentsOf(panel.memory.dark).stage);
+}
+
 void drawLabel(ImDrawList& marks, ImVec2 at, const std::string& text) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     marks.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2}, shadowColor);
     marks.AddText(at, IM_COL32_WHITE, text.c_str());
+}
+
+std::array<uint32_t, 2> pixelUnderMouse(gpu::Extent picture, const Area& area) {
+    const auto [x, y] = Display::mousePosition(area);
+    return {static_cast<uint32_t>(x * length(picture.width)),
+            static_cast<uint32_t>(y * length(picture.height))};
+}
+
+/// Adds an enlarged part of each pane, and marks it.
+void drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture, const Area& area) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 scale = io.DisplayFramebufferScale;
+    if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
+    const std::array<float, 2> mouse{(io.MousePos.x - area.left) * scale.x,
+                                     (io.MousePos.y - area.top) * scale.y};
+    const gpu::Extent pixels{static_cast<uint32_t>(area.width * scale.x),
+                             static_cast<uint32_t>(area.height * scale.y)};
+    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
+    const size_t shown = panes.size();
+    for (size_t i = 0; i < shown; ++i) {
+        const gpu::Pane glass = magnified(panes[i], picture, pixels, mouse, static_cast<int>(i));
+        panes.push_back(glass);
+        const ImVec2 upper{area.left + glass.target.left * area.width,
+                           area.top + glass.target.top * area.height},
+            lower{area.left + glass.target.right * area.width, area.top + glass.target.bottom * area.height};
+        marks.AddRect(upper, lower, lineColor);
+        // Outline the pixel under the mouse.
+        const auto [x, y] = pixelUnderMouse(picture, area);
+        const auto place = [](float from, float to, float first, float last, uint32_t pixel, uint32_t all) {
+            const float share = (static_cast<float>(pixel) / length(all) - first) / (last - first);
+            return from + share * (to - from);
+        };
+        const float left = place(upper.x, lower.x, glass.source.left, glass.source.right, x, picture.width),
+                    top = place(upper.y, lower.y, glass.source.top, glass.source.bottom, y, picture.height);
+        const float side = (lower.x - upper.x) / magnifiedPixels;
+        marks.AddRect({left, top}, {left + side, top + side}, lineColor);
+    }
 }
 
 }  // namespace
@@ -55,10 +101,10 @@ std::array<gpu::Pane, 2> splitPanes(const gpu::Pane& left, const gpu::Pane& righ
     return panes;
 }
 
-gpu::Pane magnified(const gpu::Pane& pane, gpu::Extent picture, gpu::Extent window,
+gpu::Pane magnified(const gpu::Pane& pane, gpu::Extent picture, gpu::Extent area,
                     const std::array<float, 2>& mouse, int number) {
     const std::array<float, 2> pixels{length(picture.width), length(picture.height)},
-        size{length(window.width), length(window.height)};
+        size{length(area.width), length(area.height)};
     std::array<float, 2> from{}, to{};
     for (size_t i = 0; i < 2; ++i) {
         const float middle = std::floor(mouse[i] / size[i] * pixels[i]);
@@ -80,6 +126,12 @@ gpu::Pane magnified(const gpu::Pane& pane, gpu::Extent picture, gpu::Extent wind
     return result;
 }
 
+gpu::Rectangle placed(const gpu::Rectangle& inArea, const Area& area, float width, float height) {
+    const auto across = [&](float share) { return (area.left + share * area.width) / std::max(width, 1.0f); };
+    const auto down = [&](float share) { return (area.top + share * area.height) / std::max(height, 1.0f); };
+    return {across(inArea.left), down(inArea.top), across(inArea.right), down(inArea.bottom)};
+}
+
 Display::Display(Window& window, gpu::Device& device)
     : window_(window),
       device_(device),
@@ -88,37 +140,32 @@ Display::Display(Window& window, gpu::Device& device)
 
 bool Display::dragsDivider(PanelState& panel, Controls& controls) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!panel.state.comparison.isOn() || io.DisplaySize.x <= 0.0f) {
+    const Area& area = panel.area;
+    if (!panel.state.comparison.isOn() || area.width <= 0.0f) {
         dragging_ = false;
         return false;
     }
-    const float at = panel.divider * io.DisplaySize.x;
-    controls.note("divider", fmt::format("{:.3f}", panel.divider), at - dividerReach, 0.0f, at + dividerReach,
-                  io.DisplaySize.y);
+    const float at = area.left + panel.divider * area.width;
+    controls.note("divider", fmt::format("{:.3f}", panel.divider), at - dividerReach, area.top,
+                  at + dividerReach, area.top + area.height);
     const bool near = !io.WantCaptureMouse && std::abs(io.MousePos.x - at) <= dividerReach;
     if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) dragging_ = true;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) dragging_ = false;
     if (near || dragging_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    if (dragging_) panel.divider = std::clamp(io.MousePos.x / io.DisplaySize.x, 0.0f, 1.0f);
+    if (dragging_) panel.divider = std::clamp((io.MousePos.x - area.left) / area.width, 0.0f, 1.0f);
     return dragging_;
 }
 
-std::array<float, 2> Display::mousePosition() const {
-    const ImGuiIO& io = ImGui::GetIO();
-    const auto along = [](float mouse, float window) {
-        return std::clamp(mouse / std::max(window, 1.0f), 0.0f, 0.9999f);
+std::array<float, 2> Display::mousePosition(const Area& area) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto along = [](float at, float whole) {
+        return std::clamp(at / std::max(whole, 1.0f), 0.0f, 0.9999f);
     };
-    return {along(io.MousePos.x, io.DisplaySize.x), along(io.MousePos.y, io.DisplaySize.y)};
+    return {along(mouse.x - area.left, area.width), along(mouse.y - area.top, area.height)};
 }
 
-std::array<uint32_t, 2> Display::pixelUnderMouse(gpu::Extent picture) const {
-    const auto [x, y] = mousePosition();
-    return {static_cast<uint32_t>(x * length(picture.width)),
-            static_cast<uint32_t>(y * length(picture.height))};
-}
-
-std::string Display::probeOf(const image::Image& picture) const {
-    const auto [x, y] = pixelUnderMouse({picture.width, picture.height});
+std::string Display::probeOf(const image::Image& picture, const Area& area) {
+    const auto [x, y] = pixelUnderMouse({picture.width, picture.height}, area);
     std::string text = fmt::format("({}, {}):", x, y);
     for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
     return text;
@@ -134,7 +181,7 @@ void Display::inspect(PanelState& panel, const studio::Shown& shown) {
     if (!same)
         inspector_.show(device_, shownTexels(*inspected_, inspectedBy_),
                         {inspected_->width, inspected_->height});
-    panel.probe = probeOf(*inspected_);
+    panel.probe = probeOf(*inspected_, panel.area);
 }
 
 void Display::Uploaded::show(gpu::Device& device, const std::shared_ptr<const studio::Picture>& now) {
@@ -143,43 +190,15 @@ void Display::Uploaded::show(gpu::Device& device, const std::shared_ptr<const st
     texels.show(device, now->texels, now->extent);
 }
 
-void Display::drawMagnifier(std::vector<gpu::Pane>& panes, gpu::Extent picture) const {
-    const ImGuiIO& io = ImGui::GetIO();
-    const gpu::Extent window = window_.pixels();
-    const ImVec2 scale = io.DisplayFramebufferScale;
-    const std::array<float, 2> mouse{io.MousePos.x * scale.x, io.MousePos.y * scale.y};
-    if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
+void Display::drawDivider(const std::string& left, const PanelState& panel, const studio::Facts& facts) {
+    const Area& area = panel.area;
     ImDrawList& marks = *ImGui::GetBackgroundDrawList();
-    const size_t shown = panes.size();
-    for (size_t i = 0; i < shown; ++i) {
-        const gpu::Pane glass = magnified(panes[i], picture, window, mouse, static_cast<int>(i));
-        panes.push_back(glass);
-        const ImVec2 upper{glass.target.left * io.DisplaySize.x, glass.target.top * io.DisplaySize.y},
-            lower{glass.target.right * io.DisplaySize.x, glass.target.bottom * io.DisplaySize.y};
-        marks.AddRect(upper, lower, lineColor);
-        // Outline the pixel under the mouse.
-        const auto [x, y] = pixelUnderMouse(picture);
-        const auto place = [](float from, float to, float first, float last, uint32_t pixel, uint32_t all) {
-            const float share = (static_cast<float>(pixel) / length(all) - first) / (last - first);
-            return from + share * (to - from);
-        };
-        const float left = place(upper.x, lower.x, glass.source.left, glass.source.right, x, picture.width),
-                    top = place(upper.y, lower.y, glass.source.top, glass.source.bottom, y, picture.height);
-        const float side = (lower.x - upper.x) / magnifiedPixels;
-        marks.AddRect({left, top}, {left + side, top + side}, lineColor);
-    }
-}
-
-void Display::drawDivider(const std::string& left, const PanelState& panel,
-                          const studio::Facts& facts) const {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImDrawList& marks = *ImGui::GetBackgroundDrawList();
-    const float at = panel.divider * size.x;
-    marks.AddLine({at, 0.0f}, {at, size.y}, shadowColor, 3.0f);
-    marks.AddLine({at, 0.0f}, {at, size.y}, lineColor, 1.0f);
+    const float at = area.left + panel.divider * area.width, bottom = area.top + area.height;
+    marks.AddLine({at, area.top}, {at, bottom}, shadowColor, 3.0f);
+    marks.AddLine({at, area.top}, {at, bottom}, lineColor, 1.0f);
     const float width = ImGui::CalcTextSize(left.c_str()).x;
-    drawLabel(marks, {at - width - 12.0f, 8.0f}, left);
-    drawLabel(marks, {at + 12.0f, 8.0f}, facts.comparedWith);
+    drawLabel(marks, {at - width - 12.0f, area.top + 8.0f}, left);
+    drawLabel(marks, {at + 12.0f, area.top + 8.0f}, facts.comparedWith);
 }
 
 void Display::present(PanelState& panel, const studio::Shown& shown) {
@@ -192,7 +211,7 @@ void Display::present(PanelState& panel, const studio::Shown& shown) {
     else if (shown.picture)
         panes.push_back(main_.texels.pane());
     const gpu::Extent picture = panes.empty() ? gpu::Extent{} : extentOf(panes.front());
-    if (shown.motion) drawArrows(*shown.motion);
+    if (shown.motion) drawArrows(*shown.motion, panel.area);
     if (shown.compared && !panes.empty()) {
         const gpu::Pane whole = panes.front();
         const auto both = splitPanes(whole, compared_.texels.pane(), picture, panel.divider);
@@ -202,7 +221,10 @@ void Display::present(PanelState& panel, const studio::Shown& shown) {
                           : shown.state.render.pipeline.title(),
                     panel, shown.facts);
     }
-    if (panel.magnifier && !panes.empty()) drawMagnifier(panes, picture);
+    if (panel.magnifier && !panes.empty()) drawMagnifier(panes, picture, panel.area);
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    for (gpu::Pane& pane : panes) pane.target = placed(pane.target, panel.area, window.x, window.y);
+    if (panes.empty()) drawStage(panel);
     presenter_.present(panes, window_.pixels(), interface_.end());
 }
 

@@ -39,6 +39,18 @@ TEST(Magnified, HoldsThePixelUnderTheMouseAndStaysInTheWindow) {
         for (const float y : {0.0f, 250.0f, 499.0f}) expectSquare(x, y);
 }
 
+TEST(Placed, APartOfTheAreaIsAPartOfTheWindow) {
+    const gpu::Rectangle all = placed({}, {0.0f, 0.0f, 600.0f, 400.0f}, 1000.0f, 400.0f);
+    EXPECT_FLOAT_EQ(all.right, 0.6f);
+    EXPECT_FLOAT_EQ(all.bottom, 1.0f);
+    const gpu::Rectangle part =
+        placed({0.5f, 0.25f, 1.0f, 0.5f}, {100.0f, 40.0f, 600.0f, 200.0f}, 1000.0f, 400.0f);
+    EXPECT_FLOAT_EQ(part.left, 0.4f);
+    EXPECT_FLOAT_EQ(part.top, 0.225f);
+    EXPECT_FLOAT_EQ(part.right, 0.7f);
+    EXPECT_FLOAT_EQ(part.bottom, 0.35f);
+}
+
 TEST(Magnified, SquaresStandSideBySide) {
     const gpu::Pane first = magnified({}, {200, 100}, {1000, 500}, {300.0f, 100.0f}, 0),
                     second = magnified({}, {200, 100}, {1000, 500}, {300.0f, 100.0f}, 1);

@@ -8,32 +8,30 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
+
+#include "viewer/looks/theme.h"
 
 namespace limpid::viewer {
 namespace {
-
-constexpr float letterPixels = 13.0f;  ///< nominal size of ImGui's own font
 
 static_assert(sizeof(ImDrawVert) == sizeof(gpu::OverlayVertex) && sizeof(ImDrawIdx) == sizeof(uint16_t));
 
 }  // namespace
 
-Interface::Interface(Window& window, gpu::Presenter& presenter) : window_(window) {
+Interface::Interface(Window& window, gpu::Presenter& presenter) : window_(window), scale_(window.scale()) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-    ImGui::StyleColorsDark();
-    const float scale = window.scale();
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    ImFontConfig font;
-    font.SizePixels = std::round(letterPixels * scale);
-    io.Fonts->AddFontDefault(&font);
+    addTypeface(scale_);
+    thumbnails_.reserve(thumbnailFolder());
     ImGui_ImplGlfw_InitForVulkan(window.handle(), false);  // events come from the queue instead
     unsigned char* texels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&texels, &width, &height);
+    thumbnails_.copy(texels, width, height);
     const auto* words = reinterpret_cast<const uint32_t*>(texels);
     presenter.setTexture({static_cast<uint32_t>(width), static_cast<uint32_t>(height)},
                          {words, static_cast<size_t>(width) * static_cast<size_t>(height)});
@@ -44,10 +42,11 @@ Interface::~Interface() {
     ImGui::DestroyContext();
 }
 
-void Interface::begin() {
+void Interface::begin(bool dark) {
+    if (std::exchange(dark_, dark) != dark) setTheme(dark, scale_);
     ImGui_ImplGlfw_NewFrame();
     ImGuiIO& io = ImGui::GetIO();
-    clickedTwice_ = false;
+    clickedTwice_ = askedForKeys_ = false;
     for (const InputEvent& event : window_.input().take(io.WantTextInput)) apply(event);
     // The back end reads the window's current state, which is ahead of the queue.
     io.MousePos = {mouse_.x, mouse_.y};
@@ -71,6 +70,7 @@ void Interface::apply(const InputEvent& event) {
             io.MouseWheel += event.y;
             break;
         case InputEvent::Kind::Text:
+            askedForKeys_ |= event.code == '?' && !io.WantTextInput;
             io.AddInputCharacter(static_cast<unsigned>(event.code));
             break;
         case InputEvent::Kind::Key:

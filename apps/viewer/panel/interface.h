@@ -3,9 +3,11 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "gpu/present/presenter.h"
+#include "viewer/start/thumbnails.h"
 #include "viewer/window.h"
 
 namespace limpid::viewer {
@@ -17,10 +19,15 @@ class Interface {
     Interface(const Interface&) = delete;
     Interface& operator=(const Interface&) = delete;
 
-    /// Between the two, ImGui's calls.
-    void begin();
+    /// Between the two, ImGui's calls. `dark`: the theme.
+    void begin(bool dark);
     /// The left button has gone down for the second time.
     bool clickedTwice() const { return clickedTwice_; }
+    /// A question mark was typed, and not into a text.
+    bool askedForKeys() const { return askedForKeys_; }
+    const Thumbnails& thumbnails() const { return thumbnails_; }
+    /// How much larger than nominal everything is drawn.
+    float scale() const { return scale_; }
     /// Valid until the next begin().
     gpu::Overlay end();
 
@@ -28,9 +35,12 @@ class Interface {
     void apply(const InputEvent& event);
 
     Window& window_;
+    float scale_;
+    std::optional<bool> dark_;
+    Thumbnails thumbnails_;
     InputEvent mouse_{.x = -std::numeric_limits<float>::max(), .y = -std::numeric_limits<float>::max()};
     std::array<bool, 5> buttons_{};
-    bool clickedTwice_ = false;
+    bool clickedTwice_ = false, askedForKeys_ = false;
     std::vector<gpu::OverlayVertex> vertices_;
     std::vector<uint16_t> indices_;
     std::vector<gpu::OverlayDraw> draws_;

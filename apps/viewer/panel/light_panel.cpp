@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include "viewer/panel/fields.h"
+
 namespace limpid::viewer {
 namespace {
 
@@ -43,10 +45,15 @@ bool drawLight(LightControl& light, bool added, const studio::Facts& facts, Cont
     return removed;
 }
 
-void drawBackground(PanelState& panel, Controls& controls) {
-    studio::LightDesk& desk = panel.state.lights;
-    controls.checkbox("background of its own", desk.hasBackground);
+}  // namespace
+
+void drawBackground(const Drawing& with) {
+    studio::LightDesk& desk = with.panel.state.lights;
+    Controls& controls = with.controls;
+    controls.toggle("background of its own", desk.hasBackground);
+    explainRow(with, "A uniform environment instead of the scene's own; the scene is loaded again");
     if (!desk.hasBackground) return;
+    controls.color("background color", desk.background);
     const char* const names[] = {"red", "green", "blue"};
     for (int i = 0; i < 3; ++i) {
         controls.slider(names[i], desk.background[i],
@@ -54,30 +61,15 @@ void drawBackground(PanelState& panel, Controls& controls) {
     }
 }
 
-}  // namespace
-
-void drawLights(PanelState& panel, const studio::Facts& facts, Controls& controls) {
-    controls.setGroup("");
-    if (!controls.header("light")) return;
-    controls.setGroup("light");
-    const auto ask = [&](const char* name, Request::Kind kind) {
-        if (controls.button(name)) panel.asked.push_back({.kind = kind});
-        ImGui::SameLine();
-    };
-    studio::LightDesk& desk = panel.state.lights;
-    ask("add a point", Request::Kind::AddPoint);
-    ask("add a sun", Request::Kind::AddSun);
-    if (controls.button("as loaded")) desk.reset();
-    ImGui::SameLine();
-    ask("save lights", Request::Kind::SaveLights);
-    ImGui::NewLine();
+void drawLightList(const Drawing& with) {
+    studio::LightDesk& desk = with.panel.state.lights;
+    ImGui::PushID("lights");
     for (LightControl& light : desk.lights) {
-        if (drawLight(light, desk.isAdded(light), facts, controls))
-            panel.asked.push_back({.kind = Request::Kind::RemoveLamp, .index = light.index});
+        if (drawLight(light, desk.isAdded(light), with.facts, with.controls))
+            with.panel.asked.push_back({.kind = Request::Kind::RemoveLamp, .index = light.index});
     }
-    controls.setGroup("light");
-    drawBackground(panel, controls);
-    controls.setGroup("");
+    ImGui::PopID();
+    with.controls.setGroup("light");
 }
 
 }  // namespace limpid::viewer

@@ -1,13 +1,15 @@
 // The panel's part about lights.
 #pragma once
 
-#include "viewer/camera/controls.h"
 #include "viewer/panel/panel.h"
 
 namespace limpid::viewer {
 
-/// Changes of a light take effect with the next frame; a lamp or a background that is added or taken away
+/// Every light of the scene. Changes of a light take effect with the next frame; a lamp that is taken away
 /// loads the scene again.
-void drawLights(PanelState& panel, const studio::Facts& facts, Controls& controls);
+void drawLightList(const Drawing& with);
+
+/// A switch, and a colour. Changing it loads the scene again.
+void drawBackground(const Drawing& with);
 
 }  // namespace limpid::viewer

@@ -1,27 +1,62 @@
 // The panel beside the picture: what is rendered, how, and how long it takes.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "studio/session.h"
 #include "viewer/camera/controls.h"
+#include "viewer/looks/memory.h"
+#include "viewer/panel/history.h"
 
 namespace limpid::viewer {
+
+/// A part of the window, in the units of mouse positions.
+struct Area {
+    float left = 0.0f, top = 0.0f, width = 0.0f, height = 0.0f;
+};
 
 /// What the panel changes: the studio's state, and what belongs to this window alone.
 struct PanelState {
     studio::State state;
+    nlohmann::json values;               ///< studio::toJson(state) when the picture of the window was begun
     std::vector<studio::Request> asked;  ///< whoever sends them clears it
-    std::string file;                    ///< scene or environment to open
-    float divider = 0.65f;   ///< share of the window's width: what is compared with lies right of it
+    Memory memory;
+    History history;
+    bool steps = false;  ///< the changes of this picture are those of undo() or redo()
+    std::string file;    ///< scene or environment to open
+    std::string search;  ///< empty: the sections are shown
+    bool focusesSearch = false;
+    float divider = 0.65f;   ///< share of the picture's width: what is compared with lies right of it
     bool magnifier = false;  ///< beside the mouse
     bool shown = true;
-    bool holdsPose = false;  ///< a control is held or typed into: State::pose is what it says
-    std::string probe;       ///< what lies under the mouse in the image that is inspected
+    bool showsKeys = false;     ///< the list of keys, over everything
+    bool holdsPose = false;     ///< a control is held or typed into: State::pose is what it says
+    std::string probe;          ///< what lies under the mouse in the image that is inspected
+    Area area;                  ///< where the picture is shown; the panel is right of it
+    float statusHeight = 0.0f;  ///< pixels of the window, of the last picture
 };
 
-/// ImGui's calls for it.
-void drawPanel(PanelState& panel, const studio::Facts& facts, Controls& controls);
+/// Width of the panel before anyone has dragged its edge, in pixels of the window at a scale of 1.
+constexpr float usualPanelWidth = 400.0f;
+
+/// Divides a window of this size between the picture and the panel, which gives way in small windows.
+/// `scale`: how much larger than nominal everything is drawn.
+Area pictureArea(const PanelState& panel, float width, float height, float scale);
+
+/// What the panel's parts are drawn with.
+struct Drawing {
+    PanelState& panel;
+    const studio::Facts& facts;
+    Controls& controls;
+};
+
+/// ImGui's calls for it. `scale` as above.
+void drawPanel(const Drawing& with, float scale);
+
+/// Carries out a step of the history.
+void undo(PanelState& panel);
+void redo(PanelState& panel);
 
 }  // namespace limpid::viewer

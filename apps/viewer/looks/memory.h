@@ -1,0 +1,34 @@
+// What the window itself remembers from one time to the next: its layout and its colours. What the picture
+// is made of is kept apart from it (studio/kept_settings.h).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace limpid::viewer {
+
+struct Memory {
+    static constexpr size_t mostRecent = 10;
+
+    bool dark = true;                  ///< the theme
+    float panelWidth = 0.0f;           ///< pixels of the window; 0: the usual width
+    std::map<std::string, bool> open;  ///< sections of the panel that the user has opened or closed
+    std::vector<std::string> recent;   ///< scenes that were opened, the last one first, by absolute path
+
+    /// Puts the scene first in the list. Built-in scenes and environments do not count.
+    void addRecent(const std::string& file);
+    bool operator==(const Memory&) const = default;
+};
+
+/// window.json beside the file of the kept settings; empty where there is none.
+std::filesystem::path memoryFile(const std::filesystem::path& keptSettings);
+
+/// A file that is missing or damaged is nothing: what cannot be read keeps its default, with a warning.
+Memory readMemory(const std::filesystem::path& file);
+
+/// Throws OutputError. An empty name writes nothing.
+void writeMemory(const std::filesystem::path& file, const Memory& memory);
+
+}  // namespace limpid::viewer

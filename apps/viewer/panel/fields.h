@@ -1,0 +1,23 @@
+// Controls for the fields of the studio's state, drawn from their table (studio/state_json.h).
+#pragma once
+
+#include "studio/state_json.h"
+#include "viewer/panel/panel.h"
+
+namespace limpid::viewer {
+
+/// One row: the name, the control, and, if the value is not the default, a dot that sets it back. Help and
+/// unit appear under the mouse.
+void drawField(const Drawing& with, const studio::Field& field);
+void drawField(const Drawing& with, const char* key);
+
+/// Text under the mouse, if it is over the last row.
+void explainRow(const Drawing& with, const std::string& text);
+/// The same for the last control.
+void explain(const std::string& text);
+
+/// Space on the left of rows, for the dots.
+void beginRows();
+void endRows();
+
+}  // namespace limpid::viewer
