@@ -12,9 +12,11 @@ import pathlib
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.request
 
@@ -26,16 +28,15 @@ PHONE = (390, 844)
 
 
 class Server:
-    """`limpid serve`, always at the same address."""
+    """`limpid serve`, always at the same port."""
 
     def __init__(self, program):
         self.program, self.port, self.process = program, 0, None
 
-    def start(self, *options):
-        environment = {**os.environ, 'LIMPID_SERVE_TOKEN': '0123456789abcdef' * 2}
+    def start(self):
         self.process = subprocess.Popen(
-            [self.program, 'serve', SCENE, '--port', str(self.port), '--device', 'cpu', '--max-spp', str(SAMPLES),
-             *options], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            [self.program, 'serve', SCENE, '--port', str(self.port), '--device', 'cpu', '--max-spp', str(SAMPLES)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         if not self.address:
             raise RuntimeError(self.process.stderr.read())
@@ -45,6 +46,54 @@ class Server:
         self.process.send_signal(signal.SIGINT)
         code = self.process.wait(30)
         check(code == 0, f'limpid serve ends with {code}: {self.process.stderr.read()}')
+
+
+class Relay:
+    """Stands between the browser and the program, as a network that can be cut."""
+
+    def __init__(self, server):
+        self.server, self.open, self.sockets = server, True, set()
+        self.listener = socket.create_server(('127.0.0.1', 0))
+        self.port = self.listener.getsockname()[1]
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def address(self):
+        return self.server.address.replace(f':{self.server.port}/', f':{self.port}/')
+
+    def accept(self):
+        while True:
+            near, _ = self.listener.accept()
+            try:
+                far = socket.create_connection(('127.0.0.1', self.server.port)) if self.open else None
+            except OSError:
+                far = None
+            if not far:
+                near.close()
+                continue
+            self.sockets |= {near, far}
+            for source, target in ((near, far), (far, near)):
+                threading.Thread(target=self.forward, args=(source, target), daemon=True).start()
+
+    def forward(self, source, target):
+        try:
+            while data := source.recv(1 << 16):
+                target.sendall(data)
+        except OSError:
+            pass
+        for end in (source, target):
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass  # it is closed
+
+    def cut(self):
+        self.open = False
+        for end in list(self.sockets):
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass  # it is closed
+        self.sockets.clear()
 
 
 # ---- What the page shows
@@ -287,6 +336,12 @@ def test_camera(browser):
         (document.getElementById('stage').getBoundingClientRect())'''))
     before = browser.evaluate(EYE)
     moved(browser, 'orbiting', lambda: browser.drag((x, y), (x + 60, y + 10)))
+    browser.wait("!document.getElementById('undo').disabled", 'a movement as a step of undo')
+    undone = browser.evaluate(EYE)
+    click_on(browser, '#undo')
+    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(before)}[i]) < 1e-3)", 'the movement, undone')
+    click_on(browser, '#redo')
+    browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(undone)}[i]) < 1e-3)", 'the movement, done again')
     moved(browser, 'the wheel', lambda: browser.wheel(x, y, -200))
     moved(browser, 'flying', lambda: [browser.call('Input.dispatchKeyEvent', type='keyDown', key='w', code='KeyW'),
                                       time.sleep(0.2),
@@ -371,18 +426,30 @@ def test_two_tabs(browser, address):
     browser.session = first
 
 
-def test_reconnection(browser, server):
-    server.stop()
-    browser.wait("document.body.classList.contains('lost')", 'the page does not see that the program has ended')
+def test_reconnection(browser, relay):
+    """A cut network: the page says so, and connects by itself."""
+    relay.cut()
+    browser.wait("document.body.classList.contains('lost')", 'the page does not see that the connection is lost')
     said = browser.evaluate("document.getElementById('connection').textContent")
     check('connecting again' in said, f'it says {said}')
-    frame = browser.evaluate("document.getElementById('stage').dataset.frame = ''")
-    server.start()
-    browser.wait("!document.body.classList.contains('lost')", 'the page does not connect again', 30)
-    browser.wait("document.getElementById('stage').dataset.frame !== ''", 'no picture after connecting again', 40)
+    browser.evaluate("document.getElementById('stage').dataset.frame = ''")
+    relay.open = True
+    browser.wait("!document.body.classList.contains('lost')", 'the page does not connect again')
+    browser.wait("document.getElementById('stage').dataset.frame !== ''", 'no picture after connecting again')
     type_into(browser, '#field-seed-number', '5')
-    browser.wait("document.querySelector('[data-key=seed]').classList.contains('changed')", 'edits after connecting again')
+    browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture')
     click_on(browser, '[data-key=seed] .reset')
+
+
+def test_restart(browser, server, relay):
+    """A program that is started again has another token: the page says where to go, which works."""
+    server.stop()
+    browser.wait("document.body.classList.contains('lost')", 'the page does not see that the program has ended')
+    server.start()
+    browser.wait("document.getElementById('connection').textContent.includes('open the address that it prints')",
+                 'the page does not say where to go')
+    open_page(browser, relay.address())
+    check(browser.evaluate("!document.body.classList.contains('lost')"), 'the new address does not work')
 
 
 def test_phone(browser):
@@ -433,7 +500,7 @@ def test_without_webcodecs(browser, address):
     browser.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
 
 
-def check_silence(browser, server):
+def check_silence(browser, relay):
     """No request to another place, and no error but that of a lost connection."""
     requests = 0
     for event in browser.events:
@@ -441,7 +508,7 @@ def check_silence(browser, server):
         if method == 'Network.requestWillBeSent':
             url = parameters['request']['url']
             requests += 1
-            check(url.startswith((f'http://127.0.0.1:{server.port}/', 'data:', 'blob:')), f'the page asks for {url}')
+            check(url.startswith((f'http://127.0.0.1:{relay.port}/', 'data:', 'blob:')), f'the page asks for {url}')
         check(method != 'Runtime.exceptionThrown', f'exception: {parameters}')
         check(method != 'Runtime.consoleAPICalled' or parameters['type'] not in ('error', 'warning', 'assert'),
               f'console: {parameters}')
@@ -457,7 +524,8 @@ def check_policy(address):
 
 
 def test(browser, server, program, folder):
-    address = server.address
+    relay = Relay(server)
+    address = relay.address()
     check_policy(address)
     timed('load', lambda: open_page(browser, address))
     fit_stage(browser)
@@ -472,11 +540,12 @@ def test(browser, server, program, folder):
     timed('camera', lambda: test_camera(browser))
     timed('comparison', lambda: test_comparison(browser))
     timed('tabs', lambda: test_two_tabs(browser, address))
-    timed('reconnection', lambda: test_reconnection(browser, server))
+    timed('reconnection', lambda: test_reconnection(browser, relay))
     timed('phone', lambda: test_phone(browser))
     timed('names', lambda: test_names(browser))
     timed('jpeg', lambda: test_without_webcodecs(browser, address))
-    check_silence(browser, server)
+    timed('restart', lambda: test_restart(browser, server, relay))
+    check_silence(browser, relay)
 
 
 def timed(name, run):

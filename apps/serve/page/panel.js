@@ -7,7 +7,8 @@ import {LightDesk} from './lights.js';
 const firstSections = ['scene', 'camera', 'light', 'method', 'look', 'compare', 'inspect'];
 const openAtFirst = ['scene', 'method', 'look'];
 const onlyWithClip = ['playing', 'time'];
-const hidden = ['viewport'];
+// The page sets the first; the others concern images that the program does not send.
+const hidden = ['viewport', 'arrows', 'pass', 'image', 'view.channels', 'view.stops', 'view.false_color'];
 
 const idOf = key => 'field-' + key.replace(/[^a-z0-9]/gi, '-');
 
