@@ -491,6 +491,35 @@ def test_names(browser):
     check(not nameless, f'controls without a name: {nameless}')
 
 
+def test_contrast(browser):
+    """Text on its background, in both schemes: WCAG's level AA."""
+    for scheme in ('light', 'dark'):
+        browser.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': scheme},
+                                                             {'name': 'prefers-reduced-motion', 'value': 'reduce'}])
+        faint = browser.evaluate('''(() => {
+          const numbers = color => color.match(/[\\d.]+/g).map(Number);
+          const luminance = color => numbers(color).slice(0, 3).map(v => v / 255)
+              .map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+              .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+          const behind = element => {
+            for (; element; element = element.parentElement) {
+              const color = getComputedStyle(element).backgroundColor;
+              if (numbers(color)[3] !== 0) return color;
+            }
+            return 'rgb(255, 255, 255)';
+          };
+          const withText = [...document.querySelectorAll('#bar *, #panel *')].filter(e => e.offsetParent && !e.disabled &&
+              (e.matches('input, select') || [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim())));
+          const found = withText.map(element => {
+            const [a, b] = [getComputedStyle(element).color, behind(element)].map(luminance).sort((x, y) => y - x);
+            return {contrast: (a + 0.05) / (b + 0.05), what: element.id || element.textContent.slice(0, 30)};
+          });
+          return {count: found.length, faint: found.filter(f => f.contrast < 4.5)};
+        })()''')
+        check(faint['count'] > 100, f'only {faint["count"]} texts')
+        check(not faint['faint'], f'{scheme}: faint texts: {faint["faint"]}')
+
+
 def test_without_webcodecs(browser, address):
     script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='delete window.VideoDecoder')['identifier']
     fit_stage(browser)
@@ -543,6 +572,7 @@ def test(browser, server, program, folder):
     timed('reconnection', lambda: test_reconnection(browser, relay))
     timed('phone', lambda: test_phone(browser))
     timed('names', lambda: test_names(browser))
+    timed('contrast', lambda: test_contrast(browser))
     timed('jpeg', lambda: test_without_webcodecs(browser, address))
     timed('restart', lambda: test_restart(browser, server, relay))
     check_silence(browser, relay)

@@ -70,7 +70,8 @@ export function makeActions(store, connection, ask, status) {
   const elements = {
     scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element,
                 row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
-                                    title: 'The picture as it is shown, lossless', click: () => downloadPng(connection)}),
+                                    title: 'The picture as it is shown, lossless',
+                                    click: () => downloadPng(connection)}),
                     button('reset', 'start anew', 'Histories and means begin again'), command.button), command.box),
     camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start'),
                 button('see_all', 'see everything', 'To where the whole scene is seen'),
@@ -83,8 +84,10 @@ export function makeActions(store, connection, ask, status) {
   };
   const hello = ({requests, scenes: names}) => {
     scenes.setScenes(names ?? []);
-    for (const [, element] of Object.entries(elements)) {
-      for (const each of element.querySelectorAll('[data-request]')) each.hidden = !requests.includes(each.dataset.request);
+    for (const element of Object.values(elements)) {
+      for (const each of element.querySelectorAll('[data-request]')) {
+        each.hidden = !requests.includes(each.dataset.request);
+      }
     }
   };
   return {elements, hello};

@@ -17,7 +17,9 @@ function holdWhile(input, hold) {
   };
   input.addEventListener('pointerdown', () => set(true));
   input.addEventListener('keydown', () => set(true));
-  for (const end of ['pointerup', 'pointercancel', 'keyup', 'blur', 'change']) input.addEventListener(end, () => set(false));
+  for (const end of ['pointerup', 'pointercancel', 'keyup', 'blur', 'change']) {
+    input.addEventListener(end, () => set(false));
+  }
 }
 
 function checkbox({id, describedBy, change}) {

@@ -48,7 +48,8 @@ export class Gestures {
   up(event) {
     const pointer = this.#pointers.get(event.pointerId);
     if (!pointer) return;
-    if (event.type === 'pointerup' && pointer.type === 'touch' && this.#pointers.size === 1) this.tapped(event, pointer);
+    const isTap = event.type === 'pointerup' && pointer.type === 'touch' && this.#pointers.size === 1;
+    if (isTap) this.tapped(event, pointer);
     this.#pointers.delete(event.pointerId);
   }
 
@@ -70,7 +71,8 @@ export class Gestures {
     const before = this.spread();
     pointer.x = event.clientX;
     pointer.y = event.clientY;
-    if (this.#pointers.size > 1) return this.pinch(before, this.spread(), dx / this.#pointers.size, dy / this.#pointers.size);
+    const count = this.#pointers.size;
+    if (count > 1) return this.pinch(before, this.spread(), dx / count, dy / count);
     if (this.touchesPixels() || event.ctrlKey) return this.picture.drag(dx, dy);
     if (pointer.button === 0) this.add('orbit', [radiansPerPixel * dx, -radiansPerPixel * dy]);
     if (pointer.button === 2) this.add('look', [radiansPerPixel * dx, -radiansPerPixel * dy]);
@@ -102,7 +104,9 @@ export class Gestures {
     event.preventDefault();
     const pixels = event.deltaY * (event.deltaMode === 1 ? wheelStep / 3 : event.deltaMode === 2 ? 3 * wheelStep : 1);
     // Touch pads say two fingers that pinch by a wheel with Ctrl.
-    if (event.ctrlKey || this.touchesPixels()) return this.picture.zoomAt(Math.exp(-pixels / wheelStep * 0.25), event.clientX, event.clientY);
+    if (event.ctrlKey || this.touchesPixels()) {
+      return this.picture.zoomAt(Math.exp(-0.25 * pixels / wheelStep), event.clientX, event.clientY);
+    }
     const looks = [...this.#pointers.values()].some(pointer => pointer.button === 2);
     this.add(looks ? 'speed' : 'zoom', -pixels / wheelStep);
   }

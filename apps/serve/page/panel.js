@@ -122,7 +122,8 @@ export class Panel {
   }
 
   countChanges(name, details) {
-    const count = this.store.fields.filter(f => f.section === name && this.#rows.has(f.key) && this.store.differs(f.key)).length;
+    const count = this.store.fields
+        .filter(({key, section}) => section === name && this.#rows.has(key) && this.store.differs(key)).length;
     const place = details.querySelector('.count');
     setText(place, count ? `${count} changed` : '');
     details.classList.toggle('changed', count > 0);

@@ -11,7 +11,8 @@ function bytesText(bytes) {
 }
 
 function millisecondsText(milliseconds) {
-  return milliseconds >= 1000 ? `${(milliseconds / 1000).toFixed(1)} s` : `${numberText(milliseconds.toPrecision(3))} ms`;
+  if (milliseconds >= 1000) return `${(milliseconds / 1000).toFixed(1)} s`;
+  return `${numberText(milliseconds.toPrecision(3))} ms`;
 }
 
 export class Status {
@@ -73,7 +74,8 @@ export class Status {
       setText(row.cells[1], millisecondsText(milliseconds));
     });
     if (facts.memory !== undefined) {
-      setText(this.memory, `${bytesText(facts.memory)} on the device, the scene's ${bytesText(facts.scene_memory ?? 0)}`);
+      const scene = bytesText(facts.scene_memory ?? 0);
+      setText(this.memory, `${bytesText(facts.memory)} on the device, the scene's ${scene}`);
     }
   }
 }

@@ -1,5 +1,6 @@
-// What the page knows: the table of fields, the server's state, and edits that the server has not shown yet. An edit has
-// an id of ours until the server acknowledges it with its number; states say up to which number they include messages.
+// What the page knows: the table of fields, the server's state, and edits that the server has not shown yet. An edit
+// has an id of ours until the server acknowledges it with its number; states say up to which number they include
+// messages.
 
 import {same} from './dom.js';
 

@@ -53,7 +53,8 @@ class Side {
     }
     const decoder = this.#decoder;
     this.#headers.set(header.frame, header);
-    decoder.decode(new EncodedVideoChunk({type: header.key ? 'key' : 'delta', timestamp: header.frame, data: header.data}));
+    const type = header.key ? 'key' : 'delta';
+    decoder.decode(new EncodedVideoChunk({type, timestamp: header.frame, data: header.data}));
     if (decoder.decodeQueueSize < 2) return Promise.resolve();
     return new Promise(done => decoder.addEventListener('dequeue', done, {once: true}));
   }

@@ -8,7 +8,8 @@ const evenFrom = pixels => Math.min(Math.max(2 * Math.floor(pixels / 2), 2), lar
 export function watchViewport(stage, picture, store) {
   let size = null; // of the stage
   const send = () => {
-    if (size && store.hasState() && !same(size, store.value('viewport'))) store.edit({viewport: size}, {remembers: false});
+    if (!size || !store.hasState() || same(size, store.value('viewport'))) return;
+    store.edit({viewport: size}, {remembers: false});
   };
   const sendLater = debounced(150, send);
   const measure = ([entry]) => {
