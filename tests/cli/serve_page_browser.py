@@ -336,7 +336,7 @@ def test_camera(browser):
         (document.getElementById('stage').getBoundingClientRect())'''))
     before = browser.evaluate(EYE)
     moved(browser, 'orbiting', lambda: browser.drag((x, y), (x + 60, y + 10)))
-    browser.wait("!document.getElementById('undo').disabled", 'a movement as a step of undo')
+    browser.wait("document.getElementById('undo').title.includes('eye')", 'a movement as a step of undo')
     undone = browser.evaluate(EYE)
     click_on(browser, '#undo')
     browser.wait(f"({EYE}).every((v, i) => Math.abs(v - {json.dumps(before)}[i]) < 1e-3)", 'the movement, undone')
@@ -509,7 +509,7 @@ def test_contrast(browser):
             return 'rgb(255, 255, 255)';
           };
           const withText = [...document.querySelectorAll('#bar *, #panel *')].filter(e => e.offsetParent && !e.disabled &&
-              (e.matches('input, select') || [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim())));
+              (e.matches('input[type=number], input[type=search], select') || [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim())));
           const found = withText.map(element => {
             const [a, b] = [getComputedStyle(element).color, behind(element)].map(luminance).sort((x, y) => y - x);
             return {contrast: (a + 0.05) / (b + 0.05), what: element.id || element.textContent.slice(0, 30)};

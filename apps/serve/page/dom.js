@@ -15,6 +15,11 @@ export function make(tag, properties = {}, ...children) {
 
 export const byId = id => document.getElementById(id);
 
+/// Where something is typed, or letters choose from a list.
+export function takesLetters(element) {
+  return element.matches('input:not([type=checkbox], [type=range], [type=color]), select, textarea');
+}
+
 /// Sets text only where it differs: live regions speak each change.
 export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;

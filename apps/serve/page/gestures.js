@@ -1,5 +1,7 @@
 // What hands do on the picture: mouse, touch and keys become sums of movements, sent at most once a frame.
 
+import {takesLetters} from './dom.js';
+
 const radiansPerPixel = 0.005;
 const zoomPerStep = 0.85; // of the distance to the target
 const wheelStep = 100;    // pixels of the page
@@ -32,9 +34,9 @@ export class Gestures {
     on('wheel', event => this.wheel(event), {passive: false});
     on('contextmenu', event => event.preventDefault());
     on('dblclick', event => this.focus(picture.positionAt(event.clientX, event.clientY)));
-    on('keydown', event => this.key(event, true));
-    on('keyup', event => this.key(event, false));
-    on('blur', () => this.#keys.clear());
+    document.addEventListener('keydown', event => this.key(event, true));
+    document.addEventListener('keyup', event => this.key(event, false));
+    addEventListener('blur', () => this.#keys.clear());
   }
 
   down(event) {
@@ -113,7 +115,10 @@ export class Gestures {
 
   key(event, isDown) {
     this.#shift = event.shiftKey;
-    if (!(event.code in axes) && !(event.code in arrows)) return;
+    // Letters fly wherever nothing is typed; arrows are those of the picture while it has the focus.
+    const isOurs = (event.code in axes && !takesLetters(event.target)) ||
+                   (event.code in arrows && event.target === this.stage);
+    if (!isOurs || document.querySelector('dialog[open]')) return void this.#keys.delete(event.code);
     if (event.ctrlKey || event.metaKey || event.altKey) return void this.#keys.delete(event.code);
     event.preventDefault();
     if (!isDown) return void this.#keys.delete(event.code);

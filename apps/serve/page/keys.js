@@ -1,10 +1,9 @@
-// Keys: those of the picture while nothing is typed, and undo everywhere but in fields of text.
+// Keys that work everywhere but where something is typed.
 
-import {byId} from './dom.js';
+import {byId, takesLetters} from './dom.js';
 
-const writes = element => element.matches('input:not([type=checkbox], [type=range], [type=color]), textarea');
-/// Controls that use keys themselves.
-const usesKeys = element => element.matches('input, select, textarea, button, summary, a, [role=slider]');
+/// Controls that Space operates.
+const takesSpace = element => takesLetters(element) || element.matches('input, button, summary, a');
 
 export function makeKeys({store, stage, picture, ask, toolbar}) {
   let pointer = [0.5, 0.5];
@@ -24,11 +23,12 @@ export function makeKeys({store, stage, picture, ask, toolbar}) {
   document.addEventListener('keydown', event => {
     if (byId('keys').open) return;
     const {target} = event;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z' && !writes(target)) {
+    if (takesLetters(target) || (event.key === ' ' && takesSpace(target))) return;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'z') {
       event.preventDefault();
       return event.shiftKey ? store.redo() : store.undo();
     }
-    if (event.ctrlKey || event.metaKey || event.altKey || usesKeys(target)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
     const run = byCharacter[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!run) return;
     event.preventDefault();

@@ -122,8 +122,9 @@ export class Store extends EventTarget {
     this.#changed('history');
   }
 
-  canUndo() { return this.#undo.length > 0; }
-  canRedo() { return this.#redo.length > 0; }
+  /// The fields that the next step changes; undefined: there is none.
+  undoes() { return this.#undo.at(-1)?.keys; }
+  redoes() { return this.#redo.at(-1)?.keys; }
   undo() { this.#step(this.#undo, this.#redo, 'before'); }
   redo() { this.#step(this.#redo, this.#undo, 'after'); }
 

@@ -19,6 +19,10 @@ export function makeToolbar(store, picture, ask) {
   const toggle = key => store.edit({[key]: !store.value(key)});
   const pixels = byId('pixels');
   const showPressed = (id, pressed) => byId(id).setAttribute('aria-pressed', pressed);
+  const showStep = (id, name, keys, shortcut) => {
+    byId(id).disabled = !keys;
+    byId(id).title = keys ? `${name}: ${keys.replaceAll(',', ', ')} (${shortcut})` : `${name} (${shortcut})`;
+  };
   const togglePanel = () => {
     const hidden = document.body.classList.toggle('without-panel');
     byId('toggle-panel').setAttribute('aria-expanded', !hidden);
@@ -40,8 +44,8 @@ export function makeToolbar(store, picture, ask) {
     byId('play').hidden = !(store.facts.duration > 0);
     byId('play').textContent = store.value('playing') ? 'Pause clip' : 'Play clip';
     showPressed('preview', store.value('integrator') === 'preview');
-    byId('undo').disabled = !store.canUndo();
-    byId('redo').disabled = !store.canRedo();
+    showStep('undo', 'Undo', store.undoes(), 'Ctrl+Z');
+    showStep('redo', 'Redo', store.redoes(), 'Ctrl+Shift+Z');
   };
   for (const name of ['state', 'facts', 'history']) store.addEventListener(name, show);
   picture.addEventListener('zoomed', () => {
