@@ -1,4 +1,4 @@
-"""Chromium, driven by the DevTools protocol as a user would: with a real mouse, fingers and keys. For tests of pages."""
+"""For tests of pages: Chromium, driven by the DevTools protocol as a user would, with a real mouse, fingers and keys."""
 
 import base64
 import json
@@ -138,7 +138,8 @@ class Browser:
 
     def key(self, name, modifiers=0):
         """A key without a character, or with modifiers: 2 is Ctrl, 8 Shift."""
-        numbers = {'Tab': 9, 'Enter': 13, 'Escape': 27, 'ArrowLeft': 37, 'ArrowUp': 38, 'ArrowRight': 39, 'ArrowDown': 40}
+        numbers = {'Tab': 9, 'Enter': 13, 'Escape': 27, 'ArrowLeft': 37, 'ArrowUp': 38, 'ArrowRight': 39,
+                   'ArrowDown': 40}
         code = 'Key' + name.upper() if len(name) == 1 else name
         text = {'text': '\r'} if name == 'Enter' else {}
         for kind in ('keyDown', 'keyUp'):

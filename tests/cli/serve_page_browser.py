@@ -30,12 +30,18 @@ PHONE = (390, 844)
 class Server:
     """`limpid serve`, always at the same port."""
 
-    def __init__(self, program):
+    def __init__(self, program, folder):
         self.program, self.port, self.process = program, 0, None
+        # The exposure would be measured in the first frame, whose size is another one in the window.
+        self.state = pathlib.Path(folder) / 'state.json'
+        self.state.write_text('{"limpid_state": 1, "exposure": 1.5}')
+
+    def options(self):
+        return [SCENE, '--device', 'cpu', '--max-spp', str(SAMPLES), '--state', str(self.state)]
 
     def start(self):
         self.process = subprocess.Popen(
-            [self.program, 'serve', SCENE, '--port', str(self.port), '--device', 'cpu', '--max-spp', str(SAMPLES)],
+            [self.program, 'serve', *self.options(), '--port', str(self.port), '--uploads', '1'],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         if not self.address:
@@ -187,10 +193,12 @@ def fit_stage(browser, width=480, height=200):
     window = [900, 600]
     for _ in range(3):
         browser.size(*window)
-        box = browser.evaluate("[document.getElementById('stage').clientWidth, document.getElementById('stage').clientHeight]")
+        box = browser.evaluate('''(({clientWidth, clientHeight}) => [clientWidth, clientHeight])
+            (document.getElementById('stage'))''')
         window = [window[0] + width - box[0], window[1] + height - box[1]]
     browser.wait(f"document.getElementById('picture').width === {width}", 'the size of the canvas')
-    browser.wait(f"document.getElementById('fact-size').textContent === '{width} × {height}'", 'the size of the picture', 40)
+    shown = "document.getElementById('fact-size').textContent"
+    browser.wait(f"{shown} === '{width} × {height}'", 'the picture of this size', 40)
 
 
 # ---- The tests
@@ -225,13 +233,14 @@ def test_video(browser, kind):
       watch.disconnect();
       return last && {...difference(last, await pixels()), kinds: [...kinds]};''')
     check(result and kind in result['kinds'], f'{kind} did not come: {result}')
-    check(result['mean'] < 4 and result['brightness'] > 20, f'{kind} is far from the lossless picture: {result}')
+    check(result['mean'] < 2.5 and result['brightness'] > 20, f'{kind} is far from the lossless picture: {result}')
     choose(browser, 'integrator', 'path')
-    browser.wait("document.getElementById('field-integrator').selectedOptions[0].textContent === 'path'", 'the integrator')
+    chosen = "document.getElementById('field-integrator').selectedOptions[0].textContent"
+    browser.wait(f"{chosen} === 'path'", 'the integrator')
     settle(browser, 'the path tracer')
 
 
-def test_against_window(browser, program, folder, extent):
+def test_against_window(browser, server, program, folder, extent):
     """`limpid view` makes the same picture in a window."""
     if not shutil.which('Xvfb'):
         print('NOT TESTED: the picture of the window (Debian: xvfb)')
@@ -244,9 +253,9 @@ def test_against_window(browser, program, folder, extent):
     try:
         number = os.read(reading, 20).decode().strip()
         result = subprocess.run(
-            [program, 'view', SCENE, '--device', 'cpu', '--max-spp', str(SAMPLES), '--settings', 'none', '--shrink', '0',
-             '--width', str(extent[0]), '--height', str(extent[1]), '--frames', str(SAMPLES), '--screenshot',
-             str(screenshot)], env={**os.environ, 'DISPLAY': ':' + number}, capture_output=True, text=True, timeout=60)
+            [program, 'view', *server.options(), '--settings', 'none', '--shrink', '0', '--width', str(extent[0]),
+             '--height', str(extent[1]), '--frames', str(SAMPLES), '--screenshot', str(screenshot)],
+            env={**os.environ, 'DISPLAY': ':' + number}, capture_output=True, text=True, timeout=60)
     finally:
         os.close(reading)
         display.terminate()
@@ -266,7 +275,7 @@ def test_against_window(browser, program, folder, extent):
       return {{...difference(await pixels(), other.getImageData(0, 0, canvas.width, canvas.height)),
               size: [image.width, image.height]}};''')
     check(difference['size'] == extent, f"the window's picture has {difference['size']}")
-    check(difference['mean'] < 1, f'the window shows another picture: {difference}')
+    check(difference['mean'] < 0.2 and difference['largest'] <= 2, f'the window shows another picture: {difference}')
 
 
 def test_controls(browser):
@@ -275,7 +284,7 @@ def test_controls(browser):
     browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture', 30)
     click_on(browser, '[data-key=seed] .reset')
     check(value_of(browser, 'seed') == 0, 'the default does not come back')
-    check(not browser.evaluate("document.querySelector('[data-key=seed]').classList.contains('changed')"), 'the mark stays')
+    check(not browser.evaluate("document.querySelector('[data-key=seed].changed') !== null"), 'the mark stays')
     browser.evaluate("document.activeElement.blur()")
     browser.key('z', 2)
     browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'undo')
@@ -296,7 +305,7 @@ def test_search(browser):
     check(found == f'{len(shown)} found', f'it says {found}')
     browser.evaluate("document.getElementById('search').value = ''")
     browser.type(' ')
-    check(browser.evaluate("document.querySelector('[data-key=seed]').offsetParent !== null"), 'the search does not end')
+    check(browser.evaluate("document.querySelector('[data-key=seed]').offsetParent !== null"), 'the search stays')
 
 
 def test_keyboard_slider(browser):
@@ -373,6 +382,7 @@ def test_comparison(browser):
       document.getElementById('divider').focus();
       return [one.width, document.getElementById('name-right').textContent];''')
     check(shares[1], 'the compared picture has no name')
+    browser.wait("document.getElementById('stage').dataset.comparedLossless === 'true'", 'the compared picture at rest')
     settle(browser, 'both pictures')
     evaluate(browser, 'window.before = await pixels();')
     box = box_of(browser, '#divider')
@@ -385,15 +395,35 @@ def test_comparison(browser):
       const strip = (a, from, to) => {
         let sum = 0, count = 0;
         for (let y = 0; y < height; ++y) for (let x = Math.round(from * width); x < to * width; ++x, ++count)
-          for (let c = 0; c < 3; ++c) sum += Math.abs(a.data[4 * (y * width + x) + c] - before.data[4 * (y * width + x) + c]);
+          for (let i = 4 * (y * width + x), c = 0; c < 3; ++c) sum += Math.abs(a.data[i + c] - before.data[i + c]);
         return sum / count;
       };
       return [strip(now, 0, 0.19), strip(now, 0.22, 0.48), strip(now, 0.52, 1)];''')
     check(changed[1] > 5 and changed[0] < 1 and changed[2] < 1, f'the divider shows the wrong sides: {changed}')
     browser.key('ArrowRight')
-    check(browser.evaluate("Number(document.getElementById('divider').getAttribute('aria-valuenow'))") == now + 1, 'its keys')
+    after = browser.evaluate("Number(document.getElementById('divider').getAttribute('aria-valuenow'))")
+    check(after == now + 1, f'a key moves the divider from {now} to {after}')
     choose(browser, 'compare', 'nothing')
     browser.wait("document.getElementById('divider').hidden", 'the end of the comparison')
+
+
+def test_upload(browser, folder):
+    """A scene of this device, dropped on the picture."""
+    before = browser.evaluate("document.getElementById('scene-name').textContent")
+    file = pathlib.Path(folder) / 'dropped.obj'
+    file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
+    x, y = center(box_of(browser, '#stage'))
+    data = {'items': [], 'files': [str(file)], 'dragOperationsMask': 1}
+    for kind in ('dragEnter', 'dragOver', 'drop'):
+        browser.call('Input.dispatchDragEvent', type=kind, x=x, y=y, data=data)
+    browser.wait("document.getElementById('scene-name').textContent.includes('dropped')", 'the dropped scene')
+    browser.evaluate('''(() => {
+      const select = document.getElementById('open-scene');
+      select.value = [...select.options].map(o => o.value).find(value => value === 'builtin:cornell');
+      select.dispatchEvent(new Event('change'));
+    })()''')
+    browser.wait(f"document.getElementById('scene-name').textContent === {json.dumps(before)}", 'the first scene')
+    settle(browser, 'the first scene')
 
 
 def test_two_tabs(browser, address):
@@ -410,7 +440,8 @@ def test_two_tabs(browser, address):
     browser.mouse('mousePressed', x, y, 1)
     held = value_of(browser, 'exposure')
     browser.session = second
-    browser.wait(f"Math.abs(document.getElementById('field-exposure-number').valueAsNumber - {held}) < 1e-3", 'the slider')
+    now = "document.getElementById('field-exposure-number').valueAsNumber"
+    browser.wait(f"Math.abs({now} - {held}) < 1e-3", 'the slider')
     type_into(browser, '#field-exposure-number', '-2')
     check(value_of(browser, 'exposure') == -2, 'what was typed is lost')
     browser.session = first
@@ -456,7 +487,8 @@ def test_phone(browser):
     browser.size(*PHONE, mobile=True)
     layout = browser.wait('''(() => {
       const box = id => document.getElementById(id).getBoundingClientRect(), stage = box('stage'), panel = box('panel');
-      const wide = [...document.querySelectorAll('#panel *')].filter(e => e.getBoundingClientRect().right > innerWidth + 1);
+      const right = element => element.getBoundingClientRect().right;
+      const wide = [...document.querySelectorAll('#panel *')].filter(element => right(element) > innerWidth + 1);
       return document.getElementById('picture').width === 390 &&
         {scroll: document.scrollingElement.scrollWidth, stage: [stage.width, stage.height],
          covered: panel.top < stage.bottom - 0.5, wide: wide.map(e => e.id || e.className)};
@@ -485,7 +517,8 @@ def test_names(browser):
     nodes = browser.call('Accessibility.getFullAXTree')['nodes']
     def has(node, name):
         return any(p['name'] == name and p['value'].get('value') for p in node.get('properties', []))
-    focusable = [n for n in nodes if not n.get('ignored') and has(n, 'focusable') and n['role']['value'] != 'RootWebArea']
+    nodes = [n for n in nodes if not n.get('ignored') and n['role']['value'] != 'RootWebArea']
+    focusable = [n for n in nodes if has(n, 'focusable')]
     check(len(focusable) > 50, f'only {len(focusable)} controls')
     nameless = [n['role']['value'] for n in focusable if not n.get('name', {}).get('value')]
     check(not nameless, f'controls without a name: {nameless}')
@@ -508,8 +541,10 @@ def test_contrast(browser):
             }
             return 'rgb(255, 255, 255)';
           };
-          const withText = [...document.querySelectorAll('#bar *, #panel *')].filter(e => e.offsetParent && !e.disabled &&
-              (e.matches('input[type=number], input[type=search], select') || [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim())));
+          const hasText = e => e.matches('input[type=number], input[type=search], select') ||
+              [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim());
+          const withText = [...document.querySelectorAll('#bar *, #panel *')]
+              .filter(e => e.offsetParent && !e.disabled && hasText(e));
           const found = withText.map(element => {
             const [a, b] = [getComputedStyle(element).color, behind(element)].map(luminance).sort((x, y) => y - x);
             return {contrast: (a + 0.05) / (b + 0.05), what: element.id || element.textContent.slice(0, 30)};
@@ -559,15 +594,16 @@ def test(browser, server, program, folder):
     timed('load', lambda: open_page(browser, address))
     fit_stage(browser)
     extent = timed('picture', lambda: test_picture(browser, address))
-    timed('window', lambda: test_against_window(browser, program, folder, extent))
+    timed('window', lambda: test_against_window(browser, server, program, folder, extent))
     timed('video', lambda: test_video(browser, 'vp9'))
-    browser.size(1000, 700)
+    browser.size(900, 420)
     timed('controls', lambda: test_controls(browser))
     timed('search', lambda: test_search(browser))
     timed('keyboard', lambda: test_keyboard_slider(browser))
     fit_stage(browser)
     timed('camera', lambda: test_camera(browser))
     timed('comparison', lambda: test_comparison(browser))
+    timed('upload', lambda: test_upload(browser, folder))
     timed('tabs', lambda: test_two_tabs(browser, address))
     timed('reconnection', lambda: test_reconnection(browser, relay))
     timed('phone', lambda: test_phone(browser))
@@ -590,7 +626,7 @@ def main():
     browser_program = chromium()
     if not browser_program:
         return NOT_TESTED
-    server = Server(program)
+    server = Server(program, folder)
     try:
         server.start()
     except RuntimeError as fault:

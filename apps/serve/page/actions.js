@@ -1,6 +1,7 @@
 // Buttons for what is done once, which stand at the start of their sections.
 
 import {byId, make, setText} from './dom.js';
+import {makeUpload} from './upload.js';
 import {say} from './status.js';
 
 function downloadPng(connection) {
@@ -66,9 +67,10 @@ export function makeActions(store, connection, ask, status) {
   };
   const row = (...buttons) => make('div', {className: 'buttons'}, ...buttons);
   const scenes = openScene(connection);
+  const upload = makeUpload(connection);
   const command = new CommandLine(store, ask);
   const elements = {
-    scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element,
+    scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element, upload.element,
                 row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
                                     title: 'The picture as it is shown, lossless',
                                     click: () => downloadPng(connection)}),
@@ -82,8 +84,9 @@ export function makeActions(store, connection, ask, status) {
     compare: make('p', {className: 'note', id: 'scores'}),
     inspect: status.table,
   };
-  const hello = ({requests, scenes: names}) => {
+  const hello = ({requests, scenes: names, uploads}) => {
     scenes.setScenes(names ?? []);
+    upload.setLargest(uploads ?? 0);
     for (const element of Object.values(elements)) {
       for (const each of element.querySelectorAll('[data-request]')) {
         each.hidden = !requests.includes(each.dataset.request);

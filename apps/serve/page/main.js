@@ -37,12 +37,11 @@ const stream = new Stream({
     // What was compared until now may still arrive.
     if (header.side === 'right' && store.value('compare') === 'nothing') return image.close();
     picture.show(header.side, image);
-    if (header.side === 'left') {
-      stage.dataset.frame = header.frame;
-      stage.dataset.kind = header.kind;
-      stage.dataset.lossless = header.lossless;
-      stage.classList.add('has-picture');
-    }
+    if (header.side === 'right') return void (stage.dataset.comparedLossless = header.lossless);
+    stage.dataset.frame = header.frame;
+    stage.dataset.kind = header.kind;
+    stage.dataset.lossless = header.lossless;
+    stage.classList.add('has-picture');
   },
   received: frame => connection.send('received', {frame}),
   fail: error => {
