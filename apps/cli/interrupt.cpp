@@ -63,6 +63,10 @@ bool interrupted() {
     return true;
 }
 
+bool interruptedQuietly() {
+    return received != 0;
+}
+
 void beforeInterruptedEnd(void (*action)()) {
     beforeEnd = action;
 }

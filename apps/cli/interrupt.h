@@ -14,6 +14,8 @@ class InterruptGuard {
 
 /// True after the first signal. Says so on stderr the first time that it is.
 bool interrupted();
+/// The same, for commands that have nothing to write: says nothing.
+bool interruptedQuietly();
 
 /// What a second signal does before it ends the process; null: nothing. Only what is allowed in signal
 /// handlers.

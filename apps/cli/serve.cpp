@@ -20,6 +20,7 @@ struct ServeOptions {
     StudioChoice studio;
     std::string bind = "127.0.0.1", certificate, key, files;
     uint16_t port = 8080;
+    uint32_t uploads = 0;  ///< MB
 };
 
 void run([[maybe_unused]] const ServeOptions& o) {
@@ -32,20 +33,24 @@ void run([[maybe_unused]] const ServeOptions& o) {
     const InterruptGuard guard;
     studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
                           cameraStart(o.studio), settings);
-    const auto stop = [&] { return interrupted() || studio.hasEnded(); };
-    serve::serve(
-        studio,
-        {.bind = o.bind, .port = o.port, .certificate = o.certificate, .key = o.key, .files = o.files}, stop,
-        [](const std::string& url) {
-            fmt::print("{}\n", url);
-            std::fflush(stdout);
-        });
+    const auto stop = [&] { return interruptedQuietly() || studio.hasEnded(); };
+    serve::serve(studio,
+                 {.bind = o.bind,
+                  .port = o.port,
+                  .certificate = o.certificate,
+                  .key = o.key,
+                  .files = o.files,
+                  .uploads = uint64_t{o.uploads} * 1000000},
+                 stop, [](const std::string& url) {
+                     fmt::print("{}\n", url);
+                     std::fflush(stdout);
+                 });
     studio.finish();
 #else
     throw Error(
         "Limpid was built without libwebsockets-dev and libvpx-dev, which a window in a browser needs; "
-        "'limpid view' opens "
-        "one here, and 'limpid render' writes pictures");
+        "'limpid "
+        "view' opens one here, and 'limpid render' writes pictures");
 #endif
 }
 
@@ -66,6 +71,17 @@ void addServeCommand(CLI::App& app) {
     command->add_option("--key", o->key, "PEM file with the certificate's private key");
     command->add_option("--files", o->files,
                         "Folder whose scenes may be opened in the browser; default: none");
+    command
+        ->add_option(
+            "--uploads", o->uploads,
+            "Size in MB up to which scenes (one file) and environments may be uploaded; they are kept in a "
+            "temporary folder until the server ends; default: none")
+        ->check(CLI::Range(1, 4000));
+    command->footer(
+        "The address that is printed contains a secret: who has it can use everything here. From another "
+        "machine:\n"
+        "  ssh -L 8080:localhost:8080 MACHINE limpid serve SCENE\n"
+        "and open the address in a browser.");
     command->callback([o] { run(*o); });
 }
 

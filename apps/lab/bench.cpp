@@ -276,6 +276,7 @@ void addBenchCommand(CLI::App& app) {
     addKpcnBench(*bench);
     addLaunchesBench(*bench);
     addQualityBench(*bench);
+    addServeBench(*bench);
     addSvgfBench(*bench);
 }
 

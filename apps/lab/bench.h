@@ -19,6 +19,7 @@ void addFirstFrameBench(CLI::App& bench);
 void addKpcnBench(CLI::App& bench);
 void addLaunchesBench(CLI::App& bench);
 void addQualityBench(CLI::App& bench);
+void addServeBench(CLI::App& bench);
 void addSvgfBench(CLI::App& bench);
 
 }  // namespace limpid::cli

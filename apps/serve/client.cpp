@@ -23,10 +23,11 @@ Overloaded(Functions...) -> Overloaded<Functions...>;
 
 }  // namespace
 
-Client::Client(studio::Session& session, Streamer& streamer, const SceneFiles& files)
+Client::Client(studio::Session& session, Streamer& streamer, const SceneFiles& files, uint64_t uploads)
     : session_(session),
       streamer_(streamer),
       files_(files),
+      uploads_(uploads),
       stream_(streamer.add()),
       allowance_(messagesPerSecond) {}
 
@@ -77,7 +78,7 @@ void Client::handle(std::string_view text) {
 
 std::optional<std::string> Client::nextText() {
     if (!std::exchange(greeted_, true))
-        return helloMessage(files_.names()).dump(-1, ' ', true, json::error_handler_t::replace);
+        return helloMessage(files_.names(), uploads_).dump(-1, ' ', true, json::error_handler_t::replace);
     if (!replies_.empty()) {
         std::string reply = std::move(replies_.front());
         replies_.pop_front();

@@ -15,8 +15,8 @@ namespace limpid::serve {
 
 class Client {
   public:
-    /// All outlive this.
-    Client(studio::Session& session, Streamer& streamer, const SceneFiles& files);
+    /// All outlive this. `uploads`: bytes of the largest file that may be uploaded.
+    Client(studio::Session& session, Streamer& streamer, const SceneFiles& files, uint64_t uploads);
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
@@ -38,6 +38,7 @@ class Client {
     studio::Session& session_;
     Streamer& streamer_;
     const SceneFiles& files_;
+    uint64_t uploads_;
     Streamer::ClientId stream_;
     bool greeted_ = false;
     std::string partial_;  ///< of a text that has not ended

@@ -192,7 +192,7 @@ ClientMessage parseMessage(std::string_view text) {
     }
 }
 
-json helloMessage(const std::vector<std::string>& scenes) {
+json helloMessage(const std::vector<std::string>& scenes, uint64_t uploads) {
     json fields = json::array(), names = json::array();
     for (const Field& field : studio::fields()) fields.push_back(describe(field));
     for (const auto& [name, kind] : requests) names.push_back(name);
@@ -201,6 +201,7 @@ json helloMessage(const std::vector<std::string>& scenes) {
             {"fields", std::move(fields)},
             {"requests", std::move(names)},
             {"scenes", scenes},
+            {"uploads", uploads},
             {"groups", groupsByPipeline()}};
 }
 

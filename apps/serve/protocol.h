@@ -38,8 +38,9 @@ struct ClientMessage {
 /// Throws UsageError, with a text for the client, where the message is not one of the protocol.
 ClientMessage parseMessage(std::string_view text);
 
-/// The description of the state's fields for clients. `scenes`: those that may be opened.
-nlohmann::json helloMessage(const std::vector<std::string>& scenes);
+/// The description of the state's fields for clients. `scenes`: those that may be opened; `uploads`: bytes of
+/// the largest file that may be uploaded, 0: none.
+nlohmann::json helloMessage(const std::vector<std::string>& scenes, uint64_t uploads);
 
 struct FrameHeader {
     Codec codec = Codec::Jpeg;

@@ -15,6 +15,8 @@ struct ServeSettings {
     uint16_t port = 0;                       ///< 0: a free one
     std::filesystem::path certificate, key;  ///< PEM files for TLS; both or none
     std::filesystem::path files;             ///< folder whose scenes may be opened; empty: only built-in ones
+    uint64_t uploads = 0;                    ///< bytes of the largest file that may be uploaded; 0: none
+    unsigned headerSeconds = 10;             ///< for a connection to say what it wants
 };
 
 /// Serves until `stop` returns true, which is asked several times a second. `ready` gets the address of the

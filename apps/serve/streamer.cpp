@@ -144,10 +144,7 @@ void Streamer::run() {
         {
             std::unique_lock lock(mutex_);
             const auto isDue = [&] { return ends_ || news_; };
-            if (patience > 0.0)
-                changed_.wait_for(lock, std::chrono::duration<double>(patience), isDue);
-            else
-                changed_.wait(lock, isDue);
+            changed_.wait_for(lock, std::chrono::duration<double>(patience), isDue);
             if (ends_) return;
             news_ = false;
         }
@@ -161,7 +158,7 @@ void Streamer::run() {
 }
 
 /// Encodes what clients can take. Returns the seconds until there may be something to do although nothing has
-/// happened; 0: there will not be.
+/// happened.
 double Streamer::step() {
     const auto shown = session_.shown();
     const auto now = Clock::now();
@@ -175,8 +172,11 @@ double Streamer::step() {
     const double rested = secondsBetween(restsSince_, now);
     if (!shown->facts.computing && shown->picture && rested < restSeconds)
         return restSeconds - rested + 0.001;
-    const bool tooSoon = secondsBetween(videos_[0].lastFrame, now) < shortestFrame;
-    return tooSoon ? shortestFrame : shown->facts.computing ? 0.0 : betweenForcedKeys;
+    const bool tooSoon = std::ranges::any_of(videos_, [&](const Video& video) {
+        return secondsBetween(std::max(video.lastFrame, video.lastJpeg), now) < shortestFrame;
+    });
+    // Clients that lost a frame may get a key frame by then, also if the next picture takes long.
+    return tooSoon ? shortestFrame : betweenForcedKeys;
 }
 
 bool Streamer::streamLane(int number, const studio::Shown& shown) {
@@ -267,7 +267,10 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
 bool Streamer::encodeJpegs(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
     const std::vector<ClientId> ids = ready(number, false, picture);
-    if (ids.empty()) return false;
+    Clock::time_point& last = videos_[static_cast<size_t>(number)].lastJpeg;
+    const auto now = Clock::now();
+    if (ids.empty() || secondsBetween(last, now) < shortestFrame) return false;
+    last = now;
     double share = 1.0;
     {
         const std::lock_guard lock(mutex_);

@@ -74,7 +74,7 @@ class Streamer {
     /// The video of one of the two pictures, shared by all clients.
     struct Video {
         std::optional<VideoEncoder> encoder;
-        Clock::time_point lastFrame{}, lastForcedKey{};
+        Clock::time_point lastFrame{}, lastForcedKey{}, lastJpeg{};
     };
 
     void run();

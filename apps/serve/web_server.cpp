@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <libwebsockets.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -18,14 +20,15 @@
 #include "serve/page_files.h"
 #include "serve/streamer.h"
 #include "serve/token.h"
+#include "serve/uploads.h"
 
 namespace limpid::serve {
 namespace {
 
 constexpr unsigned maxConnections = 1200;  ///< open sockets, most of which say nothing
 constexpr size_t maxClients = 32;          ///< WebSockets
-constexpr unsigned headerSeconds = 10;     ///< for a connection to say what it wants
 constexpr int stillSeconds = 60;           ///< for /picture.png
+constexpr size_t maxUploads = 2;           ///< at the same time
 constexpr size_t chunkBytes = 65536;
 constexpr lws_usec_t tick = LWS_USEC_PER_SEC / 20;
 
@@ -61,6 +64,15 @@ std::string argumentOf(lws* wsi, const char* name) {
     return value ? std::string(value) : std::string();
 }
 
+/// Many systems start programs with a limit of 1024 open files, of which each connection is one.
+void allowManyFiles() {
+    rlimit limit{};
+    const rlim_t wanted = maxConnections + 500;
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+    limit.rlim_cur = std::min(limit.rlim_max, wanted);
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 /// An answer that is being sent.
 struct Answer {
     Bytes body;
@@ -79,6 +91,8 @@ struct WebServer::Impl {
     std::map<lws*, std::unique_ptr<Client>> clients;
     std::map<lws*, Answer> answers;
     std::set<lws*> waiting;  ///< for /picture.png
+    Uploads uploads;
+    std::map<lws*, std::unique_ptr<Upload>> uploading;
     std::mutex stillMutex;
     Bytes still;  ///< for all that wait
     bool stillAsked = false;
@@ -88,7 +102,12 @@ struct WebServer::Impl {
     uint64_t listener = 0;
 
     Impl(studio::Session& s, const ServeSettings& with, const SceneFiles& f, std::string t)
-        : session(s), settings(with), files(f), token(std::move(t)), tls(!with.certificate.empty()) {}
+        : session(s),
+          settings(with),
+          files(f),
+          token(std::move(t)),
+          tls(!with.certificate.empty()),
+          uploads(with.uploads) {}
 
     static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
     void wake() const { lws_cancel_service(context); }
@@ -106,6 +125,9 @@ struct WebServer::Impl {
     int http(lws* wsi, const std::string& path);
     int confirmUpgrade(lws* wsi);
     int askForStill(lws* wsi);
+    int beginUpload(lws* wsi);
+    int receiveUpload(lws* wsi, std::span<const std::byte> bytes);
+    int endUpload(lws* wsi);
     int sendToClient(lws* wsi, Client& client);
     void afterWake();
     static int onHttp(lws* wsi, lws_callback_reasons reason, void*, void* in, size_t length);
@@ -155,6 +177,7 @@ int WebServer::Impl::sendAnswer(lws* wsi) {
 
 int WebServer::Impl::http(lws* wsi, const std::string& path) {
     if (!isAllowed(wsi, false)) return refuse(wsi, 421);
+    if (path == "/upload" && lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0) return beginUpload(wsi);
     if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0) return refuse(wsi, 405);
     if (path == "/picture.png") return hasToken(wsi) ? askForStill(wsi) : refuse(wsi, 403);
     if (path == "/" && !hasToken(wsi)) return refuse(wsi, 403);
@@ -190,6 +213,34 @@ int WebServer::Impl::askForStill(lws* wsi) {
         wake();
     });
     return 0;
+}
+
+int WebServer::Impl::beginUpload(lws* wsi) {
+    if (!isAllowed(wsi, true) || !hasToken(wsi) || uploads.maxBytes() == 0) return refuse(wsi, 403);
+    const std::string length = headerOf(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH);
+    uint64_t bytes = 0;
+    const auto [end, fault] = std::from_chars(length.data(), length.data() + length.size(), bytes);
+    if (fault != std::errc() || end != length.data() + length.size()) return refuse(wsi, 411);
+    if (bytes > uploads.maxBytes()) return refuse(wsi, 413);
+    if (uploading.size() >= maxUploads) return refuse(wsi, 503);
+    std::unique_ptr<Upload> upload = uploads.begin(argumentOf(wsi, "name="), bytes);
+    if (!upload) return refuse(wsi, 400);
+    uploading[wsi] = std::move(upload);
+    return 0;
+}
+
+int WebServer::Impl::receiveUpload(lws* wsi, std::span<const std::byte> bytes) {
+    const auto found = uploading.find(wsi);
+    return found != uploading.end() && found->second->write(bytes) ? 0 : -1;
+}
+
+int WebServer::Impl::endUpload(lws* wsi) {
+    const auto found = uploading.find(wsi);
+    if (found == uploading.end() || !found->second->isComplete()) return -1;
+    const std::unique_ptr<Upload> upload = std::move(found->second);
+    uploading.erase(found);
+    session.ask({.kind = studio::Request::Kind::OpenDropped, .file = uploads.keep(*upload).string()});
+    return answer(wsi, "text/plain", std::make_shared<const std::vector<std::byte>>());
 }
 
 /// On the server's thread, after another one has called wake().
@@ -240,13 +291,16 @@ int WebServer::Impl::onHttp(lws* wsi, lws_callback_reasons reason, void*, void* 
         case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
             of(wsi).answers.erase(wsi);
             of(wsi).waiting.erase(wsi);
+            of(wsi).uploading.erase(wsi);
             return 0;
         case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
             of(wsi).afterWake();
             return 0;
-        // The library's own handling would answer to more than this server has.
         case LWS_CALLBACK_HTTP_BODY:
+            return of(wsi).receiveUpload(wsi, {static_cast<const std::byte*>(in), length});
         case LWS_CALLBACK_HTTP_BODY_COMPLETION:
+            return of(wsi).endUpload(wsi);
+        // The library's own handling would answer to more than this server has.
         case LWS_CALLBACK_HTTP_FILE_COMPLETION:
             return -1;
         default:
@@ -260,7 +314,8 @@ int WebServer::Impl::onSocket(lws* wsi, lws_callback_reasons reason, void*, void
     Client* const client = found == clients.end() ? nullptr : found->second.get();
     switch (reason) {
         case LWS_CALLBACK_ESTABLISHED:
-            clients[wsi] = std::make_unique<Client>(of(wsi).session, *of(wsi).streamer, of(wsi).files);
+            clients[wsi] = std::make_unique<Client>(of(wsi).session, *of(wsi).streamer, of(wsi).files,
+                                                    of(wsi).uploads.maxBytes());
             lws_callback_on_writable(wsi);
             return 0;
         case LWS_CALLBACK_CLOSED:
@@ -288,6 +343,7 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
     : impl_(std::make_unique<Impl>(session, settings, files, std::move(token))) {
     Impl& self = *impl_;
     lws_set_log_level(0, nullptr);
+    allowManyFiles();
     self.protocols[0] = {"http", &Impl::onHttp, 0, 0, 0, nullptr, 0};
     self.protocols[1] = {"limpid", &Impl::onSocket, 0, 16384, 0, nullptr, 0};
     self.idle.secs_since_valid_ping = 20;
@@ -298,8 +354,8 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
     info.protocols = self.protocols.data();
     info.user = &self;
     info.fd_limit_per_thread = maxConnections;
-    info.timeout_secs = headerSeconds;
-    info.keepalive_timeout = static_cast<int>(headerSeconds);
+    info.timeout_secs = settings.headerSeconds;
+    info.keepalive_timeout = static_cast<int>(settings.headerSeconds);
     info.retry_and_idle_policy = &self.idle;
     info.server_string = "limpid";
     const std::string certificate = settings.certificate.string(), key = settings.key.string();

@@ -1,143 +1,16 @@
 #!/usr/bin/env python3
 """Opens a page of `limpid bench quality --report` in headless Chromium and uses it as a reader would: drags the
-divider, presses keys, touches, chooses pictures and frames, plays, zooms, points at pixels, changes the exposure. Exit code 0: as it should be; 1: not; 77: there is no Chromium."""
+divider, presses keys, touches, chooses pictures and frames, plays, zooms, points at pixels,
+changes the exposure. Exit code 0: as it should be; 1: not; 77: there is no Chromium."""
 
-import base64
 import json
-import os
 import pathlib
 import re
-import select
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
-NOT_TESTED = 77
-
-
-class Browser:
-    """Chromium and one page of it, by the DevTools protocol over a pair of pipes."""
-
-    def __init__(self, program, profile):
-        to_browser, self.output = os.pipe()
-        self.input, from_browser = os.pipe()
-
-        def place_pipes():
-            # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
-            reading, writing = os.dup(to_browser), os.dup(from_browser)
-            os.dup2(reading, 3)
-            os.dup2(writing, 4)
-
-        arguments = ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe', '--no-first-run',
-                     '--disable-background-networking', '--disable-component-update', '--disable-dev-shm-usage',
-                     '--force-device-scale-factor=1', f'--user-data-dir={profile}', 'about:blank']
-        self.process = subprocess.Popen([program, *arguments], preexec_fn=place_pipes, close_fds=False,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.rest = b''
-        self.number = 0
-        self.session = None
-        self.events = []
-        targets = self.call('Target.getTargets')['targetInfos']
-        page = next(target['targetId'] for target in targets if target['type'] == 'page')
-        self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
-
-    def message(self, deadline):
-        while b'\0' not in self.rest:
-            ready, _, _ = select.select([self.input], [], [], max(0, deadline - time.monotonic()))
-            data = os.read(self.input, 1 << 20) if ready else b''
-            if not data:
-                raise RuntimeError('the browser does not answer')
-            self.rest += data
-        text, self.rest = self.rest.split(b'\0', 1)
-        return json.loads(text)
-
-    def call(self, method, **parameters):
-        self.number += 1
-        command = {'id': self.number, 'method': method, 'params': parameters}
-        if self.session:
-            command['sessionId'] = self.session
-        data = json.dumps(command).encode() + b'\0'
-        while data:
-            data = data[os.write(self.output, data):]
-        deadline = time.monotonic() + 60
-        while True:
-            message = self.message(deadline)
-            if message.get('id') == self.number:
-                if 'error' in message:
-                    raise RuntimeError(f'{method}: {message["error"]}')
-                return message['result']
-            self.events.append(message)
-
-    def evaluate(self, expression):
-        result = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
-        if 'exceptionDetails' in result:
-            raise RuntimeError(f'{expression}: {result["exceptionDetails"]}')
-        return result['result'].get('value')
-
-    def size(self, width, height):
-        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=False)
-
-    def mouse(self, kind, x, y, buttons):
-        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=1)
-
-    def drag(self, start, end):
-        self.mouse('mouseMoved', *start, 0)
-        self.mouse('mousePressed', *start, 1)
-        for step in range(1, 6):
-            self.mouse('mouseMoved', *(a + (b - a) * step / 5 for a, b in zip(start, end)), 1)
-        self.mouse('mouseReleased', *end, 0)
-
-    def touch(self, start, end):
-        self.call('Input.dispatchTouchEvent', type='touchStart', touchPoints=[{'x': start[0], 'y': start[1]}])
-        for step in range(1, 6):
-            x, y = (a + (b - a) * step / 5 for a, b in zip(start, end))
-            self.call('Input.dispatchTouchEvent', type='touchMove', touchPoints=[{'x': x, 'y': y}])
-        self.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
-
-    def key(self, name, modifiers=0):
-        text = {'text': name} if len(name) == 1 else {}
-        self.call('Input.dispatchKeyEvent', type='keyDown', key=name, modifiers=modifiers, **text)
-        self.call('Input.dispatchKeyEvent', type='keyUp', key=name, modifiers=modifiers)
-
-    def click(self, expression):
-        """Clicks the middle of an element as the mouse does."""
-        x, y = self.evaluate(f'''(() => {{ const b = ({expression}).getBoundingClientRect();
-          return [b.left + b.width / 2, b.top + b.height / 2]; }})()''')
-        self.mouse('mouseMoved', x, y, 0)
-        self.mouse('mousePressed', x, y, 1)
-        self.mouse('mouseReleased', x, y, 0)
-
-    def wait(self, expression, what):
-        """Waits until an expression is true."""
-        deadline = time.monotonic() + 20
-        while not self.evaluate(expression):
-            check(time.monotonic() < deadline, what)
-            time.sleep(0.02)
-
-    def picture(self, box):
-        clip = {'x': box['left'], 'y': box['top'], 'width': box['width'], 'height': box['height'], 'scale': 1}
-        return base64.b64decode(self.call('Page.captureScreenshot', format='png', clip=clip)['data'])
-
-    def close(self):
-        try:
-            self.session = None
-            self.call('Browser.close')
-            self.process.wait(20)
-        except (RuntimeError, OSError, subprocess.TimeoutExpired):
-            self.process.kill()
-            self.process.wait()
-        os.close(self.input)
-        os.close(self.output)
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
+from browser import NOT_TESTED, Browser, check, chromium
 
 BOX = '''(() => {
   const box = document.querySelector('.compare'), left = box.querySelector('.left');
@@ -246,7 +119,7 @@ def use_choosers(browser):
     browser.wait("document.querySelectorAll('.tag')[1].textContent === 'reference'", 'the reference does not come')
     shown(browser)
     check(browser.evaluate(BOX)['second'] != before['second'], 'the right picture stays')
-    browser.click("document.querySelector('.maps button')")
+    browser.click_on("document.querySelector('.maps button')")
     browser.wait("document.querySelectorAll('.tag')[1].textContent.startsWith('error of')",
                  'an error map does not come into the slider')
 
@@ -270,7 +143,7 @@ def use_frames(browser, first, last):
     for frame in range(first + 1, last + 1):
         browser.wait(f"document.querySelector('.frame-number').textContent === 'frame {frame}'", f'playing: no {frame}')
     wait_for_frame(browser, first)
-    browser.click("document.querySelector('button[aria-label=Stop]')")
+    browser.click_on("document.querySelector('button[aria-label=Stop]')")
     stopped = shown(browser)['frame']
     time.sleep(0.3)
     check(shown(browser)['frame'] == stopped, 'it plays on')
@@ -357,7 +230,7 @@ def use_exposure(browser):
     darkest = shown(browser)
     check(darkest['exposure'] == '\u22124.00 stops' and mean_of_first(browser) < mean - 10, 'the slider does not darken')
     check(browser.evaluate("document.querySelector('.readout tbody').innerText") == told, 'pixel values change')
-    browser.click("[...document.querySelectorAll('button')].find(b => b.textContent === 'Reset')")
+    browser.click_on("[...document.querySelectorAll('button')].find(b => b.textContent === 'Reset')")
     browser.wait("document.querySelector('.exposure-number').textContent === '0.00 stops'", 'Reset leaves the exposure')
     check(alike(browser, shown(browser), before), 'exposure 0 is not what it was')
 
@@ -421,9 +294,8 @@ def test(browser, address):
 
 
 def main():
-    program = next(filter(None, map(shutil.which, ('chromium', 'chromium-browser', 'google-chrome'))), None)
+    program = chromium()
     if not program:
-        print('NOT TESTED: there is no Chromium on this machine (Debian: chromium)')
         return NOT_TESTED
     address = pathlib.Path(sys.argv[1]).resolve().as_uri()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:

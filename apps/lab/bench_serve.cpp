@@ -1,0 +1,198 @@
+// `limpid bench serve`: frames per second and latency of the window in a browser, without the browser: a
+// client in this process connects over the loopback interface, decodes the stream and steers the camera.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/error.h"
+#include "cli/options/studio_options.h"
+#include "lab/bench.h"
+#ifdef LIMPID_HAVE_SERVE
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "serve/protocol.h"
+#include "serve/remote/remote_socket.h"
+#include "serve/remote/video_decoder.h"
+#include "serve/serve.h"
+#include "studio/studio.h"
+#endif
+
+namespace limpid::cli {
+namespace {
+
+struct ServeBench {
+    StudioChoice studio;
+    std::string codec = "vp9";
+    double seconds = 10.0;
+    uint32_t steps = 30;
+};
+
+#ifdef LIMPID_HAVE_SERVE
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double patience = 300.0;           ///< seconds for a scene to load, and for a frame
+constexpr double gestureSeconds = 1.0 / 60;  ///< between two gestures of a hand
+
+double since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A browser that only decodes.
+class BenchViewer {
+  public:
+    BenchViewer(int port, const std::string& token, const std::string& codec) : session_(port, token) {
+        say({{"type", "start"}, {"codecs", {codec}}});
+    }
+
+    void steer() {
+        ++steers_;
+        // To and fro, so that the scene stays in view.
+        const double turn = steers_ / 32 % 2 == 0 ? 0.01 : -0.01;
+        say({{"type", "steer"}, {"orbit", {turn, 0.0}}, {"id", steers_}});
+    }
+    /// Takes in what arrives, at most that long. True: it was a picture.
+    bool receive(double seconds) {
+        const auto message = session_.receive(seconds);
+        if (!message) return false;
+        if (message->kind == serve::RemoteMessage::Kind::Closed)
+            throw Error("the server has closed the session");
+        if (message->kind == serve::RemoteMessage::Kind::Text) {
+            const json text = json::parse(message->bytes);
+            if (text["type"] == "ack") numbers_[text["id"]] = text["message"];
+            return false;
+        }
+        const auto bytes = std::as_bytes(std::span(message->bytes));
+        const serve::FrameHeader header = serve::unpackedHeader(bytes);
+        if (header.codec == serve::Codec::Vp9) decoder_.decode(bytes.subspan(serve::frameHeaderBytes));
+        say({{"type", "received"}, {"frame", header.frame}});
+        newest_ = header.message;
+        extent_ = {header.width, header.height};
+        bytes_ += message->bytes.size();
+        return true;
+    }
+    /// Whether a picture has arrived that includes the last gesture.
+    bool hasFollowed() const {
+        const auto found = numbers_.find(steers_);
+        return found != numbers_.end() && newest_ >= found->second;
+    }
+    void forgetBytes() { bytes_ = 0; }
+    size_t bytes() const { return bytes_; }
+    gpu::Extent extent() const { return extent_; }
+
+  private:
+    void say(const json& message) { session_.sendText(message.dump()); }
+
+    serve::RemoteSession session_;
+    serve::VideoDecoder decoder_;
+    std::map<uint64_t, uint64_t> numbers_;  ///< of messages, by the client's
+    uint64_t steers_ = 0, newest_ = 0;
+    size_t bytes_ = 0;
+    gpu::Extent extent_;
+};
+
+/// Milliseconds from a gesture to the first decoded picture that includes it, when nothing else moves the
+/// camera.
+std::vector<double> latencies(BenchViewer& viewer, uint32_t steps) {
+    std::vector<double> times;
+    for (uint32_t i = 0; i < steps; ++i) {
+        const auto start = Clock::now();
+        viewer.steer();
+        while (!viewer.hasFollowed()) {
+            viewer.receive(1.0);
+            if (since(start) > patience) throw Error("no picture follows the camera");
+        }
+        times.push_back(since(start) * 1e3);
+    }
+    std::ranges::sort(times);
+    return times;
+}
+
+/// Pictures per second while a hand moves the camera all the time.
+double rate(BenchViewer& viewer, double seconds) {
+    viewer.forgetBytes();
+    const auto start = Clock::now();
+    double next = 0.0;
+    uint64_t pictures = 0;
+    for (double now = 0.0; now < seconds; now = since(start)) {
+        if (now >= next) {
+            viewer.steer();
+            next = now + gestureSeconds;
+        }
+        pictures += viewer.receive(std::max(next - now, 0.001));
+    }
+    return static_cast<double>(pictures) / since(start);
+}
+
+void measure(const ServeBench& o, const std::string& url) {
+    const size_t colon = url.rfind(':'), equals = url.rfind('=');
+    BenchViewer viewer(std::stoi(url.substr(colon + 1)), url.substr(equals + 1), o.codec);
+    const auto start = Clock::now();
+    while (!viewer.receive(1.0)) {
+        if (since(start) > patience) throw Error("no picture comes");
+    }
+    latencies(viewer, 3);  // pipelines are made, the encoder is warm
+    const std::vector<double> times = latencies(viewer, o.steps);
+    const double pictures = rate(viewer, o.seconds);
+    fmt::print("{} of {} x {} ({})\n", o.studio.scene.source.scene, viewer.extent().width,
+               viewer.extent().height, o.codec);
+    fmt::print("latency: {:.1f} ms median, {:.1f} ms of 95 %, {:.1f} ms at most ({} gestures)\n",
+               median(times), times[(times.size() - 1) * 95 / 100], times.back(), times.size());
+    fmt::print("rate: {:.1f} frames/s, {:.2f} Mbit/s ({} s)\n", pictures,
+               static_cast<double>(viewer.bytes()) * 8e-6 / o.seconds, o.seconds);
+}
+
+void run(const ServeBench& o) {
+    studio::StudioSettings settings;
+    apply(o.studio, settings);
+    studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
+                          cameraStart(o.studio), settings);
+    std::promise<std::string> address;
+    std::atomic<bool> ends = false;
+    auto server = std::async(std::launch::async, [&] {
+        try {
+            serve::serve(
+                studio, {}, [&] { return ends || studio.hasEnded(); },
+                [&](const std::string& url) { address.set_value(url); });
+        } catch (...) {
+            address.set_exception(std::current_exception());
+        }
+    });
+    std::exception_ptr fault;
+    try {
+        measure(o, address.get_future().get());
+    } catch (...) {
+        fault = std::current_exception();
+    }
+    ends = true;
+    server.get();
+    studio.finish();  // what ended the renderer tells more
+    if (fault) std::rethrow_exception(fault);
+}
+#else
+void run(const ServeBench&) {
+    throw Error(
+        "Limpid was built without libwebsockets-dev and libvpx-dev: there is no 'limpid serve' to measure");
+}
+#endif
+
+}  // namespace
+
+void addServeBench(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "serve", "Frames per second and latency of 'limpid serve', measured by a client on the same machine");
+    auto o = std::make_shared<ServeBench>();
+    addStudioOptions(*command, o->studio);
+    command->add_option("--codec", o->codec, "vp9 or jpeg (vp9)")->check(CLI::IsMember({"vp9", "jpeg"}));
+    command->add_option("--seconds", o->seconds, "For the frames per second (10)")
+        ->check(CLI::Range(0.1, 3600.0));
+    command->add_option("--steps", o->steps, "Gestures for the latency (30)")->check(CLI::Range(1, 100000));
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace limpid::cli

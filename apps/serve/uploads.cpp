@@ -1,0 +1,76 @@
+#include "serve/uploads.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace limpid::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t maxKept = 4;
+constexpr size_t longestName = 100;
+
+}  // namespace
+
+bool isUploadName(const std::string& name) {
+    constexpr std::array endings{".glb", ".gltf", ".obj", ".hdr", ".exr"};
+    constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+    return !name.empty() && name.size() <= longestName && name.front() != '.' &&
+           name.find_first_not_of(allowed) == std::string::npos &&
+           std::ranges::any_of(endings, [&](const char* ending) { return name.ends_with(ending); });
+}
+
+Upload::Upload(fs::path folder, const std::string& name, uint64_t bytes)
+    : folder_(std::move(folder)), file_(folder_ / name), left_(bytes) {
+    fs::create_directory(folder_);
+    stream_.open(file_, std::ios::binary);
+}
+
+Upload::~Upload() {
+    if (kept_) return;
+    stream_.close();
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+bool Upload::write(std::span<const std::byte> bytes) {
+    if (bytes.size() > left_) return false;
+    stream_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    left_ -= bytes.size();
+    return stream_.good();
+}
+
+Uploads::~Uploads() {
+    std::error_code ignored;
+    if (!root_.empty()) fs::remove_all(root_, ignored);
+}
+
+std::unique_ptr<Upload> Uploads::begin(const std::string& name, uint64_t bytes) {
+    if (!isUploadName(name) || bytes == 0 || bytes > maxBytes_) return nullptr;
+    if (root_.empty()) {
+        // Only its user can look into it.
+        std::string pattern = (fs::temp_directory_path() / "limpid-uploads.XXXXXX").string();
+        if (!::mkdtemp(pattern.data())) throw Error("there is no folder for uploads");
+        root_ = pattern;
+    }
+    return std::make_unique<Upload>(root_ / std::to_string(++ever_), name, bytes);
+}
+
+fs::path Uploads::keep(Upload& upload) {
+    upload.stream_.close();
+    if (!upload.stream_.good()) throw Error("the upload cannot be written");
+    upload.kept_ = true;
+    kept_.push_back(upload.folder_);
+    if (kept_.size() > maxKept) {
+        std::error_code ignored;
+        fs::remove_all(kept_.front(), ignored);
+        kept_.pop_front();
+    }
+    return upload.file();
+}
+
+}  // namespace limpid::serve

@@ -1,0 +1,61 @@
+// Files that clients send: scenes and environments, in a temporary folder that goes with the server.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace limpid::serve {
+
+/// A file that is being received. Removed with its folder unless it is finished.
+class Upload {
+  public:
+    Upload(std::filesystem::path folder, const std::string& name, uint64_t bytes);
+    ~Upload();
+    Upload(const Upload&) = delete;
+    Upload& operator=(const Upload&) = delete;
+
+    /// False: more than was announced, or the disk is full.
+    bool write(std::span<const std::byte> bytes);
+    bool isComplete() const { return left_ == 0; }
+    const std::filesystem::path& file() const { return file_; }
+
+  private:
+    friend class Uploads;
+    std::filesystem::path folder_, file_;
+    std::ofstream stream_;
+    uint64_t left_;
+    bool kept_ = false;
+};
+
+class Uploads {
+  public:
+    /// `maxBytes`: of one file; 0: none is accepted.
+    explicit Uploads(uint64_t maxBytes) : maxBytes_(maxBytes) {}
+    ~Uploads();
+    Uploads(const Uploads&) = delete;
+    Uploads& operator=(const Uploads&) = delete;
+
+    uint64_t maxBytes() const { return maxBytes_; }
+    /// Null if files of this name are not accepted. Each is alone in its folder, and keeps its name: a scene
+    /// is called after it. Throws Error if there is no temporary folder.
+    std::unique_ptr<Upload> begin(const std::string& name, uint64_t bytes);
+    /// Keeps the file; the oldest of the kept ones goes. Throws Error if it cannot be written.
+    std::filesystem::path keep(Upload& upload);
+
+  private:
+    uint64_t maxBytes_, ever_ = 0;
+    std::filesystem::path root_;
+    std::deque<std::filesystem::path> kept_;
+};
+
+/// Whether a file may be called so: a name without a path, of letters, digits, '.', '_' and '-', not hidden,
+/// with the ending of a scene in one file or of an environment.
+bool isUploadName(const std::string& name);
+
+}  // namespace limpid::serve
