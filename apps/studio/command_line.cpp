@@ -57,6 +57,8 @@ CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, con
                                s.pipeline.options(), s.extent.width, s.extent.height, s.seed,
                                toString(s.jitter), accumulates ? frame.samplesInMean : frame.samples);
     if (accumulates) result.text += " --progressive";
+    if (frame.toneCurve != image::ToneCurve::Standard)
+        result.text += fmt::format(" --tone-curve {}", image::nameOf(frame.toneCurve));
     if (s.layers) result.text += " --aov all";
     if (s.pathtrace.samplerTea) result.text += " --sampler tea";
     if (frames > 1) result.text += fmt::format(" --frames {} --fps {}", frames, playback.framesPerSecond);

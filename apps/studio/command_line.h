@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "image/tone_curve.h"
 #include "playback.h"
 #include "renderer/frame/settings.h"
 #include "scene/model/scene_source.h"
@@ -19,6 +20,7 @@ struct ShownFrame {
     uint64_t samplesInMean = 0;  ///< without a denoiser
     std::string camera;          ///< its options, as "--camera 2"; empty: as `playback` has it
     float fovDegrees = 45.0f;
+    image::ToneCurve toneCurve = image::ToneCurve::Standard;  ///< for a PNG
 };
 
 struct CommandLine {

@@ -8,6 +8,7 @@ namespace limpid::studio {
 
 bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure) {
     exposure_ = exposure;
+    curve_ = nextCurve_;
     if (renderer_ && samples == samples_) {
         const bool anew = renderer_->setSettings(settings);
         next_ = settings;
@@ -17,8 +18,8 @@ bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t 
     renderer_->graph().setReplacements(&shaders_);
     renderer_->graph().setInterruption(interrupted_);
     renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
-        if (images.beauty) return tonemap(graph, images.beauty, exposure_);
-        return tonemap(graph, images.diffuse, exposure_, images.emission);
+        if (images.beauty) return tonemap(graph, images.beauty, exposure_, {}, curve_);
+        return tonemap(graph, images.diffuse, exposure_, images.emission, curve_);
     });
     next_ = settings;
     samples_ = samples;
@@ -54,9 +55,11 @@ uint64_t LiveRender::samples() const {
 }
 
 bool LiveRender::expose(float stops) {
-    if (stops == exposure_) return false;
+    if (stops == exposure_ && curve_ == nextCurve_) return false;
     exposure_ = stops;
-    const image::ByteImage bytes = image::toBytes(image::tonemap(beautyOf(renderer_->download()), stops));
+    curve_ = nextCurve_;
+    const image::ByteImage bytes =
+        image::toBytes(image::tonemap(beautyOf(renderer_->download()), stops, curve_));
     picture_ = std::make_shared<const Picture>(Picture{{bytes.width, bytes.height}, packedTexels(bytes)});
     ++version_;
     return true;

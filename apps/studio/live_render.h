@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "image/tone_curve.h"
 #include "renderer/frame/frame_renderer.h"
 #include "stage.h"
 #include "studio/picture.h"
@@ -42,6 +43,8 @@ class LiveRender {
     const RenderSettings& settings() const { return settings_; }
     const CameraParams& camera() const { return camera_; }
     FrameRenderer& renderer() { return *renderer_; }
+    /// For frames to come, and for the next expose().
+    void setToneCurve(image::ToneCurve curve) { nextCurve_ = curve; }
     /// Exposes the last frame differently, without rendering it again. Waits for the device. Returns false if
     /// it was exposed so already.
     bool expose(float stops);
@@ -59,6 +62,7 @@ class LiveRender {
     RenderSettings next_;
     uint32_t samples_ = 1;
     float exposure_ = 0.0f;
+    image::ToneCurve curve_ = image::ToneCurve::Standard, nextCurve_ = curve_;
     std::shared_ptr<const Picture> picture_;  ///< null: not downloaded yet
     CameraParams camera_{};
     bool shown_ = false;

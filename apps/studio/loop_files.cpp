@@ -28,7 +28,7 @@ void RenderLoop::saveWhatIsAsked() {
 }
 
 void RenderLoop::save(const std::filesystem::path& file) {
-    savePicture(file, main_, stopsOf(main_.settings().pipeline));
+    savePicture(file, main_, stopsOf(main_.settings().pipeline), curveOf(main_.settings().pipeline));
     say("wrote " + file.string());
     log::info("{}", facts_.message);
 }
@@ -43,7 +43,8 @@ void RenderLoop::makeCommand() {
                      .samples = state_.samples,
                      .samplesInMean = main_.samples(),
                      .camera = rig_.option(settings_.startCamera),
-                     .fovDegrees = fovOfLast_};
+                     .fovDegrees = fovOfLast_,
+                     .toneCurve = curveOf(main_.settings().pipeline)};
     frame.source.lightFile = state_.lights.isChanged() ? lightFile : "";
     CommandLine command = commandLineOf(frame, playback_, pathFile);
     if (rig_.isFree() && rig_.hand().camera().orthographic)

@@ -77,8 +77,10 @@ bool RenderLoop::renderWhatIsDue() {
         return true;
     }
     measureExposure();
+    if (main_) main_.setToneCurve(curveOf(main_.settings().pipeline));
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
     noteTimes(main);
+    comparison_.setToneCurve(state_.toneCurve);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
     return main || other;
@@ -98,6 +100,7 @@ void RenderLoop::render(const CameraParams& camera) {
     if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
         throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (wanted_ != main_.settings() || state_.fovDegrees != fovOfLast_);
+    main_.setToneCurve(curveOf(wanted_.pipeline));
     if (main_.prepare(*stage_, wanted_, state_.samples, stopsOf(wanted_.pipeline)))
         playback_.reset(playback_.time());
     else if (changed)
@@ -142,6 +145,11 @@ void RenderLoop::measureExposure() {
 /// Returns the exposure for this pipeline; 0 if its picture is not radiance.
 float RenderLoop::stopsOf(const Pipeline& pipeline) const {
     return pipeline.needsExposure() ? state_.exposure : 0.0f;
+}
+
+/// The same for the tone curve.
+image::ToneCurve RenderLoop::curveOf(const Pipeline& pipeline) const {
+    return pipeline.needsExposure() ? state_.toneCurve : image::ToneCurve::Standard;
 }
 
 /// Recompiles changed shaders. Returns true if there were any.

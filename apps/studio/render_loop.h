@@ -91,6 +91,7 @@ class RenderLoop {
     void noteTimes(bool rendered);
     void measureExposure();
     float stopsOf(const Pipeline& pipeline) const;
+    image::ToneCurve curveOf(const Pipeline& pipeline) const;
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
     void publish();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "image/tone_curve.h"
 #include "renderer/frame/settings.h"
 #include "studio/compare/comparison.h"
 #include "studio/compare/inspector.h"
@@ -51,6 +52,7 @@ struct State {
     ComparisonChoice comparison;
     bool arrows = false;  ///< the motion is downloaded, for arrows
     LightDesk lights;
+    image::ToneCurve toneCurve = image::ToneCurve::Standard;
     Pipeline pipelineBefore;  ///< that of before the preview
 
     bool isPreview() const { return render.pipeline.integrator == Integrator::Preview; }

@@ -346,6 +346,12 @@ void addLook(std::vector<Entry>& all) {
         {"exposure", "look", "exposure", "One more doubles the brightness", "stops"}, Kind::Float, -32.0,
         32.0, stops, [](State & s) -> auto& { return s.exposure; }));
     all.push_back(choice(
+        {"tone_curve", "look", "tone curve",
+         "How radiance becomes colour: standard (filmic), agx (bright colours turn white), none (clipped), "
+         "or "
+         "false-color (a colour for each stop)"},
+        image::toneCurveNames(), [](State & s) -> auto& { return s.toneCurve; }));
+    all.push_back(choice(
         {"compare", "compare", "compare with", "Shown beside the picture, on the same frames"},
         comparisonNames(), [](State & s) -> auto& { return s.comparison.with; }));
     all.push_back(number(

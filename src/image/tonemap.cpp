@@ -72,16 +72,19 @@ float sequenceExposure(std::span<const std::optional<float>> frames) {
     return used > 0 ? static_cast<float>(sum / static_cast<double>(used)) : 0.0f;
 }
 
-Image tonemap(const Image& radiance, float stops) {
+Image tonemap(const Image& radiance, float stops, ToneCurve curve) {
     Image encoded(radiance.width, radiance.height, radiance.components);
     const float scale = std::exp2(stops);
-    const size_t components = radiance.components;
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.pixels.size(), 1 << 14), [&](const auto& range) {
+    const size_t components = radiance.components, count = size_t{radiance.width} * radiance.height;
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1 << 12), [&](const auto& range) {
         for (size_t i = range.begin(); i != range.end(); ++i) {
-            const float value = radiance.pixels[i];
-            const bool alpha = components == 4 && i % 4 == 3;
-            encoded.pixels[i] =
-                alpha ? std::clamp(value, 0.0f, 1.0f) : srgbEncode(filmicCurve(value * scale));
+            const float* const from = &radiance.pixels[i * components];
+            float* const to = &encoded.pixels[i * components];
+            const bool grey = components < 3;
+            const vec3 shown =
+                displayColor(curve, scale * (grey ? vec3(from[0]) : vec3(from[0], from[1], from[2])));
+            for (size_t c = 0; c < components; ++c)
+                to[c] = c < 3 ? shown[static_cast<int>(c)] : std::clamp(from[c], 0.0f, 1.0f);
         }
     });
     return encoded;

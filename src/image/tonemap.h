@@ -6,6 +6,7 @@
 
 #include "image/filmic.h"
 #include "image/image.h"
+#include "image/tone_curve.h"
 
 namespace limpid::image {
 
@@ -29,9 +30,9 @@ std::optional<float> measuredExposure(const Image& radiance, std::span<const flo
 /// maps the geometric mean of the frames' averages to 0.18; 0 if there are none. Black frames do not count.
 float sequenceExposure(std::span<const std::optional<float>> frames);
 
-/// Returns encoded sRGB in [0,1] for a PNG: filmicCurve(radiance * 2^stops), then sRGB, for the first 3
+/// Returns encoded sRGB in [0,1] for a PNG: displayColor(curve, radiance * 2^stops) of the first 3
 /// components; a fourth is alpha and is only clamped. `radiance`: linear, 1, 3 or 4 components; the result
-/// has the same number.
-Image tonemap(const Image& radiance, float stops);
+/// has the same number. Of a colour that a curve gives to grey pictures of 1 component, red is taken.
+Image tonemap(const Image& radiance, float stops, ToneCurve curve = ToneCurve::Standard);
 
 }  // namespace limpid::image

@@ -24,18 +24,22 @@ TEST_F(TonemapTest, ShowsWhatFilesShow) {
     const float special[] = {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(),
                              std::numeric_limits<float>::infinity(), 1e38f};
     std::copy(std::begin(special), std::end(special), radiance.pixels.begin());
-    for (const float exposure : {0.0f, -3.5f, 6.0f}) {
+    using image::ToneCurve;
+    for (const auto& [exposure, curve] :
+         {std::pair(0.0f, ToneCurve::Standard), std::pair(-3.5f, ToneCurve::Standard),
+          std::pair(6.0f, ToneCurve::Standard), std::pair(0.0f, ToneCurve::Agx),
+          std::pair(1.0f, ToneCurve::None), std::pair(0.0f, ToneCurve::FalseColor)}) {
         gpu::FrameGraph graph;
         graph.beginFrame();
         const gpu::ImageHandle source = graph.transient("radiance", gpu::Format::RGBA32Float, {61, 47});
         graph.upload(source, gpu::bytesOf(radiance.pixels));
-        const gpu::ImageHandle display = tonemap(graph, source, exposure);
+        const gpu::ImageHandle display = tonemap(graph, source, exposure, {}, curve);
         graph.execute(device());
         const std::vector<float> shown = graph.downloadFloat(device(), display);
-        const image::Image expected = image::tonemap(radiance, exposure);
+        const image::Image expected = image::tonemap(radiance, exposure, curve);
         for (size_t i = 0; i < shown.size(); ++i)
             ASSERT_NEAR(shown[i], i % 4 == 3 ? 1.0f : expected.pixels[i], 1.0f / 255.0f)
-                << i << " at " << exposure;
+                << i << " at " << exposure << ", " << image::nameOf(curve);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "cli/help_text.h"
 #include "cli/render/clip_output.h"
 #include "cli/render/picture_output.h"
+#include "image/tone_curve.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
 #include "renderer/layers/layers.h"
@@ -81,6 +82,11 @@ void addOutputOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--exposure", o.exposure,
                        "Exposure of a PNG: stops (higher is brighter), or 'auto' (default): measured on "
                        "pixels that see a surface");
+    command
+        .add_option("--tone-curve", o.toneCurve,
+                    "Tone curve of a PNG: standard (filmic, default), agx (bright colours turn white), none "
+                    "(clipped) or false-color (a colour for each stop of luminance)")
+        ->check(CLI::IsMember(image::toneCurveNames()));
     std::string layers;
     for (const std::string& layer : layerNames()) layers += " " + layer;
     command.add_option("--aov", o.layers, "EXR layers besides beauty, comma-separated, or 'all':" + layers);

@@ -26,7 +26,8 @@ struct RenderOptions {
     uint32_t seed = 0;
     int maxDepth = -1;  // -1: the parameter's own default
     PipelineChoice pipeline;
-    std::string sampler, jitter, exposure = "auto", layers, dump, weights;  ///< "": as the preset says
+    std::string sampler, jitter, exposure = "auto", toneCurve = "standard", layers, dump,
+                                 weights;  ///< "": as the preset says
     std::string preset;
     std::vector<std::string> assignments;
     bool progressive = false, preview = false, floatExr = false, json = false;

@@ -258,8 +258,9 @@ void ClipWriter::send(const image::ByteImage& frame) {
 void ClipWriter::add(const image::Image& beauty, std::span<const float> subject) {
     // One exposure for all frames: a clip would flicker if each frame were measured.
     if (!format_.stops) format_.stops = image::autoExposure(beauty, subject);
-    const image::Image encoded =
-        format_.shownAsIs ? image::displayEncode(beauty, 0.0f) : image::tonemap(beauty, *format_.stops);
+    const image::Image encoded = format_.shownAsIs
+                                     ? image::displayEncode(beauty, 0.0f)
+                                     : image::tonemap(beauty, *format_.stops, format_.toneCurve);
     const image::ByteImage bytes = image::toBytes(encoded);
     if (bytes.width != format_.width || bytes.height != format_.height || bytes.components != 3)
         throw Error("the frames of a clip must be RGB, and all have its size");

@@ -11,6 +11,7 @@
 
 #include "image/image.h"
 #include "image/io/png/png.h"
+#include "image/tone_curve.h"
 
 namespace limpid::cli {
 
@@ -24,6 +25,7 @@ void checkClipOutput(const std::filesystem::path& path);
 struct ClipFormat {
     uint32_t width = 0, height = 0;
     double framesPerSecond = 30.0;
+    image::ToneCurve toneCurve = image::ToneCurve::Standard;
     std::optional<float> stops;  ///< exposure; none: what the first frame calls for, for all
     bool shownAsIs = false;      ///< values are shares in [0,1], no radiance
 };

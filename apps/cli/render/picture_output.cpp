@@ -19,7 +19,7 @@ void checkPictureOutput(const fs::path& path, bool layers) {
 }
 
 PictureFormat formatOf(const AccumulationHeader& header) {
-    return {header.layers, header.floatColors, header.exposure};
+    return {header.layers, header.floatColors, header.exposure, image::parseToneCurve(header.toneCurve)};
 }
 
 std::map<std::string, std::string> metadataOf(const AccumulationHeader& header, uint64_t frame,
@@ -43,7 +43,7 @@ void writePicture(const fs::path& path, const PictureFormat& format, const Rende
             return image::writePng(path, image::toBytes(image::displayEncode(beauty, 0.0f)));
         const float stops =
             parseExposure(format.exposure).value_or(image::autoExposure(beauty, surfaceShare(layers)));
-        image::writePng(path, image::toBytes(image::tonemap(beauty, stops)));
+        image::writePng(path, image::toBytes(image::tonemap(beauty, stops, format.toneCurve)));
         return;
     }
     image::LayeredImage exr = toLayeredImage(

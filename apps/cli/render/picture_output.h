@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/tone_curve.h"
 #include "renderer/layers/layers.h"
 #include "renderer/layers/picture_name.h"
 #include "renderer/long/accumulation_header.h"
@@ -16,10 +17,11 @@ namespace limpid::cli {
 void checkPictureOutput(const std::filesystem::path& path, bool layers);
 
 struct PictureFormat {
-    std::vector<std::string> layers;  ///< of an EXR, besides beauty
-    bool floatColors = false;         ///< of an EXR; else half
-    std::string exposure = "auto";    ///< of a PNG
-    bool shownAsIs = false;           ///< of a PNG: values are shares in [0,1], no radiance
+    std::vector<std::string> layers;                          ///< of an EXR, besides beauty
+    bool floatColors = false;                                 ///< of an EXR; else half
+    std::string exposure = "auto";                            ///< of a PNG
+    image::ToneCurve toneCurve = image::ToneCurve::Standard;  ///< of a PNG
+    bool shownAsIs = false;  ///< of a PNG: values are shares in [0,1], no radiance
 };
 PictureFormat formatOf(const AccumulationHeader& header);
 

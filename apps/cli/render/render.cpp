@@ -66,6 +66,7 @@ void renderClip(RenderJob job, RenderSummary& summary) {
         ClipWriter clip(temporary, {.width = job.settings.extent.width,
                                     .height = job.settings.extent.height,
                                     .framesPerSecond = o.sequence.timing.framesPerSecond,
+                                    .toneCurve = image::parseToneCurve(o.toneCurve),
                                     .stops = parseExposure(o.exposure),
                                     .shownAsIs = !job.settings.pipeline.needsExposure()});
         job.clip = &clip;

@@ -44,6 +44,7 @@ AccumulationHeader headerOf(const RenderJob& job) {
     header.tracer = scene::toString(job.scene.tracer());
     header.floatColors = o.floatExr;
     header.exposure = o.exposure;
+    header.toneCurve = o.toneCurve;
     return header;
 }
 

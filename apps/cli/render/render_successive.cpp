@@ -31,7 +31,7 @@ std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t fra
 void renderSuccessiveFrames(const RenderJob& job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const FramePattern output(o.output);
-    const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure,
+    const PictureFormat format{chosenLayers(o), o.floatExr, o.exposure, image::parseToneCurve(o.toneCurve),
                                !job.settings.pipeline.needsExposure()};
     FrameRenderer renderer(job.device, job.scene, job.settings, samplesOf(o));
     Progress progress("frames", static_cast<uint64_t>(job.frames));

@@ -16,10 +16,10 @@ fs::path unusedFile(const std::string& stem, const std::string& extension) {
     return file;
 }
 
-void savePicture(const fs::path& file, LiveRender& picture, float stops) {
+void savePicture(const fs::path& file, LiveRender& picture, float stops, image::ToneCurve curve) {
     const RenderedLayers layers = picture.renderer().download();
     if (file.extension() != ".exr") {
-        image::writePng(file, image::toBytes(image::tonemap(beautyOf(layers), stops)));
+        image::writePng(file, image::toBytes(image::tonemap(beautyOf(layers), stops, curve)));
         return;
     }
     const RenderSettings& settings = picture.settings();

@@ -12,7 +12,7 @@ namespace limpid::studio {
 std::filesystem::path unusedFile(const std::string& stem, const std::string& extension);
 
 /// The last frame: .exr is linear, with all layers of its pipeline if its settings have layers; anything else
-/// is a PNG, exposed by `stops` and encoded. Throws OutputError.
-void savePicture(const std::filesystem::path& file, LiveRender& picture, float stops);
+/// is a PNG, exposed by `stops` and encoded by the tone curve. Throws OutputError.
+void savePicture(const std::filesystem::path& file, LiveRender& picture, float stops, image::ToneCurve curve);
 
 }  // namespace limpid::studio

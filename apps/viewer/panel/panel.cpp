@@ -23,6 +23,9 @@ constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFl
 
 /// The panel's edge, which can be dragged.
 void drawEdge(const Drawing& with, float height, float scale) {
+    // It lies in the padding, which ImGui clips.
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ImGui::PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, false);
     ImGui::SetCursorPos({0.0f, 0.0f});
     ImGui::InvisibleButton("##edge", {std::round(edgeWidth * scale), std::max(height, 1.0f)});
     with.controls.note("panel edge");
@@ -34,6 +37,7 @@ void drawEdge(const Drawing& with, float height, float scale) {
             low, {low.x + 2.0f * scale, low.y + height},
             ImGui::GetColorU32(held ? ImGuiCol_SeparatorActive : ImGuiCol_SeparatorHovered));
     }
+    ImGui::PopClipRect();
     if (!held) return;
     const float whole = ImGui::GetIO().DisplaySize.x;
     const float most = std::max(whole - narrowestPicture * scale, narrowestPanel * scale);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "image/tone_curve.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
 #include "scene/builtin/builtin.h"
@@ -163,11 +164,34 @@ void drawMagnifier(const Drawing& with) {
     explainRow(with, "The pixels under the mouse, enlarged");
 }
 
+/// The colours of stops.
+void drawLegend(const Drawing& with) {
+    const std::span<const vec3> colors = image::falseColors();
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const auto count = static_cast<float>(colors.size());
+    const float width = ImGui::GetContentRegionAvail().x / count, height = ImGui::GetFontSize();
+    ImDrawList& draws = *ImGui::GetWindowDrawList();
+    for (size_t i = 0; i < colors.size(); ++i) {
+        const float left = low.x + width * static_cast<float>(i);
+        const vec3& c = colors[i];
+        draws.AddRectFilled({left, low.y}, {left + width, low.y + height},
+                            ImGui::ColorConvertFloat4ToU32({c.r, c.g, c.b, 1.0f}));
+        const std::string stops = std::to_string(static_cast<int>(i) - static_cast<int>(colors.size() / 2));
+        const float middle = left + 0.5f * (width - ImGui::CalcTextSize(stops.c_str()).x);
+        draws.AddText({middle, low.y + height}, ImGui::GetColorU32(ImGuiCol_Text), stops.c_str());
+    }
+    ImGui::Dummy({width * count, 2.2f * height});
+    with.controls.note("legend");
+    if (ImGui::IsItemHovered()) explain("Stops from middle grey (0.18), with the exposure");
+}
+
 void drawLook(const Drawing& with) {
     if (!section(with, "look", true)) return;
     beginRows();
     drawField(with, "exposure");
     drawActions(with, "look");
+    drawField(with, "tone_curve");
+    if (with.panel.state.toneCurve == image::ToneCurve::FalseColor) drawLegend(with);
     drawMagnifier(with);
     drawField(with, "arrows");
     endRows();

@@ -8,10 +8,10 @@
 namespace limpid {
 
 gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
-                         gpu::ImageHandle added) {
+                         gpu::ImageHandle added, image::ToneCurve curve) {
     const gpu::Extent extent = graph.extent(radiance);
     const gpu::ImageHandle display = graph.transient("tonemap", gpu::Format::RGBA8Unorm, extent);
-    const TonemapParams params{extent.width, extent.height, std::exp2(stops)};
+    const TonemapParams params{extent.width, extent.height, std::exp2(stops), static_cast<uint32_t>(curve)};
     graph.dispatch(
         {.pass = "tonemap",
          .shader = shaders::tonemap_comp,

@@ -12,6 +12,7 @@ struct TonemapParams {
     uint width;
     uint height;
     float scale;  // factor for radiance, before the curve
+    uint curve;   // image::ToneCurve
 };
 
 #ifdef __cplusplus

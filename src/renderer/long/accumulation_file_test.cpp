@@ -182,6 +182,7 @@ TEST_F(AccumulationFileTest, HostileHeadersAreRefusedBeforeMemoryIsAskedFor) {
         {"\"identity\":[", "\"identity\":[[\"seed\",\"0\"],", "twice"},
         {"\"float\":false", "\"float\":0", "float"},
         {"\"exposure\":\"auto\"", "\"exposure\":[]", "exposure"},
+        {"\"tone_curve\":\"standard\"", "\"tone_curve\":[]", "tone_curve"},
         {"{", "[", "header"},
     };
     for (const auto& [what, by, part] : faults) {

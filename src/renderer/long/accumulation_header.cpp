@@ -55,6 +55,7 @@ class HeaderReader {
         if (!at(name).is_boolean()) fail(fmt::format("'{}' is neither true nor false", name));
         return at(name).get<bool>();
     }
+    bool has(const char* name) const { return json_.contains(name); }
     const Json& at(const char* name) const {
         const auto found = json_.find(name);
         if (found == json_.end()) fail(fmt::format("has no '{}' in its header", name));
@@ -218,7 +219,8 @@ std::string toJson(const AccumulationHeader& header) {
                     {"driver", header.driver},
                     {"tracer", header.tracer},
                     {"float", header.floatColors},
-                    {"exposure", header.exposure}};
+                    {"exposure", header.exposure},
+                    {"tone_curve", header.toneCurve}};
     return json.dump();
 }
 
@@ -240,6 +242,8 @@ AccumulationHeader headerFromJson(std::string_view text, const std::filesystem::
     header.tracer = reader.text("tracer", reader.at("tracer"));
     header.floatColors = reader.flag("float");
     header.exposure = reader.text("exposure", reader.at("exposure"));
+    // Files of former versions have none.
+    if (reader.has("tone_curve")) header.toneCurve = reader.text("tone_curve", reader.at("tone_curve"));
     return header;
 }
 

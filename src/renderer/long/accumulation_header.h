@@ -46,7 +46,7 @@ struct AccumulationHeader {
 
     // How the picture is to be written.
     bool floatColors = false;
-    std::string exposure = "auto";
+    std::string exposure = "auto", toneCurve = "standard";
 
     /// The value of an entry of `identity`; empty if there is none.
     std::string_view value(std::string_view name) const;
