@@ -1,24 +1,25 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release, and demonstrates the main uses of Limpid. Results are under out/:
+# Installs what is missing, builds the program (Release), and demonstrates the main uses of Limpid. Results are in out/:
 # - moving sequences of one sample per pixel and frame, denoised, with references, PSNR and FLIP;
 # - a frame of 32 samples per pixel, denoised by the network;
-# - stills, noisy and converged, with samples, seconds and PSNR.
+# - a still, noisy and converged, with samples, seconds and PSNR.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh
-scripts/build.sh release -DLIMPID_TESTS=OFF
+# The program alone, with precompiled headers and several files at once: see cmake/LimpidTargets.cmake.
+scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNITY=ON
 
 mkdir -p out
-build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 320 --height 180 \
-    --frames 24 --first 20 --reference-spp 256 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
+build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 256 --height 144 \
+    --frames 24 --first 21 --reference-spp 512 --denoiser temporal --denoiser atrous --denoiser svgf --out out \
     --report out/quality.html | tee out/quality.txt
 echo
-build/release/limpid bench quality --scene builtin:cornell-spheres --width 240 --height 136 --first 0 --frames 1 --spp 32 \
-    --reference-spp 512 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
+build/release/limpid bench quality --scene builtin:cornell --width 240 --height 136 --first 0 --frames 1 --spp 32 \
+    --reference-spp 768 --denoiser atrous --denoiser svgf --denoiser kpcn --out out/network | tee out/network.txt
 echo
-build/release/limpid bench convergence --scene builtin:cornell --scene builtin:cornell-spheres --width 320 --height 180 \
-    --spp 512 --out out | tee out/convergence.txt
+build/release/limpid bench convergence --scene builtin:cornell --width 240 --height 136 \
+    --spp 2048 --out out | tee out/convergence.txt
 echo
-echo "Denoised: out/quality.*.png (noisy, temporal, a-trous, SVGF, reference, side by side); the table: out/quality.txt; a page to look around in: out/quality.html"
+echo "Denoised: out/quality.*.png (noisy, temporal, a-trous, SVGF, reference, side by side, labelled); the table: out/quality.txt; a page to look around in: out/quality.html"
 echo "One frame of 32 samples, and the network: out/network/*.png (noisy, a-trous, SVGF, KPCN, reference); the table: out/network.txt"
 echo "Converged: out/*spp.png (tone-mapped) and out/*spp.exr (linear); the table: out/convergence.txt"

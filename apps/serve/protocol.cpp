@@ -19,7 +19,7 @@ using studio::Request;
 /// What one message may do to the camera: a hand does less in a second.
 constexpr float largestMovement = 100.0f;
 
-constexpr std::array<std::pair<const char*, Request::Kind>, 12> requests{{
+constexpr std::array<std::pair<const char*, Request::Kind>, 13> requests{{
     {"reset", Request::Kind::Reset},
     {"step", Request::Kind::Step},
     {"measure_exposure", Request::Kind::MeasureExposure},
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<const char*, Request::Kind>, 12> requests{{
     {"add_point", Request::Kind::AddPoint},
     {"add_sun", Request::Kind::AddSun},
     {"remove_lamp", Request::Kind::RemoveLamp},
+    {"keep_settings", Request::Kind::KeepSettings},
     {"command_line", Request::Kind::CommandLine},
 }};
 
@@ -128,8 +129,8 @@ bool isTooDeep(std::string_view text) {
 }
 
 const char* nameOf(Field::Kind kind) {
-    constexpr std::array names{"bool",   "int",  "float",  "choice",     "index",
-                               "vector", "text", "lights", "background", "extent"};
+    constexpr std::array names{"bool", "int",    "float",      "choice", "index",   "vector",
+                               "text", "lights", "background", "extent", "settings"};
     return names.at(static_cast<size_t>(kind));
 }
 

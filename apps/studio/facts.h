@@ -27,6 +27,7 @@ struct Facts {
     uint64_t memoryBytes = 0, sceneBytes = 0;  ///< on the device
     float sceneRadius = 1.0f;                  ///< world units
     std::string comparedWith, scores;
+    Track errors;  ///< FLIP of the picture against what it is compared with, each time that it was measured
     std::string allValues;            ///< result of the last probe
     std::vector<std::string> images;  ///< of State::pass
     std::string message;              ///< the last thing that was done

@@ -90,6 +90,7 @@ void RenderLoop::carryOut(const Request& request) {
         facts_.allValues = facts_.allValues.empty() ? probeAll(request.position) : std::string();
     if (kind == Kind::AddPoint || kind == Kind::AddSun) attempt([&] { addLamp(kind == Kind::AddSun); });
     if (kind == Kind::RemoveLamp) attempt([&] { takeLampAway(request.index); });
+    if (kind == Kind::KeepSettings) state_.comparison.keep(state_.render);
     if (kind == Kind::SaveLights) attempt([&] { saveLights(); });
     if (kind == Kind::SavePath) attempt([&] { savePath(); });
     if (kind == Kind::SavePng) toSave_.emplace_back(".png");

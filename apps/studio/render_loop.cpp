@@ -146,6 +146,7 @@ void RenderLoop::publish() {
     auto shown = std::make_shared<Shown>();
     facts_.comparedWith = comparison_.name();
     facts_.scores = comparison_.scores();
+    facts_.errors = comparison_.errors();
     facts_.framesEver = rendered();
     facts_.extent = wanted_.extent;
     if (main_) {

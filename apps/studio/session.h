@@ -50,7 +50,8 @@ struct Request {
         SavePath,    ///< writes flown.json
         SavePng,     ///< writes limpid.png or limpid-N.png in the working folder, at the full resolution
         SaveExr,
-        CommandLine,  ///< fills Facts::command
+        KeepSettings,  ///< the settings become those of the comparison with `kept settings`
+        CommandLine,   ///< fills Facts::command
     } kind = Kind::Reset;
     std::string file = {};
     int index = 0;

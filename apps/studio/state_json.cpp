@@ -188,6 +188,39 @@ Entry viewportEntry() {
 
 // ---- The method
 
+/// The settings as a list of assignments: "integrator=path", "denoiser=svgf", "svgf.levels=3".
+json assignmentsJson(const RenderSettings& settings) {
+    json list = json::array({"integrator=" + std::string(nameOf(settings.pipeline.integrator)),
+                             "denoiser=" + std::string(nameOf(settings.pipeline.denoiser))});
+    for (const std::string& text : assignmentsOf(settings)) list.push_back(text);
+    return list;
+}
+
+RenderSettings settingsOf(const json& list) {
+    RenderSettings settings;
+    std::string integrator = "path", denoiser = "none";
+    if (!list.is_array() || list.size() > 1000) refuse("kept_settings", "a list of assignments is needed");
+    for (const json& item : list) {
+        const auto text = item.get<std::string>();
+        if (text.starts_with("integrator="))
+            integrator = text.substr(11);
+        else if (text.starts_with("denoiser="))
+            denoiser = text.substr(9);
+        else
+            assign(settings, text);
+    }
+    settings.pipeline = parsePipeline(integrator, denoiser);
+    settings.jitter = defaultJitter(settings.pipeline);
+    return settings;
+}
+
+Entry keptSettingsEntry() {
+    return {fieldOf(Kind::Settings, {"kept_settings", "compare", "kept settings",
+                                     "Method and parameters that the picture is compared with"}),
+            [](const State& s) { return assignmentsJson(s.comparison.kept); },
+            [](State& s, const json& v) { s.comparison.kept = settingsOf(v); }};
+}
+
 Entry integratorEntry() {
     std::vector<std::string> names;
     for (const Integrator integrator : integrators()) names.emplace_back(nameOf(integrator));
@@ -319,6 +352,7 @@ void addLook(std::vector<Entry>& all) {
         {"reference_samples", "compare", "reference samples", "The reference is finished then", "per pixel"},
         Kind::Int, 1, 1 << 16, {1, 1 << 16, SliderScale::Logarithmic},
         [](State & s) -> auto& { return s.comparison.referenceSamples; }));
+    all.push_back(keptSettingsEntry());
     all.push_back(
         {fieldOf(Kind::Text, {"pass", "inspect", "pass", "Pass whose images are shown; empty: the picture"}),
          [](const State& s) -> json { return s.pass; },
@@ -442,6 +476,7 @@ json toJson(const Facts& facts) {
             {"scene_radius", facts.sceneRadius},
             {"compared_with", facts.comparedWith},
             {"scores", facts.scores},
+            {"errors", facts.errors.values()},
             {"values", facts.allValues},
             {"images", facts.images},
             {"message", facts.messageIsOld ? "" : facts.message},

@@ -25,6 +25,7 @@ struct Field {
         Lights,      ///< an array with an object for each light
         Background,  ///< null, or three numbers: linear Rec. 709
         Extent,      ///< two numbers
+        Settings,    ///< an array of strings: assignments such as "denoiser=svgf" and "svgf.levels=3"
     } kind = Kind::Bool;
     std::string key;
     std::string section;  ///< "scene", "camera", "light", "method", "look", "compare", "inspect", or a

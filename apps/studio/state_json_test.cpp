@@ -43,6 +43,8 @@ json otherValue(const Field& field, const json& now) {
             return json::array({0.5, 0.25, 1.0});
         case Field::Kind::Extent:
             return json::array({640, 480});
+        case Field::Kind::Settings:
+            return json::array({"integrator=ao", "denoiser=svgf", "svgf.levels=3"});
         case Field::Kind::Lights:
             break;
     }

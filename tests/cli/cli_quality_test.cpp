@@ -108,7 +108,7 @@ TEST_F(CliQualityTest, WhatCannotBeIsSaidBeforeAnythingIsRendered) {
         expect(std::string("bench quality --device cpu ") + frames, 2, "cornell: of ");
 }
 
-TEST_F(CliQualityTest, TheSlidersDividerMovesInABrowser) {
+TEST_F(CliQualityTest, TheReportWorksInABrowser) {
     const Result made = run(options("--report " + path("page.html") + " --lab --quick --denoiser temporal"));
     ASSERT_EQ(made.code, 0) << made.output;
     for (const char* part : {"best in", "many-lights (reference: 16 samples, "})

@@ -1,127 +1,16 @@
 #!/usr/bin/env python3
 """Opens a page of `limpid bench quality --report` in headless Chromium and uses it as a reader would: drags the
-divider, presses keys, touches, chooses pictures. Exit code 0: as it should be; 1: not; 77: there is no Chromium."""
+divider, presses keys, touches, chooses pictures and frames, plays, zooms, points at pixels,
+changes the exposure. Exit code 0: as it should be; 1: not; 77: there is no Chromium."""
 
-import base64
 import json
-import os
 import pathlib
 import re
-import select
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
-NOT_TESTED = 77
-
-
-class Browser:
-    """Chromium and one page of it, by the DevTools protocol over a pair of pipes."""
-
-    def __init__(self, program, profile):
-        to_browser, self.output = os.pipe()
-        self.input, from_browser = os.pipe()
-
-        def place_pipes():
-            # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
-            reading, writing = os.dup(to_browser), os.dup(from_browser)
-            os.dup2(reading, 3)
-            os.dup2(writing, 4)
-
-        arguments = ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe', '--no-first-run',
-                     '--disable-background-networking', '--disable-component-update', '--disable-dev-shm-usage',
-                     '--force-device-scale-factor=1', f'--user-data-dir={profile}', 'about:blank']
-        self.process = subprocess.Popen([program, *arguments], preexec_fn=place_pipes, close_fds=False,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.rest = b''
-        self.number = 0
-        self.session = None
-        self.events = []
-        targets = self.call('Target.getTargets')['targetInfos']
-        page = next(target['targetId'] for target in targets if target['type'] == 'page')
-        self.session = self.call('Target.attachToTarget', targetId=page, flatten=True)['sessionId']
-
-    def message(self, deadline):
-        while b'\0' not in self.rest:
-            ready, _, _ = select.select([self.input], [], [], max(0, deadline - time.monotonic()))
-            data = os.read(self.input, 1 << 20) if ready else b''
-            if not data:
-                raise RuntimeError('the browser does not answer')
-            self.rest += data
-        text, self.rest = self.rest.split(b'\0', 1)
-        return json.loads(text)
-
-    def call(self, method, **parameters):
-        self.number += 1
-        command = {'id': self.number, 'method': method, 'params': parameters}
-        if self.session:
-            command['sessionId'] = self.session
-        data = json.dumps(command).encode() + b'\0'
-        while data:
-            data = data[os.write(self.output, data):]
-        deadline = time.monotonic() + 60
-        while True:
-            message = self.message(deadline)
-            if message.get('id') == self.number:
-                if 'error' in message:
-                    raise RuntimeError(f'{method}: {message["error"]}')
-                return message['result']
-            self.events.append(message)
-
-    def evaluate(self, expression):
-        result = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
-        if 'exceptionDetails' in result:
-            raise RuntimeError(f'{expression}: {result["exceptionDetails"]}')
-        return result['result'].get('value')
-
-    def size(self, width, height):
-        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height, deviceScaleFactor=1, mobile=False)
-
-    def mouse(self, kind, x, y, buttons):
-        self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left', buttons=buttons, clickCount=1)
-
-    def drag(self, start, end):
-        self.mouse('mouseMoved', *start, 0)
-        self.mouse('mousePressed', *start, 1)
-        for step in range(1, 6):
-            self.mouse('mouseMoved', *(a + (b - a) * step / 5 for a, b in zip(start, end)), 1)
-        self.mouse('mouseReleased', *end, 0)
-
-    def touch(self, start, end):
-        self.call('Input.dispatchTouchEvent', type='touchStart', touchPoints=[{'x': start[0], 'y': start[1]}])
-        for step in range(1, 6):
-            x, y = (a + (b - a) * step / 5 for a, b in zip(start, end))
-            self.call('Input.dispatchTouchEvent', type='touchMove', touchPoints=[{'x': x, 'y': y}])
-        self.call('Input.dispatchTouchEvent', type='touchEnd', touchPoints=[])
-
-    def key(self, name):
-        for kind in ('keyDown', 'keyUp'):
-            self.call('Input.dispatchKeyEvent', type=kind, key=name, code=name)
-
-    def picture(self, box):
-        clip = {'x': box['left'], 'y': box['top'], 'width': box['width'], 'height': box['height'], 'scale': 1}
-        return base64.b64decode(self.call('Page.captureScreenshot', format='png', clip=clip)['data'])
-
-    def close(self):
-        try:
-            self.session = None
-            self.call('Browser.close')
-            self.process.wait(20)
-        except (RuntimeError, OSError, subprocess.TimeoutExpired):
-            self.process.kill()
-            self.process.wait()
-        os.close(self.input)
-        os.close(self.output)
-
-
-def check(condition, what):
-    if not condition:
-        raise AssertionError(what)
-
+from browser import NOT_TESTED, Browser, check, chromium
 
 BOX = '''(() => {
   const box = document.querySelector('.compare'), left = box.querySelector('.left');
@@ -129,9 +18,21 @@ BOX = '''(() => {
   return {left: outer.left, top: outer.top, width: outer.width, height: outer.height,
           divider: divider.left + divider.width / 2 - outer.left, clip: getComputedStyle(left).clipPath,
           now: Number(box.querySelector('.divider').getAttribute('aria-valuenow')),
-          first: left.currentSrc, second: box.querySelector('.right').currentSrc,
+          first: left.toDataURL(), second: box.querySelector('.right').toDataURL(),
           tags: [...box.querySelectorAll('.tag')].map(tag => tag.textContent)};
 })()'''
+
+
+# A copy is read, so that the page's canvases stay as they are.
+BYTES_OF = '''var bytesOf = (picture, x, y, width, height) => {
+  const copy = document.createElement('canvas');
+  copy.width = picture.naturalWidth || picture.width;
+  copy.height = picture.naturalHeight || picture.height;
+  const context = copy.getContext('2d', {willReadFrequently: true});
+  context.drawImage(picture, 0, 0);
+  return context.getImageData(x, y, width, height).data;
+};
+'''
 
 
 def clipped_share(box):
@@ -175,20 +76,163 @@ def use_slider(browser):
     check_cut(browser, 0.7, 'the mouse passing by')
 
 
+def shown(browser):
+    """What the first sequence shows: the texts, and every canvas after it was drawn."""
+    browser.evaluate('new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))')
+    return browser.evaluate('''(() => {
+      const part = document.querySelector('.sequence'), text = name => part.querySelector(name).textContent;
+      return {frame: text('.frame-number'), exposure: text('.exposure-number'), zoom: text('.zoom-number'),
+              tags: [...part.querySelectorAll('.tag')].map(tag => tag.textContent),
+              captions: [...part.querySelectorAll('.tiles:not(.maps) button')].map(tile => tile.innerText),
+              canvases: [...part.querySelectorAll('canvas')].map(canvas => canvas.toDataURL())};
+    })()''')
+
+
+def alike(browser, one, other):
+    """Whether the canvases show the same: resampling may differ by rounding once the browser changes how it draws."""
+    pairs = json.dumps(list(zip(one['canvases'], other['canvases'])))
+    return browser.evaluate(BYTES_OF + f'''Promise.all({pairs}.map(async pair => {{
+      const [a, b] = await Promise.all(pair.map(async uri => {{
+        const image = new Image();
+        image.src = uri;
+        await image.decode();
+        return bytesOf(image, 0, 0, image.naturalWidth, image.naturalHeight);
+      }}));
+      return a.length === b.length && a.every((byte, i) => Math.abs(byte - b[i]) <= 2);
+    }})).then(results => results.every(Boolean))''')
+
+
+def wait_for_frame(browser, frame):
+    browser.wait(f"document.querySelector('.frame-number').textContent === 'frame {frame}'", f'frame {frame} does not come')
+    return shown(browser)
+
+
 def use_choosers(browser):
     names = browser.evaluate("[...document.querySelector('.bar select').options].map(o => o.textContent)")
     check('noisy' in names and 'reference' in names, f'pictures to choose: {names}')
     before = browser.evaluate(BOX)
     browser.evaluate(f'''(() => {{
-      const select = document.querySelectorAll('.bar select')[1];
+      const select = document.querySelectorAll('.pair select')[1];
       select.value = {names.index('reference')};
       select.dispatchEvent(new Event('change'));
-      return Promise.all([...document.images].map(image => image.decode()));
     }})()''')
-    after = browser.evaluate(BOX)
-    check(after['second'] != before['second'] and after['tags'][1] == 'reference', f'chosen: {after["tags"]}')
-    browser.evaluate("document.querySelector('.maps button').click()")
-    check(browser.evaluate(BOX)['tags'][1].startswith('error of'), 'an error map does not come into the slider')
+    browser.wait("document.querySelectorAll('.tag')[1].textContent === 'reference'", 'the reference does not come')
+    shown(browser)
+    check(browser.evaluate(BOX)['second'] != before['second'], 'the right picture stays')
+    browser.click_on("document.querySelector('.maps button')")
+    browser.wait("document.querySelectorAll('.tag')[1].textContent.startsWith('error of')",
+                 'an error map does not come into the slider')
+
+
+def use_frames(browser, first, last):
+    browser.evaluate("document.querySelector('.compare').focus()")
+    at_last = wait_for_frame(browser, last)
+    browser.key('ArrowLeft')
+    before = wait_for_frame(browser, last - 1)
+    changed = [a != b for a, b in zip(at_last['canvases'], before['canvases'])]
+    check(all(changed), f'another frame, canvases that changed: {changed}')
+    check(before['captions'] != at_last['captions'], 'the scores below the pictures stay')
+    browser.key('ArrowRight')
+    check(alike(browser, wait_for_frame(browser, last), at_last), 'a frame differs when shown again')
+    browser.key('ArrowRight')
+    check(shown(browser)['frame'] == f'frame {last}', 'beyond the last frame')
+    browser.evaluate("document.querySelector('input.frame').focus()")
+    browser.key('Home')
+    wait_for_frame(browser, first)
+    browser.key('p')
+    for frame in range(first + 1, last + 1):
+        browser.wait(f"document.querySelector('.frame-number').textContent === 'frame {frame}'", f'playing: no {frame}')
+    wait_for_frame(browser, first)
+    browser.click_on("document.querySelector('button[aria-label=Stop]')")
+    stopped = shown(browser)['frame']
+    time.sleep(0.3)
+    check(shown(browser)['frame'] == stopped, 'it plays on')
+
+
+def use_keys(browser, names):
+    seen = set()
+    for number, name in enumerate(names, 1):
+        browser.key(str(number))
+        browser.wait(f"document.querySelectorAll('.tag')[1].textContent === {json.dumps(name)}", f'key {number}: no {name}')
+        seen.add(shown(browser)['canvases'][0])
+    check(len(seen) == len(names), 'number keys show the same picture')
+    browser.key('d')
+    check(browser.evaluate("getComputedStyle(document.querySelector('.left')).display") == 'none', 'D leaves the divider')
+    browser.key('d')
+    check(browser.evaluate("getComputedStyle(document.querySelector('.left')).display") != 'none', 'D brings no divider')
+
+
+def crops_agree(browser, zoom):
+    """Whether every canvas shows the part that the view says, by the colours of its middle pixel."""
+    return browser.evaluate(BYTES_OF + '''(async () => {
+      const data = JSON.parse(document.getElementById('data').textContent), scene = data.scenes[0];
+      const at = Number(document.querySelector('.frame-number').textContent.split(' ')[1]) - scene.first_frame;
+      const uris = [...scene.methods.map(m => m.pictures[at]), scene.reference_pictures[at]];
+      const tiles = [...document.querySelector('.sequence').querySelectorAll('.tiles:not(.maps) canvas')];
+      const [x, y] = document.querySelector('.readout th').textContent.match(/\\d+/g).map(Number);
+      const result = [];
+      for (const [index, canvas] of tiles.entries()) {
+        const image = new Image();
+        image.src = uris[index];
+        await image.decode();
+        const expected = [...bytesOf(image, x, y, 1, 1)].slice(0, 3).join(' ');
+        const middle = [...bytesOf(canvas, canvas.width * VX, canvas.height * VY, 1, 1)].slice(0, 3);
+        const told = document.querySelectorAll('.readout tbody tr')[index].cells[1].textContent;
+        result.push({expected, shown: middle.join(' '), told});
+      }
+      return result;
+    })()'''.replace('VX', str(zoom[0])).replace('VY', str(zoom[1])))
+
+
+def use_zoom_and_pixels(browser):
+    whole = shown(browser)
+    box = browser.evaluate(BOX)
+    place = (0.3, 0.4)
+    point = (box['left'] + place[0] * box['width'], box['top'] + place[1] * box['height'])
+    for _ in range(8):
+        browser.call('Input.dispatchMouseEvent', type='mouseWheel', x=point[0], y=point[1], deltaX=0, deltaY=-100, modifiers=2)
+    browser.wait("document.querySelector('.zoom-number').textContent === '16\u00d7'", 'the wheel does not zoom')
+    browser.mouse('mouseMoved', point[0] + 1, point[1], 0)
+    zoomed = shown(browser)
+    check(all(a != b for a, b in zip(whole['canvases'], zoomed['canvases'])), 'not every picture is enlarged')
+    rows = crops_agree(browser, place)
+    check(len({row['expected'] for row in rows}) > 1, f'all pixels are alike: {rows}')
+    for row in rows:
+        check(row['expected'] == row['told'] == row['shown'], f'the pixel under the mouse: {row}')
+    browser.drag(point, (point[0] - 100, point[1] - 40))
+    moved = shown(browser)
+    check(all(a != b for a, b in zip(moved['canvases'], zoomed['canvases'])), 'not every picture moves along')
+    pixel = "document.querySelector('.readout th').textContent"
+    before = browser.evaluate(pixel)
+    browser.key('ArrowRight', modifiers=8)
+    x, y = map(int, re.findall(r'\d+', before))
+    check(browser.evaluate(pixel) == f'pixel {x + 1}, {y}', f'Shift and an arrow: {before}, {browser.evaluate(pixel)}')
+    browser.key('0')
+    check(shown(browser)['zoom'] == '1\u00d7', '0 does not show the whole picture')
+
+
+def mean_of_first(browser):
+    return browser.evaluate(BYTES_OF + '''(() => {
+      const canvas = document.querySelector('.sequence .tiles canvas');
+      const bytes = bytesOf(canvas, 0, 0, canvas.width, canvas.height);
+      return bytes.reduce((sum, byte) => sum + byte, 0) / bytes.length;
+    })()''')
+
+
+def use_exposure(browser):
+    browser.mouse('mouseMoved', 1, 1, 0)  # the mouse marks no other pixel meanwhile
+    before, told = shown(browser), browser.evaluate("document.querySelector('.readout tbody').innerText")
+    mean = mean_of_first(browser)
+    browser.key('e')
+    check(shown(browser)['exposure'] == '+0.50 stops' and mean_of_first(browser) > mean + 3, 'E does not brighten')
+    browser.evaluate("document.querySelector('input.exposure').focus()")
+    browser.key('Home')
+    darkest = shown(browser)
+    check(darkest['exposure'] == '\u22124.00 stops' and mean_of_first(browser) < mean - 10, 'the slider does not darken')
+    check(browser.evaluate("document.querySelector('.readout tbody').innerText") == told, 'pixel values change')
+    browser.click_on("[...document.querySelectorAll('button')].find(b => b.textContent === 'Reset')")
+    browser.wait("document.querySelector('.exposure-number').textContent === '0.00 stops'", 'Reset leaves the exposure')
+    check(alike(browser, shown(browser), before), 'exposure 0 is not what it was')
 
 
 def use_plot(browser):
@@ -231,21 +275,27 @@ def test(browser, address):
     browser.size(1200, 3000)  # large enough that nothing must be scrolled
     browser.call('Page.navigate', url=address)
     browser.evaluate('''new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))
-      .then(() => Promise.allSettled([...document.images].map(image => image.decode())))''')
+''')
+    browser.wait("document.querySelector('.sequence .tiles canvas').getAttribute('aria-label')", 'no picture is shown')
     check_silence(browser, address)
-    pictures = browser.evaluate('[...document.images].map(image => image.naturalWidth)')
-    check(len(pictures) >= 4 and min(pictures) > 0, f'pictures: {pictures}')
+    pictures = len(shown(browser)['canvases'])
+    check(pictures >= 7, f'pictures: {pictures}')
+    data = browser.evaluate('''(() => { const scene = JSON.parse(document.getElementById('data').textContent).scenes[0];
+      return {first: scene.first_frame, last: scene.frames - 1, names: scene.methods.map(m => m.method)}; })()''')
     use_slider(browser)
     use_choosers(browser)
+    use_frames(browser, data['first'], data['last'])
+    use_keys(browser, data['names'] + ['reference'])
+    use_zoom_and_pixels(browser)
+    use_exposure(browser)
     use_plot(browser)
     check_widths(browser)
     check_silence(browser, address)
 
 
 def main():
-    program = next(filter(None, map(shutil.which, ('chromium', 'chromium-browser', 'google-chrome'))), None)
+    program = chromium()
     if not program:
-        print('NOT TESTED: there is no Chromium on this machine (Debian: chromium)')
         return NOT_TESTED
     address = pathlib.Path(sys.argv[1]).resolve().as_uri()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:

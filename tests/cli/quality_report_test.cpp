@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "image/io/png/png.h"
 #include "image/io/temp_folder.h"
+#include "lab/quality/picture_label.h"
 #include "lab/quality/quality_json.h"
 #include "lab/quality/quality_methods.h"
 #include "lab/quality/quality_page.h"
@@ -25,6 +26,10 @@ using testing::Not;
 
 constexpr gpu::Extent extent{8, 5};
 
+std::vector<char> pngOf(const image::Image& picture) {
+    return image::encodePng(image::toBytes(picture), "picture");
+}
+
 MethodQuality methodOf(const std::string& name, double psnr, double flip, double ms) {
     MethodQuality method;
     method.name = name;
@@ -40,7 +45,8 @@ MethodQuality methodOf(const std::string& name, double psnr, double flip, double
         method.denoisingBytesPerPixel = 40.0;
     }
     method.last = image::Image(extent.width, extent.height, 3, 0.5f);
-    method.lastError = image::Image(extent.width, extent.height, 1, static_cast<float>(flip));
+    method.pictures.assign(3, pngOf(method.last));
+    method.errorMaps.assign(3, pngOf({extent.width, extent.height, 1, static_cast<float>(flip)}));
     return method;
 }
 
@@ -53,6 +59,7 @@ MeasuredSequence sequenceOf(const std::string& name, double flipA, double flipB)
     measured.quality.referencePsnr = 52.5;
     measured.quality.exposure = 1.5f;
     measured.quality.reference = image::Image(extent.width, extent.height, 3, 0.25f);
+    measured.quality.referencePictures.assign(3, pngOf(measured.quality.reference));
     return measured;
 }
 
@@ -101,6 +108,66 @@ void expectPicture(const json& uri) {
     EXPECT_EQ(picture.height, extent.height);
 }
 
+void expectPictures(const json& uris) {
+    ASSERT_EQ(uris.size(), 3u) << "one of every frame";
+    for (const json& uri : uris) expectPicture(uri);
+}
+
+std::vector<bool> keptWithin(uint64_t bytes) {
+    MeasuredSequence measured = sequenceOf("first", 0.2, 0.1);
+    SequenceQuality& quality = measured.quality;
+    const std::vector<char> kilobyte(1000);
+    quality.referencePictures.assign(7, kilobyte);
+    for (MethodQuality& method : quality.methods) {
+        method.pictures.assign(7, kilobyte);
+        method.errorMaps.assign(7, kilobyte);
+    }
+    keepWithin(quality, bytes);
+    std::vector<bool> kept;
+    for (const auto& picture : quality.referencePictures) kept.push_back(!picture.empty());
+    for (const MethodQuality& method : quality.methods) {
+        for (size_t i = 0; i < kept.size(); ++i) {
+            EXPECT_EQ(!method.pictures[i].empty(), kept[i]);
+            EXPECT_EQ(!method.errorMaps[i].empty(), kept[i]);
+        }
+    }
+    return kept;
+}
+
+TEST(QualityReport, FramesThatAreTooMuchAreLeftOutEvenlyAndTheLastStays) {
+    // Seven frames of seven pictures of 1000 bytes.
+    EXPECT_THAT(keptWithin(49'000), ElementsAre(true, true, true, true, true, true, true));
+    EXPECT_THAT(keptWithin(48'999), ElementsAre(true, false, true, false, true, false, true));
+    EXPECT_THAT(keptWithin(27'999), ElementsAre(true, false, false, true, false, false, true));
+    EXPECT_THAT(keptWithin(14'000), ElementsAre(false, false, true, false, false, false, true));
+    EXPECT_THAT(keptWithin(1), ElementsAre(false, false, false, false, false, false, true));
+    MeasuredSequence measured = sequenceOf("first", 0.2, 0.1);
+    keepWithin(measured.quality, 1);
+    QualityRun run = runOf();
+    run.sequences = {measured};
+    const json scene = dataOf(qualityPage(run))["scenes"][0];
+    EXPECT_TRUE(scene["methods"][0]["pictures"][0].is_null());
+    expectPicture(scene["methods"][0]["pictures"][2]);
+}
+
+TEST(PictureLabel, IsInsideItsPlaceAndReadable) {
+    image::ByteImage picture{40, 60, 3, std::vector<uint8_t>(size_t{40} * 60 * 3, 100)};
+    drawLabel(picture, {20, 5, 16, 55}, {"I", "-\xff"});
+    const auto at = [&](uint32_t x, uint32_t y) { return picture.pixels[(size_t{y} * 40 + x) * 3]; };
+    std::string rows;
+    for (uint32_t y = 7; y < 14; ++y) {
+        for (uint32_t x = 22; x < 27; ++x) rows += at(x, y) == 255 ? '#' : at(x, y) == 25 ? '.' : '?';
+        rows += ' ';
+    }
+    EXPECT_EQ(rows, "###.. .#... .#... .#... .#... .#... ###.. ");
+    for (uint32_t x = 0; x < 40; ++x) {
+        for (uint32_t y = 0; y < 60; ++y) {
+            const bool inside = x >= 20 && x < 36 && y >= 5;
+            EXPECT_TRUE(inside || at(x, y) == 100) << x << ", " << y;
+        }
+    }
+}
+
 TEST(QualityReport, Base64IsThatOfRfc4648) {
     const std::vector<std::pair<std::string, std::string>> known{{"", ""},
                                                                  {"f", "Zg=="},
@@ -142,11 +209,11 @@ TEST(QualityReport, ThePageHasEverything) {
     for (const json& scene : data["scenes"]) {
         EXPECT_EQ(scene["reference_psnr"], 52.5);
         EXPECT_EQ(scene["reference_samples"], 256);
-        expectPicture(scene["reference_picture"]);
+        expectPictures(scene["reference_pictures"]);
         ASSERT_EQ(scene["methods"].size(), 3u);
         for (const json& method : scene["methods"]) {
-            expectPicture(method["picture"]);
-            expectPicture(method["error_map"]);
+            expectPictures(method["pictures"]);
+            expectPictures(method["error_maps"]);
             EXPECT_EQ(method["frames"].size(), 3u);
         }
     }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/pass_times.h"
+#include "image/io/png/png.h"
 #include "image/metrics/flicker.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
@@ -44,11 +45,25 @@ Image shownWithNoiseOf(const Reference& reference, const Image& picture, const I
     return result;
 }
 
+std::vector<char> reportPng(const Image& encoded) {
+    return image::encodePng(image::toBytes(encoded), "a picture of the report");
+}
+
+/// The references that frames are compared with.
+struct Truth {
+    const std::vector<Reference>& references;
+    float exposure;     ///< stops
+    bool keepPictures;  ///< for a report
+};
+
 /// Scores one frame after the other; flicker needs the previous frame.
 class Judge {
   public:
-    Judge(const std::vector<Reference>& references, uint64_t first, float stops)
-        : references_(references), first_(first), stops_(stops) {}
+    Judge(const Truth& truth, uint64_t first)
+        : references_(truth.references),
+          first_(first),
+          stops_(truth.exposure),
+          keepPictures_(truth.keepPictures) {}
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
 
@@ -61,6 +76,10 @@ class Judge {
                                   .relMse = c.relMse,
                                   .flip = c.flip};
         scores.invalidPixels = c.invalidPixels;
+        if (keepPictures_) {
+            method.pictures.push_back(reportPng(c.shownTest));
+            method.errorMaps.push_back(reportPng(c.flipMap));
+        }
         Shown shown{std::move(c.shownTest), {}, std::move(c.shownReference), {}};
         shown.noisyTest = shownWithNoiseOf(reference, picture, shown.test, stops_);
         shown.noisyReference = shownWithNoiseOf(reference, reference.picture, shown.reference, stops_);
@@ -68,7 +87,6 @@ class Judge {
         before_ = std::move(shown);
         method.scores.push_back(scores);
         method.last = std::move(picture);
-        method.lastError = std::move(c.flipMap);
     }
 
   private:
@@ -93,6 +111,7 @@ class Judge {
     const std::vector<Reference>& references_;
     uint64_t first_;
     float stops_;
+    bool keepPictures_;
     std::optional<Shown> before_;
 };
 
@@ -101,17 +120,11 @@ Image noisyOf(RenderedLayers layers) {
     return beautyOf(layers);
 }
 
-/// The references that frames are compared with.
-struct Truth {
-    const std::vector<Reference>& references;
-    float exposure;  ///< stops
-};
-
 /// Runs a denoiser. If `noisy` is set, scores its input too and stores the result there.
 MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Extent extent,
                       const QualityFrames& frames, const Truth& truth, MethodQuality* noisy) {
-    Judge judge(truth.references, frames.first, truth.exposure);
-    Judge noisyJudge(truth.references, frames.first, truth.exposure);
+    Judge judge(truth, frames.first);
+    Judge noisyJudge(truth, frames.first);
     MethodQuality method;
     PassTimes times;
     for (uint64_t frame = 0; frame < frames.count; ++frame) {
@@ -135,7 +148,8 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
 
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
                                const std::vector<QualityMethod>& methods, const QualityFrames& frames,
-                               const std::vector<Reference>& references, uint32_t samples) {
+                               const std::vector<Reference>& references, uint32_t samples,
+                               bool keepPictures) {
     SequenceQuality quality;
     std::vector<std::optional<float>> measured;
     for (const Reference& reference : references)
@@ -144,6 +158,11 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
         quality.exposure = image::sequenceExposure(measured);
     quality.referencePsnr = ownPsnr(references, quality.exposure);
     quality.reference = references.back().picture;
+    for (const Reference& reference : references) {
+        if (keepPictures)
+            quality.referencePictures.push_back(
+                reportPng(image::displayEncode(reference.picture, quality.exposure)));
+    }
     quality.methods.emplace_back().name = "noisy";
     for (const QualityMethod& chosen : methods) {
         const bool first = quality.methods.size() == 1;
@@ -151,7 +170,7 @@ SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, cons
         settings.layers = first;  // the noisy picture is computed from them
         FrameRenderer renderer(device, scene, settings, samples);
         MethodQuality method =
-            measure(renderer, sequence, settings.extent, frames, {references, quality.exposure},
+            measure(renderer, sequence, settings.extent, frames, {references, quality.exposure, keepPictures},
                     first ? &quality.methods.front() : nullptr);
         method.name = chosen.name;
         quality.methods.push_back(std::move(method));

@@ -20,8 +20,10 @@ namespace limpid::cli {
 struct MethodQuality {
     std::string name;
     std::vector<image::FrameScores> scores;
-    image::Image last;                       ///< linear radiance
-    image::Image lastError;                  ///< its FLIP map
+    image::Image last;  ///< linear radiance
+    /// PNGs for the report, one of each compared frame: the picture as the metrics see it (exposed, clamped,
+    /// sRGB), and its FLIP map, grey, 255 for 1. Empty without a report.
+    std::vector<std::vector<char>> pictures, errorMaps;
     std::map<std::string, double> medianMs;  ///< by pass; empty for the noisy frames
     std::vector<double> denoisingMs;  ///< of the denoising passes, by compared frame; empty for noisy frames
     /// Device memory of all images that the denoising passes write, with their histories; 0 for noisy frames.
@@ -32,14 +34,15 @@ struct SequenceQuality {
     std::vector<MethodQuality> methods;  ///< the noisy frames first
     /// PSNR of the mean reference against the truth, from the difference of its two independent halves.
     double referencePsnr = 0.0;
-    float exposure = 0.0f;   ///< stops, from the references
-    image::Image reference;  ///< of the last frame
+    float exposure = 0.0f;                             ///< stops, from the references
+    image::Image reference;                            ///< of the last frame
+    std::vector<std::vector<char>> referencePictures;  ///< like MethodQuality::pictures
 };
 
 /// Judges every method, at `samples` per frame, by the references of `frames` (makeReferences). Rays go
-/// through the pixels' centres.
+/// through the pixels' centres. With `keepPictures`, the PNGs for a report are made, too.
 SequenceQuality measureQuality(gpu::Device& device, scene::GpuScene& scene, const Sequence& sequence,
                                const std::vector<QualityMethod>& methods, const QualityFrames& frames,
-                               const std::vector<Reference>& references, uint32_t samples);
+                               const std::vector<Reference>& references, uint32_t samples, bool keepPictures);
 
 }  // namespace limpid::cli

@@ -18,6 +18,7 @@
 #include "image/tonemap.h"
 #include "lab/bench.h"
 #include "lab/quality/bench_quality.h"
+#include "lab/quality/picture_label.h"
 #include "lab/quality/quality_json.h"
 #include "lab/quality/quality_page.h"
 #include "lab/quality/quality_sequences.h"
@@ -39,7 +40,7 @@ struct QualityOptions {
     std::vector<std::string> scenes, assignments;
     std::string integrator, environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder,
                                          referenceFolder, weights;
-    uint32_t width = 640, height = 360, samples = 1;
+    uint32_t width = 640, height = 360, samples = 1, reportMegabytes = 64;
     std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
     std::optional<uint64_t> first, frames;     ///< likewise
     bool lab = false, quick = false, json = false, smoothEdges = false;
@@ -170,11 +171,20 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
         makeReferences(device, *loaded.gpu, frames, methods.front().settings, sequence.frames,
                        sequence.referenceSamples, files);
     return {sequence, loaded.scene.triangleCount(),
-            measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples)};
+            measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples,
+                           !o.report.empty())};
 }
 
-/// Writes the noisy frame, every method and the reference side by side.
-void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& quality) {
+/// What is said inside a strip about one of its pictures: two lines, for the frame that is shown.
+std::vector<std::string> labelOf(const MethodQuality& method, uint32_t samples) {
+    const image::FrameScores& scores = method.scores.back();
+    return {fmt::format("{}, {} spp", method.name, samples),
+            fmt::format("{:.1f} dB FLIP {:.3f}", scores.psnr, scores.flip)};
+}
+
+/// Writes the noisy frame, every method and the reference side by side, with labels.
+void writeSideBySide(const std::filesystem::path& file, const MeasuredSequence& measured, uint32_t samples) {
+    const SequenceQuality& quality = measured.quality;
     std::vector<const image::Image*> pictures;
     for (const MethodQuality& method : quality.methods) pictures.push_back(&method.last);
     pictures.push_back(&quality.reference);
@@ -186,7 +196,21 @@ void writeSideBySide(const std::filesystem::path& file, const SequenceQuality& q
                         &all.pixels[size_t{3} * (size_t{y} * all.width + i * width)]);
         }
     }
-    image::writePng(file, image::toBytes(image::tonemap(all, quality.exposure)));
+    image::ByteImage bytes = image::toBytes(image::tonemap(all, quality.exposure));
+    for (uint32_t i = 0; i < pictures.size(); ++i) {
+        const std::vector<std::string> label =
+            i < quality.methods.size()
+                ? labelOf(quality.methods[i], samples)
+                : std::vector{std::string("reference"),
+                              fmt::format("{} spp", measured.sequence.referenceSamples)};
+        drawLabel(bytes, {i * width, 0, width, height}, label);
+    }
+    image::writePng(file, bytes);
+}
+
+/// The sequences share what a report may take. Base64 makes four bytes of three.
+uint64_t pictureBytesPerSequence(const QualityOptions& o) {
+    return uint64_t{o.reportMegabytes} * 1'000'000 * 3 / 4 / sequencesOf(o).size();
 }
 
 void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
@@ -207,11 +231,12 @@ void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector
         return skip(sequence, error, run);
     }
     run.sequences.push_back(measure(device, o, methods, sequence, *loaded));
+    keepWithin(run.sequences.back().quality, pictureBytesPerSequence(o));
     const MeasuredSequence& measured = run.sequences.back();
     if (!o.json) printSequence(measured);
     if (!o.folder.empty()) {
         const std::filesystem::path folder(o.folder);
-        writeSideBySide(folder / ("quality." + sequence.name + ".png"), measured.quality);
+        writeSideBySide(folder / ("quality." + sequence.name + ".png"), measured, o.samples);
     }
     if (!o.report.empty()) writeQualityPage(o.report, run);
 }
@@ -324,7 +349,13 @@ void addQualityBench(CLI::App& bench) {
         "--steps", o->methods.steps,
         "Measure SVGF's presets, and SVGF without each of its extensions and with former defaults");
     command->add_option("--out", o->folder, "Folder for a side-by-side picture of each scene");
-    command->add_option("--report", o->report, "HTML report with all results and pictures");
+    command->add_option("--report", o->report,
+                        "HTML report with all results and the pictures of every compared frame");
+    command
+        ->add_option("--report-size", o->reportMegabytes,
+                     "Megabytes that the pictures of a report may take (64); if the frames take more, "
+                     "only every second, third, ... is kept; the last always is")
+        ->check(CLI::Range(1, 400));
     command->add_flag("--json", o->json, "Print one JSON object on stdout");
     addDeviceOptions(*command, o->device);
     command->callback([o, command] {

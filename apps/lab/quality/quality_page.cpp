@@ -8,26 +8,28 @@
 #include "base/files/file.h"
 #include "image/colormap.h"
 #include "image/io/png/png.h"
-#include "image/metrics/metrics.h"
 #include "lab/quality/quality_json.h"
 #include "quality_page.html.h"
+#include "quality_viewer.js.h"
 
 namespace limpid::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns encoded values in [0,1] as a data URI.
-std::string pngUri(const image::Image& encoded) {
-    return "data:image/png;base64," +
-           base64(image::encodePng(image::toBytes(encoded), "a picture of the report"));
+/// The data URIs of PNGs; null for those that were dropped.
+Json pngUris(const std::vector<std::vector<char>>& pictures) {
+    Json uris = Json::array();
+    for (const std::vector<char>& png : pictures)
+        uris.push_back(png.empty() ? Json() : Json("data:image/png;base64," + base64(png)));
+    return uris;
 }
 
-/// Returns the colours of error maps, from 0 to 1.
+/// Returns the colours of error maps, from 0 to 1 in steps of 1/255.
 Json colorScale() {
     Json colors = Json::array();
-    for (int i = 0; i <= 16; ++i) {
-        const image::Image color = image::magma(image::Image(1, 1, 1, static_cast<float>(i) / 16.0f));
+    for (int i = 0; i <= 255; ++i) {
+        const image::Image color = image::magma(image::Image(1, 1, 1, static_cast<float>(i) / 255.0f));
         const image::ByteImage bytes = image::toBytes(color);
         colors.push_back(
             fmt::format("#{:02x}{:02x}{:02x}", bytes.pixels[0], bytes.pixels[1], bytes.pixels[2]));
@@ -35,17 +37,54 @@ Json colorScale() {
     return colors;
 }
 
-/// Adds pictures as the metrics see them: exposed, clamped, sRGB.
 void addPictures(Json& object, const SequenceQuality& quality) {
-    object["reference_picture"] = pngUri(image::displayEncode(quality.reference, quality.exposure));
+    object["reference_pictures"] = pngUris(quality.referencePictures);
     for (size_t i = 0; i < quality.methods.size(); ++i) {
         const MethodQuality& method = quality.methods[i];
-        object["methods"][i]["picture"] = pngUri(image::displayEncode(method.last, quality.exposure));
-        object["methods"][i]["error_map"] = pngUri(image::magma(method.lastError));
+        object["methods"][i]["pictures"] = pngUris(method.pictures);
+        object["methods"][i]["error_maps"] = pngUris(method.errorMaps);
     }
 }
 
+/// Every list of pictures of a sequence; each has one of every compared frame.
+std::vector<std::vector<std::vector<char>>*> pictureLists(SequenceQuality& quality) {
+    std::vector<std::vector<std::vector<char>>*> lists{&quality.referencePictures};
+    for (MethodQuality& method : quality.methods) {
+        lists.push_back(&method.pictures);
+        lists.push_back(&method.errorMaps);
+    }
+    return lists;
+}
+
+/// Puts `text` in the place of the only `placeholder`.
+std::string filled(std::string page, std::string_view placeholder, std::string_view text) {
+    const size_t at = page.find(placeholder);
+    if (at == std::string::npos) throw Error(fmt::format("the page has no {}", placeholder));
+    return page.replace(at, placeholder.size(), text);
+}
+
 }  // namespace
+
+void keepWithin(SequenceQuality& quality, uint64_t bytes) {
+    const size_t frames = quality.referencePictures.size();
+    std::vector<uint64_t> sizes(frames);
+    for (const auto* list : pictureLists(quality)) {
+        for (size_t i = 0; i < frames; ++i) sizes[i] += (*list)[i].size();
+    }
+    const auto keeps = [&](size_t step, size_t frame) { return (frames - 1 - frame) % step == 0; };
+    const auto total = [&](size_t step) {
+        uint64_t sum = 0;
+        for (size_t i = 0; i < frames; ++i) sum += keeps(step, i) ? sizes[i] : 0;
+        return sum;
+    };
+    size_t step = 1;
+    while (step < frames && total(step) > bytes) ++step;
+    for (auto* list : pictureLists(quality)) {
+        for (size_t i = 0; i < frames; ++i) {
+            if (!keeps(step, i)) std::vector<char>().swap((*list)[i]);
+        }
+    }
+}
 
 std::string base64(std::span<const char> bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -81,11 +120,10 @@ std::string qualityPage(const QualityRun& run) {
     json["color_scale"] = colorScale();
     for (size_t i = 0; i < run.sequences.size(); ++i)
         addPictures(json["scenes"][i], run.sequences[i].quality);
-    constexpr std::string_view placeholder = "@QUALITY_JSON@";
-    std::string page(embedded::quality_page_html);
-    const size_t at = page.find(placeholder);
-    if (at == std::string::npos) throw Error("the page has no place for its data");
-    return page.replace(at, placeholder.size(), jsonForScript(json));
+    // The data come last: they may contain any text.
+    std::string page =
+        filled(std::string(embedded::quality_page_html), "@QUALITY_VIEWER@", embedded::quality_viewer_js);
+    return filled(std::move(page), "@QUALITY_JSON@", jsonForScript(json));
 }
 
 void writeQualityPage(const std::filesystem::path& file, const QualityRun& run) {

@@ -10,8 +10,13 @@
 
 namespace limpid::cli {
 
-/// Numbers, pictures of the last compared frames and what shows them (quality_page.html).
+/// Numbers, pictures of the compared frames and what shows them (quality_page.html).
 std::string qualityPage(const QualityRun& run);
+
+/// Drops the pictures of frames until the rest take at most `bytes`: keeps every n-th frame, counted back
+/// from the last, with the smallest n that suffices. Dropped pictures become empty. The last frame is always
+/// kept.
+void keepWithin(SequenceQuality& quality, uint64_t bytes);
 
 /// qualityPage(), atomically. Throws OutputError.
 void writeQualityPage(const std::filesystem::path& file, const QualityRun& run);

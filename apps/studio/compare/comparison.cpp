@@ -14,6 +14,7 @@ std::vector<std::string> comparisonNames() {
     for (const Integrator integrator : integrators()) names.emplace_back(nameOf(integrator));
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) names.emplace_back(denoiser.name);
     names.emplace_back("reference");
+    names.emplace_back("kept settings");
     return names;
 }
 
@@ -21,8 +22,25 @@ bool ComparisonChoice::isReference() const {
     return with == static_cast<int>(integrators().size() + denoise::denoisers().size()) + 1;
 }
 
+bool ComparisonChoice::isKept() const {
+    return with == static_cast<int>(integrators().size() + denoise::denoisers().size()) + 2;
+}
+
+void ComparisonChoice::keep(const RenderSettings& settings) {
+    kept = settings;
+    kept.networks = {};
+    with = static_cast<int>(comparisonNames().size()) - 1;
+}
+
 RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSettings& settings) {
     RenderSettings other = settings;
+    if (choice.isKept()) {
+        other = choice.kept;
+        other.extent = settings.extent;
+        other.seed = settings.seed;
+        other.layers = settings.layers;
+        return other;
+    }
     if (!canBeDenoised(other.pipeline.integrator)) other.pipeline.integrator = Integrator::Path;
     if (choice.isReference()) {
         other.pipeline.denoiser = nullptr;
@@ -41,30 +59,32 @@ RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSe
 void LiveScores::compare(image::Image test, image::Image reference, float exposure) {
     if (busy()) return;
     discards_ = false;
-    pending_ =
-        std::async(std::launch::async,
-                   [test = std::move(test), reference = std::move(reference), exposure]() -> std::string {
-                       try {
-                           const image::Image shown = image::displayEncode(test, exposure),
-                                              wanted = image::displayEncode(reference, exposure);
-                           return fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", image::psnr(shown, wanted),
-                                              image::mean(image::flip(shown, wanted)));
-                       } catch (const std::exception& fault) {
-                           return fault.what();
-                       }
-                   });
+    pending_ = std::async(
+        std::launch::async, [test = std::move(test), reference = std::move(reference), exposure]() -> Scores {
+            try {
+                const image::Image shown = image::displayEncode(test, exposure),
+                                   wanted = image::displayEncode(reference, exposure);
+                const double flip = image::mean(image::flip(shown, wanted));
+                return {fmt::format("PSNR {:.2f} dB, FLIP {:.4f}", image::psnr(shown, wanted), flip),
+                        static_cast<float>(flip)};
+            } catch (const std::exception& fault) {
+                return {fault.what(), {}};
+            }
+        });
 }
 
 bool LiveScores::finish() {
     if (!busy() || pending_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    const std::string result = pending_.get();
+    const Scores result = pending_.get();
     if (discards_) return false;
-    text_ = result;
+    text_ = result.text;
+    if (result.flip) errors_.add(*result.flip);
     return true;
 }
 
 void LiveScores::clear() {
     text_.clear();
+    errors_ = {};
     discards_ = true;
 }
 

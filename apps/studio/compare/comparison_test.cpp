@@ -4,12 +4,14 @@
 
 #include <thread>
 
+#include "renderer/frame/parameters.h"
+
 namespace limpid::studio {
 namespace {
 
 TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
     ComparisonChoice choice;
-    choice.with = static_cast<int>(comparisonNames().size()) - 1;
+    choice.with = static_cast<int>(comparisonNames().size()) - 2;
     ASSERT_TRUE(choice.isReference());
     RenderSettings settings;
     settings.pipeline = parsePipeline("path", "svgf");
@@ -29,18 +31,37 @@ TEST(Comparison, AReferenceIsTheIntegratorAloneWithOtherNumbers) {
 
 TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
     const std::vector<std::string> names = comparisonNames();
-    ASSERT_EQ(names.size(), 2 + integrators().size() + denoise::denoisers().size());
+    ASSERT_EQ(names.size(), 3 + integrators().size() + denoise::denoisers().size());
     RenderSettings settings;
     settings.pipeline = parsePipeline("ao", "atrous");
-    for (size_t i = 1; i + 1 < names.size(); ++i) {
+    for (size_t i = 1; i + 2 < names.size(); ++i) {
         const Pipeline chosen = comparisonSettings({.with = static_cast<int>(i)}, settings).pipeline;
         EXPECT_EQ(chosen,
                   denoise::findDenoiser(names[i]) ? parsePipeline("ao", names[i]) : parsePipeline(names[i]));
     }
     settings.pipeline = parsePipeline("preview");
-    const int last = static_cast<int>(names.size()) - 2;
+    const int last = static_cast<int>(names.size()) - 3;
     EXPECT_EQ(comparisonSettings({.with = last}, settings).pipeline,
-              parsePipeline("path", names.at(names.size() - 2)));
+              parsePipeline("path", names.at(names.size() - 3)));
+}
+
+/// Two settings of one denoiser on the same noise.
+TEST(Comparison, KeptSettingsStayAsTheyWere) {
+    RenderSettings settings;
+    settings.pipeline = parsePipeline("path", "svgf");
+    assign(settings, "svgf.levels=2");
+    ComparisonChoice choice;
+    choice.keep(settings);
+    EXPECT_TRUE(choice.isKept());
+    EXPECT_EQ(comparisonNames().at(static_cast<size_t>(choice.with)), "kept settings");
+    assign(settings, "svgf.levels=5");
+    settings.seed = 8;
+    settings.extent = {33, 44};
+    const RenderSettings other = comparisonSettings(choice, settings);
+    EXPECT_EQ(other.pipeline, settings.pipeline);
+    EXPECT_EQ(assignmentsOf(other), std::vector<std::string>{"svgf.levels=2"});
+    EXPECT_EQ(other.seed, 8u);
+    EXPECT_EQ(other.extent, settings.extent);
 }
 
 TEST(LiveScores, AreThoseOfTheDisplayedPictures) {
@@ -50,6 +71,9 @@ TEST(LiveScores, AreThoseOfTheDisplayedPictures) {
     scores.compare(test, reference, -2.0f);
     while (!scores.finish()) std::this_thread::yield();
     EXPECT_EQ(scores.text().substr(0, 10), "PSNR 25.27");
+    ASSERT_EQ(scores.errors().values().size(), 1u);
+    EXPECT_NEAR(scores.errors().last(), std::stof(scores.text().substr(scores.text().find("FLIP") + 5)),
+                1e-4f);
 }
 
 TEST(LiveScores, WhatIsNoLongerWantedIsDiscarded) {

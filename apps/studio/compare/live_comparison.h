@@ -42,6 +42,7 @@ class LiveComparison {
     LiveRender* picture() { return other_ ? &other_ : nullptr; }
     const std::string& name() const { return name_; }
     const std::string& scores() const { return scores_.text(); }
+    const Track& errors() const { return scores_.errors(); }
 
   private:
     LiveRender other_;

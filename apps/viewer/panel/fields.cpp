@@ -148,7 +148,7 @@ void drawField(const Drawing& with, const Field& field) {
     if (field.kind == Kind::Index && listOf(with.facts, field).empty()) return;
     if (field.kind == Kind::Lights) return drawLightList(with);
     if (field.kind == Kind::Background) return drawBackground(with);
-    if (field.kind == Kind::Text || field.kind == Kind::Extent) return;
+    if (field.kind == Kind::Text || field.kind == Kind::Extent || field.kind == Kind::Settings) return;
     if (field.key == "time" || field.key == "playing")
         if (with.facts.duration <= 0.0) return;
     json value = now;

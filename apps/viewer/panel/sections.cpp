@@ -1,5 +1,6 @@
 #include "viewer/panel/sections.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -176,6 +177,15 @@ void drawScores(const Drawing& with) {
     const std::string& scores = with.facts.scores;
     ImGui::TextUnformatted(scores.empty() ? "..." : scores.c_str());
     with.controls.note("scores", scores);
+    const std::vector<float>& errors = with.facts.errors.values();
+    if (errors.size() < 2) return;
+    const std::string last = fmt::format("FLIP {:.4f}", errors.back());
+    ImGui::PlotLines("##errors", errors.data(), static_cast<int>(errors.size()), 0, last.c_str(), 0.0f,
+                     1.1f * *std::ranges::max_element(errors),
+                     {ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetTextLineHeight()});
+    with.controls.note("errors", last);
+    if (ImGui::IsItemHovered())
+        explain("The error against what is compared, each time that it was measured: about once a second");
 }
 
 void drawCompare(const Drawing& with) {
@@ -183,6 +193,7 @@ void drawCompare(const Drawing& with) {
     const studio::ComparisonChoice& choice = with.panel.state.comparison;
     beginRows();
     drawField(with, "compare");
+    drawActions(with, "compare");
     if (choice.isReference()) drawField(with, "reference_samples");
     if (choice.isOn()) drawScores(with);
     endRows();
@@ -254,7 +265,8 @@ void drawFound(const Drawing& with) {
     };
     beginRows();
     for (const studio::Field& field : studio::fields()) {
-        if (field.kind == studio::Field::Kind::Text || field.kind == studio::Field::Kind::Extent) continue;
+        using Kind = studio::Field::Kind;
+        if (field.kind == Kind::Text || field.kind == Kind::Extent || field.kind == Kind::Settings) continue;
         if (!matches(panel.search, {field.label, field.key, field.help, field.section})) continue;
         under(field.section);
         drawField(with, field);

@@ -1,0 +1,97 @@
+// Buttons for what is done once, which stand at the start of their sections.
+
+import {byId, make, setText} from './dom.js';
+import {makeUpload} from './upload.js';
+import {say} from './status.js';
+
+function downloadPng(connection) {
+  say('The picture is on its way.');
+  const link = make('a', {href: connection.address('picture.png'), download: 'limpid.png'});
+  document.body.append(link);
+  link.click();
+  link.remove();
+}
+
+/// The clipboard exists only on secure pages: elsewhere the text is selected, to be copied by hand.
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    say('Copied.');
+  } catch {
+    const range = document.createRange();
+    range.selectNodeContents(byId('command'));
+    getSelection().removeAllRanges();
+    getSelection().addRange(range);
+    say(document.execCommand('copy') ? 'Copied.' : 'The command line is selected: copy it.');
+  }
+}
+
+class CommandLine {
+  constructor(store, ask) {
+    this.text = make('code', {id: 'command', tabIndex: 0});
+    this.copy = make('button', {type: 'button', textContent: 'copy', click: () => copy(this.text.textContent)});
+    this.box = make('div', {className: 'command', hidden: true}, this.text, this.copy);
+    this.button = make('button', {type: 'button', textContent: 'command line', click: () => ask('command_line'),
+                                  title: 'The limpid render command that makes this frame again'});
+    store.addEventListener('facts', () => this.show(store.facts));
+  }
+
+  show({command}) {
+    if (!command) return;
+    this.box.hidden = false;
+    setText(this.text, command);
+  }
+}
+
+function openScene(connection) {
+  const select = make('select', {id: 'open-scene', change: () => {
+    if (select.value) connection.sendNumbered('open', {scene: select.value});
+    select.selectedIndex = 0;
+  }});
+  const element = make('div', {className: 'field'}, make('div', {className: 'head'},
+      make('label', {htmlFor: 'open-scene', textContent: 'open another scene'})), select);
+  const setScenes = scenes => {
+    select.replaceChildren(make('option', {value: '', textContent: 'choose…'}),
+                           ...scenes.map(name => make('option', {value: name, textContent: name})));
+    element.hidden = scenes.length === 0;
+  };
+  return {element, setScenes};
+}
+
+/// Elements by section.
+export function makeActions(store, connection, ask, status) {
+  const button = (request, text, title) => {
+    const element = make('button', {type: 'button', textContent: text, title, click: () => ask(request)});
+    element.dataset.request = request;
+    return element;
+  };
+  const row = (...buttons) => make('div', {className: 'buttons'}, ...buttons);
+  const scenes = openScene(connection);
+  const upload = makeUpload(connection);
+  const command = new CommandLine(store, ask);
+  const elements = {
+    scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element, upload.element,
+                row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
+                                    title: 'The picture as it is shown, lossless',
+                                    click: () => downloadPng(connection)}),
+                    button('reset', 'start anew', 'Histories and means begin again'), command.button), command.box),
+    camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start'),
+                button('see_all', 'see everything', 'To where the whole scene is seen'),
+                button('step', 'one frame', 'Renders one frame, also while rendering is stopped')),
+    light: row(button('add_point', 'add a point', 'A lamp at the camera'),
+               button('add_sun', 'add a sun', 'A sun above the scene')),
+    look: row(button('measure_exposure', 'measure exposure', 'Sets the exposure for what is seen now')),
+    compare: make('p', {className: 'note', id: 'scores'}),
+    inspect: status.table,
+  };
+  const hello = ({requests, scenes: names, uploads}) => {
+    scenes.setScenes(names ?? []);
+    upload.setLargest(uploads ?? 0);
+    for (const element of Object.values(elements)) {
+      for (const each of element.querySelectorAll('[data-request]')) {
+        each.hidden = !requests.includes(each.dataset.request);
+      }
+    }
+  };
+  return {elements, hello};
+}

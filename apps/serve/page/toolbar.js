@@ -1,0 +1,58 @@
+// Buttons below the picture: running, playing, undo, enlarging pixels, what hands move, help, the panel.
+
+import {byId} from './dom.js';
+
+const zoomStep = 2;
+
+/// Before the preview, to go back to.
+let methodBefore = {integrator: 'path', denoiser: 'none'};
+
+function togglePreview(store) {
+  const integrator = store.value('integrator');
+  if (integrator === 'preview') return store.edit(methodBefore);
+  methodBefore = {integrator, denoiser: store.value('denoiser')};
+  store.edit({integrator: 'preview'});
+}
+
+export function makeToolbar(store, picture, ask) {
+  const on = (id, run) => byId(id).addEventListener('click', run);
+  const toggle = key => store.edit({[key]: !store.value(key)});
+  const pixels = byId('pixels');
+  const showPressed = (id, pressed) => byId(id).setAttribute('aria-pressed', pressed);
+  const showStep = (id, name, keys, shortcut) => {
+    byId(id).disabled = !keys;
+    byId(id).title = keys ? `${name}: ${keys.replaceAll(',', ', ')} (${shortcut})` : `${name} (${shortcut})`;
+  };
+  const togglePanel = () => {
+    const hidden = document.body.classList.toggle('without-panel');
+    byId('toggle-panel').setAttribute('aria-expanded', !hidden);
+  };
+  on('run', () => toggle('running'));
+  on('play', () => toggle('playing'));
+  on('preview', () => togglePreview(store));
+  on('undo', () => store.undo());
+  on('redo', () => store.redo());
+  on('zoom-in', () => picture.zoomBy(zoomStep));
+  on('zoom-out', () => picture.zoomBy(1 / zoomStep));
+  on('unzoom', () => picture.unzoom());
+  on('pixels', () => showPressed('pixels', pixels.getAttribute('aria-pressed') !== 'true'));
+  on('help', () => byId('keys').showModal());
+  on('toggle-panel', togglePanel);
+  on('cancel', () => ask('cancel_loading'));
+  const show = () => {
+    byId('run').textContent = store.value('running') ? 'Stop' : 'Run';
+    byId('play').hidden = !(store.facts.duration > 0);
+    byId('play').textContent = store.value('playing') ? 'Pause clip' : 'Play clip';
+    showPressed('preview', store.value('integrator') === 'preview');
+    showStep('undo', 'Undo', store.undoes(), 'Ctrl+Z');
+    showStep('redo', 'Redo', store.redoes(), 'Ctrl+Shift+Z');
+  };
+  for (const name of ['state', 'facts', 'history']) store.addEventListener(name, show);
+  picture.addEventListener('zoomed', () => {
+    byId('unzoom').textContent = `${Number(picture.zoom.toPrecision(2))}×`;
+    byId('unzoom').disabled = picture.zoom === 1;
+    byId('zoom-out').disabled = picture.zoom === 1;
+  });
+  return {togglePreview: () => togglePreview(store), togglePanel, toggle,
+          touchesPixels: () => pixels.getAttribute('aria-pressed') === 'true'};
+}

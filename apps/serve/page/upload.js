@@ -1,0 +1,47 @@
+// Files of this device as scenes and environments: dropped on the page, or chosen. Only where the program allows it.
+
+import {byId, make} from './dom.js';
+import {say} from './status.js';
+
+const types = '.glb,.gltf,.obj,.hdr,.exr';
+const reasons = {403: 'the program was started without --uploads', 413: 'the file is too large',
+                 400: 'scenes and environments have other names', 503: 'two other files are on their way'};
+
+/// What a name may have; the ending stays.
+const allowed = name => name.replace(/[^A-Za-z0-9._-]/g, '_');
+
+export function makeUpload(connection) {
+  let largest = 0;
+  const send = async file => {
+    if (!file) return;
+    if (file.size > largest) {
+      return say(`${file.name} is larger than the ${Math.floor(largest / 1e6)} MB that the program takes.`);
+    }
+    say(`${file.name} is on its way.`);
+    try {
+      const address = `${connection.address('upload')}&name=${encodeURIComponent(allowed(file.name))}`;
+      const {ok, status} = await fetch(address, {method: 'POST', body: file});
+      say(ok ? `${file.name} was sent.` : `${file.name} was not taken: ${reasons[status] ?? `error ${status}`}.`);
+    } catch {
+      say(`${file.name} was not sent: the connection was lost.`);
+    }
+  };
+  const input = make('input', {type: 'file', id: 'upload', accept: types, change: () => {
+    send(input.files[0]);
+    input.value = '';
+  }});
+  const element = make('div', {className: 'field', hidden: true},
+      make('div', {className: 'head'}, make('label', {htmlFor: 'upload', textContent: 'open a file of this device'})),
+      input);
+  const stage = byId('stage');
+  stage.addEventListener('dragover', event => largest > 0 && event.preventDefault());
+  stage.addEventListener('drop', event => {
+    event.preventDefault();
+    send(event.dataTransfer.files[0]);
+  });
+  const setLargest = bytes => {
+    largest = bytes;
+    element.hidden = bytes <= 0;
+  };
+  return {element, setLargest};
+}
