@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# fuzz.sh TARGET SECONDS [LIBFUZZER OPTION ...]: builds and runs one fuzzer: gltf, obj, hdr, exr, png or
-# checkpoint.
+# fuzz.sh TARGET SECONDS [LIBFUZZER OPTION ...]: builds and runs one fuzzer: gltf, obj, hdr, exr, png,
+# checkpoint or serve.
 # fuzz.sh TARGET merge: reduces the inputs that earlier runs found to those that add coverage. See docs/fuzzing.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."

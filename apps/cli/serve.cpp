@@ -74,8 +74,8 @@ void addServeCommand(CLI::App& app) {
     command
         ->add_option(
             "--uploads", o->uploads,
-            "Size in MB up to which scenes (one file) and environments may be uploaded; they are kept in a "
-            "temporary folder until the server ends; default: none")
+            "Size in MB up to which scenes (one file) and environments may be uploaded; the newest four are "
+            "kept in a temporary folder until the server ends; default: none")
         ->check(CLI::Range(1, 4000));
     command->footer(
         "The address that is printed contains a secret: who has it can use everything here. From another "

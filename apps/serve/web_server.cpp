@@ -355,6 +355,7 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
     info.user = &self;
     info.fd_limit_per_thread = maxConnections;
     info.timeout_secs = settings.headerSeconds;
+    info.timeout_secs_ah_idle = settings.headerSeconds;
     info.keepalive_timeout = static_cast<int>(settings.headerSeconds);
     info.retry_and_idle_policy = &self.idle;
     info.server_string = "limpid";

@@ -63,7 +63,7 @@ TEST_P(Corpus, IsReadOrRefusedAsItsNamesSay) {
 INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus,
                          testing::Values(Target{"gltf", gltf}, Target{"obj", obj}, Target{"hdr", hdr},
                                          Target{"exr", exr}, Target{"png", png},
-                                         Target{"checkpoint", checkpoint}),
+                                         Target{"checkpoint", checkpoint}, Target{"serve", serve}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

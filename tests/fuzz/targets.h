@@ -26,5 +26,7 @@ bool exr(Bytes input);
 bool png(Bytes input);
 /// Files of sums: checkpoints and shards of stills.
 bool checkpoint(Bytes input);
+/// A text that a browser sends to `limpid serve`, here refused with UsageError; edits are made to a state.
+bool serve(Bytes input);
 
 }  // namespace limpid::fuzz
