@@ -508,6 +508,9 @@ def test_phone(browser):
     moved(browser, 'pinching', pinch)
     click_on(browser, '#toggle-panel')
     browser.wait("document.getElementById('stage').clientHeight > 650", 'the drawer does not close')
+    below = browser.evaluate('''document.getElementById('bar').getBoundingClientRect().top -
+        document.getElementById('panel').getBoundingClientRect().bottom''')
+    check(below >= 0, f'messages cover the buttons by {-below} pixels')
     click_on(browser, '#toggle-panel')
 
 
