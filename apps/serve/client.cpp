@@ -52,7 +52,10 @@ bool Client::receive(std::string_view part, bool last) {
     try {
         handle(text);
     } catch (const UsageError& fault) {
-        replies_.push_back(json{{"type", "refused"}, {"why", fault.what()}}.dump(-1, ' ', true));
+        replies_.push_back(
+            // The text may quote the client's, cut within a character.
+            json{{"type", "refused"}, {"why", fault.what()}}.dump(-1, ' ', true,
+                                                                  json::error_handler_t::replace));
     }
     return replies_.size() <= maxReplies;
 }

@@ -18,6 +18,7 @@ using studio::Request;
 
 /// What one message may do to the camera: a hand does less in a second.
 constexpr float largestMovement = 100.0f;
+constexpr int maxDepth = 32;
 
 constexpr std::array<std::pair<const char*, Request::Kind>, 13> requests{{
     {"reset", Request::Kind::Reset},
@@ -128,14 +129,13 @@ ClientMessage messageOf(const json& message) {
     return result;
 }
 
-/// Nested arrays cost a stack frame each when they are read.
-bool isTooDeep(std::string_view text) {
-    int depth = 0, deepest = 0;
-    for (const char c : text) {
-        if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-        if (c == ']' || c == '}') --depth;
-    }
-    return deepest > 32;
+/// Nested arrays cost a stack frame each when they are copied. The parser counts: brackets in strings nest
+/// nothing.
+json parsed(std::string_view text) {
+    return json::parse(text, [](int depth, json::parse_event_t, const json&) {
+        if (depth > maxDepth) throw UsageError("the message is too deep");
+        return true;
+    });
 }
 
 const char* nameOf(Field::Kind kind) {
@@ -194,9 +194,8 @@ T take(std::span<const std::byte> bytes, size_t at) {
 
 ClientMessage parseMessage(std::string_view text) {
     if (text.size() > maxTextBytes) throw UsageError("the message is too long");
-    if (isTooDeep(text)) throw UsageError("the message is too deep");
     try {
-        return messageOf(json::parse(text));
+        return messageOf(parsed(text));
     } catch (const json::exception&) {
         throw UsageError("the message is not one of the protocol");
     }

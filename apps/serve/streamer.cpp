@@ -86,7 +86,12 @@ void Streamer::start(ClientId id, bool vp9) {
         if (found == clients_.end()) return;
         found->second.started = true;
         found->second.vp9 = vp9;
-        for (Lane& lane : found->second.lanes) lane.synced = false;
+        // A client that starts again, say with the other codec, has nothing.
+        for (Lane& lane : found->second.lanes) {
+            lane.synced = lane.still = false;
+            lane.waiting.reset();
+            lane.last = nullptr;
+        }
         news_ = true;
     }
     changed_.notify_one();
@@ -250,6 +255,8 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     video.encoder->setBitrate(bits);
     VideoEncoder::Frame frame = video.encoder->encode(*picture, key, seconds);
     video.lastFrame = now;
+    if (frame.bytes.empty())
+        return false;  // the rate control has dropped it: the next one continues the last
     if (frame.key) video.lastForcedKey = now;
     {
         // Who does not get this frame cannot decode the next one.
@@ -258,7 +265,6 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     }
     FrameHeader header = headerOf(Codec::Vp9, number, shown, *picture);
     header.key = frame.key;
-    if (frame.bytes.empty()) return false;  // the rate control has dropped it
     hand(ids, number, header, std::make_shared<const std::vector<std::byte>>(std::move(frame.bytes)),
          picture);
     return true;

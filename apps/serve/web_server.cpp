@@ -29,6 +29,7 @@ constexpr unsigned maxConnections = 1200;  ///< open sockets, most of which say 
 constexpr size_t maxClients = 32;          ///< WebSockets
 constexpr int stillSeconds = 60;           ///< for /picture.png
 constexpr size_t maxUploads = 2;           ///< at the same time
+constexpr int maxHeaderBytes = 1024;
 constexpr size_t chunkBytes = 65536;
 constexpr lws_usec_t tick = LWS_USEC_PER_SEC / 20;
 
@@ -50,7 +51,7 @@ constexpr std::array<Extra, 6> securityHeaders{{{"content-security-policy:", pol
 
 std::string headerOf(lws* wsi, lws_token_indexes which) {
     const int length = lws_hdr_total_length(wsi, which);
-    if (length <= 0 || length > 1024) return {};
+    if (length <= 0 || length > maxHeaderBytes) return {};
     std::string text(static_cast<size_t>(length) + 1, '\0');
     const int copied = lws_hdr_copy(wsi, text.data(), length + 1, which);
     text.resize(static_cast<size_t>(std::max(copied, 0)));
@@ -114,6 +115,8 @@ struct WebServer::Impl {
 
     bool isAllowed(lws* wsi, bool withOrigin) const {
         const std::string host = headerOf(wsi, WSI_TOKEN_HOST);
+        // One that is too long to be read must not count as missing, as that of a program.
+        if (withOrigin && lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > maxHeaderBytes) return false;
         return isAllowedHost(host, settings.bind) &&
                (!withOrigin || isAllowedOrigin(headerOf(wsi, WSI_TOKEN_ORIGIN), host, tls));
     }
@@ -379,6 +382,7 @@ WebServer::~WebServer() {
     impl_->session.removeListener(impl_->listener);
     impl_->streamer->stop();
     lws_context_destroy(impl_->context);
+    impl_->clients.clear();  // before the streamer, which they use
 }
 
 int WebServer::port() const {
