@@ -3,97 +3,129 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "serve/access.h"
-#include "serve/token.h"
-#include "serve/yuv.h"
 
 namespace limpid::serve {
 namespace {
 
-TEST(Protocol, ReadsEachMessage) {
-    EXPECT_TRUE(
-        std::get<Start>(parseMessage(R"({"type":"start","codecs":["av1","vp9","jpeg"]})").content).vp9);
-    EXPECT_FALSE(std::get<Start>(parseMessage(R"({"type":"start","codecs":["jpeg","vp9"]})").content).vp9);
-    EXPECT_EQ(std::get<Received>(parseMessage(R"({"type":"received","frame":5})").content).frame, 5u);
-    const ClientMessage edit = parseMessage(R"({"type":"edit","id":9,"changes":{"spp":2}})");
-    EXPECT_EQ(edit.id, 9u);
-    EXPECT_EQ(std::get<Edit>(edit.content).changes.at("spp"), 2);
-    EXPECT_NO_THROW(parseMessage(R"({"type":"edit","changes":{"viewport":[5120,2880]}})"));
-    const auto gesture = std::get<studio::Gesture>(
-        parseMessage(R"({"type":"steer","orbit":[1,2],"fly":[0,0,3],"zoom":-1})").content);
-    EXPECT_EQ(gesture.orbit, vec2(1.0f, 2.0f));
-    EXPECT_EQ(gesture.fly, vec3(0.0f, 0.0f, 3.0f));
+template <typename T>
+T content(const char* text) {
+    return std::get<T>(parseMessage(text).content);
+}
+
+TEST(Protocol, ReadsEveryMessage) {
+    EXPECT_TRUE(content<Start>(R"({"type":"start","codecs":["av1","vp9","jpeg"]})").vp9);
+    EXPECT_FALSE(content<Start>(R"({"type":"start","codecs":["jpeg","vp9"]})").vp9);
+    EXPECT_EQ(content<Received>(R"({"type":"received","frame":4294967295})").frame, 4294967295u);
+    EXPECT_EQ(content<Edit>(R"({"type":"edit","changes":{"exposure":1.5}})").changes.at("exposure"), 1.5);
+    EXPECT_EQ(content<Open>(R"({"type":"open","scene":"builtin:cornell"})").scene, "builtin:cornell");
+    const auto gesture = content<studio::Gesture>(
+        R"({"type":"steer","orbit":[1,2],"look":[3,4],"pan":[5,6],"fly":[7,8,9],"zoom":-1,"speed":2})");
+    EXPECT_EQ(gesture.orbit, vec2(1, 2));
+    EXPECT_EQ(gesture.look, vec2(3, 4));
+    EXPECT_EQ(gesture.pan, vec2(5, 6));
+    EXPECT_EQ(gesture.fly, vec3(7, 8, 9));
     EXPECT_EQ(gesture.zoom, -1.0f);
-    const auto request = std::get<studio::Request>(
-        parseMessage(R"({"type":"ask","request":"probe","position":[0.25,1]})").content);
+    EXPECT_EQ(gesture.speed, 2.0f);
+    const auto request =
+        content<studio::Request>(R"({"type":"ask","request":"probe","position":[0.25,1],"index":3})");
     EXPECT_EQ(request.kind, studio::Request::Kind::Probe);
-    EXPECT_EQ(request.position, (std::array{0.25f, 1.0f}));
-    EXPECT_EQ(std::get<Open>(parseMessage(R"({"type":"open","scene":"a.glb"})").content).scene, "a.glb");
+    EXPECT_EQ(request.position[0], 0.25f);
+    EXPECT_EQ(request.index, 3);
+    EXPECT_EQ(parseMessage(R"({"type":"steer","id":18446744073709551615})").id, UINT64_MAX);
 }
 
-TEST(Protocol, RefusesEverythingElse) {
-    for (const char* text :
-         {"", "null", "{}", R"({"type":1})", R"({"type":"steer","orbit":[1]})",
-          R"({"type":"steer","zoom":1e30})", R"({"type":"steer","zoom":"1"})", R"({"type":"received"})",
-          R"({"type":"received","frame":1.5})", R"({"type":"received","frame":4294967296})",
-          R"({"type":"start","codecs":[]})", R"({"type":"ask","request":"save_exr"})",
-          R"({"type":"ask","request":"probe","position":[2,0]})",
-          R"({"type":"ask","request":"remove_lamp","index":-1})", R"({"type":"edit"})",
-          R"({"type":"edit","changes":{},"id":-1})",
-          R"({"type":"edit","changes":{"viewport":[16384,16384]}})",
-          R"({"type":"edit","changes":{"viewport":[4096,4097]}})"})
+TEST(Protocol, ReadsEveryRequestOfHello) {
+    const nlohmann::json hello = helloMessage({"builtin:cornell"});
+    EXPECT_EQ(hello.at("scenes"), nlohmann::json::array({"builtin:cornell"}));
+    EXPECT_GT(hello.at("requests").size(), 5u);
+    for (const auto& name : hello.at("requests")) {
+        const std::string text = nlohmann::json{{"type", "ask"}, {"request", name}}.dump();
+        EXPECT_NO_THROW(parseMessage(text)) << text;
+    }
+    EXPECT_FALSE(hello.at("fields").empty());
+    EXPECT_LT(hello.dump().size(), 1u << 20);
+}
+
+TEST(Protocol, RefusesWhatIsNoMessage) {
+    for (const char* text : {"",
+                             "x",
+                             "null",
+                             "5",
+                             "\"start\"",
+                             "[]",
+                             "{}",
+                             "{\"type\":5}",
+                             R"({"type":"none"})",
+                             R"({"type":"start"})",
+                             R"({"type":"start","codecs":[]})",
+                             R"({"type":"start","codecs":"av1"})",
+                             R"({"type":"start","codecs":[5]})",
+                             R"({"type":"received"})",
+                             R"({"type":"received","frame":-1})",
+                             R"({"type":"received","frame":4294967296})",
+                             R"({"type":"received","frame":1.5})",
+                             R"({"type":"received","frame":"1"})",
+                             R"({"type":"edit"})",
+                             R"({"type":"open","scene":5})",
+                             R"({"type":"open"})",
+                             R"({"type":"steer","orbit":1})",
+                             R"({"type":"steer","orbit":[1]})",
+                             R"({"type":"steer","orbit":[1,2,3]})",
+                             R"({"type":"steer","orbit":[1,null]})",
+                             R"({"type":"steer","zoom":1e30})",
+                             R"({"type":"steer","zoom":1e300})",
+                             R"({"type":"steer","zoom":1e999})",
+                             R"({"type":"steer","zoom":NaN})",
+                             R"({"type":"steer","zoom":"1"})",
+                             R"({"type":"steer","id":-1})",
+                             R"({"type":"steer","id":18446744073709551616})",
+                             R"({"type":"ask"})",
+                             R"({"type":"ask","request":"save_png"})",
+                             R"({"type":"ask","request":"open"})",
+                             R"({"type":"ask","request":"probe","position":[0]})",
+                             R"({"type":"ask","request":"probe","position":[0,1.1]})",
+                             R"({"type":"ask","request":"probe","position":[-1,0]})",
+                             R"({"type":"ask","request":"remove_lamp","index":-1})",
+                             R"({"type":"ask","request":"remove_lamp","index":1e9})",
+                             "{\"type\":\"open\",\"scene\":\"\xff\"}",
+                             R"({"type":"steer"} x)"})
         EXPECT_THROW(parseMessage(text), UsageError) << text;
-    EXPECT_THROW(parseMessage(std::string(maxTextBytes + 1, ' ')), UsageError);
-    EXPECT_THROW(parseMessage(std::string(1000, '[') + std::string(1000, ']')), UsageError);
 }
 
-TEST(Protocol, HeadersSurvive) {
+TEST(Protocol, RefusesDeepAndLongMessages) {
+    const auto edit = [](const std::string& changes) {
+        return R"({"type":"edit","changes":)" + changes + "}";
+    };
+    const auto nested = [](size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+    EXPECT_NO_THROW(parseMessage(edit(nested(10))));
+    EXPECT_THROW(parseMessage(edit(nested(100))), UsageError);
+    EXPECT_THROW(parseMessage(edit(nested(30000))), UsageError);
+    // Brackets in a string close nothing, and open nothing.
+    EXPECT_THROW(parseMessage(R"({"x":")" + std::string(1000, ']') + R"(","type":"edit","changes":)" +
+                              nested(1000) + "}"),
+                 UsageError);
+    EXPECT_NO_THROW(parseMessage(edit('"' + std::string(1000, '[') + '"')));
+    EXPECT_THROW(parseMessage(edit('"' + std::string(maxTextBytes, 'x') + '"')), UsageError);
+}
+
+TEST(Protocol, HeadersComeBack) {
     const FrameHeader header{.codec = Codec::Png,
-                             .key = true,
+                             .key = false,
                              .compared = true,
                              .lossless = true,
-                             .width = 1920,
-                             .height = 1080,
-                             .frame = 0x89abcdef,
-                             .message = 0x0123456789abcdef,
-                             .snapshot = 77};
-    EXPECT_EQ(unpackedHeader(packed(header)), header);
-    EXPECT_EQ(std::to_integer<int>(packed(header)[4]), 1920 & 0xff);
-    EXPECT_THROW(unpackedHeader(std::vector<std::byte>(31)), Error);
-    EXPECT_THROW(unpackedHeader(std::vector<std::byte>(32)), Error);
-}
-
-TEST(Access, HostsAndOrigins) {
-    EXPECT_TRUE(isAllowedHost("127.0.0.2:1", "127.0.0.2"));
-    EXPECT_FALSE(isAllowedHost("127.0.0.3:1", "127.0.0.2"));
-    EXPECT_FALSE(isAllowedHost("localhost:1x", "127.0.0.1"));
-    EXPECT_FALSE(isAllowedHost("", "0.0.0.0"));
-    EXPECT_TRUE(isAllowedHost("render.example:443", "0.0.0.0"));
-    EXPECT_TRUE(isAllowedOrigin("https://a:1", "a:1", true));
-    EXPECT_FALSE(isAllowedOrigin("http://a:1", "a:1", true));
-}
-
-TEST(Token, IsRandomAndCompared) {
-    const std::string token = makeToken();
-    EXPECT_EQ(token.size(), 32u);
-    EXPECT_EQ(token.find_first_not_of("0123456789abcdef"), std::string::npos);
-    EXPECT_NE(token, makeToken());
-    EXPECT_TRUE(sameToken(token, token));
-    EXPECT_FALSE(sameToken(token, token.substr(1)));
-    EXPECT_FALSE(sameToken("", token));
-}
-
-TEST(Yuv, KnownColoursAndOddSizes) {
-    // BT.709, limited range: white 235 128 128, red 63 102 240.
-    const auto planes = [](uint32_t texel) {
-        std::vector<uint8_t> y(15), cb(6), cr(6);
-        const studio::Picture picture{{5, 3}, std::vector<uint32_t>(15, texel)};
-        toYuv420(picture, {y.data(), 5}, {cb.data(), 3}, {cr.data(), 3});
-        return std::array{y[14], cb[5], cr[5]};
-    };
-    EXPECT_EQ(planes(0xffffffff), (std::array<uint8_t, 3>{235, 128, 128}));
-    EXPECT_EQ(planes(0xff0000ff), (std::array<uint8_t, 3>{63, 102, 240}));
-    EXPECT_EQ(planes(0xff000000), (std::array<uint8_t, 3>{16, 128, 128}));
+                             .width = 65535,
+                             .height = 258,
+                             .frame = 0xfedcba98u,
+                             .message = 0x0123456789abcdefu,
+                             .snapshot = UINT64_MAX};
+    const auto bytes = packed(header);
+    EXPECT_EQ(unpackedHeader(bytes), header);
+    EXPECT_EQ(bytes[0], std::byte{3});
+    EXPECT_EQ(bytes[1], std::byte{6});
+    EXPECT_EQ(bytes[6], std::byte{2}) << "little endian";
+    EXPECT_EQ(bytes[16], std::byte{0xef});
+    EXPECT_THROW(unpackedHeader(std::span(bytes).first(31)), Error);
+    EXPECT_THROW(unpackedHeader(std::array<std::byte, frameHeaderBytes>{}), Error);
 }
 
 }  // namespace

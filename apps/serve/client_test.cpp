@@ -1,0 +1,94 @@
+#include "serve/client.h"
+
+#include <gtest/gtest.h>
+
+#include "serve/fake_session.h"
+#include "serve/test_pictures.h"
+
+namespace limpid::serve {
+namespace {
+
+using nlohmann::json;
+
+class ClientTest : public testing::Test {
+  protected:
+    ~ClientTest() override { streamer.stop(); }
+    bool say(const std::string& text) { return client.receive(text, true); }
+    /// The next text of a type; null if there is none.
+    json next(const std::string& type) {
+        while (const auto text = client.nextText()) {
+            json message = json::parse(*text);
+            if (message.at("type") == type) return message;
+        }
+        return nullptr;
+    }
+
+    FakeSession session;
+    SceneFiles files{std::filesystem::path()};
+    Streamer streamer{session, [] {}};
+    Client client{session, streamer, files};
+};
+
+TEST_F(ClientTest, GreetsFirst) {
+    const auto text = client.nextText();
+    ASSERT_TRUE(text);
+    EXPECT_EQ(json::parse(*text).at("type"), "hello");
+    EXPECT_FALSE(client.nextText()) << "nothing was published";
+}
+
+TEST_F(ClientTest, AcksCarryTheSessionsNumbers) {
+    session.edit(json::object());
+    EXPECT_TRUE(say(R"({"type":"edit","id":77,"changes":{"exposure":1}})"));
+    const json ack = next("ack");
+    EXPECT_EQ(ack.at("id"), 77);
+    EXPECT_EQ(ack.at("message"), 2);
+    EXPECT_TRUE(say(R"({"type":"open","id":78,"scene":"builtin:cornell"})"));
+    EXPECT_EQ(next("ack").at("message"), 3);
+    const auto messages = session.mailbox.take(0.0);
+    ASSERT_EQ(messages.size(), 3u);
+    EXPECT_EQ(std::get<json>(messages[1].content).at("exposure"), 1);
+    EXPECT_EQ(std::get<studio::Request>(messages[2].content).file, "builtin:cornell");
+}
+
+TEST_F(ClientTest, TellsWhatIsRefused) {
+    // The quotation of the last one ends within a character.
+    for (const std::string& text : {std::string("x"), std::string(R"({"type":"open","scene":"/etc/passwd"})"),
+                                    R"({"type":"ask","request":")" + std::string(39, 'a') + "\xc3\xa4\"}"}) {
+        EXPECT_TRUE(say(text));
+        EXPECT_FALSE(next("refused").at("why").get<std::string>().empty());
+    }
+    EXPECT_TRUE(session.mailbox.take(0.0).empty());
+}
+
+TEST_F(ClientTest, JoinsPartsUpToTheLimit) {
+    EXPECT_TRUE(client.receive(R"({"type":"edit","id":1,)", false));
+    EXPECT_TRUE(client.receive(R"("changes":{}})", true));
+    EXPECT_EQ(next("ack").at("id"), 1);
+    EXPECT_TRUE(client.receive(std::string(maxTextBytes, ' '), false));
+    EXPECT_FALSE(client.receive(" ", false));
+}
+
+TEST_F(ClientTest, LimitsTheRate) {
+    int said = 0;
+    while (said < 1000 && say(R"({"type":"steer"})")) ++said;
+    EXPECT_GE(said, 300);
+    EXPECT_LT(said, 600);
+}
+
+TEST_F(ClientTest, TellsOnlyWhatHasChanged) {
+    session.publish(wavePicture({64, 48}, 0), false);
+    const json first = next("state");
+    EXPECT_GT(first.at("state").size(), 10u);
+    EXPECT_TRUE(next("state").is_null());
+    auto changed = std::make_shared<studio::Shown>(*session.shown());
+    changed->number = 2;
+    changed->messages = 9;
+    changed->state.exposure = 2.5f;
+    session.mailbox.publish(changed);
+    const json second = next("state");
+    EXPECT_EQ(second.at("state"), (json{{"exposure", 2.5}}));
+    EXPECT_EQ(second.at("message"), 9);
+}
+
+}  // namespace
+}  // namespace limpid::serve
