@@ -89,6 +89,16 @@ Request requestOf(const json& message) {
     return request;
 }
 
+/// Everything else is checked where the edit is made.
+Edit editOf(const json& message) {
+    const json& changes = message.at("changes");
+    const auto viewport = changes.find("viewport");
+    if (viewport != changes.end() && viewport->is_array() && viewport->size() == 2 &&
+        wholeNumberOf(viewport->at(0), 16384) * wholeNumberOf(viewport->at(1), 16384) > maxPixels)
+        throw UsageError("viewport: too many pixels");
+    return {changes};
+}
+
 Start startOf(const json& message) {
     for (const json& codec : message.at("codecs")) {
         if (codec == "vp9") return {true};
@@ -106,7 +116,7 @@ ClientMessage messageOf(const json& message) {
     else if (type == "received")
         result.content = Received{static_cast<uint32_t>(wholeNumberOf(message.at("frame"), UINT32_MAX))};
     else if (type == "edit")
-        result.content = Edit{message.at("changes")};
+        result.content = editOf(message);
     else if (type == "steer")
         result.content = gestureOf(message);
     else if (type == "ask")

@@ -15,6 +15,8 @@
 namespace limpid::serve {
 
 inline constexpr size_t maxTextBytes = 65536;
+/// Of the viewport: a renderer needs hundreds of bytes for each. 5120x2880 is allowed.
+inline constexpr uint64_t maxPixels = uint64_t{1} << 24;
 
 enum class Codec : uint8_t { Vp9 = 1, Jpeg = 2, Png = 3 };
 

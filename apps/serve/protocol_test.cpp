@@ -18,6 +18,7 @@ TEST(Protocol, ReadsEachMessage) {
     const ClientMessage edit = parseMessage(R"({"type":"edit","id":9,"changes":{"spp":2}})");
     EXPECT_EQ(edit.id, 9u);
     EXPECT_EQ(std::get<Edit>(edit.content).changes.at("spp"), 2);
+    EXPECT_NO_THROW(parseMessage(R"({"type":"edit","changes":{"viewport":[5120,2880]}})"));
     const auto gesture = std::get<studio::Gesture>(
         parseMessage(R"({"type":"steer","orbit":[1,2],"fly":[0,0,3],"zoom":-1})").content);
     EXPECT_EQ(gesture.orbit, vec2(1.0f, 2.0f));
@@ -38,7 +39,9 @@ TEST(Protocol, RefusesEverythingElse) {
           R"({"type":"start","codecs":[]})", R"({"type":"ask","request":"save_exr"})",
           R"({"type":"ask","request":"probe","position":[2,0]})",
           R"({"type":"ask","request":"remove_lamp","index":-1})", R"({"type":"edit"})",
-          R"({"type":"edit","changes":{},"id":-1})"})
+          R"({"type":"edit","changes":{},"id":-1})",
+          R"({"type":"edit","changes":{"viewport":[16384,16384]}})",
+          R"({"type":"edit","changes":{"viewport":[4096,4097]}})"})
         EXPECT_THROW(parseMessage(text), UsageError) << text;
     EXPECT_THROW(parseMessage(std::string(maxTextBytes + 1, ' ')), UsageError);
     EXPECT_THROW(parseMessage(std::string(1000, '[') + std::string(1000, ']')), UsageError);
