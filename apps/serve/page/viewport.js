@@ -2,7 +2,8 @@
 
 import {debounced, same} from './dom.js';
 
-const largest = 16384;
+const largest = 16384;      // along an axis
+const mostPixels = 1 << 24; // a larger picture is rendered with fewer, and enlarged
 const evenFrom = pixels => Math.min(Math.max(2 * Math.floor(pixels / 2), 2), largest);
 
 export function watchViewport(stage, picture, store) {
@@ -21,7 +22,8 @@ export function watchViewport(stage, picture, store) {
     };
     const width = pixels(exact?.inlineSize, box.width), height = pixels(exact?.blockSize, box.height);
     picture.resize(Math.max(Math.round(width), 1), Math.max(Math.round(height), 1));
-    size = [evenFrom(width), evenFrom(height)];
+    const share = Math.min(1, Math.sqrt(mostPixels / (width * height)));
+    size = [evenFrom(share * width), evenFrom(share * height)];
     sendLater();
   };
   const observer = new ResizeObserver(measure);
