@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "serve/fake_session.h"
+#include "serve/published_session.h"
 #include "serve/test_pictures.h"
 
 namespace limpid::serve {
@@ -23,10 +23,10 @@ class ClientTest : public testing::Test {
         return nullptr;
     }
 
-    FakeSession session;
+    PublishedSession session;
     SceneFiles files{std::filesystem::path()};
     Streamer streamer{session, [] {}};
-    Client client{session, streamer, files};
+    Client client{session, streamer, files, 0};
 };
 
 TEST_F(ClientTest, GreetsFirst) {

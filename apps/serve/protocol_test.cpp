@@ -35,7 +35,7 @@ TEST(Protocol, ReadsEveryMessage) {
 }
 
 TEST(Protocol, ReadsEveryRequestOfHello) {
-    const nlohmann::json hello = helloMessage({"builtin:cornell"});
+    const nlohmann::json hello = helloMessage({"builtin:cornell"}, 0);
     EXPECT_EQ(hello.at("scenes"), nlohmann::json::array({"builtin:cornell"}));
     EXPECT_GT(hello.at("requests").size(), 5u);
     for (const auto& name : hello.at("requests")) {

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "image/io/png/png.h"
-#include "serve/fake_session.h"
+#include "serve/published_session.h"
 #include "serve/test_pictures.h"
 #include "serve/vp9_decoder.h"
 
@@ -31,7 +31,7 @@ class StreamerTest : public testing::Test {
         return packet;
     }
 
-    FakeSession session;
+    PublishedSession session;
     std::atomic<int> woken = 0;
     int time = 0;
     Streamer streamer{session, [this] { ++woken; }};

@@ -43,7 +43,9 @@ TEST(VideoEncoder, MakesKeyFramesOnRequestOnly) {
         const bool key = i % 7 == 0;
         const auto frame = encoder.encode(wavePicture({160, 120}, i), key, frameSeconds);
         EXPECT_EQ(frame.key, key) << i;
-        if (key) EXPECT_NO_THROW(Vp9Decoder().decode(frame.bytes)) << "begins anew at " << i;
+        if (key) {
+            EXPECT_NO_THROW(Vp9Decoder().decode(frame.bytes)) << "begins anew at " << i;
+        }
     }
 }
 

@@ -9,7 +9,7 @@
 
 namespace limpid::serve {
 
-class FakeSession : public studio::Session {
+class PublishedSession : public studio::Session {
   public:
     uint64_t edit(nlohmann::json changes) override { return mailbox.post(std::move(changes)); }
     uint64_t steer(const studio::Gesture& gesture) override { return mailbox.post(gesture); }
