@@ -147,6 +147,10 @@ def use_frames(browser, first, last):
     stopped = shown(browser)['frame']
     time.sleep(0.3)
     check(shown(browser)['frame'] == stopped, 'it plays on')
+    browser.evaluate("document.querySelector('.compare').focus()")
+    for label in ('Stop', 'Play'):
+        browser.key(' ')
+        browser.wait(f"document.querySelector('.viewer button').ariaLabel === '{label}'", f'the space bar: no {label}')
 
 
 def use_keys(browser, names):
@@ -209,6 +213,15 @@ def use_zoom_and_pixels(browser):
     check(browser.evaluate(pixel) == f'pixel {x + 1}, {y}', f'Shift and an arrow: {before}, {browser.evaluate(pixel)}')
     browser.key('0')
     check(shown(browser)['zoom'] == '1\u00d7', '0 does not show the whole picture')
+
+
+def tap(browser, width, height):
+    box = browser.evaluate(BOX)
+    point = {'x': box['left'] + 0.6 * box['width'], 'y': box['top'] + 0.7 * box['height']}
+    browser.touches('touchStart', (point['x'], point['y']))
+    browser.touches('touchEnd')
+    told = browser.evaluate("document.querySelector('.readout th').textContent")
+    check(told == f'pixel {int(0.6 * width)}, {int(0.7 * height)}', f'a tap marks {told}')
 
 
 def mean_of_first(browser):
@@ -280,13 +293,14 @@ def test(browser, address):
     check_silence(browser, address)
     pictures = len(shown(browser)['canvases'])
     check(pictures >= 7, f'pictures: {pictures}')
-    data = browser.evaluate('''(() => { const scene = JSON.parse(document.getElementById('data').textContent).scenes[0];
-      return {first: scene.first_frame, last: scene.frames - 1, names: scene.methods.map(m => m.method)}; })()''')
+    data = browser.evaluate('''(() => { const {width, height, scenes: [scene]} = JSON.parse(document.getElementById('data').textContent);
+      return {width, height, first: scene.first_frame, last: scene.frames - 1, names: scene.methods.map(m => m.method)}; })()''')
     use_slider(browser)
     use_choosers(browser)
     use_frames(browser, data['first'], data['last'])
     use_keys(browser, data['names'] + ['reference'])
     use_zoom_and_pixels(browser)
+    tap(browser, data['width'], data['height'])
     use_exposure(browser)
     use_plot(browser)
     check_widths(browser)

@@ -123,7 +123,7 @@ function range(label, attributes, oninput) {
 }
 
 const KEYS = [
-  ['\u2190 \u2192', 'frame before, next frame'], ['P', 'play, stop'],
+  ['\u2190 \u2192', 'frame before, next frame'], ['P', 'play, stop; also the space bar on the two pictures'],
   ['1 to 9', 'picture on the right, as numbered below'], ['D', 'divider on, off'],
   ['+ \u2212 0', 'zoom in, out, whole picture'], ['Shift + arrows', 'move the marked pixel'],
   ['E, Shift + E', 'half a stop brighter, darker'],
@@ -232,6 +232,7 @@ class Viewer {
   // Both the stage and the tiles mark pixels and zoom.
   watch(node) {
     node.addEventListener('pointermove', event => this.point(event));
+    node.addEventListener('pointerdown', event => this.point(event));  // a finger that taps does not move
     node.addEventListener('wheel', event => {
       if (!event.ctrlKey) return;
       event.preventDefault();
@@ -462,6 +463,11 @@ class Viewer {
     }
     if (event.shiftKey && key.startsWith('Arrow')) {
       this.movePixel(key);
+      return true;
+    }
+    if (key === ' ') {  // elsewhere it scrolls, or presses what has the focus
+      if (event.target !== this.stage) return false;
+      this.play(!this.playing);
       return true;
     }
     const actions = {
