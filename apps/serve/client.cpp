@@ -11,8 +11,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double messagesPerSecond = 300.0;
-constexpr size_t maxReplies = 1000;   ///< of a client that does not read them
-constexpr double betweenFacts = 0.1;  ///< seconds
+constexpr double bytesOfAMessage = 8192.0;  ///< so many count as one more message
+constexpr size_t maxReplies = 1000;         ///< of a client that does not read them
+constexpr double betweenFacts = 0.1;        ///< seconds
 
 template <typename... Functions>
 struct Overloaded : Functions... {
@@ -35,11 +36,12 @@ Client::~Client() {
     streamer_.remove(stream_);
 }
 
-bool Client::isWithinRate() {
+/// Long messages count for more: the renderer keeps all until its frame ends.
+bool Client::isWithinRate(size_t bytes) {
     const auto now = Clock::now();
     allowance_ +=
         messagesPerSecond * std::chrono::duration<double>(now - std::exchange(allowanceAt_, now)).count();
-    allowance_ = std::min(allowance_, messagesPerSecond) - 1.0;
+    allowance_ = std::min(allowance_, messagesPerSecond) - 1.0 - static_cast<double>(bytes) / bytesOfAMessage;
     return allowance_ >= 0.0;
 }
 
@@ -48,7 +50,7 @@ bool Client::receive(std::string_view part, bool last) {
     partial_ += part;
     if (!last) return true;
     const std::string text = std::exchange(partial_, {});
-    if (!isWithinRate()) return false;
+    if (!isWithinRate(text.size())) return false;
     try {
         handle(text);
     } catch (const UsageError& fault) {

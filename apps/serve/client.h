@@ -31,7 +31,7 @@ class Client {
   private:
     using Clock = std::chrono::steady_clock;
 
-    bool isWithinRate();
+    bool isWithinRate(size_t bytes);
     void handle(std::string_view text);
     std::string stateText(const studio::Shown& shown);
 

@@ -174,14 +174,17 @@ double Streamer::step() {
     bool sent = answerStillRequests(*shown);
     for (int lane = 0; lane < 2; ++lane) sent |= streamLane(lane, *shown);
     if (sent) wake_();
-    const double rested = secondsBetween(restsSince_, now);
-    if (!shown->facts.computing && shown->picture && rested < restSeconds)
-        return restSeconds - rested + 0.001;
-    const bool tooSoon = std::ranges::any_of(videos_, [&](const Video& video) {
-        return secondsBetween(std::max(video.lastFrame, video.lastJpeg), now) < shortestFrame;
-    });
     // Clients that lost a frame may get a key frame by then, also if the next picture takes long.
-    return tooSoon ? shortestFrame : betweenForcedKeys;
+    double patience = betweenForcedKeys;
+    const auto after = Clock::now();
+    for (const Video& video : videos_) {
+        const double since = secondsBetween(std::max(video.lastFrame, video.lastJpeg), after);
+        if (since < shortestFrame) patience = std::min(patience, shortestFrame - since + 0.0002);
+    }
+    const double rested = secondsBetween(restsSince_, after);
+    if (!shown->facts.computing && shown->picture && rested < restSeconds)
+        patience = std::min(patience, restSeconds - rested + 0.001);
+    return patience;
 }
 
 bool Streamer::streamLane(int number, const studio::Shown& shown) {
@@ -324,13 +327,18 @@ bool Streamer::encodeStills(int number, const studio::Shown& shown,
 
 bool Streamer::answerStillRequests(const studio::Shown& shown) {
     if (!isFull(shown)) return false;
+    {
+        const std::lock_guard lock(mutex_);
+        if (stillRequests_.empty()) return false;
+    }
+    const Bytes still = stillOf(shown.picture);  // may throw: then the requests are answered the next time
     std::vector<std::function<void(Bytes)>> requests;
     {
         const std::lock_guard lock(mutex_);
         requests.swap(stillRequests_);
     }
-    for (const auto& request : requests) request(stillOf(shown.picture));
-    return !requests.empty();
+    for (const auto& request : requests) request(still);
+    return true;
 }
 
 }  // namespace limpid::serve
