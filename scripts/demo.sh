@@ -6,8 +6,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install.sh
-# The program alone, with precompiled headers and several files at once: see cmake/LimpidTargets.cmake.
-scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNITY=ON
+# The program alone, with precompiled headers and several files at once: see cmake/LimpidTargets.cmake. Arguments are
+# for CMake.
+scripts/build.sh release:limpid -DLIMPID_TESTS=OFF -DLIMPID_PCH=ON -DLIMPID_UNITY=ON "$@"
 
 mkdir -p out
 build/release/limpid bench quality --scene builtin:cornell --scene builtin:cornell-moving --width 256 --height 144 \
