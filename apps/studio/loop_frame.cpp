@@ -43,8 +43,8 @@ bool RenderLoop::mustRender() {
     const auto now = Clock::now();
     if (other) changed_ = now;
     const bool moves = std::chrono::duration<double>(now - changed_).count() < settleSeconds;
-    interruptible_ = !moves;
     wanted_.extent = resolution_.choose(state_.viewport, state_.resolution, moves);
+    interruptible_ = !moves && resolution_.takesLong(uint64_t{wanted_.extent.width} * wanted_.extent.height);
     const bool resized = main_ && wanted_.extent != main_.settings().extent;
     if (other || resized) {
         main_.noteChange();

@@ -146,8 +146,8 @@ class RenderLoop {
     uint64_t messages_ = 0;                           ///< number of the last one that was handled
     uint64_t publications_ = 0;
     bool changedFacts_ = true;  ///< something is to be published, though no frame was rendered
-    /// The frame is one of a picture that rests. Those of a moving one are short, and are all finished: else
-    /// a hand that moves on would never see one.
+    /// The frame is a long one of a picture that rests. Those of a moving one are short, and are all
+    /// finished: else a hand that moves on would never see one.
     bool interruptible_ = false;
     bool ending_ = false;
     bool step_ = false, measureExposure_ = false;

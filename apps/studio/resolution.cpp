@@ -7,6 +7,7 @@ namespace limpid::studio {
 namespace {
 
 constexpr int largestDivisor = 8;
+constexpr double longSeconds = 0.15;  ///< of a frame that is worth giving up, with its mean or histories
 /// A running movement keeps its divisor until a frame takes this many times longer or shorter than it may:
 /// each other size starts the histories anew.
 constexpr double tooSlow = 1.8, tooFast = 0.3;
@@ -30,6 +31,10 @@ void ResolutionControl::note(uint64_t pixels, double seconds) {
     if (pixels == 0) return;
     const double now = seconds / static_cast<double>(pixels);
     secondsPerPixel_ = secondsPerPixel_ == 0.0 ? now : secondsPerPixel_ + newest * (now - secondsPerPixel_);
+}
+
+bool ResolutionControl::takesLong(uint64_t pixels) const {
+    return secondsPerPixel_ == 0.0 || secondsPerPixel_ * static_cast<double>(pixels) > longSeconds;
 }
 
 int ResolutionControl::divisorFor(uint64_t pixels) const {

@@ -26,6 +26,9 @@ class ResolutionControl {
     void note(uint64_t pixels, double seconds);
     /// The extent of the next frame. `moves`: something has changed less than a moment ago.
     gpu::Extent choose(gpu::Extent viewport, Resolution wanted, bool moves);
+    /// Whether a frame of so many pixels takes so long that a hand would wait for it; also if nothing is
+    /// known.
+    bool takesLong(uint64_t pixels) const;
     /// The last choice was smaller than the viewport although nothing limits it at rest.
     bool isCoarse() const { return coarse_; }
 

@@ -51,6 +51,14 @@ TEST(ResolutionControl, AnUnknownCpuBeginsCoarseAlsoAtRest) {
     EXPECT_NE(control.choose(window, Resolution::Automatic, false), window);
 }
 
+TEST(ResolutionControl, ShortFramesAreNotWorthGivingUp) {
+    ResolutionControl control(true);
+    EXPECT_TRUE(control.takesLong(allPixels)) << "nothing is known";
+    control.note(allPixels, 1.0);
+    EXPECT_TRUE(control.takesLong(allPixels));
+    EXPECT_FALSE(control.takesLong(allPixels / 64));
+}
+
 /// Each other size starts histories anew, so small changes of the time do not change it.
 TEST(ResolutionControl, AMovementKeepsItsSize) {
     ResolutionControl control(false);

@@ -178,6 +178,8 @@ class DrivenViewer {
         fs::remove(folder_ / "limpid.png");
         click("screenshot");
         waitFor("a screenshot", [&] { return fs::exists(folder_ / "limpid.png"); });
+        // The renderer writes the file before the window hears of it.
+        waitFor("its message", [&] { return fact("message").starts_with("wrote"); });
         return get("limpid.png");
     }
 
