@@ -162,7 +162,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
             lacking.push_back(&layer);
         }
     });
-    tbb::parallel_for_each(readers, [](const auto& reader) { reader(); });
+    tbb::parallel_for_each(readers, [](const auto& run) { run(); });
     if (frame.previousNormal.empty()) frame.previousNormal = frame.normal;  // as if nothing rotated
     frame.forEach(
         [&](const LayerInfo& layer, auto& texels) {  // zeros for missing layers: no motion, one object
