@@ -215,7 +215,8 @@ void Display::present(PanelState& panel, const studio::Shown& shown) {
     if (shown.compared && !panes.empty()) {
         const gpu::Pane whole = panes.front();
         const auto both = splitPanes(whole, compared_.texels.pane(), picture, panel.divider);
-        panes = {both[0], both[1]};
+        panes.front() = both[0];
+        panes.push_back(both[1]);
         const bool named = inspected_ && !shown.facts.images.empty();
         drawDivider(named ? shown.facts.images[static_cast<size_t>(shown.state.image)]
                           : shown.state.render.pipeline.title(),
