@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "cli/options/studio_options.h"
 #include "commands.h"
-#include "studio/kept_settings.h"
+#include "studio/state/kept_settings.h"
 #ifdef LIMPID_HAVE_VIEWER
 #include "viewer/viewer.h"
 #endif

@@ -52,7 +52,7 @@ class BenchViewer {
 
     void steer() {
         ++steers_;
-        // To and fro, so that the scene stays in view.
+        // Alternates between left and right, so that the scene stays in view.
         const double turn = steers_ / 32 % 2 == 0 ? 0.01 : -0.01;
         say({{"type", "steer"}, {"orbit", {turn, 0.0}}, {"id", steers_}});
     }

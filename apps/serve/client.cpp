@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 
 namespace limpid::serve {
 namespace {

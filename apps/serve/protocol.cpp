@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/frame/parameters.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 
 namespace limpid::serve {
 namespace {

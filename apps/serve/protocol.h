@@ -1,4 +1,4 @@
-// The messages of docs/serve-protocol.md, to and from bytes. Knows no network.
+// The messages of docs/serve-protocol.md, to and from bytes. Does not use the network.
 #pragma once
 
 #include <array>

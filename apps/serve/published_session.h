@@ -5,7 +5,7 @@
 #include <functional>
 #include <thread>
 
-#include "studio/mailbox.h"
+#include "studio/loop/mailbox.h"
 
 namespace limpid::serve {
 

@@ -1,5 +1,5 @@
 // Encodes the pictures of a session for several clients, on a thread of its own. Each client gets the newest
-// picture as often as it can take one: nothing queues. Knows no network.
+// picture as often as it can take one: nothing queues. Does not use the network.
 #pragma once
 
 #include <chrono>

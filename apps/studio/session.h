@@ -13,9 +13,9 @@
 
 #include "image/image.h"
 #include "studio/camera/gesture.h"
-#include "studio/facts.h"
 #include "studio/picture.h"
-#include "studio/state.h"
+#include "studio/state/facts.h"
+#include "studio/state/state.h"
 
 namespace limpid::studio {
 
@@ -62,8 +62,8 @@ class Session {
   public:
     virtual ~Session() = default;
 
-    /// Changes fields of the state: a JSON object with keys of studio/state_json.h. Invalid values change
-    /// nothing and are reported in Facts::fault. Returns the message's number, for Shown::messages.
+    /// Changes fields of the state: a JSON object with keys of studio/state/state_json.h. Invalid values
+    /// change nothing and are reported in Facts::fault. Returns the message's number, for Shown::messages.
     virtual uint64_t edit(nlohmann::json changes) = 0;
     /// Moves the camera. Gestures that arrive during a frame are added up: none is queued behind another.
     virtual uint64_t steer(const Gesture& gesture) = 0;

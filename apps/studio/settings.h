@@ -12,7 +12,7 @@
 #include "scene/device/tracer.h"
 #include "scene/model/scene.h"
 #include "scene/model/scene_source.h"
-#include "studio/state.h"
+#include "studio/state/state.h"
 
 namespace limpid::studio {
 

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "base/log.h"
-#include "studio/priority.h"
-#include "studio/render_loop.h"
+#include "studio/loop/priority.h"
+#include "studio/loop/render_loop.h"
 
 namespace limpid::studio {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "image/io/picture.h"
-#include "studio/state_file.h"
-#include "studio/state_json.h"
+#include "studio/state/state_file.h"
+#include "studio/state/state_json.h"
 
 namespace limpid::studio {
 namespace {

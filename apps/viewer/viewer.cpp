@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "studio/kept_settings.h"
+#include "studio/state/kept_settings.h"
 #include "studio/studio.h"
 #include "viewer/viewer_window.h"
 

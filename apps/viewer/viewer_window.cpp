@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 #include "viewer/camera/steering.h"
 #include "viewer/panel/key_map.h"
 #include "viewer/start/start_page.h"

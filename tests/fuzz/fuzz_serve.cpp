@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "serve/protocol.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 #include "targets.h"
 
 namespace limpid::fuzz {

@@ -5,8 +5,8 @@
 
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
-#include "studio/command_line.h"
-#include "studio/state_file.h"
+#include "studio/state/command_line.h"
+#include "studio/state/state_file.h"
 
 namespace limpid::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "studio/mailbox.h"
+#include "studio/loop/mailbox.h"
 #include "studio/session.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 
 namespace limpid::serve {
 

@@ -9,7 +9,7 @@
 
 namespace limpid::serve {
 
-/// Bytes to and from 127.0.0.1.
+/// A TCP connection to 127.0.0.1.
 class RemoteSocket {
   public:
     /// Throws Error if nobody listens there.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "studio/live_render.h"
-#include "studio/timings.h"
+#include "studio/loop/live_render.h"
+#include "studio/state/timings.h"
 
 namespace limpid::studio {
 

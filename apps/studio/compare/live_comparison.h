@@ -3,9 +3,9 @@
 
 #include <chrono>
 
-#include "studio/live_render.h"
-#include "studio/networks.h"
-#include "studio/state.h"
+#include "studio/loop/live_render.h"
+#include "studio/loop/networks.h"
+#include "studio/state/state.h"
 
 namespace limpid::studio {
 

@@ -1,5 +1,5 @@
 // What the window itself remembers from one time to the next: its layout and its colours. What the picture
-// is made of is kept apart from it (studio/kept_settings.h).
+// is made of is kept apart from it (studio/state/kept_settings.h).
 #pragma once
 
 #include <filesystem>

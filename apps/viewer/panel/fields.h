@@ -1,7 +1,7 @@
-// Controls for the fields of the studio's state, drawn from their table (studio/state_json.h).
+// Controls for the fields of the studio's state, drawn from their table (studio/state/state_json.h).
 #pragma once
 
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 #include "viewer/panel/panel.h"
 
 namespace limpid::viewer {

@@ -7,8 +7,8 @@
 
 namespace limpid::viewer {
 
-/// Steps of changed fields (studio/state_json.h). All edits while a mouse button is held, or while a text is
-/// typed, are one step.
+/// Steps of changed fields (studio/state/state_json.h). All edits while a mouse button is held, or while a
+/// text is typed, are one step.
 class History {
   public:
     static constexpr size_t mostSteps = 200;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "studio/state_json.h"
+#include "studio/state/state_json.h"
 #include "viewer/panel/actions.h"
 #include "viewer/panel/fields.h"
 #include "viewer/panel/sections.h"

@@ -1,0 +1,78 @@
+#include "studio/loop/live_render.h"
+
+#include "image/io/png/png.h"
+#include "image/tonemap.h"
+#include "passes/tonemap/tonemap.h"
+
+namespace limpid::studio {
+
+bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure) {
+    exposure_ = exposure;
+    curve_ = nextCurve_;
+    if (renderer_ && samples == samples_) {
+        const bool anew = renderer_->setSettings(settings);
+        next_ = settings;
+        return anew;
+    }
+    renderer_.emplace(device_, stage.onDevice(), settings, samples);
+    renderer_->graph().setReplacements(&shaders_);
+    renderer_->graph().setInterruption(interrupted_);
+    renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
+        if (images.beauty) return tonemap(graph, images.beauty, exposure_, {}, curve_);
+        return tonemap(graph, images.diffuse, exposure_, images.emission, curve_);
+    });
+    next_ = settings;
+    samples_ = samples;
+    launches_ = framesOfSame_ = 0;
+    shown_ = false;
+    return true;
+}
+
+bool LiveRender::differs(const RenderSettings& settings, uint32_t samples) const {
+    if (!*this || samples != samples_) return true;
+    if (!settings.pipeline.accumulates()) return settings != settings_;
+    return mustReset({camera_, settings_}, {camera_, settings});
+}
+
+void LiveRender::render(Moment moment) {
+    if (next_.pipeline.accumulates()) {
+        if (moment.scene || mustReset({camera_, settings_}, {moment.camera, next_})) launches_ = 0;
+        moment.number = launches_++;
+    }
+    settings_ = next_;
+    camera_ = moment.camera;
+    renderer_->render(std::move(moment));
+    picture_.reset();
+    ++version_;
+    shown_ = true;
+    ++framesOfSame_;
+    ++frames_;
+}
+
+uint64_t LiveRender::samples() const {
+    if (!*this) return 0;
+    return accumulates() ? renderer_->samplesInMean() : framesOfSame_ * samples_;
+}
+
+bool LiveRender::expose(float stops) {
+    if (stops == exposure_ && curve_ == nextCurve_) return false;
+    exposure_ = stops;
+    curve_ = nextCurve_;
+    const image::ByteImage bytes =
+        image::toBytes(image::tonemap(beautyOf(renderer_->download()), stops, curve_));
+    picture_ = std::make_shared<const Picture>(Picture{{bytes.width, bytes.height}, packedTexels(bytes)});
+    ++version_;
+    return true;
+}
+
+std::shared_ptr<const Picture> LiveRender::picture() {
+    if (!picture_) {
+        gpu::FrameGraph& graph = renderer_->graph();
+        const gpu::ImageHandle shown = renderer_->displayed();
+        picture_ =
+            std::make_shared<const Picture>(Picture{graph.extent(shown), graph.downloadUint(device_, shown)});
+    }
+    return picture_;
+}
+
+}  // namespace limpid::studio

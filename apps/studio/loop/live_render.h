@@ -1,0 +1,75 @@
+// A picture that is rendered on and on: one integrator, denoiser and settings, frame after frame.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "image/tone_curve.h"
+#include "renderer/frame/frame_renderer.h"
+#include "studio/loop/stage.h"
+#include "studio/picture.h"
+
+namespace limpid::studio {
+
+class LiveRender {
+  public:
+    /// Both outlive this.
+    LiveRender(gpu::Device& device, const gpu::ShaderReplacements& shaders)
+        : device_(device), shaders_(shaders) {}
+
+    /// Lets render() throw gpu::Interrupted; then drop() must be called.
+    void setInterruption(std::function<bool()> interrupted) { interrupted_ = std::move(interrupted); }
+    /// Before the scene goes, or to start anew.
+    void drop() { renderer_.reset(); }
+    /// It has rendered a frame since.
+    explicit operator bool() const { return renderer_ && shown_; }
+
+    /// For the frames to come. True if nothing is known of frames before: they are the first.
+    bool prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure);
+    /// Whether frames rendered so from here would differ from the last one by more than their noise.
+    bool differs(const RenderSettings& settings, uint32_t samples) const;
+    /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`
+    /// numbers the frames of pipelines that denoise.
+    void render(Moment moment);
+    /// Something is another than it was: samples() of pipelines that denoise count from here.
+    void noteChange() { framesOfSame_ = 0; }
+    uint64_t framesOfSame() const { return framesOfSame_; }
+    uint64_t frames() const { return frames_; }  ///< ever
+
+    /// Per pixel: in the mean, or in the frames since noteChange().
+    uint64_t samples() const;
+    bool accumulates() const { return settings_.pipeline.accumulates(); }
+    const RenderSettings& settings() const { return settings_; }
+    const CameraParams& camera() const { return camera_; }
+    FrameRenderer& renderer() { return *renderer_; }
+    /// For frames to come, and for the next expose().
+    void setToneCurve(image::ToneCurve curve) { nextCurve_ = curve; }
+    /// Exposes the last frame differently, without rendering it again. Waits for the device. Returns false if
+    /// it was exposed so already.
+    bool expose(float stops);
+    /// The last frame, exposed and encoded. Waits for the device.
+    std::shared_ptr<const Picture> picture();
+    /// Changes with the picture.
+    uint64_t version() const { return version_; }
+
+  private:
+    gpu::Device& device_;
+    const gpu::ShaderReplacements& shaders_;
+    std::function<bool()> interrupted_;
+    std::optional<FrameRenderer> renderer_;
+    RenderSettings settings_;  ///< of the last frame
+    RenderSettings next_;
+    uint32_t samples_ = 1;
+    float exposure_ = 0.0f;
+    image::ToneCurve curve_ = image::ToneCurve::Standard, nextCurve_ = curve_;
+    std::shared_ptr<const Picture> picture_;  ///< null: not downloaded yet
+    CameraParams camera_{};
+    bool shown_ = false;
+    uint64_t launches_ = 0;  ///< of the mean
+    uint64_t framesOfSame_ = 0;
+    uint64_t frames_ = 0;
+    uint64_t version_ = 0;
+};
+
+}  // namespace limpid::studio

@@ -1,0 +1,173 @@
+// The frames: whether to render one, rendering it, its times and exposure, and changed shaders.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "image/tonemap.h"
+#include "renderer/frame/reset_rule.h"
+#include "scene/model/camera.h"
+#include "studio/loop/render_loop.h"
+
+namespace limpid::studio {
+namespace {
+
+constexpr double betweenTimes = 0.25;   ///< seconds between reads of the passes' times, which wait for the
+                                        ///< device
+constexpr double betweenSources = 0.5;  ///< seconds between checks of the shaders' files
+constexpr double settleSeconds = 0.3;   ///< without a change, after which nothing counts as moving
+
+}  // namespace
+
+CameraParams RenderLoop::cameraNow() const {
+    return scene::cameraParams(rig_.at(*stage_, playback_.time()), wanted_.extent.width,
+                               wanted_.extent.height);
+}
+
+/// Returns true if the next picture would differ from the last one, apart from noise. `camera`: with the last
+/// one's extent.
+bool RenderLoop::isOther(const CameraParams& camera) const {
+    return main_.differs(wanted_, state_.samples) || stage_->lightsChanged() ||
+           (state_.running && (!sameCamera(camera, main_.camera()) ||
+                               (stage_->moves() && playback_.change()) || playback_.playing));
+}
+
+/// Chooses the extent of the next frame. Returns true if that frame should be rendered.
+bool RenderLoop::mustRender() {
+    if (state_.viewport.width == 0 || state_.viewport.height == 0) return false;
+    const std::tuple work{wanted_.pipeline, state_.samples, state_.comparison.isOn(), facts_.scenesShown};
+    if (std::exchange(work_, work) != work) resolution_.forget();
+    if (main_) wanted_.extent = main_.settings().extent;
+    const bool other = !main_ || isOther(cameraNow());
+    const auto now = Clock::now();
+    if (other) changed_ = now;
+    const bool moves = std::chrono::duration<double>(now - changed_).count() < settleSeconds;
+    wanted_.extent = resolution_.choose(state_.viewport, state_.resolution, moves);
+    interruptible_ = !moves && resolution_.takesLong(uint64_t{wanted_.extent.width} * wanted_.extent.height);
+    const bool resized = main_ && wanted_.extent != main_.settings().extent;
+    if (other || resized) {
+        main_.noteChange();
+        comparison_.noteChange();
+    }
+    if (std::exchange(step_, false) || other || resized) return true;
+    // Nothing is known of the device's speed yet: the coarse picture is not the last one.
+    const bool unmeasured = !moves && resolution_.isCoarse();
+    return state_.running && (unmeasured || settings_.quitAfter > 0 ||
+                              main_.samples() < static_cast<uint64_t>(state_.maxSamples));
+}
+
+/// Renders the next frame, or another one of the comparison alone. Returns false if neither is needed.
+bool RenderLoop::renderWhatIsDue() {
+    applySettings();
+    const bool main = mustRender();
+    if (wanted_.extent.width == 0 || wanted_.extent.height == 0) return false;
+    const CameraParams camera = cameraNow();
+    const bool other =
+        !main && main_ && state_.running && comparison_.mustRender(state_, wanted_, camera, false);
+    try {
+        const bool news = !facts_.computing || !main_ || wanted_.extent != main_.settings().extent;
+        if (main && news) announce();
+        if (main) renderTimed(camera);
+        if (other) comparison_.render(*stage_, state_, wanted_, playback_.moment(camera), true);
+    } catch (const gpu::Interrupted&) {
+        playback_.reset(playback_.time());
+        main_.drop();
+        comparison_.drop();
+        return true;
+    }
+    measureExposure();
+    if (main_) main_.setToneCurve(curveOf(main_.settings().pipeline));
+    if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
+    noteTimes(main);
+    comparison_.setToneCurve(state_.toneCurve);
+    comparison_.update(main_, state_.exposure, main || other);
+    saveWhatIsAsked();
+    return main || other;
+}
+
+void RenderLoop::renderTimed(const CameraParams& camera) {
+    const auto begin = Clock::now();
+    const size_t pipelines = device_.pipelineCount();
+    render(camera);
+    main_.picture();  // waits for the device
+    // A frame that had to compile shaders says nothing of the others.
+    if (device_.pipelineCount() == pipelines)
+        resolution_.note(uint64_t{wanted_.extent.width} * wanted_.extent.height, secondsSince(begin));
+}
+
+void RenderLoop::render(const CameraParams& camera) {
+    if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
+        throw gpu::DeviceLost("the device is taken for lost");
+    const bool changed = main_ && (wanted_ != main_.settings() || state_.fovDegrees != fovOfLast_);
+    main_.setToneCurve(curveOf(wanted_.pipeline));
+    if (main_.prepare(*stage_, wanted_, state_.samples, stopsOf(wanted_.pipeline)))
+        playback_.reset(playback_.time());
+    else if (changed)
+        playback_.noteOtherSettings();
+    Moment moment = playback_.moment(camera);
+    if (stage_->lightsChanged()) playback_.noteOtherSettings();
+    std::optional<Stage::Step> step;
+    if (const auto change = playback_.change(); change && stage_->moves())
+        step = Stage::Step{change->from, change->to};
+    moment.scene = stage_->nextFrame(step, playback_.shownTime());
+    if (comparison_.mustRender(state_, wanted_, camera, moment.scene.has_value()))
+        comparison_.render(*stage_, state_, wanted_, moment, false);
+    main_.render(std::move(moment));
+    fovOfLast_ = state_.fovDegrees;
+    playback_.advance(camera, rig_.key());
+    flight_.playing = playback_.playing;
+    flight_.advance(camera, rig_.key());
+    facts_.samplesInMean = main_.accumulates() ? main_.samples() : 0;
+    facts_.frames = playback_.frames();
+}
+
+void RenderLoop::noteTimes(bool rendered) {
+    const auto now = Clock::now();
+    if (rendered && frameBefore_)
+        facts_.timings.addFrame(std::chrono::duration<double, std::milli>(now - lastFrame_).count());
+    lastFrame_ = now;
+    frameBefore_ = rendered;
+    if (!rendered || !due(lastTimes_, betweenTimes)) return;
+    facts_.timings.addPasses(main_.renderer().passTimes());
+    facts_.memoryBytes = device_.allocatedBytes();
+    facts_.sceneBytes = stage_->onDevice().byteCount();
+}
+
+/// Measures the exposure once there is a picture that uses one.
+void RenderLoop::measureExposure() {
+    if (!measureExposure_ || !main_ || !main_.settings().pipeline.needsExposure()) return;
+    measureExposure_ = false;
+    const RenderedLayers layers = main_.renderer().download();
+    state_.exposure = image::autoExposure(beautyOf(layers), surfaceShare(layers));
+}
+
+/// Returns the exposure for this pipeline; 0 if its picture is not radiance.
+float RenderLoop::stopsOf(const Pipeline& pipeline) const {
+    return pipeline.needsExposure() ? state_.exposure : 0.0f;
+}
+
+/// The same for the tone curve.
+image::ToneCurve RenderLoop::curveOf(const Pipeline& pipeline) const {
+    return pipeline.needsExposure() ? state_.toneCurve : image::ToneCurve::Standard;
+}
+
+/// Recompiles changed shaders. Returns true if there were any.
+bool RenderLoop::reloadShaders() {
+    if (!reload_.watches() || !main_ || !due(lastSources_, betweenSources)) return false;
+    std::vector<gpu::ShaderCode> used = main_.renderer().graph().usedShaders();
+    if (LiveRender* const other = comparison_.picture()) {
+        const std::vector<gpu::ShaderCode> more = other->renderer().graph().usedShaders();
+        used.insert(used.end(), more.begin(), more.end());
+    }
+    const std::optional<ShaderReload::Result> result = reload_.poll(used);
+    if (!result) return false;
+    attempt([&] {
+        if (!result->fault.empty()) throw Error(result->fault);
+        say(fmt::format("compiled {} shaders", result->compiled));
+        startAnew();
+    });
+    return true;
+}
+
+}  // namespace limpid::studio

@@ -1,0 +1,207 @@
+// What clients ask of the renderer: edits of the state, gestures, requests.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "scene/framing/framing.h"
+#include "studio/loop/render_loop.h"
+#include "studio/state/state_json.h"
+
+namespace limpid::studio {
+namespace {
+
+template <typename... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
+uint32_t pixelAt(float position, uint32_t pixels) {
+    return static_cast<uint32_t>(std::clamp(position, 0.0f, 0.9999f) * static_cast<float>(pixels));
+}
+
+}  // namespace
+
+void RenderLoop::handle(const Message& message) {
+    std::visit(Overloaded{[&](const nlohmann::json& changes) { edit(changes); },
+                          [&](const Gesture& gesture) { steer(gesture); },
+                          [&](const Request& request) { carryOut(request); }},
+               message.content);
+}
+
+/// Sets fields, and does what follows from them at once.
+void RenderLoop::edit(const nlohmann::json& changes) {
+    const auto names = [&](std::initializer_list<const char*> keys) {
+        return std::ranges::any_of(keys, [&](const char* key) { return changes.contains(key); });
+    };
+    const State before = state_;
+    if (!attempt([&] { apply(state_, changes); }) || !stage_) return;
+    if (state_.camera != before.camera) {
+        state_.camera = std::clamp(state_.camera, 0, static_cast<int>(facts_.cameras.size()) - 1);
+        rig_.choose(*stage_, state_.camera);
+        state_.playing |= rig_.movesOnPath();
+        startAnew();
+    } else if (names({"eye", "target", "up"})) {
+        placeCamera();
+    }
+    if (names({"time"})) {
+        playback_.seek(double{state_.time});
+        flight_.seek(double{state_.time});
+    }
+    if (names({"background"}) && state_.lights.backgroundText() != before.lights.backgroundText())
+        changeBackground();
+}
+
+void RenderLoop::steer(const Gesture& gesture) {
+    if (!stage_ || !gesture.moves()) return;
+    if (!rig_.isFree()) {
+        rig_.setFree(*stage_, playback_.time());
+        state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+        startAnew();
+    }
+    state_.camera = rig_.chosen();
+    gesture.apply(rig_.hand(), speed_);
+    showPose();
+}
+
+void RenderLoop::carryOut(const Request& request) {
+    using Kind = Request::Kind;
+    const Kind kind = request.kind;
+    facts_.fault.clear();  // something new is being done
+    if (kind == Kind::Open || kind == Kind::OpenDropped)
+        return void(attempt([&] { open(request.file, kind == Kind::OpenDropped); }));
+    if (kind == Kind::CancelLoading && loading_) {
+        cancelled_.push_back(std::move(loading_->scene));
+        loading_.reset();
+        facts_.activity.clear();
+        return say("cancelled");
+    }
+    if (!stage_) return;
+    if (kind == Kind::Reset) startAnew();
+    if (kind == Kind::Step) step_ = true;
+    if (kind == Kind::MeasureExposure) measureExposure_ = true;
+    if (kind == Kind::ResetCamera) resetCamera();
+    if (kind == Kind::SeeAll) seeAll();
+    if (kind == Kind::Focus) attempt([&] { focus(request.position); });
+    if (kind == Kind::Probe && main_)
+        facts_.allValues = facts_.allValues.empty() ? probeAll(request.position) : std::string();
+    if (kind == Kind::AddPoint || kind == Kind::AddSun) attempt([&] { addLamp(kind == Kind::AddSun); });
+    if (kind == Kind::RemoveLamp) attempt([&] { takeLampAway(request.index); });
+    if (kind == Kind::KeepSettings) state_.comparison.keep(state_.render);
+    if (kind == Kind::SaveLights) attempt([&] { saveLights(); });
+    if (kind == Kind::SavePath) attempt([&] { savePath(); });
+    if (kind == Kind::SavePng) toSave_.emplace_back(".png");
+    if (kind == Kind::SaveExr) toSave_.emplace_back(".exr");
+    if (kind == Kind::CommandLine) attempt([&] { makeCommand(); });
+}
+
+void RenderLoop::resetCamera() {
+    state_.camera = 0;
+    state_.fovDegrees = glm::degrees(rig_.home().verticalFov);
+    rig_.choose(*stage_, 0);
+    startAnew();
+}
+
+void RenderLoop::seeAll() {
+    rig_.stand(*stage_, scene::frameScene(stage_->scene()));
+    state_.camera = 0;
+    state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+    startAnew();
+}
+
+/// Turns the camera towards the point that is seen there.
+void RenderLoop::focus(const std::array<float, 2>& position) {
+    const gpu::Extent extent = wanted_.extent;
+    if (extent.width == 0 || extent.height == 0) return;
+    const auto point =
+        picker_.pointSeen(stage_->onDevice(), cameraNow(), extent, pixelAt(position[0], extent.width),
+                          pixelAt(position[1], extent.height));
+    if (!point) return;
+    if (!rig_.isFree()) {
+        rig_.setFree(*stage_, playback_.time());
+        state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+        state_.camera = rig_.chosen();
+        startAnew();
+    }
+    rig_.hand().focus(*point);
+}
+
+/// Updates the pose in the state.
+void RenderLoop::showPose() {
+    if (rig_.isFree()) {
+        state_.pose = {rig_.hand().eye(), rig_.hand().target(), rig_.hand().up()};
+        return;
+    }
+    const scene::Camera camera = rig_.at(*stage_, playback_.time());
+    const vec3 eye(camera.toWorld[3]);
+    state_.pose = {eye, eye - rig_.hand().distance() * vec3(camera.toWorld[2]), vec3(camera.toWorld[1])};
+}
+
+/// Places the camera at the state's pose. An invalid pose changes nothing.
+void RenderLoop::placeCamera() {
+    const bool wasFree = rig_.isFree();
+    rig_.place(*stage_, playback_.time(), state_.pose.eye, state_.pose.target, state_.pose.up);
+    state_.camera = rig_.chosen();
+    if (wasFree) return;
+    state_.fovDegrees = glm::degrees(rig_.hand().camera().verticalFov);
+    startAnew();
+}
+
+std::string RenderLoop::probeAll(const std::array<float, 2>& position) {
+    const gpu::Extent extent = wanted_.extent;
+    const auto valuesAt = [&](const image::Image& picture) {
+        std::string text;
+        const uint32_t x = pixelAt(position[0], picture.width), y = pixelAt(position[1], picture.height);
+        if (gpu::Extent{picture.width, picture.height} != extent) text = fmt::format(" ({}, {})", x, y);
+        text += ":";
+        for (uint32_t c = 0; c < picture.components; ++c) text += fmt::format(" {:.5g}", picture.at(x, y, c));
+        return text;
+    };
+    std::string text = fmt::format("pixel ({}, {})\n", pixelAt(position[0], extent.width),
+                                   pixelAt(position[1], extent.height));
+    std::vector<std::string> seen;
+    for (const gpu::RecordedPass& pass : main_.renderer().graph().passes()) {
+        if (main_.renderer().graph().imagesWrittenBy(pass.name).empty()) continue;
+        for (const auto& [name, picture] : main_.renderer().dump(pass.name)) {
+            if (std::ranges::find(seen, name) != seen.end()) continue;
+            seen.push_back(name);
+            text += name + valuesAt(picture) + "\n";
+        }
+    }
+    return text;
+}
+
+/// Derives settings from others, and restores the previous value of impossible ones.
+void RenderLoop::applySettings() {
+    if (state_.jitter > 0)
+        state_.render.jitter = static_cast<Jitter>(state_.jitter - 1);
+    else
+        state_.render.jitter = defaultJitter(state_.render.pipeline);
+    rig_.hand().setVerticalFov(glm::radians(state_.fovDegrees));
+    stage_->setLights(state_.lights.lights);
+    playback_.playing = state_.playing && (stage_->moves() || rig_.movesOnPath());
+    facts_.duration = rig_.movesOnPath() || stage_->moves() ? rig_.duration(*stage_) : 0.0;
+    if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
+    state_.time = static_cast<float>(playback_.time());
+    showPose();
+    loadNetworks();
+    if (!state_.comparison.isOn()) comparison_.drop();
+}
+
+/// Loads the networks that the pipelines need. If that fails, goes back to a pipeline without one.
+void RenderLoop::loadNetworks() {
+    const auto have = [&](const Pipeline& pipeline) {
+        return !networks_.lacks(pipeline, state_.render.denoisers) ||
+               attempt([&] { networks_.load(pipeline, state_.render.denoisers); });
+    };
+    if (!have(state_.render.pipeline)) state_.render.pipeline = main_.settings().pipeline;
+    if (state_.comparison.isOn() && !have(settingsOfComparison(state_, state_.render, networks_).pipeline))
+        state_.comparison.with = 0;
+    wanted_ = state_.render;
+    networks_.set(wanted_);
+}
+
+}  // namespace limpid::studio

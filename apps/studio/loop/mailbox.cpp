@@ -1,0 +1,103 @@
+#include "studio/loop/mailbox.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string_view>
+
+namespace limpid::studio {
+
+using nlohmann::json;
+
+namespace {
+
+/// Fields that a picture can be shown otherwise by, without another frame.
+constexpr std::array<std::string_view, 11> harmless{
+    "exposure", "pass",        "image",   "view.channels",     "view.stops", "view.false_color",
+    "arrows",   "max_samples", "running", "reference_samples", "compare"};
+
+bool isUrgent(const Message& message) {
+    if (std::holds_alternative<Gesture>(message.content)) return true;
+    if (const Request* const request = std::get_if<Request>(&message.content)) {
+        using Kind = Request::Kind;
+        return request->kind == Kind::Reset || request->kind == Kind::ResetCamera ||
+               request->kind == Kind::SeeAll || request->kind == Kind::Focus;
+    }
+    const json& changes = std::get<json>(message.content);
+    return std::ranges::any_of(changes.items(), [](const auto& item) {
+        return std::ranges::find(harmless, item.key()) == harmless.end();
+    });
+}
+
+}  // namespace
+
+uint64_t Mailbox::post(std::variant<json, Gesture, Request> content) {
+    uint64_t number = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        number = ++posted_;
+        Message* const last = messages_.empty() ? nullptr : &messages_.back();
+        Gesture* const before = last ? std::get_if<Gesture>(&last->content) : nullptr;
+        const Gesture* const gesture = std::get_if<Gesture>(&content);
+        if (before && gesture) {
+            *before += *gesture;
+            last->number = number;
+        } else {
+            messages_.push_back({number, std::move(content)});
+        }
+    }
+    arrived_.notify_one();
+    return number;
+}
+
+std::deque<Message> Mailbox::take(double seconds) {
+    std::unique_lock lock(mutex_);
+    arrived_.wait_for(lock, std::chrono::duration<double>(seconds),
+                      [&] { return closed_ || !messages_.empty(); });
+    return std::exchange(messages_, {});
+}
+
+bool Mailbox::hasUrgentMail() const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(messages_, isUrgent);
+}
+
+void Mailbox::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    arrived_.notify_one();
+}
+
+bool Mailbox::isClosed() const {
+    const std::lock_guard lock(mutex_);
+    return closed_;
+}
+
+void Mailbox::publish(std::shared_ptr<const Shown> shown) {
+    {
+        const std::lock_guard lock(mutex_);
+        shown_ = std::move(shown);
+    }
+    const std::lock_guard lock(listening_);
+    for (const auto& [number, listener] : listeners_) listener();
+}
+
+std::shared_ptr<const Shown> Mailbox::shown() const {
+    const std::lock_guard lock(mutex_);
+    return shown_;
+}
+
+uint64_t Mailbox::addListener(std::function<void()> listener) {
+    const std::lock_guard lock(listening_);
+    listeners_.emplace(++listenersEver_, std::move(listener));
+    return listenersEver_;
+}
+
+void Mailbox::removeListener(uint64_t number) {
+    const std::lock_guard lock(listening_);
+    listeners_.erase(number);
+}
+
+}  // namespace limpid::studio

@@ -1,0 +1,72 @@
+#include "studio/loop/mailbox.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace limpid::studio {
+namespace {
+
+using nlohmann::json;
+
+TEST(Mailbox, GesturesAddUpAndKeepTheirPlace) {
+    Mailbox mailbox;
+    mailbox.post(Gesture{.orbit = {1.0f, 2.0f}});
+    mailbox.post(Gesture{.orbit = {3.0f, 0.0f}, .zoom = 1.0f});
+    mailbox.post(json{{"seed", 1}});
+    const uint64_t last = mailbox.post(Gesture{.zoom = 2.0f});
+    const auto messages = mailbox.take(0.0);
+    ASSERT_EQ(messages.size(), 3u);
+    const auto& first = std::get<Gesture>(messages[0].content);
+    EXPECT_EQ(first.orbit, vec2(4.0f, 2.0f));
+    EXPECT_EQ(first.zoom, 1.0f);
+    EXPECT_EQ(messages[0].number, 2u);
+    EXPECT_EQ(messages[2].number, last);
+    EXPECT_TRUE(mailbox.take(0.0).empty());
+}
+
+TEST(Mailbox, UrgentIsWhatChangesTheFrame) {
+    const auto urgent = [](std::variant<json, Gesture, Request> content) {
+        Mailbox mailbox;
+        EXPECT_FALSE(mailbox.hasUrgentMail());
+        mailbox.post(std::move(content));
+        return mailbox.hasUrgentMail();
+    };
+    EXPECT_TRUE(urgent(Gesture{.zoom = 1.0f}));
+    EXPECT_TRUE(urgent(json{{"exposure", 1.0}, {"denoiser", "svgf"}}));
+    EXPECT_FALSE(urgent(json{{"exposure", 1.0}, {"pass", ""}}));
+    EXPECT_TRUE(urgent(Request{Request::Kind::SeeAll}));
+    EXPECT_FALSE(urgent(Request{Request::Kind::SavePng}));
+}
+
+TEST(Mailbox, WakesItsReader) {
+    Mailbox mailbox;
+    std::thread writer([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        mailbox.post(Request{Request::Kind::Step});
+    });
+    EXPECT_EQ(mailbox.take(60.0).size(), 1u);
+    writer.join();
+    std::thread closer([&] { mailbox.close(); });
+    EXPECT_TRUE(mailbox.take(60.0).empty());
+    closer.join();
+    EXPECT_TRUE(mailbox.isClosed());
+}
+
+TEST(Mailbox, TellsListenersUntilTheyAreRemoved) {
+    Mailbox mailbox;
+    int heard = 0;
+    const uint64_t listener = mailbox.addListener([&] { ++heard; });
+    auto shown = std::make_shared<Shown>();
+    shown->number = 7;
+    mailbox.publish(shown);
+    EXPECT_EQ(heard, 1);
+    EXPECT_EQ(mailbox.shown()->number, 7u);
+    mailbox.removeListener(listener);
+    mailbox.publish(shown);
+    EXPECT_EQ(heard, 1);
+}
+
+}  // namespace
+}  // namespace limpid::studio

@@ -1,0 +1,203 @@
+#include "studio/loop/render_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "scene/model/light_file.h"
+#include "scene/motion/movement.h"
+
+namespace limpid::studio {
+namespace {
+
+constexpr double idleSeconds = 1.0;      ///< longest wait for a message
+constexpr double waitingSeconds = 0.02;  ///< same, while something is computed beside the frames
+constexpr double messageSeconds = 20.0;
+
+}  // namespace
+
+RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
+                       const CameraStart& start, const StudioSettings& settings, Mailbox& mailbox)
+    : settings_(settings),
+      tracer_(tracer),
+      load_(load),
+      start_(start),
+      mailbox_(mailbox),
+      device_(options),
+      reload_(settings.shaders),
+      main_(device_, reload_.replacements()),
+      networks_(device_, settings.weights),
+      comparison_(device_, reload_.replacements(), networks_),
+      picker_(device_, reload_.replacements()),
+      resolution_(device_.isCpu()) {
+    loadPipelines(device_, pipelineFile(device_));
+    state_.viewport = settings.render.extent;
+    state_.render = settings.render;
+    if (settings.preview) state_.setPreview(true);
+    if (settings.jitter) state_.jitter = jitterChoice(*settings.jitter, settings.render.pipeline);
+    state_.samples = settings.samples;
+    state_.maxSamples = static_cast<int>(std::min<uint64_t>(settings.maxSamples, 1 << 20));
+    state_.resolution = settings.resolution;
+    facts_.device = device_.info().name;
+    const auto interrupted = [this] {
+        const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
+        return interruptible_ && !ending_ && (ends || mailbox_.hasUrgentMail());
+    };
+    main_.setInterruption(interrupted);
+    comparison_.setInterruption(interrupted);
+}
+
+void RenderLoop::say(const std::string& message) {
+    facts_.message = message;
+    facts_.messageIsOld = false;
+    messageSince_ = Clock::now();
+    changedFacts_ = true;
+}
+
+/// Returns true if the message has just expired.
+bool RenderLoop::messageAges() {
+    if (facts_.messageIsOld || facts_.message.empty() || secondsSince(messageSince_) < messageSeconds)
+        return false;
+    return facts_.messageIsOld = true;
+}
+
+RenderLoop::Standing RenderLoop::standing() const {
+    Standing now{.settings = settings_,
+                 .state = state_,
+                 .home = rig_.home(),
+                 .hand = rig_.hand(),
+                 .time = playback_.time(),
+                 .messages = messages_,
+                 .hasScene = stage_ != nullptr};
+    if (stage_) now.clip = scene::clipChoice(stage_->scene());
+    return now;
+}
+
+void RenderLoop::takeOver(const Standing& standing) {
+    settings_ = standing.settings;
+    settings_.loseDeviceAt = 0;
+    messages_ = standing.messages;
+    if (!standing.hasScene) return;
+    scene::Scene scene = load_(settings_.source);
+    if (!standing.clip.empty()) scene::chooseClip(scene, standing.clip);
+    show(std::move(scene));
+    goTo(standing.home);
+    state_ = standing.state;
+    rig_.choose(*stage_, state_.camera);
+    if (rig_.isFree()) rig_.hand() = standing.hand;
+    playback_.reset(standing.time);
+    measureExposure_ = false;
+    facts_.fault = "the device was lost; everything was set up anew";
+}
+
+void RenderLoop::run() {
+    if (!stage_ && !settings_.source.scene.empty()) loadFirst();
+    bool rests = false;
+    while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
+        const bool waits = comparison_.isScoring() || loading_.has_value() || resolution_.isCoarse();
+        handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
+        finishLoading();
+        changedFacts_ |= reloadShaders();
+        changedFacts_ |= messageAges();
+        changedFacts_ |= comparison_.hasScored();
+        const bool rendered = stage_ && renderWhatIsDue();
+        if (std::exchange(facts_.computing, rendered) != rendered) changedFacts_ = true;
+        rests = !rendered;
+        if (rendered || std::exchange(changedFacts_, false)) publish();
+    }
+    finish();
+}
+
+void RenderLoop::handleMessages(double patience) {
+    for (const Message& message : mailbox_.take(patience)) {
+        handle(message);
+        messages_ = message.number;
+        changedFacts_ = true;
+    }
+}
+
+/// Does what was asked for last: pictures are not lost because the window was closed.
+void RenderLoop::finish() {
+    handleMessages(0.0);
+    ending_ = true;
+    if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
+        if (!main_ || resolution_.isCoarse()) {
+            state_.resolution = Resolution::Full;
+            renderWhatIsDue();
+        }
+        saveWhatIsAsked();
+        if (!settings_.screenshot.empty()) save(settings_.screenshot);
+    }
+    device_.waitIdle();
+    if (device_.validationMessages() > 0)
+        throw Error(fmt::format("the validation layer reported {} messages", device_.validationMessages()));
+}
+
+/// Tells the clients that a frame begins: until it ends, they hear nothing.
+void RenderLoop::announce() {
+    facts_.computing = true;
+    publish();
+}
+
+/// Makes the snapshot of what there is now.
+void RenderLoop::publish() {
+    auto shown = std::make_shared<Shown>();
+    facts_.comparedWith = comparison_.name();
+    facts_.scores = comparison_.scores();
+    facts_.errors = comparison_.errors();
+    facts_.framesEver = rendered();
+    facts_.extent = wanted_.extent;
+    if (main_) {
+        if (!picture_ || std::exchange(pictureOf_, main_.version()) != main_.version())
+            picture_ = main_.picture();
+        LiveRender* const other = comparison_.picture();
+        if (!other || !*other)
+            compared_.reset();
+        else if (!compared_ || std::exchange(comparedOf_, other->version()) != other->version())
+            compared_ = other->picture();
+        if (!state_.arrows)
+            motion_.reset();
+        else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
+            motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
+        inspect();
+    }
+    shown->number = ++publications_;
+    shown->messages = messages_;
+    shown->state = state_;
+    shown->state.render.extent = wanted_.extent;
+    shown->facts = facts_;
+    shown->picture = picture_;
+    shown->compared = compared_;
+    shown->inspected = inspected_;
+    shown->motion = motion_;
+    mailbox_.publish(std::move(shown));
+}
+
+/// Downloads the image of a pass that is shown instead of the picture.
+void RenderLoop::inspect() {
+    if (state_.pass.empty()) {
+        inspected_.reset();
+        facts_.images.clear();
+        inspectedOf_ = {};
+        return;
+    }
+    std::vector<std::pair<std::string, image::Image>> images;
+    const auto wanted = std::tuple(main_.frames(), state_.pass, state_.image);
+    if (wanted == inspectedOf_) return;
+    try {
+        images = main_.renderer().dump(state_.pass);
+    } catch (const UsageError&) {  // the pass belongs to another integrator or denoiser
+        state_.pass.clear();
+        return inspect();
+    }
+    facts_.images.clear();
+    for (const auto& [name, picture] : images) facts_.images.push_back(name);
+    state_.image = std::clamp(state_.image, 0, static_cast<int>(images.size()) - 1);
+    inspected_ =
+        std::make_shared<const image::Image>(std::move(images[static_cast<size_t>(state_.image)].second));
+    inspectedOf_ = wanted;
+}
+
+}  // namespace limpid::studio

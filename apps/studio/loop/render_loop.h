@@ -1,0 +1,179 @@
+// The thread of the renderer: takes the messages of its clients, renders frame after frame, and publishes
+// each. The functions lie in files by subject: loop_scene.cpp, loop_requests.cpp, loop_frame.cpp,
+// loop_files.cpp, and render_loop.cpp for the rest.
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "renderer/frame/pipeline_store.h"
+#include "studio/camera/camera_rig.h"
+#include "studio/camera/picker.h"
+#include "studio/compare/live_comparison.h"
+#include "studio/loop/live_render.h"
+#include "studio/loop/mailbox.h"
+#include "studio/loop/networks.h"
+#include "studio/loop/playback.h"
+#include "studio/loop/resolution.h"
+#include "studio/loop/shader_reload.h"
+#include "studio/loop/stage.h"
+#include "studio/settings.h"
+#include "studio/state/command_line.h"
+
+namespace limpid::studio {
+
+class RenderLoop {
+  public:
+    /// All but the settings outlive this. Throws as Device does.
+    RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
+               const CameraStart& start, const StudioSettings& settings, Mailbox& mailbox);
+    /// Until the mailbox is closed, or as many frames were rendered as asked for.
+    void run();
+    void storePipelines() const { limpid::storePipelines(device_, pipelineFile(device_)); }
+    uint64_t rendered() const { return main_.frames(); }
+
+    /// What another loop needs to continue with the same scene, on another device.
+    struct Standing {
+        StudioSettings settings;
+        State state;
+        scene::Camera home;
+        FlyCamera hand;
+        std::string clip;  ///< argument for chooseClip(); empty: none plays
+        double time = 0.0;
+        uint64_t messages = 0;
+        bool hasScene = false;
+    };
+    Standing standing() const;
+    void takeOver(const Standing& standing);
+
+  private:
+    void finish();
+    void loadFirst();
+    void load(const scene::SceneSource& source, bool relights, std::string message);
+    void finishLoading();
+    void show(scene::Scene scene);
+    void showOpened(scene::Scene scene, const scene::SceneSource& source);
+    void showRelit(scene::Scene scene, const scene::SceneSource& source);
+    void goTo(const scene::Camera& home);
+    void open(const std::string& file, bool dropped);
+    void addLamp(bool sun);
+    void takeLampAway(int index);
+    void changeBackground();
+    void startAnew();
+
+    void handleMessages(double patience);
+    void handle(const Message& message);
+    void edit(const nlohmann::json& changes);
+    void steer(const Gesture& gesture);
+    void carryOut(const Request& request);
+    void resetCamera();
+    void seeAll();
+    void focus(const std::array<float, 2>& position);
+    void showPose();
+    void placeCamera();
+    void applySettings();
+    void loadNetworks();
+
+    bool reloadShaders();
+    void say(const std::string& message);
+    bool messageAges();
+    CameraParams cameraNow() const;
+    bool isOther(const CameraParams& camera) const;
+    bool mustRender();
+    bool renderWhatIsDue();
+    void renderTimed(const CameraParams& camera);
+    void render(const CameraParams& camera);
+    void noteTimes(bool rendered);
+    void measureExposure();
+    float stopsOf(const Pipeline& pipeline) const;
+    image::ToneCurve curveOf(const Pipeline& pipeline) const;
+    std::string probeAll(const std::array<float, 2>& position);
+    void inspect();
+    void publish();
+    void announce();
+
+    void saveWhatIsAsked();
+    void save(const std::filesystem::path& file);
+    void makeCommand();
+    void makeStateCommand(const ShownFrame& frame, const CommandLine& command);
+    void giveCommand(const std::string& text, const std::string& message);
+    void savePath();
+    void saveLights();
+
+    /// Runs a function that may fail because of the user's input. Keeps the error for the user and returns
+    /// false if it does.
+    template <typename Function>
+    bool attempt(const Function& function) {
+        try {
+            facts_.fault.clear();
+            function();
+            return true;
+        } catch (const gpu::DeviceLost&) {
+            throw;
+        } catch (const Error& fault) {
+            facts_.fault = fault.what();
+            log::warn("{}", fault.what());
+            return false;
+        }
+    }
+
+    StudioSettings settings_;
+    const TracerChoice& tracer_;
+    const SceneLoader& load_;
+    const CameraStart& start_;
+    Mailbox& mailbox_;
+    gpu::Device device_;
+    std::unique_ptr<Stage> stage_;  ///< null: no scene yet
+    CameraRig rig_;
+    Playback playback_;
+    Playback flight_;  ///< the same, but it goes on where the resolution changes
+    State state_;
+    RenderSettings wanted_;  ///< state_.render with what follows from other fields, and networks
+    Facts facts_;
+    ShaderReload reload_;
+    LiveRender main_;
+    Networks networks_;
+    LiveComparison comparison_;
+    Picker picker_;
+    ResolutionControl resolution_;
+    std::tuple<Pipeline, uint32_t, bool, int> work_;  ///< what decides how long a pixel takes
+    Clock::time_point changed_{};                     ///< when something that is seen has changed last
+    uint64_t messages_ = 0;                           ///< number of the last one that was handled
+    uint64_t publications_ = 0;
+    bool changedFacts_ = true;  ///< something is to be published, though no frame was rendered
+    /// The frame is a long one of a picture that rests. Those of a moving one are short, and are all
+    /// finished: else a hand that moves on would never see one.
+    bool interruptible_ = false;
+    bool ending_ = false;
+    bool step_ = false, measureExposure_ = false;
+    std::vector<std::string> toSave_;  ///< extensions of pictures that were asked for
+    float fovOfLast_ = 0.0f;           ///< degrees
+    float speed_ = 1.0f;               ///< of flying, world units a second
+    Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
+    bool frameBefore_ = false;
+    Clock::time_point messageSince_{};
+
+    /// A scene that is being read on a thread of its own, while the old one is shown.
+    struct Loading {
+        scene::SceneSource source;
+        bool relights = false;  ///< the same scene with other lights
+        std::string message;    ///< when it is done
+        std::future<scene::Scene> scene;
+    };
+    std::optional<Loading> loading_;
+    std::vector<std::future<scene::Scene>> cancelled_;  ///< their threads still run
+
+    // The pictures that were published last.
+    uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0;
+    float exposureOf_ = 0.0f;
+    std::shared_ptr<const Picture> picture_, compared_;
+    std::shared_ptr<const image::Image> inspected_, motion_;
+    std::tuple<uint64_t, std::string, int> inspectedOf_;
+};
+
+}  // namespace limpid::studio

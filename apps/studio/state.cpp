@@ -1,9 +1,0 @@
-#include "studio/state.h"
-
-namespace limpid::studio {
-
-int jitterChoice(Jitter jitter, const Pipeline& pipeline) {
-    return jitter == defaultJitter(pipeline) ? 0 : 1 + static_cast<int>(jitter);
-}
-
-}  // namespace limpid::studio

@@ -1,0 +1,44 @@
+// The `limpid render` that makes the frame in the window again, to the last bit, on the same device.
+#pragma once
+
+#include <string>
+
+#include "image/tone_curve.h"
+#include "renderer/frame/settings.h"
+#include "scene/model/scene_source.h"
+#include "studio/loop/playback.h"
+
+namespace limpid::studio {
+
+/// What decides the frame in the window.
+struct ShownFrame {
+    scene::SceneSource source;
+    std::string clip;     ///< name; empty: the scene moves by none
+    std::string weights;  ///< of networks; empty: those that come along
+    RenderSettings settings;
+    uint32_t samples = 1;        ///< per pixel and frame
+    uint64_t samplesInMean = 0;  ///< without a denoiser
+    std::string camera;          ///< its options, as "--camera 2"; empty: as `playback` has it
+    float fovDegrees = 45.0f;
+    image::ToneCurve toneCurve = image::ToneCurve::Standard;  ///< for a PNG
+};
+
+struct CommandLine {
+    std::string text;
+    bool needsPath = false;  ///< "--camera-path" in it names a file that pathText() must be written to
+    std::string problem;     ///< if not empty, the frame cannot be made again, and this says why
+};
+
+/// Of the last frame. `pathFile` is named where the camera moved.
+CommandLine commandLineOf(const ShownFrame& frame, const Playback& playback, const std::string& pathFile);
+
+/// The `limpid view` that shows the same scene with the state in a file (state_file.h).
+std::string stateCommandOf(const ShownFrame& frame, const std::string& stateFile);
+
+/// The camera since the reset as a file for --camera-path (docs/animation.md).
+std::string pathText(const Playback& playback, float fovDegrees);
+
+/// As one word of a shell.
+std::string quoted(const std::string& word);
+
+}  // namespace limpid::studio

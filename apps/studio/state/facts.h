@@ -1,0 +1,40 @@
+// What the studio tells of itself: nothing of it can be changed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gpu/graph/frame_graph.h"
+#include "studio/state/timings.h"
+
+namespace limpid::studio {
+
+struct Facts {
+    std::string device;
+    std::string scene;    ///< name of the scene; empty: there is none
+    int scenesShown = 0;  ///< number of scenes that were loaded so far
+    std::string
+        activity;        ///< what takes longer than a frame now, such as "loading helmet.glb"; empty: nothing
+    gpu::Extent extent;  ///< of the frame that is computed, or was last
+    uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
+    uint64_t frames = 0;         ///< since the last reset
+    uint64_t framesEver = 0;
+    bool computing = false;  ///< false: the picture is finished, or rendering is stopped
+    double duration = 0.0;   ///< of the clip or the path, seconds; 0: nothing plays
+    std::vector<std::string> cameras;
+    Timings timings;
+    uint64_t memoryBytes = 0, sceneBytes = 0;  ///< on the device
+    float sceneRadius = 1.0f;                  ///< world units
+    std::string comparedWith, scores;
+    Track errors;  ///< FLIP of the picture against what it is compared with, each time that it was measured
+    std::string allValues;            ///< result of the last probe
+    std::vector<std::string> images;  ///< of State::pass
+    std::string message;              ///< the last thing that was done
+    bool messageIsOld = false;        ///< it need not be shown any more
+    std::string fault;                ///< the last thing that failed
+    std::string command;              ///< the command line that was asked for last
+    uint64_t commands = 0;            ///< counts them
+};
+
+}  // namespace limpid::studio

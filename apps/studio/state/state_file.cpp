@@ -1,0 +1,44 @@
+#include "studio/state/state_file.h"
+
+#include "base/error.h"
+#include "base/files/file.h"
+#include "studio/state/state_json.h"
+
+namespace limpid::studio {
+namespace {
+
+using nlohmann::json;
+
+constexpr uint64_t maxBytes = uint64_t{64} << 20;  ///< a scene can have many lights
+constexpr const char* versionKey = "limpid_state";
+constexpr int version = 1;
+
+}  // namespace
+
+json readStateFile(const std::filesystem::path& file) {
+    const std::vector<std::byte> bytes = readFile(file, maxBytes);
+    const auto* const text = reinterpret_cast<const char*>(bytes.data());
+    json fields = json::parse(text, text + bytes.size(), nullptr, false);
+    if (!fields.is_object() || !fields.contains(versionKey))
+        throw InputError(file, "this is no state of Limpid's");
+    if (fields.at(versionKey) != version) throw InputError(file, "the state is of another version of Limpid");
+    fields.erase(versionKey);
+    // The lights are those of a scene, which is not known here.
+    json known = fields;
+    known.erase("lights");
+    try {
+        State state;
+        studio::apply(state, known);
+    } catch (const UsageError& fault) {
+        throw InputError(file, fault.what());
+    }
+    return fields;
+}
+
+void writeStateFile(const std::filesystem::path& file, const State& state) {
+    json fields = toJson(state);
+    fields[versionKey] = version;
+    writeTextAtomically(file, fields.dump(1) + "\n");
+}
+
+}  // namespace limpid::studio
