@@ -12,6 +12,7 @@
 #include "scene/device/tracer.h"
 #include "scene/model/scene.h"
 #include "scene/model/scene_source.h"
+#include "studio/loop/scene_loading.h"
 #include "studio/state/state.h"
 
 namespace limpid::studio {
@@ -40,9 +41,6 @@ struct StudioSettings {
 
 /// How rays are traced on the device that there is.
 using TracerChoice = std::function<scene::Tracer(const gpu::Device&)>;
-
-/// Returns a complete scene (scene/model/prepare.h). Throws InputError and UsageError.
-using SceneLoader = std::function<scene::Scene(const scene::SceneSource& source)>;
 
 /// Returns the camera that the first scene is seen by. Throws UsageError.
 using CameraStart = std::function<scene::Camera(const scene::Scene&)>;

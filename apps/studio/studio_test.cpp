@@ -97,11 +97,11 @@ TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
 /// The old scene is shown until the new one is there; one that fails changes nothing.
 TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
     std::atomic<bool> go = false;
-    const auto slow = [&](const scene::SceneSource& source) {
+    const auto slow = [&](const scene::SceneSource& source, const Progress& progress) {
         if (source.scene == "builtin:lab-mirror") {
             while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
-        return scene::openScene(source);
+        return scene::openScene(source, progress);
     };
     const auto studio = make(small(), slow);
     const auto first = rest(*studio);
@@ -122,6 +122,50 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
                              [](const Shown& s) { return s.facts.scenesShown == 2; });
     EXPECT_NE(opened->facts.scene, first->facts.scene);
     EXPECT_TRUE(opened->facts.fault.empty());
+    studio->finish();
+}
+
+/// A scene whose loading has come to 25 %, until it is given up.
+scene::Scene loadForever(const scene::SceneSource&, const Progress& progress) {
+    for (;;) {
+        progress.part(0.0, 0.5).at(0.85);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+TEST_F(StudioTest, TellsHowFarLoadingIs) {
+    std::atomic<bool> ended = false;
+    const auto studio = make(small(), [&](const scene::SceneSource& source, const Progress& progress) {
+        if (source.scene != "builtin:lab-mirror") return scene::openScene(source, progress);
+        try {
+            return loadForever(source, progress);
+        } catch (const Cancelled&) {
+            ended = true;
+            throw;
+        }
+    });
+    rest(*studio);
+    const auto loading = wait(*studio, studio->ask({.kind = Kind::Open, .file = "builtin:lab-mirror"}),
+                              [](const Shown& s) { return s.facts.percent == 25; });
+    EXPECT_EQ(loading->facts.activityText(), "loading builtin:lab-mirror, 25 %");
+    wait(*studio, studio->ask({Kind::CancelLoading}), [&](const Shown& s) {
+        return s.facts.activity.empty() && s.facts.fault.empty() && s.facts.scenesShown == 1;
+    });
+    studio->finish();  // ends the thread, too
+    EXPECT_TRUE(ended);
+}
+
+TEST_F(StudioTest, TheFirstSceneCanBeGivenUp) {
+    const auto studio = make(small(), [](const scene::SceneSource& source, const Progress& progress) {
+        return source.scene == small().source.scene ? loadForever(source, progress)
+                                                    : scene::openScene(source, progress);
+    });
+    wait(*studio, 0, [](const Shown& s) { return s.facts.percent == 25; });
+    wait(*studio, studio->ask({Kind::CancelLoading}),
+         [](const Shown& s) { return s.facts.activity.empty(); });
+    const auto opened = wait(*studio, studio->ask({.kind = Kind::Open, .file = "builtin:lab-mirror"}),
+                             [](const Shown& s) { return s.facts.scenesShown == 1 && s.picture; });
+    EXPECT_FALSE(opened->facts.scene.empty());
     studio->finish();
 }
 

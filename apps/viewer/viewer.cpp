@@ -21,7 +21,7 @@ std::unique_ptr<Desktop> openDesktop(const studio::SceneLoader& load, const stud
     try {
         return std::make_unique<Desktop>();
     } catch (const Error&) {
-        if (!source.scene.empty()) start(load(source));
+        if (!source.scene.empty()) start(load(source, {}));
         throw;
     }
 }

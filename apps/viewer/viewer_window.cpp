@@ -252,7 +252,7 @@ void ViewerWindow::writeControls() {
             "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n"
             "scenes\t{}\nactivity\t{}\nrendering\t{}\n",
             facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe, values,
-            facts.comparedWith, facts.scenesShown, facts.activity,
+            facts.comparedWith, facts.scenesShown, facts.activityText(),
             facts.computing || !pending_.empty() ? "yes" : "no") +
         controls_.lines();
     if (text == controlsText_) return;

@@ -88,9 +88,9 @@ studio::TracerChoice tracerChoice(const StudioChoice& choice) {
 }
 
 studio::SceneLoader sceneLoader() {
-    return [](scene::SceneSource source) {
+    return [](scene::SceneSource source, const Progress& progress) {
         source.lightFile.clear();  // the studio applies these edits itself
-        return scene::openScene(source);
+        return scene::openScene(source, progress);
     };
 }
 

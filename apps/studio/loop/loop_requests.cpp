@@ -74,8 +74,7 @@ void RenderLoop::carryOut(const Request& request) {
     if (kind == Kind::Open || kind == Kind::OpenDropped)
         return void(attempt([&] { open(request.file, kind == Kind::OpenDropped); }));
     if (kind == Kind::CancelLoading && loading_) {
-        cancelled_.push_back(std::move(loading_->scene));
-        loading_.reset();
+        loading_.cancel();
         facts_.activity.clear();
         return say("cancelled");
     }

@@ -1,6 +1,8 @@
 // The scene and its lights: opening, changing and restarting.
 #include <algorithm>
-#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "scene/model/light_file.h"
 #include "scene/motion/movement.h"
@@ -8,57 +10,54 @@
 #include "studio/state/light_desk.h"
 
 namespace limpid::studio {
-/// Loads the scene that the studio starts with. Throws what the loader throws.
-void RenderLoop::loadFirst() {
-    facts_.activity = "loading " + settings_.source.scene;
-    publish();
-    scene::Scene scene = load_(settings_.source);
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, settings_.animation);
-    const scene::Camera home = start_(scene);
+/// Begins to load a scene, while the old one is shown. A scene that is being loaded already is given up.
+void RenderLoop::load(const scene::SceneSource& source, SceneLoading::Why why, std::string message) {
+    const bool relights = why == SceneLoading::Why::Relit;
+    std::optional<std::string> clip = "";
+    if (why == SceneLoading::Why::First) clip = settings_.animation;
+    if (relights) clip = stage_->moves() ? std::optional(scene::clipChoice(stage_->scene())) : std::nullopt;
+    facts_.activity = relights ? "changing the lights" : "loading " + source.scene;
+    facts_.percent = 0;
+    loading_.begin({source, why, std::move(clip), std::move(message)});
+}
+
+/// Shows the scene that was being loaded, if that is done; leaves everything unchanged if it failed. Throws
+/// what the loader throws if it was the scene that the studio starts with.
+void RenderLoop::finishLoading() {
+    if (!loading_) return;
+    if (std::exchange(facts_.percent, loading_.percent()) != loading_.percent()) changedFacts_ = true;
+    if (!loading_.isDone()) return;
+    const SceneLoading::Order order = loading_.order();
+    facts_.activity.clear();
+    changedFacts_ = true;
+    if (order.why == SceneLoading::Why::First) return showFirst(loading_.take());
+    attempt([&] {
+        LoadedScene scene = loading_.take();
+        if (order.why == SceneLoading::Why::Relit)
+            showRelit(std::move(scene), order.source);
+        else
+            showOpened(std::move(scene), order.source);
+        if (!order.message.empty()) say(order.message);
+    });
+}
+
+/// Shows the scene that the studio starts with.
+void RenderLoop::showFirst(LoadedScene scene) {
+    const scene::Camera home = start_(scene.scene);
     show(std::move(scene));
     state_.lights.show(stage_->originalLights(), settings_.source);
     if (!settings_.source.lightFile.empty())
         state_.lights.lights = scene::readLightFile(settings_.source.lightFile, state_.lights.original);
     goTo(home);
-    facts_.activity.clear();
     if (settings_.state.is_null()) return;
     if (settings_.state.contains("exposure")) measureExposure_ = false;
     edit(std::exchange(settings_.state, {}));
     if (!facts_.fault.empty()) throw UsageError("--state: " + facts_.fault);
 }
 
-/// Begins to load a scene, while the old one is shown. A scene that is being loaded already is given up.
-void RenderLoop::load(const scene::SceneSource& source, bool relights, std::string message) {
-    std::erase_if(cancelled_, [](const auto& scene) {
-        return scene.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
-    if (loading_) cancelled_.push_back(std::move(loading_->scene));
-    facts_.activity = relights ? "changing the lights" : "loading " + source.scene;
-    loading_ = Loading{source, relights, std::move(message),
-                       std::async(std::launch::async, [this, source] { return load_(source); })};
-}
-
-/// Shows the scene that was being loaded, if that is done; leaves everything unchanged if it failed.
-void RenderLoop::finishLoading() {
-    if (!loading_ || loading_->scene.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    Loading done = std::move(*loading_);
-    loading_.reset();
-    facts_.activity.clear();
-    changedFacts_ = true;
-    attempt([&] {
-        scene::Scene scene = done.scene.get();
-        if (done.relights)
-            showRelit(std::move(scene), done.source);
-        else
-            showOpened(std::move(scene), done.source);
-        if (!done.message.empty()) say(done.message);
-    });
-}
-
 /// Shows a scene that was opened. The command line's camera and clip apply to its own scene only.
-void RenderLoop::showOpened(scene::Scene scene, const scene::SceneSource& source) {
-    if (!scene.rig.clips.empty()) scene::chooseClip(scene, "");
-    const scene::Camera home = scene.cameras.front();
+void RenderLoop::showOpened(LoadedScene scene, const scene::SceneSource& source) {
+    const scene::Camera home = scene.scene.cameras.front();
     show(std::move(scene));
     goTo(home);
     const LightDesk before = state_.lights;
@@ -71,7 +70,7 @@ void RenderLoop::showOpened(scene::Scene scene, const scene::SceneSource& source
     if (same) state_.lights.carry(before, sameSky);
 }
 
-void RenderLoop::show(scene::Scene scene) {
+void RenderLoop::show(LoadedScene scene) {
     auto stage = std::make_unique<Stage>(device_, std::move(scene), tracer_(device_));
     device_.waitIdle();
     main_.drop();
@@ -106,32 +105,31 @@ void RenderLoop::open(const std::string& file, bool dropped) {
         // A dropped file does not imply permission to read the folders around its own.
         source.assetRoot = dropped ? std::filesystem::absolute(file).parent_path().string() : "";
     }
-    load(source, false, "opened " + file);
+    load(source, SceneLoading::Why::Opened, "opened " + file);
 }
 
 void RenderLoop::addLamp(bool sun) {
     scene::SceneSource source = settings_.source;
     source.lights.push_back(newLamp(sun, state_.pose.eye, state_.pose.target, state_.exposure));
-    load(source, true, "");
+    load(source, SceneLoading::Why::Relit, "");
 }
 
 void RenderLoop::takeLampAway(int index) {
     scene::SceneSource source = settings_.source;
     removeLamp(index, source, state_.lights);
-    load(source, true, "");
+    load(source, SceneLoading::Why::Relit, "");
 }
 
 /// Loads the scene again with the background that was chosen.
 void RenderLoop::changeBackground() {
     scene::SceneSource source = settings_.source;
     source.background = state_.lights.backgroundText();
-    load(source, true, "");
+    load(source, SceneLoading::Why::Relit, "");
 }
 
 /// Shows the same scene with other lights; everything else is kept.
-void RenderLoop::showRelit(scene::Scene scene, const scene::SceneSource& source) {
+void RenderLoop::showRelit(LoadedScene scene, const scene::SceneSource& source) {
     const double time = playback_.time();
-    if (stage_->moves()) scene::chooseClip(scene, scene::clipChoice(stage_->scene()));
     show(std::move(scene));
     playback_.reset(time);
     flight_.reset(time);

@@ -16,6 +16,14 @@ constexpr double idleSeconds = 1.0;      ///< longest wait for a message
 constexpr double waitingSeconds = 0.02;  ///< same, while something is computed beside the frames
 constexpr double messageSeconds = 20.0;
 
+/// The others wait for the first scene: they are about what it shows.
+bool concernsLoading(const Message& message) {
+    using Kind = Request::Kind;
+    const Request* const request = std::get_if<Request>(&message.content);
+    return request && (request->kind == Kind::Open || request->kind == Kind::OpenDropped ||
+                       request->kind == Kind::CancelLoading);
+}
+
 }  // namespace
 
 RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tracer, const SceneLoader& load,
@@ -31,7 +39,8 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
       networks_(device_, settings.weights),
       comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()),
-      resolution_(device_.isCpu()) {
+      resolution_(device_.isCpu()),
+      loading_(load) {
     loadPipelines(device_, pipelineFile(device_));
     state_.viewport = settings.render.extent;
     state_.render = settings.render;
@@ -80,9 +89,9 @@ void RenderLoop::takeOver(const Standing& standing) {
     settings_.loseDeviceAt = 0;
     messages_ = standing.messages;
     if (!standing.hasScene) return;
-    scene::Scene scene = load_(settings_.source);
-    if (!standing.clip.empty()) scene::chooseClip(scene, standing.clip);
-    show(std::move(scene));
+    SceneLoading::Order order{.source = settings_.source};
+    if (!standing.clip.empty()) order.clip = standing.clip;
+    show(loadScene(load_, order, {}));
     goTo(standing.home);
     state_ = standing.state;
     rig_.choose(*stage_, state_.camera);
@@ -93,10 +102,10 @@ void RenderLoop::takeOver(const Standing& standing) {
 }
 
 void RenderLoop::run() {
-    if (!stage_ && !settings_.source.scene.empty()) loadFirst();
+    if (!stage_ && !settings_.source.scene.empty()) load(settings_.source, SceneLoading::Why::First, "");
     bool rests = false;
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
-        const bool waits = comparison_.isScoring() || loading_.has_value() || resolution_.isCoarse();
+        const bool waits = comparison_.isScoring() || loading_ || resolution_.isCoarse();
         handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
         finishLoading();
         changedFacts_ |= reloadShaders();
@@ -111,7 +120,13 @@ void RenderLoop::run() {
 }
 
 void RenderLoop::handleMessages(double patience) {
-    for (const Message& message : mailbox_.take(patience)) {
+    std::deque<Message> messages = std::exchange(held_, {});
+    std::ranges::move(mailbox_.take(patience), std::back_inserter(messages));
+    for (Message& message : messages) {
+        if (loading_.isFirst() && !concernsLoading(message)) {
+            held_.push_back(std::move(message));
+            continue;
+        }
         handle(message);
         messages_ = message.number;
         changedFacts_ = true;
@@ -120,6 +135,7 @@ void RenderLoop::handleMessages(double patience) {
 
 /// Does what was asked for last: pictures are not lost because the window was closed.
 void RenderLoop::finish() {
+    if (loading_.isFirst() && !settings_.screenshot.empty()) showFirst(loading_.take());
     handleMessages(0.0);
     ending_ = true;
     if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty())) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <future>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +20,7 @@
 #include "studio/loop/networks.h"
 #include "studio/loop/playback.h"
 #include "studio/loop/resolution.h"
+#include "studio/loop/scene_loading.h"
 #include "studio/loop/shader_reload.h"
 #include "studio/loop/stage.h"
 #include "studio/settings.h"
@@ -53,12 +54,12 @@ class RenderLoop {
 
   private:
     void finish();
-    void loadFirst();
-    void load(const scene::SceneSource& source, bool relights, std::string message);
+    void load(const scene::SceneSource& source, SceneLoading::Why why, std::string message);
     void finishLoading();
-    void show(scene::Scene scene);
-    void showOpened(scene::Scene scene, const scene::SceneSource& source);
-    void showRelit(scene::Scene scene, const scene::SceneSource& source);
+    void show(LoadedScene scene);
+    void showFirst(LoadedScene scene);
+    void showOpened(LoadedScene scene, const scene::SceneSource& source);
+    void showRelit(LoadedScene scene, const scene::SceneSource& source);
     void goTo(const scene::Camera& home);
     void open(const std::string& file, bool dropped);
     void addLamp(bool sun);
@@ -158,15 +159,8 @@ class RenderLoop {
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
 
-    /// A scene that is being read on a thread of its own, while the old one is shown.
-    struct Loading {
-        scene::SceneSource source;
-        bool relights = false;  ///< the same scene with other lights
-        std::string message;    ///< when it is done
-        std::future<scene::Scene> scene;
-    };
-    std::optional<Loading> loading_;
-    std::vector<std::future<scene::Scene>> cancelled_;  ///< their threads still run
+    SceneLoading loading_;
+    std::deque<Message> held_;  ///< messages that wait for the first scene
 
     // The pictures that were published last.
     uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0;

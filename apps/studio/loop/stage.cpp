@@ -4,12 +4,12 @@
 
 namespace limpid::studio {
 
-Stage::Stage(gpu::Device& device, scene::Scene scene, scene::Tracer tracer)
-    : scene_(std::move(scene)),
+Stage::Stage(gpu::Device& device, LoadedScene loaded, scene::Tracer tracer)
+    : scene_(std::move(loaded.scene)),
       originalLights_(scene::lightControlsOf(scene_)),
       lights_(originalLights_),
       sphere_(scene::boundingSphere(scene_)) {
-    const scene::SceneData data = scene::buildSceneData(scene_);
+    const scene::SceneData& data = loaded.data;
     onDevice_.emplace(device, data, scene::TraceOptions{tracer, {}});
     live_.emplace(scene_, data);
     if (scene_.clip != scene::none) animator_.emplace(scene_, data);

@@ -8,14 +8,14 @@
 #include "scene/model/light_control.h"
 #include "scene/model/live_lights.h"
 #include "scene/motion/scene_animator.h"
+#include "studio/loop/scene_loading.h"
 
 namespace limpid::studio {
 
 class Stage {
   public:
-    /// `scene` is complete (scene/model/prepare.h), with its clip chosen if one shall play. Throws as
-    /// GpuScene does.
-    Stage(gpu::Device& device, scene::Scene scene, scene::Tracer tracer);
+    /// Throws as GpuScene does.
+    Stage(gpu::Device& device, LoadedScene scene, scene::Tracer tracer);
     Stage(const Stage&) = delete;  // the animator refers to the scene
     Stage& operator=(const Stage&) = delete;
 

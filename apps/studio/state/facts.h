@@ -14,9 +14,10 @@ struct Facts {
     std::string device;
     std::string scene;    ///< name of the scene; empty: there is none
     int scenesShown = 0;  ///< number of scenes that were loaded so far
-    std::string
-        activity;        ///< what takes longer than a frame now, such as "loading helmet.glb"; empty: nothing
-    gpu::Extent extent;  ///< of the frame that is computed, or was last
+    /// What takes longer than a frame now, such as "loading helmet.glb"; empty: nothing.
+    std::string activity;
+    int percent = 0;             ///< how much of it is done; 0: too little, or it is not known
+    gpu::Extent extent;          ///< of the frame that is computed, or was last
     uint64_t samplesInMean = 0;  ///< per pixel; 0 for pipelines that do not accumulate
     uint64_t frames = 0;         ///< since the last reset
     uint64_t framesEver = 0;
@@ -35,6 +36,9 @@ struct Facts {
     std::string fault;                ///< the last thing that failed
     std::string command;              ///< the command line that was asked for last
     uint64_t commands = 0;            ///< counts them
+
+    /// "loading helmet.glb, 40 %"; empty: nothing takes long.
+    std::string activityText() const;
 };
 
 }  // namespace limpid::studio

@@ -468,7 +468,7 @@ json toJson(const Facts& facts) {
     return {{"device", facts.device},
             {"scene", facts.scene},
             {"scenes", facts.scenesShown},
-            {"activity", facts.activity},
+            {"activity", facts.activityText()},
             {"extent", {facts.extent.width, facts.extent.height}},
             {"samples", facts.samplesInMean},
             {"frames", facts.frames},

@@ -23,7 +23,7 @@ void drawText(ImU32 color, const std::string& text) {
 void drawActivity(const Drawing& with) {
     const Facts& facts = with.facts;
     if (!facts.activity.empty()) {
-        ImGui::TextUnformatted(facts.activity.c_str());
+        ImGui::TextUnformatted(facts.activityText().c_str());
         ImGui::SameLine();
         if (with.controls.button("cancel"))
             with.panel.asked.push_back({.kind = Request::Kind::CancelLoading});
@@ -45,8 +45,8 @@ void drawStatus(const Drawing& with) {
     const Accents colors = accentsOf(with.panel.memory.dark);
     const float start = ImGui::GetCursorPosY();
     drawActivity(with);
-    with.controls.note("status",
-                       facts.activity.empty() ? facts.computing ? "computing" : "finished" : facts.activity);
+    with.controls.note(
+        "status", facts.activity.empty() ? facts.computing ? "computing" : "finished" : facts.activityText());
     const studio::State& state = with.panel.state;
     if (facts.scenesShown > 0)
         drawText(colors.quiet,

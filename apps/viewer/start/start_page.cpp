@@ -79,7 +79,9 @@ void drawStartPage(const Drawing& with, const Thumbnails& thumbnails) {
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleVar();
     if (!with.facts.activity.empty()) {
-        ImGui::TextUnformatted(with.facts.activity.c_str());
+        ImGui::TextUnformatted(with.facts.activityText().c_str());
+        if (with.controls.button("cancel"))
+            with.panel.asked.push_back({.kind = studio::Request::Kind::CancelLoading});
     } else {
         ImGui::TextUnformatted("Drop a scene here (.gltf, .glb or .obj), or open one of these.");
         ImGui::TextDisabled("? lists keys and mouse.");

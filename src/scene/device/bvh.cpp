@@ -42,8 +42,9 @@ struct Split {
 
 class BinaryBuilder {
   public:
-    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth)
-        : boxes_(boxes), maxLeafSize_(maxLeafSize), sahDepth_(sahDepth) {
+    BinaryBuilder(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth,
+                  const Progress& progress)
+        : boxes_(boxes), maxLeafSize_(maxLeafSize), sahDepth_(sahDepth), progress_(progress) {
         order_.resize(boxes.size());
         std::iota(order_.begin(), order_.end(), 0u);
         nodes_.resize(2 * boxes.size());
@@ -76,10 +77,18 @@ class BinaryBuilder {
         const auto right = [&] { build(children + 1, first + leftCount, count - leftCount, depth + 1); };
         if (count > parallelThreshold) {
             tbb::parallel_invoke(left, right);
+            if (leftCount <= parallelThreshold) report(leftCount);
+            if (count - leftCount <= parallelThreshold) report(count - leftCount);
         } else {
             left();
             right();
         }
+    }
+
+    /// Reports that a small subtree of so many primitives is done.
+    void report(uint32_t count) {
+        const uint32_t placed = placed_.fetch_add(count, std::memory_order_relaxed) + count;
+        progress_.at(placed, boxes_.size());
     }
 
     /// Partitions the range and returns the left part's size; 0 makes a leaf.
@@ -172,6 +181,8 @@ class BinaryBuilder {
     std::vector<uint32_t> order_;
     std::vector<BinaryNode> nodes_;
     std::atomic<uint32_t> used_{0};
+    Progress progress_;
+    std::atomic<uint32_t> placed_{0};
 };
 
 float cellSize(uint8_t exponent) {
@@ -285,7 +296,7 @@ BvhNode makeBvhNode(std::span<const BvhChild> children) {
     return node;
 }
 
-Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth) {
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth, const Progress& progress) {
     if (boxes.size() > BvhRef::maxIndex) {
         throw Error(
             fmt::format("{} primitives in one tree exceed the limit of {}", boxes.size(), BvhRef::maxIndex));
@@ -300,7 +311,7 @@ Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDept
         bvh.stackSize = 3;
         return bvh;
     }
-    BinaryBuilder binary(boxes, maxLeafSize, sahDepth);
+    BinaryBuilder binary(boxes, maxLeafSize, sahDepth, progress);
     bvh.bounds = binary.node(0).bounds;
     bvh.nodes.reserve(boxes.size() / 2 + 1);
     const BinaryNode& root = binary.node(0);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/progress.h"
 
 namespace limpid::scene {
 
@@ -79,8 +80,9 @@ inline constexpr uint32_t maxSahDepth = 48;
 
 /// Builds a BVH over one box per primitive. `maxLeafSize` is 1 to BvhRef::maxLeafSize. `sahDepth` 0 makes the
 /// shallowest tree. Throws Error if there are more primitives than a BvhRef can address. Without primitives,
-/// returns one node that no ray hits.
-Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth);
+/// returns one node that no ray hits. Throws Cancelled as `progress` does.
+Bvh buildBvh(std::span<const Aabb> boxes, uint32_t maxLeafSize, uint32_t sahDepth = maxSahDepth,
+             const Progress& progress = {});
 
 /// A child of a node being built.
 struct BvhChild {

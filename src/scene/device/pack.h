@@ -10,7 +10,7 @@
 namespace limpid::scene {
 
 /// Packs trees, shading triangles, vertices and instances. Needs features.vertexData.
-void packGeometry(const Scene& scene, SceneData& data);
+void packGeometry(const Scene& scene, SceneData& data, const Progress& progress);
 /// Packs the data that poses the vertices of a deforming instance: appends to the rest vertices and morph
 /// deltas of the motion data.
 DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_t firstVertex,
@@ -18,7 +18,7 @@ DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_
 /// Determines the order in which the nodes of deforming trees are refitted.
 void findRefitLevels(SceneData& data);
 /// Packs materials, texture references and mip levels, and sets the features that depend on materials.
-void packMaterials(const Scene& scene, SceneData& data);
+void packMaterials(const Scene& scene, SceneData& data, const Progress& progress);
 /// Packs the light list, its alias table, and the environment. Needs the geometry's instances.
 void packLights(const Scene& scene, SceneData& data);
 /// Packs the light list and its alias table only. Needs only the geometry's instances and bounding sphere.

@@ -46,7 +46,10 @@ struct Transform {
 
 class GeometryPacker {
   public:
-    GeometryPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {}
+    GeometryPacker(const Scene& scene, SceneData& data, const Progress& progress)
+        : scene_(scene), data_(data), progress_(progress) {
+        for (const Mesh& mesh : scene.meshes) meshTriangles_ += mesh.triangleCount();
+    }
 
     void pack() {
         findInstancedMeshes();
@@ -192,7 +195,7 @@ class GeometryPacker {
     /// Builds a tree and appends it to the node and triangle buffers.
     Tree appendTree(const std::vector<Aabb>& boxes, const std::vector<LeafTriangle>& triangles,
                     bool moves = false) {
-        const Bvh bvh = buildBvh(boxes, maxTrianglesPerLeaf);
+        const Bvh bvh = buildBvh(boxes, maxTrianglesPerLeaf, maxSahDepth, progressOf(boxes.size()));
         const auto firstTriangle =
             static_cast<uint32_t>(data_.bvhTriangles.size() / layout::BVH_TRIANGLE_TEXELS);
         if (firstTriangle + triangles.size() > BvhRef::maxIndex) {
@@ -214,6 +217,18 @@ class GeometryPacker {
         });
         data_.trees.push_back({firstTriangle, static_cast<uint32_t>(triangles.size()), opaque, moves});
         return {root, bvh.stackSize, bvh.bounds, static_cast<uint32_t>(data_.trees.size() - 1)};
+    }
+
+    /// For the next tree. Meshes that are copied into one tree count more than once, so the shares are rough.
+    Progress progressOf(size_t triangles) {
+        const auto share = [&] {
+            return std::min(static_cast<double>(treeTriangles_) /
+                                static_cast<double>(std::max<size_t>(meshTriangles_, 1)),
+                            1.0);
+        };
+        const double from = share();
+        treeTriangles_ += triangles;
+        return progress_.part(from, share());
     }
 
     template <typename Rebase>
@@ -343,6 +358,8 @@ class GeometryPacker {
 
     const Scene& scene_;
     SceneData& data_;
+    Progress progress_;
+    size_t meshTriangles_ = 0, treeTriangles_ = 0;
     std::vector<bool> instanced_;  ///< by mesh
     std::vector<TopLeaf> still_;
     uint32_t vertexCount_ = 0;
@@ -364,8 +381,8 @@ gpu::TreePlacement placementOf(uint32_t tree, const mat4& toWorld) {
     return placement;
 }
 
-void packGeometry(const Scene& scene, SceneData& data) {
-    GeometryPacker(scene, data).pack();
+void packGeometry(const Scene& scene, SceneData& data, const Progress& progress) {
+    GeometryPacker(scene, data, progress).pack();
 }
 
 }  // namespace limpid::scene

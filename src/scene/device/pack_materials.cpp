@@ -53,8 +53,11 @@ class MaterialPacker {
         for (const Texture& texture : scene.textures) allTexels_ += mipTexelCount(texture);
     }
 
-    void pack() {
-        for (const Material& material : scene_.materials) packMaterial(material);
+    void pack(const Progress& progress) {
+        for (size_t i = 0; i < scene_.materials.size(); ++i) {
+            progress.at(i, scene_.materials.size());
+            packMaterial(scene_.materials[i]);
+        }
     }
 
   private:
@@ -121,8 +124,8 @@ class MaterialPacker {
 
 }  // namespace
 
-void packMaterials(const Scene& scene, SceneData& data) {
-    MaterialPacker(scene, data).pack();
+void packMaterials(const Scene& scene, SceneData& data, const Progress& progress) {
+    MaterialPacker(scene, data).pack(progress);
 }
 
 }  // namespace limpid::scene

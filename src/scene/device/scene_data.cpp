@@ -39,11 +39,12 @@ uint64_t SceneData::byteCount() const {
     return sum;
 }
 
-SceneData buildSceneData(const Scene& scene) {
+SceneData buildSceneData(const Scene& scene, const Progress& progress) {
     SceneData data;
     data.features.vertexData = hasVertexData(scene);
-    packMaterials(scene, data);
-    packGeometry(scene, data);
+    packMaterials(scene, data, progress.part(0.0, 0.3));
+    packGeometry(scene, data, progress.part(0.3, 0.9));
+    progress.at(0.9);
     packLights(scene, data);
     if (data.features.specular) fillGgxTable(data.ggxTable);
     if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/progress.h"
 #include "gpu/graph/resources.h"
 #include "scene/model/scene.h"
 #include "scene/motion/motion_data.h"
@@ -47,7 +48,8 @@ struct SceneData {
     uint64_t byteCount() const;
 };
 
-/// Builds trees, light tables and mip levels. Throws Error if the textures exceed 4 x 2^27 texels.
-SceneData buildSceneData(const Scene& scene);
+/// Builds trees, light tables and mip levels. Throws Error if the textures exceed 4 x 2^27 texels, and
+/// Cancelled as `progress` does.
+SceneData buildSceneData(const Scene& scene, const Progress& progress = {});
 
 }  // namespace limpid::scene

@@ -24,7 +24,8 @@ class Loader {
     Loader(const std::filesystem::path& file, const LoadOptions& options)
         : document_(file, options.assetRoot),
           lists_(document_.lists()),
-          textures_(document_, scene_, options.maxImageMemory) {}
+          textures_(document_, scene_, options),
+          progress_(options.progress) {}
 
     Scene run() {
         scene_.name = document_.file().stem().string();
@@ -32,6 +33,7 @@ class Loader {
         tree_ = readNodes(document_);
         readRig();
         for (size_t i = 0; i < lists_.nodes.size(); ++i) {
+            progress_.part(0.7, 1.0).at(i, lists_.nodes.size());
             if (tree_.inScene[i]) addNode(i);
         }
         if (scene_.materials.empty()) scene_.materials.emplace_back();
@@ -54,6 +56,7 @@ class Loader {
     Scene scene_;
     MeshLibrary meshes_{document_, scene_};
     TextureLibrary textures_;
+    Progress progress_;
     NodeTree tree_;
     std::map<int, std::vector<mat4>> joints_;  ///< by skin
     std::vector<bool> animated_;               ///< by node: whether a clip moves it
@@ -62,6 +65,7 @@ class Loader {
 
 void Loader::readMaterials() {
     for (const Object& source : lists_.materials) {
+        progress_.part(0.0, 0.7).at(scene_.materials.size(), lists_.materials.size());
         scene_.materials.push_back(readMaterial(document_, source, textures_));
     }
     textures_.checkUnused();

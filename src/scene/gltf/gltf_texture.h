@@ -11,6 +11,7 @@
 
 #include "scene/device/texture_pool.h"
 #include "scene/gltf/gltf_document.h"
+#include "scene/model/load_options.h"
 
 namespace limpid::scene::gltf {
 
@@ -19,10 +20,10 @@ namespace limpid::scene::gltf {
 /// InputError if the document itself is invalid.
 class TextureLibrary {
   public:
-    TextureLibrary(Document& document, Scene& scene, uint64_t maxImageMemory)
+    TextureLibrary(Document& document, Scene& scene, const LoadOptions& options)
         : document_(document),
-          pool_(scene, {document.file(), TexturePool::Formats::PngAndJpeg, maxImageMemory}),
-          maxImageMemory_(maxImageMemory) {}
+          pool_(scene, {document.file(), TexturePool::Formats::PngAndJpeg, options.maxImageMemory}),
+          maxImageMemory_(options.maxImageMemory) {}
 
     /// Returns `owner.key` as a reference; none if absent or unreadable. `srgb`: the RGB texels are
     /// sRGB-encoded.

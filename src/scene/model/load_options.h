@@ -1,9 +1,11 @@
-// Limits on the files that a scene may read, and on the memory for each picture.
+// How a scene is loaded: limits on the files that it may read and on the memory for each picture, and who
+// watches.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 
+#include "base/progress.h"
 #include "image/io/memory_bound.h"
 
 namespace limpid::scene {
@@ -14,6 +16,7 @@ struct LoadOptions {
     /// Host memory for one picture, from the file's bytes to mip levels and tables. Larger pictures are
     /// scaled down while they are decoded.
     uint64_t maxImageMemory = image::defaultImageMemory;
+    Progress progress = {};
 };
 
 /// Returns the asset root for a scene that the user names: the parent of the scene's folder, so that

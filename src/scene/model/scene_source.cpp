@@ -17,20 +17,24 @@ namespace {
 
 constexpr std::string_view builtinPrefix = "builtin:";
 
-Scene loadFile(const SceneSource& source) {
+Scene loadFile(const SceneSource& source, const Progress& progress) {
     const LoadOptions options{.assetRoot = source.assetRoot.empty() ? defaultAssetRoot(source.scene)
                                                                     : std::filesystem::path(source.assetRoot),
-                              .maxImageMemory = source.maxImageMemory};
+                              .maxImageMemory = source.maxImageMemory,
+                              .progress = progress};
     return loadScene(source.scene, options);
 }
 
 }  // namespace
 
-Scene openScene(const SceneSource& source) {
+Scene openScene(const SceneSource& source, const Progress& progress) {
     const bool builtin = source.scene.starts_with(builtinPrefix);
-    Scene scene = builtin ? builtinScene(source.scene.substr(builtinPrefix.size())) : loadFile(source);
+    Scene scene = builtin ? builtinScene(source.scene.substr(builtinPrefix.size()))
+                          : loadFile(source, progress.part(0.0, 0.8));
+    progress.at(0.8);
     if (!source.environment.empty())
         scene.environment = loadEnvironment(source.environment, source.maxImageMemory);
+    progress.at(0.9);
     OwnLight own{{}, parseBackground(source.background)};
     for (const std::string& text : source.lights) {
         if (const auto lamp = parseLamp(text)) own.lamps.push_back(*lamp);

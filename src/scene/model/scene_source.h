@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "scene/model/load_options.h"
 #include "scene/model/scene.h"
 
@@ -22,8 +23,8 @@ struct SceneSource {
 };
 
 /// Loads or makes the scene, gives it the environment and lights, and completes it (prepare.h). Throws
-/// InputError and UsageError.
-Scene openScene(const SceneSource& source);
+/// InputError and UsageError, and Cancelled as `progress` does.
+Scene openScene(const SceneSource& source, const Progress& progress = {});
 
 /// By name, or by number from 0; "" is the first. Throws UsageError listing the cameras if there is no such
 /// camera.

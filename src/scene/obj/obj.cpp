@@ -22,6 +22,7 @@ namespace limpid::scene {
 namespace {
 
 constexpr size_t maxGroups = size_t{1} << 20;
+constexpr size_t linesPerReport = 1 << 12;  ///< between two reports of the progress
 
 /// Indices into the file's lists, from 0; `none` if the face gives none.
 struct Corner {
@@ -51,7 +52,8 @@ class ObjLoader {
         : files_(file, options.assetRoot),
           textures_(scene_, {file, TexturePool::Formats::TgaAndBmpToo, options.maxImageMemory}),
           content_(readSceneFile(file)),
-          lines_(file, content_) {}
+          lines_(file, content_),
+          progress_(options.progress) {}
 
     Scene run();
 
@@ -75,6 +77,7 @@ class ObjLoader {
     TexturePool textures_;
     std::vector<std::byte> content_;
     Lines lines_;
+    Progress progress_;
     std::vector<vec3> positions_, normals_;
     std::vector<vec3> colors_;  ///< one per position, or empty
     std::vector<vec2> uvs_;
@@ -89,7 +92,10 @@ class ObjLoader {
 
 Scene ObjLoader::run() {
     scene_.name = files_.sceneFile().stem().string();
-    while (const auto line = lines_.next()) readLine(*line);
+    for (size_t read = 0; const auto line = lines_.next(); ++read) {
+        if (read % linesPerReport == 0) progress_.at(lines_.readBytes(), content_.size());
+        readLine(*line);
+    }
     finishGroup();
     if (scene_.instances.empty()) throw InputError(files_.sceneFile(), "has no triangles to draw");
     if (scene_.materials.empty()) scene_.materials.push_back(greyMaterial());

@@ -39,7 +39,9 @@ std::string_view Words::rest() const {
 }
 
 Lines::Lines(std::filesystem::path file, std::span<const std::byte> text)
-    : file_(std::move(file)), rest_(reinterpret_cast<const char*>(text.data()), text.size()) {
+    : file_(std::move(file)),
+      size_(text.size()),
+      rest_(reinterpret_cast<const char*>(text.data()), text.size()) {
     if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
         throw InputError(file_, "is UTF-16 text, which is not read: save it as UTF-8");
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);

@@ -41,11 +41,13 @@ class Lines {
 
     const std::filesystem::path& file() const { return file_; }
     size_t line() const { return line_; }
+    size_t readBytes() const { return size_ - rest_.size(); }
 
   private:
     std::string_view takeLine();
 
     std::filesystem::path file_;
+    size_t size_;
     std::string_view rest_;
     std::string joined_;  ///< the result of joining continued lines
     size_t line_ = 0;
