@@ -125,6 +125,32 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
     studio->finish();
 }
 
+double meanDifference(const Picture& a, const Picture& b) {
+    const auto *first = reinterpret_cast<const uint8_t*>(a.texels.data()),
+               *second = reinterpret_cast<const uint8_t*>(b.texels.data());
+    double sum = 0.0;
+    for (size_t i = 0; i < 4 * a.texels.size(); ++i) sum += std::abs(int{first[i]} - int{second[i]});
+    return sum / static_cast<double>(4 * a.texels.size());
+}
+
+/// Without their parts, four methods have nothing in common but their input: they must show the same.
+TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
+    const auto studio = make(small());
+    rest(*studio, studio->edit({{"jitter", "off"}, {"max_samples", 1}}));
+    const json off{{"part.temporal", false}, {"part.spatial", false}, {"part.demodulation", false}};
+    const json on{{"part.temporal", true}, {"part.spatial", true}, {"part.demodulation", true}};
+    std::shared_ptr<const Picture> input;
+    for (const char* denoiser : {"temporal", "svgf", "atrous", "bilateral"}) {
+        const auto whole = rest(*studio, studio->edit({{"denoiser", denoiser}}));
+        const auto without = rest(*studio, studio->edit(off));
+        if (!input) input = without->picture;
+        EXPECT_LT(meanDifference(*without->picture, *input), 0.5) << denoiser;
+        EXPECT_GT(meanDifference(*whole->picture, *input), 2.0) << denoiser;
+        rest(*studio, studio->edit(on));
+    }
+    studio->finish();
+}
+
 /// A scene whose loading has come to 25 %, until it is given up.
 scene::Scene loadForever(const scene::SceneSource&, const Progress& progress) {
     for (;;) {

@@ -89,7 +89,7 @@ void RenderLoop::carryOut(const Request& request) {
         facts_.allValues = facts_.allValues.empty() ? probeAll(request.position) : std::string();
     if (kind == Kind::AddPoint || kind == Kind::AddSun) attempt([&] { addLamp(kind == Kind::AddSun); });
     if (kind == Kind::RemoveLamp) attempt([&] { takeLampAway(request.index); });
-    if (kind == Kind::KeepSettings) state_.comparison.keep(state_.render);
+    if (kind == Kind::KeepSettings) state_.comparison.keep(withParts(state_.render, state_.parts));
     if (kind == Kind::SaveLights) attempt([&] { saveLights(); });
     if (kind == Kind::SavePath) attempt([&] { savePath(); });
     if (kind == Kind::SavePng) toSave_.emplace_back(".png");
@@ -199,7 +199,7 @@ void RenderLoop::loadNetworks() {
     if (!have(state_.render.pipeline)) state_.render.pipeline = main_.settings().pipeline;
     if (state_.comparison.isOn() && !have(settingsOfComparison(state_, state_.render, networks_).pipeline))
         state_.comparison.with = 0;
-    wanted_ = state_.render;
+    wanted_ = withParts(state_.render, state_.parts);
     networks_.set(wanted_);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/tone_curve.h"
+#include "renderer/frame/denoiser_parts.h"
 #include "renderer/frame/settings.h"
 #include "studio/compare/comparison.h"
 #include "studio/compare/inspector.h"
@@ -35,6 +36,7 @@ struct State {
     gpu::Extent viewport{1280, 720};  ///< pixels in which the picture is shown
     /// Its extent and jitter follow from the fields below; its networks are empty.
     RenderSettings render;
+    DenoiserParts parts;    ///< of the chosen denoiser
     uint32_t samples = 1;   ///< per pixel and frame
     int maxSamples = 4096;  ///< per pixel; then a picture in which nothing changes is finished
     int jitter = 0;         ///< 0: as the pipeline needs it; else 1 + Jitter

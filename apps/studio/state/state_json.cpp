@@ -287,10 +287,21 @@ Entry parameterEntry(const ParamGroup& group, size_t number) {
             [set = group.set, name, key](State& s, const json& v) { set(s.render, name, textOf(key, v)); }};
 }
 
+/// "part.temporal" and so on.
+Entry partEntry(size_t part) {
+    const DenoiserPart& info = denoiserParts[part];
+    const std::string key = "part." + std::string(info.name), help(info.help);
+    return flag(
+        {key.c_str(), "method", info.name.data(), help.c_str()}, [part](State & s) -> auto& {
+            return s.parts.on[part];
+        });
+}
+
 void addMethod(std::vector<Entry>& all) {
     const SliderSpan samples{1, 64, SliderScale::Logarithmic}, many{1, 1 << 20, SliderScale::Logarithmic};
     all.push_back(integratorEntry());
     all.push_back(denoiserEntry());
+    for (size_t part = 0; part < denoiserParts.size(); ++part) all.push_back(partEntry(part));
     all.push_back(number(
         {"samples", "method", "samples a frame", "More are less noisy and slower", "per pixel"}, Kind::Int, 1,
         64, samples, [](State & s) -> auto& { return s.samples; }));

@@ -147,11 +147,20 @@ void drawPreview(const Drawing& with) {
     explainRow(with, "First hits, shaded by a light at the camera: fast, for finding one's way (V)");
 }
 
+/// Switches for the parts of the denoiser, to see what each contributes.
+void drawParts(const Drawing& with) {
+    for (size_t part = 0; part < denoiserParts.size(); ++part) {
+        if (hasPart(with.panel.state.render.pipeline.denoiser, part))
+            drawField(with, ("part." + std::string(denoiserParts[part].name)).c_str());
+    }
+}
+
 void drawMethod(const Drawing& with) {
     if (!section(with, "method", true)) return;
     beginRows();
     drawField(with, "integrator");
     drawField(with, "denoiser");
+    drawParts(with);
     drawPreview(with);
     for (const char* key : {"samples", "max_samples", "seed", "jitter", "resolution"}) drawField(with, key);
     drawPresets(with);

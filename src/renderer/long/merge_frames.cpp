@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr const char* renderKey = "limpid.render";
 constexpr const char* frameKey = "limpid.frame";
 constexpr const char* framesKey = "limpid.frames";
-constexpr int maxFrames = 1000000;
+constexpr int maxMergedFrames = 1000000;
 
 struct Origin {
     std::string render;
@@ -43,7 +43,7 @@ Origin originOf(const fs::path& file) {
     };
     const Origin origin{get(renderKey), numberOf(file, frameKey, get(frameKey)),
                         numberOf(file, framesKey, get(framesKey))};
-    if (origin.frame >= origin.frames || origin.frames > maxFrames)
+    if (origin.frame >= origin.frames || origin.frames > maxMergedFrames)
         throw InputError(file, fmt::format("is frame {} of {}", origin.frame, origin.frames));
     return origin;
 }
