@@ -84,7 +84,7 @@ struct Answer {
 
 struct WebServer::Impl {
     studio::Session& session;
-    const ServeSettings& settings;
+    ServeSettings settings;
     const SceneFiles& files;
     std::string token;
     bool tls;
