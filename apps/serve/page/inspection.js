@@ -4,6 +4,8 @@ import {byId, numberText, setText} from './dom.js';
 
 const betweenReads = 80; // milliseconds
 
+const hint = 'point at a pixel for its values';
+
 const valueText = value => typeof value === 'number' ? numberText(value) : value;
 
 /// `read(position)` asks for the values, which showValues() gets.
@@ -33,14 +35,14 @@ export function makeInspection(store, picture, stage, read) {
   byId('show-picture').addEventListener('click', () => store.edit({pass: ''}));
   const show = () => {
     box.hidden = !isOn();
-    if (!isOn()) return setText(byId('inspected-values'), '');
+    if (!isOn()) return setText(byId('inspected-values'), hint);
     const image = store.facts.images?.[store.value('image')];
     setText(byId('inspected-name'), image && image !== store.value('pass') ? `${store.value('pass')}: ${image}`
                                                                          : store.value('pass'));
   };
   for (const name of ['state', 'facts']) store.addEventListener(name, show);
   const showValues = ({pixel, values}) => {
-    setText(byId('inspected-values'), values ? `(${pixel.join(', ')}): ${values.map(valueText).join(', ')}` : '');
+    setText(byId('inspected-values'), values ? `(${pixel.join(', ')}): ${values.map(valueText).join(', ')}` : hint);
   };
   return {showValues, imageChanged: ask};
 }

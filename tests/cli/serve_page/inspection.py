@@ -39,8 +39,8 @@ def test_inspection(browser):
     x, y = stage_center(browser)
     browser.mouse('mouseMoved', x, y, 0)
     values = "document.getElementById('inspected-values').textContent"
-    first = browser.wait(values, 'the values under the mouse')
-    check(first.startswith('(') and ': ' in first, f'the values are {first}')
+    first = browser.wait(f"{values}.startsWith('(') && {values}", 'the values under the mouse')
+    check(': ' in first, f'the values are {first}')
     browser.mouse('mouseMoved', x + 40, y, 0)
     browser.wait(f"{values}.split(':')[0] !== '{first.split(':')[0]}'", 'the values of another pixel')
     evaluate(browser, 'window.before = await pixels();')
