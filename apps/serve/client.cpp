@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "serve/inspection.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {
@@ -76,6 +77,12 @@ void Client::handle(std::string_view text) {
                               number = session_.ask({.kind = builtin ? studio::Request::Kind::Open
                                                                      : studio::Request::Kind::OpenDropped,
                                                      .file = file});
+                          },
+                          [&](const Read& read) {
+                              const auto shown = session_.shown();
+                              json reply = valuesAt(shown->inspected.get(), read.position);
+                              reply.update({{"type", "values"}, {"id", message.id}});
+                              replies_.push_back(reply.dump());
                           }},
                message.content);
     if (number > 0) replies_.push_back(json{{"type", "ack"}, {"id", message.id}, {"message", number}}.dump());

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "serve/published_session.h"
+#include "serve/fake_session.h"
 #include "serve/test_pictures.h"
 
 namespace limpid::serve {
@@ -23,7 +23,7 @@ class ClientTest : public testing::Test {
         return nullptr;
     }
 
-    PublishedSession session;
+    FakeSession session;
     SceneFiles files{std::filesystem::path()};
     Streamer streamer{session, [] {}};
     Client client{session, streamer, files, 0};
@@ -44,10 +44,9 @@ TEST_F(ClientTest, AcksCarryTheSessionsNumbers) {
     EXPECT_EQ(ack.at("message"), 2);
     EXPECT_TRUE(say(R"({"type":"open","id":78,"scene":"builtin:cornell"})"));
     EXPECT_EQ(next("ack").at("message"), 3);
-    const auto messages = session.mailbox.take(0.0);
-    ASSERT_EQ(messages.size(), 3u);
-    EXPECT_EQ(std::get<json>(messages[1].content).at("exposure"), 1);
-    EXPECT_EQ(std::get<studio::Request>(messages[2].content).file, "builtin:cornell");
+    EXPECT_EQ(session.shown()->state.exposure, 1.0f);
+    ASSERT_EQ(session.asked().size(), 1u);
+    EXPECT_EQ(session.asked()[0].file, "builtin:cornell");
 }
 
 TEST_F(ClientTest, TellsWhatIsRefused) {
@@ -57,7 +56,7 @@ TEST_F(ClientTest, TellsWhatIsRefused) {
         EXPECT_TRUE(say(text));
         EXPECT_FALSE(next("refused").at("why").get<std::string>().empty());
     }
-    EXPECT_TRUE(session.mailbox.take(0.0).empty());
+    EXPECT_EQ(session.shown()->messages, 0u);
 }
 
 TEST_F(ClientTest, JoinsPartsUpToTheLimit) {
@@ -68,6 +67,14 @@ TEST_F(ClientTest, JoinsPartsUpToTheLimit) {
     EXPECT_FALSE(client.receive(" ", false));
 }
 
+TEST_F(ClientTest, ReadsValuesOfTheInspectedImage) {
+    auto image = std::make_shared<image::Image>(2, 1, 1);
+    image->pixels = {0.25f, 4.0f};
+    session.publish([&](studio::Shown& next) { next.inspected = image; });
+    EXPECT_TRUE(say(R"({"type":"read","id":5,"position":[0.9,0.5]})"));
+    EXPECT_EQ(next("values"), (json{{"type", "values"}, {"id", 5}, {"pixel", {1, 0}}, {"values", {4.0}}}));
+}
+
 TEST_F(ClientTest, LimitsTheRate) {
     int said = 0;
     while (said < 1000 && say(R"({"type":"steer"})")) ++said;
@@ -76,15 +83,14 @@ TEST_F(ClientTest, LimitsTheRate) {
 }
 
 TEST_F(ClientTest, TellsOnlyWhatHasChanged) {
-    session.publish(wavePicture({64, 48}, 0), false);
+    session.show(wavePicture({64, 48}, 0), false);
     const json first = next("state");
     EXPECT_GT(first.at("state").size(), 10u);
     EXPECT_TRUE(next("state").is_null());
-    auto changed = std::make_shared<studio::Shown>(*session.shown());
-    changed->number = 2;
-    changed->messages = 9;
-    changed->state.exposure = 2.5f;
-    session.mailbox.publish(changed);
+    session.publish([](studio::Shown& changed) {
+        changed.messages = 9;
+        changed.state.exposure = 2.5f;
+    });
     const json second = next("state");
     EXPECT_EQ(second.at("state"), (json{{"exposure", 2.5}}));
     EXPECT_EQ(second.at("message"), 9);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/frame/parameters.h"
+#include "serve/preset_edits.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {
@@ -70,6 +71,16 @@ Gesture gestureOf(const json& message) {
     return gesture;
 }
 
+std::array<float, 2> positionOf(const json& value) {
+    if (!value.is_array() || value.size() != 2) throw UsageError("position: two numbers are needed");
+    std::array<float, 2> position{};
+    for (size_t i = 0; i < 2; ++i) {
+        position[i] = value.at(i).get<float>();
+        if (!(position[i] >= 0.0f && position[i] <= 1.0f)) throw UsageError("position: not between 0 and 1");
+    }
+    return position;
+}
+
 Request requestOf(const json& message) {
     const auto name = message.at("request").get<std::string>();
     const auto found =
@@ -78,15 +89,7 @@ Request requestOf(const json& message) {
     Request request{.kind = found->second};
     if (message.contains("index"))
         request.index = static_cast<int>(wholeNumberOf(message.at("index"), 1 << 20));
-    if (const auto position = message.find("position"); position != message.end()) {
-        if (!position->is_array() || position->size() != 2)
-            throw UsageError("position: two numbers are needed");
-        for (size_t i = 0; i < 2; ++i) {
-            const float value = position->at(i).get<float>();
-            if (!(value >= 0.0f && value <= 1.0f)) throw UsageError("position: not between 0 and 1");
-            request.position[i] = value;
-        }
-    }
+    if (message.contains("position")) request.position = positionOf(message.at("position"));
     return request;
 }
 
@@ -124,6 +127,8 @@ ClientMessage messageOf(const json& message) {
         result.content = requestOf(message);
     else if (type == "open")
         result.content = Open{message.at("scene").get<std::string>()};
+    else if (type == "read")
+        result.content = Read{positionOf(message.at("position"))};
     else
         throw UsageError("there is no message '" + type.substr(0, 40) + "'");
     return result;
@@ -211,6 +216,7 @@ json helloMessage(const std::vector<std::string>& scenes, uint64_t uploads) {
             {"requests", std::move(names)},
             {"scenes", scenes},
             {"uploads", uploads},
+            {"presets", presetEdits()},
             {"groups", groupsByPipeline()}};
 }
 
@@ -219,7 +225,8 @@ std::array<std::byte, frameHeaderBytes> packed(const FrameHeader& header) {
     const std::span<std::byte> out(bytes);
     put(out, 0, static_cast<uint8_t>(header.codec));
     put(out, 1,
-        static_cast<uint8_t>(int{header.key} | int{header.compared} << 1 | int{header.lossless} << 2));
+        static_cast<uint8_t>(int{header.key} | int{header.compared} << 1 | int{header.lossless} << 2 |
+                             int{header.inspected} << 3));
     put(out, 4, header.width);
     put(out, 6, header.height);
     put(out, 8, header.frame);
@@ -231,11 +238,12 @@ std::array<std::byte, frameHeaderBytes> packed(const FrameHeader& header) {
 FrameHeader unpackedHeader(std::span<const std::byte> bytes) {
     if (bytes.size() < frameHeaderBytes) throw Error("the picture has no header");
     const auto codec = take<uint8_t>(bytes, 0), flags = take<uint8_t>(bytes, 1);
-    if (codec < 1 || codec > 3) throw Error("the picture is of an unknown kind");
+    if (codec < 1 || codec > 4) throw Error("the picture is of an unknown kind");
     return {.codec = static_cast<Codec>(codec),
             .key = (flags & 1) != 0,
             .compared = (flags & 2) != 0,
             .lossless = (flags & 4) != 0,
+            .inspected = (flags & 8) != 0,
             .width = take<uint16_t>(bytes, 4),
             .height = take<uint16_t>(bytes, 6),
             .frame = take<uint32_t>(bytes, 8),

@@ -18,7 +18,8 @@ inline constexpr size_t maxTextBytes = 65536;
 /// Of the viewport: a renderer needs hundreds of bytes for each. 5120x2880 is allowed.
 inline constexpr uint64_t maxPixels = uint64_t{1} << 24;
 
-enum class Codec : uint8_t { Vp9 = 1, Jpeg = 2, Png = 3 };
+/// Motion: no picture, but what motionGrid() makes.
+enum class Codec : uint8_t { Vp9 = 1, Jpeg = 2, Png = 3, Motion = 4 };
 
 struct Start {
     bool vp9 = false;  ///< false: JPEG
@@ -32,9 +33,13 @@ struct Edit {
 struct Open {
     std::string scene;
 };
+/// Asks for the values of the inspected image.
+struct Read {
+    std::array<float, 2> position{};  ///< from 0 to 1 in the picture
+};
 struct ClientMessage {
     uint64_t id = 0;  ///< chosen by the client
-    std::variant<Start, Received, Edit, studio::Gesture, studio::Request, Open> content;
+    std::variant<Start, Received, Edit, studio::Gesture, studio::Request, Open, Read> content;
 };
 
 /// Throws UsageError, with a text for the client, where the message is not one of the protocol.
@@ -47,6 +52,7 @@ nlohmann::json helloMessage(const std::vector<std::string>& scenes, uint64_t upl
 struct FrameHeader {
     Codec codec = Codec::Jpeg;
     bool key = true, compared = false, lossless = false;
+    bool inspected = false;  ///< the image of a pass, not the picture
     uint16_t width = 0, height = 0;
     uint32_t frame = 0;
     uint64_t message = 0, snapshot = 0;

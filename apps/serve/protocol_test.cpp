@@ -31,6 +31,8 @@ TEST(Protocol, ReadsEveryMessage) {
     EXPECT_EQ(request.kind, studio::Request::Kind::Probe);
     EXPECT_EQ(request.position[0], 0.25f);
     EXPECT_EQ(request.index, 3);
+    EXPECT_EQ(content<Read>(R"({"type":"read","position":[0.5,1]})").position,
+              (std::array<float, 2>{0.5f, 1.0f}));
     EXPECT_EQ(parseMessage(R"({"type":"steer","id":18446744073709551615})").id, UINT64_MAX);
 }
 
@@ -85,6 +87,9 @@ TEST(Protocol, RefusesWhatIsNoMessage) {
                              R"({"type":"ask","request":"probe","position":[0]})",
                              R"({"type":"ask","request":"probe","position":[0,1.1]})",
                              R"({"type":"ask","request":"probe","position":[-1,0]})",
+                             R"({"type":"read"})",
+                             R"({"type":"read","position":[0,2]})",
+                             R"({"type":"read","position":[0,null]})",
                              R"({"type":"ask","request":"remove_lamp","index":-1})",
                              R"({"type":"ask","request":"remove_lamp","index":1e9})",
                              "{\"type\":\"open\",\"scene\":\"\xff\"}",
@@ -113,6 +118,7 @@ TEST(Protocol, HeadersComeBack) {
                              .key = false,
                              .compared = true,
                              .lossless = true,
+                             .inspected = true,
                              .width = 65535,
                              .height = 258,
                              .frame = 0xfedcba98u,
@@ -121,7 +127,7 @@ TEST(Protocol, HeadersComeBack) {
     const auto bytes = packed(header);
     EXPECT_EQ(unpackedHeader(bytes), header);
     EXPECT_EQ(bytes[0], std::byte{3});
-    EXPECT_EQ(bytes[1], std::byte{6});
+    EXPECT_EQ(bytes[1], std::byte{14});
     EXPECT_EQ(bytes[6], std::byte{2}) << "little endian";
     EXPECT_EQ(bytes[16], std::byte{0xef});
     EXPECT_THROW(unpackedHeader(std::span(bytes).first(31)), Error);

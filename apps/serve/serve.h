@@ -17,6 +17,7 @@ struct ServeSettings {
     std::filesystem::path files;             ///< folder whose scenes may be opened; empty: only built-in ones
     uint64_t uploads = 0;                    ///< bytes of the largest file that may be uploaded; 0: none
     unsigned headerSeconds = 10;             ///< for a connection to say what it wants
+    double stillSeconds = 60.0;              ///< for /picture.png to wait for a picture
 };
 
 /// Serves until `stop` returns true, which is asked several times a second. `ready` gets the address of the

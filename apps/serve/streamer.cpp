@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/log.h"
 #include "serve/still_encoder.h"
@@ -11,7 +12,10 @@ namespace {
 
 constexpr double shortestFrame = 1.0 / 60.0;  ///< seconds between two pictures
 constexpr double restSeconds = 0.25;          ///< after which a picture is sent losslessly
-constexpr double betweenForcedKeys = 0.5;  ///< seconds: a slow client must not turn the video into key frames
+// Seconds from a key frame to the next that clients need: a slow one must not turn the video into key frames.
+// Who has just come sees nothing before it.
+constexpr double betweenKeys = 0.5, betweenKeysForNewcomers = 0.1;
+constexpr double longestWait = 0.5;  ///< seconds
 constexpr double highestBitsPerPixel = 0.16;
 constexpr double framesASecond = 60.0;
 constexpr uint32_t maxThreads = 8;
@@ -28,15 +32,6 @@ double secondsBetween(std::chrono::steady_clock::time_point from, std::chrono::s
 bool isFull(const studio::Shown& shown) {
     return shown.picture && (shown.state.resolution != studio::Resolution::Automatic ||
                              shown.picture->extent == shown.state.viewport);
-}
-
-FrameHeader headerOf(Codec codec, int lane, const studio::Shown& shown, const studio::Picture& picture) {
-    return {.codec = codec,
-            .compared = lane == 1,
-            .width = static_cast<uint16_t>(picture.extent.width),
-            .height = static_cast<uint16_t>(picture.extent.height),
-            .message = shown.messages,
-            .snapshot = shown.number};
 }
 
 }  // namespace
@@ -84,11 +79,12 @@ void Streamer::start(ClientId id, bool vp9) {
         const std::lock_guard lock(mutex_);
         const auto found = clients_.find(id);
         if (found == clients_.end()) return;
-        found->second.started = true;
+        ++found->second.starts;
         found->second.vp9 = vp9;
         // A client that starts again, say with the other codec, has nothing.
         for (Lane& lane : found->second.lanes) {
             lane.synced = lane.still = false;
+            lane.joins = true;
             lane.waiting.reset();
             lane.last = nullptr;
         }
@@ -106,14 +102,20 @@ void Streamer::received(ClientId id, uint32_t frame) {
         const auto sent = client.sent.find(frame);
         if (sent == client.sent.end()) return;
         const double delay = secondsBetween(sent->second.when, Clock::now());
+        const bool isPicture = sent->second.lane != motionLane;  // what is small comes sooner
         --client.lanes[static_cast<size_t>(sent->second.lane)].inFlight;
         client.sent.erase(sent);
-        if (client.shortestDelay == 0.0 || delay < client.shortestDelay) client.shortestDelay = delay;
-        const bool late = delay > lateFactor * client.shortestDelay + lateSeconds;
-        client.share = std::clamp(client.share * (late ? slower : faster), leastShare, 1.0);
         news_ = true;
+        if (isPicture) client.noteDelay(delay);
     }
     changed_.notify_one();
+}
+
+/// The bitrate follows the connection.
+void Streamer::Client::noteDelay(double seconds) {
+    if (shortestDelay == 0.0 || seconds < shortestDelay) shortestDelay = seconds;
+    const bool late = seconds > lateFactor * shortestDelay + lateSeconds;
+    share = std::clamp(share * (late ? slower : faster), leastShare, 1.0);
 }
 
 std::optional<Packet> Streamer::take(ClientId id) {
@@ -166,93 +168,160 @@ void Streamer::run() {
 /// happened.
 double Streamer::step() {
     const auto shown = session_.shown();
-    const auto now = Clock::now();
-    if (resting_ != shown->picture) {
-        resting_ = shown->picture;
-        restsSince_ = now;
+    Resting now{shown->picture, {}};
+    if (shown->inspected) now = {shown->inspected, shown->state.view};
+    if (resting_ != now) {
+        resting_ = std::move(now);
+        restsSince_ = Clock::now();
     }
     bool sent = answerStillRequests(*shown);
-    for (int lane = 0; lane < 2; ++lane) sent |= streamLane(lane, *shown);
+    for (const int lane : {mainLane, comparedLane}) sent |= streamPicture(lane, *shown);
+    sent |= streamMotion(*shown);
     if (sent) wake_();
-    // Clients that lost a frame may get a key frame by then, also if the next picture takes long.
-    double patience = betweenForcedKeys;
-    const auto after = Clock::now();
+    return secondsToNext(*shown);
+}
+
+double Streamer::secondsToNext(const studio::Shown& shown) const {
+    double patience = longestWait;
+    const auto now = Clock::now();
+    const auto waitFor = [&](double seconds) { patience = std::clamp(seconds + 0.0002, 0.0, patience); };
     for (const Video& video : videos_) {
-        const double since = secondsBetween(std::max(video.lastFrame, video.lastJpeg), after);
-        if (since < shortestFrame) patience = std::min(patience, shortestFrame - since + 0.0002);
+        const double since = secondsBetween(std::max(video.lastFrame, video.lastJpeg), now);
+        if (since < shortestFrame) waitFor(shortestFrame - since);
+        if (video.keyDue) waitFor(secondsBetween(now, *video.keyDue));
     }
-    const double rested = secondsBetween(restsSince_, after);
-    if (!shown->facts.computing && shown->picture && rested < restSeconds)
-        patience = std::min(patience, restSeconds - rested + 0.001);
+    const double rested = secondsBetween(restsSince_, now);
+    if (!shown.facts.computing && shown.picture && rested < restSeconds) waitFor(restSeconds - rested);
     return patience;
 }
 
-bool Streamer::streamLane(int number, const studio::Shown& shown) {
-    const auto& picture = number == 0 ? shown.picture : shown.compared;
+bool Streamer::streamPicture(int lane, const studio::Shown& shown) {
+    videos_[static_cast<size_t>(lane)].keyDue.reset();
+    // To convert the image of a pass takes time: not while nobody can take it.
+    if (recipients(lane, [](const Client&, const Lane&) { return true; }).empty()) return false;
+    auto picture = lane == mainLane ? shown.picture : shown.compared;
+    if (lane == mainLane && shown.inspected) picture = inspected_.of(shown.inspected, shown.state.view);
     if (!picture || picture->extent.width == 0) return false;
-    bool sent = encodeVideo(number, shown, picture);
-    sent |= encodeJpegs(number, shown, picture);
-    sent |= encodeStills(number, shown, picture);
+    bool sent = encodeVideo(lane, shown, picture);
+    sent |= encodeJpegs(lane, shown, picture);
+    sent |= encodeStills(lane, shown, picture);
     return sent;
 }
 
-/// The clients that can take this picture and do not have it.
-std::vector<Streamer::ClientId> Streamer::ready(int number, bool vp9,
-                                                const std::shared_ptr<const studio::Picture>& picture) const {
-    const std::lock_guard lock(mutex_);
-    std::vector<ClientId> ids;
-    for (const auto& [id, client] : clients_) {
-        const Lane& lane = client.lanes[static_cast<size_t>(number)];
-        if (client.started && client.vp9 == vp9 && !lane.waiting && lane.inFlight < maxInFlight &&
-            lane.last != picture)
-            ids.push_back(id);
-    }
-    return ids;
+/// It is small: all clients get it as it is.
+bool Streamer::streamMotion(const studio::Shown& shown) {
+    Video& video = videos_[motionLane];
+    const auto now = Clock::now();
+    if (!shown.motion || secondsBetween(video.lastFrame, now) < shortestFrame) return false;
+    const auto to =
+        recipients(motionLane, [&](const Client&, const Lane& lane) { return lane.last != shown.motion; });
+    if (to.empty()) return false;
+    video.lastFrame = now;
+    const MotionGrid grid = motionGrid(*shown.motion, shown.state.viewport);
+    const FrameHeader header{.codec = Codec::Motion,
+                             .width = grid.columns,
+                             .height = grid.rows,
+                             .message = shown.messages,
+                             .snapshot = shown.number};
+    hand(to, motionLane, header, std::make_shared<const std::vector<std::byte>>(packed(grid)), shown.motion);
+    return true;
 }
 
-void Streamer::hand(const std::vector<ClientId>& ids, int number, FrameHeader header, const Bytes& bytes,
-                    const std::shared_ptr<const studio::Picture>& picture) {
+FrameHeader Streamer::headerOf(Codec codec, int lane, const studio::Shown& shown,
+                               const studio::Picture& picture) const {
+    return {.codec = codec,
+            .compared = lane == comparedLane,
+            .inspected = lane == mainLane && shown.inspected,
+            .width = static_cast<uint16_t>(picture.extent.width),
+            .height = static_cast<uint16_t>(picture.extent.height),
+            .message = shown.messages,
+            .snapshot = shown.number};
+}
+
+/// The clients that can take something in this lane, and for which the condition holds.
+template <typename Condition>
+std::vector<Streamer::Recipient> Streamer::recipients(int number, Condition condition) const {
     const std::lock_guard lock(mutex_);
-    for (const ClientId id : ids) {
+    std::vector<Recipient> result;
+    for (const auto& [id, client] : clients_) {
+        const Lane& lane = client.lanes[static_cast<size_t>(number)];
+        if (client.starts > 0 && !lane.waiting && lane.inFlight < maxInFlight && condition(client, lane))
+            result.push_back({id, client.starts});
+    }
+    return result;
+}
+
+/// Those that do not have this picture.
+std::vector<Streamer::Recipient> Streamer::ready(int number, bool vp9,
+                                                 const std::shared_ptr<const void>& what) const {
+    return recipients(number, [&](const Client& client, const Lane& lane) {
+        return client.vp9 == vp9 && lane.last != what;
+    });
+}
+
+void Streamer::hand(const std::vector<Recipient>& recipients, int number, FrameHeader header,
+                    const Bytes& bytes, const std::shared_ptr<const void>& what) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, starts] : recipients) {
         const auto found = clients_.find(id);
-        if (found == clients_.end()) continue;
+        if (found == clients_.end() || found->second.starts != starts) continue;
         Lane& lane = found->second.lanes[static_cast<size_t>(number)];
         lane.waiting = Packet{header, bytes};
-        lane.last = picture;
+        lane.last = what;
+        lane.joins = false;
         lane.still = header.lossless;
         if (header.codec == Codec::Vp9) lane.synced = true;
     }
 }
 
+/// Whether these clients are to get a key frame now. If those that need one have to wait, they are removed.
+bool Streamer::mayForceKey(int number, std::vector<Recipient>& recipients, Clock::time_point now) {
+    Video& video = videos_[static_cast<size_t>(number)];
+    const std::lock_guard lock(mutex_);
+    double between = -1.0;
+    const auto needsKey = [&](const Recipient& recipient) {
+        const auto found = clients_.find(recipient.id);
+        if (found == clients_.end()) return true;
+        const Lane& lane = found->second.lanes[static_cast<size_t>(number)];
+        if (lane.synced) return false;
+        const double own = lane.joins ? betweenKeysForNewcomers : betweenKeys;
+        between = between < 0.0 ? own : std::min(between, own);
+        return true;
+    };
+    std::vector<Recipient> others;
+    std::ranges::remove_copy_if(recipients, std::back_inserter(others), needsKey);
+    if (between < 0.0) return false;
+    if (secondsBetween(video.lastKey, now) >= between) return true;
+    video.keyDue =
+        video.lastKey + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(between));
+    recipients = std::move(others);
+    return false;
+}
+
+/// Of the highest bitrate: that of the slowest.
+double Streamer::shareOf(const std::vector<Recipient>& recipients) const {
+    const std::lock_guard lock(mutex_);
+    double share = 1.0;
+    for (const Recipient& recipient : recipients) {
+        if (const auto found = clients_.find(recipient.id); found != clients_.end())
+            share = std::min(share, found->second.share);
+    }
+    return share;
+}
+
 bool Streamer::encodeVideo(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
-    std::vector<ClientId> ids = ready(number, true, picture);
+    std::vector<Recipient> to = ready(number, true, picture);
     Video& video = videos_[static_cast<size_t>(number)];
     const auto now = Clock::now();
     const double seconds = secondsBetween(video.lastFrame, now);
-    if (ids.empty() || seconds < shortestFrame) return false;
-    if (!video.encoder || video.encoder->extent() != picture->extent) video.encoder.reset();
-    bool key = !video.encoder;
-    double share = 1.0;
-    {
-        const std::lock_guard lock(mutex_);
-        const auto synced = [&](ClientId id) {
-            const auto found = clients_.find(id);
-            return found != clients_.end() && found->second.lanes[static_cast<size_t>(number)].synced;
-        };
-        const bool mayForce = secondsBetween(video.lastForcedKey, now) >= betweenForcedKeys;
-        const bool anyLost = !std::ranges::all_of(ids, synced);
-        if (!key && anyLost && mayForce) key = true;
-        if (!key) std::erase_if(ids, [&](ClientId id) { return !synced(id); });
-        for (const ClientId id : ids) {
-            if (const auto found = clients_.find(id); found != clients_.end())
-                share = std::min(share, found->second.share);
-        }
-    }
-    if (ids.empty()) return false;
+    if (to.empty() || seconds < shortestFrame) return false;
+    if (video.encoder && video.encoder->extent() != picture->extent) video.encoder.reset();
+    const bool key = !video.encoder || mayForceKey(number, to, now);
+    if (to.empty()) return false;
     const double highest =
         highestBitsPerPixel * framesASecond * picture->extent.width * picture->extent.height;
-    const auto bits = static_cast<uint32_t>(std::clamp(share * highest, 3e5, 6e7));
+    const auto bits = static_cast<uint32_t>(std::clamp(shareOf(to) * highest, 3e5, 6e7));
     const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, maxThreads);
     if (!video.encoder) video.encoder.emplace(picture->extent, bits, threads);
     video.encoder->setBitrate(bits);
@@ -260,7 +329,7 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     video.lastFrame = now;
     if (frame.bytes.empty())
         return false;  // the rate control has dropped it: the next one continues the last
-    if (frame.key) video.lastForcedKey = now;
+    if (frame.key) video.lastKey = now;
     {
         // Who does not get this frame cannot decode the next one.
         const std::lock_guard lock(mutex_);
@@ -268,28 +337,19 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     }
     FrameHeader header = headerOf(Codec::Vp9, number, shown, *picture);
     header.key = frame.key;
-    hand(ids, number, header, std::make_shared<const std::vector<std::byte>>(std::move(frame.bytes)),
-         picture);
+    hand(to, number, header, std::make_shared<const std::vector<std::byte>>(std::move(frame.bytes)), picture);
     return true;
 }
 
 bool Streamer::encodeJpegs(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
-    const std::vector<ClientId> ids = ready(number, false, picture);
+    const std::vector<Recipient> to = ready(number, false, picture);
     Clock::time_point& last = videos_[static_cast<size_t>(number)].lastJpeg;
     const auto now = Clock::now();
-    if (ids.empty() || secondsBetween(last, now) < shortestFrame) return false;
+    if (to.empty() || secondsBetween(last, now) < shortestFrame) return false;
     last = now;
-    double share = 1.0;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const ClientId id : ids) {
-            if (const auto found = clients_.find(id); found != clients_.end())
-                share = std::min(share, found->second.share);
-        }
-    }
-    const int quality = static_cast<int>(std::lround(40.0 + 50.0 * share));
-    hand(ids, number, headerOf(Codec::Jpeg, number, shown, *picture),
+    const int quality = static_cast<int>(std::lround(40.0 + 50.0 * shareOf(to)));
+    hand(to, number, headerOf(Codec::Jpeg, number, shown, *picture),
          std::make_shared<const std::vector<std::byte>>(encodeJpeg(*picture, quality)), picture);
     return true;
 }
@@ -308,20 +368,13 @@ bool Streamer::encodeStills(int number, const studio::Shown& shown,
     const bool rests =
         !shown.facts.computing && isFull(shown) && secondsBetween(restsSince_, Clock::now()) >= restSeconds;
     if (!rests) return false;
-    std::vector<ClientId> ids;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& [id, client] : clients_) {
-            const Lane& lane = client.lanes[static_cast<size_t>(number)];
-            if (client.started && !lane.waiting && lane.inFlight == 0 &&
-                !(lane.still && lane.last == picture))
-                ids.push_back(id);
-        }
-    }
-    if (ids.empty()) return false;
+    const auto to = recipients(number, [&](const Client&, const Lane& lane) {
+        return lane.inFlight == 0 && !(lane.still && lane.last == picture);
+    });
+    if (to.empty()) return false;
     FrameHeader header = headerOf(Codec::Png, number, shown, *picture);
     header.lossless = true;
-    hand(ids, number, header, stillOf(picture), picture);
+    hand(to, number, header, stillOf(picture), picture);
     return true;
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "serve/inspection.h"
 #include "serve/protocol.h"
 #include "serve/video_encoder.h"
 
@@ -19,7 +20,7 @@ namespace limpid::serve {
 
 using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 
-/// A picture for one client.
+/// A picture, or the motion, for one client.
 struct Packet {
     FrameHeader header;
     Bytes bytes;
@@ -51,35 +52,59 @@ class Streamer {
     using Clock = std::chrono::steady_clock;
     static constexpr uint32_t maxInFlight = 2;
 
-    /// What a client has of one of the two pictures.
+    /// The picture or the image of a pass; what it is compared with; the motion.
+    enum LaneNumber { mainLane, comparedLane, motionLane, laneCount };
+    /// What a client has of one of these.
     struct Lane {
         uint32_t inFlight = 0;
         std::optional<Packet> waiting;  ///< encoded, and not taken yet
         bool synced = false;            ///< has all video frames since a key frame
+        bool joins = true;              ///< has had nothing since it started
         bool still = false;             ///< the last one was lossless
-        std::shared_ptr<const studio::Picture> last;
+        std::shared_ptr<const void> last;
     };
     struct Sent {
         int lane;
         Clock::time_point when;
     };
     struct Client {
-        bool started = false, vp9 = false;
-        std::array<Lane, 2> lanes;  ///< the picture, and what it is compared with
+        uint32_t starts = 0;  ///< how often it has started
+        bool vp9 = false;
+        std::array<Lane, laneCount> lanes;
         std::map<uint32_t, Sent> sent;
         uint32_t frames = 0;
         double shortestDelay = 0.0;  ///< seconds from sending to the answer; 0: unknown
         double share = 0.5;          ///< of the highest bitrate
+        void noteDelay(double seconds);
     };
-    /// The video of one of the two pictures, shared by all clients.
+    /// A client that something is encoded for. It may have started again when that is done, with another
+    /// codec and a new decoder: then it gets nothing of it.
+    struct Recipient {
+        ClientId id = 0;
+        uint32_t starts = 0;
+    };
+    /// What is made for a lane, shared by all clients.
     struct Video {
         std::optional<VideoEncoder> encoder;
-        Clock::time_point lastFrame{}, lastForcedKey{}, lastJpeg{};
+        Clock::time_point lastFrame{}, lastKey{}, lastJpeg{};
+        std::optional<Clock::time_point> keyDue;  ///< clients wait for a key frame, which may be made then
+    };
+    /// What is in the main lane.
+    struct Resting {
+        std::shared_ptr<const void> what;
+        studio::InspectorView view;
+        bool operator==(const Resting&) const = default;
     };
 
     void run();
     double step();
-    bool streamLane(int number, const studio::Shown& shown);
+    double secondsToNext(const studio::Shown& shown) const;
+    bool streamPicture(int lane, const studio::Shown& shown);
+    bool streamMotion(const studio::Shown& shown);
+    FrameHeader headerOf(Codec codec, int lane, const studio::Shown& shown,
+                         const studio::Picture& picture) const;
+    bool mayForceKey(int lane, std::vector<Recipient>& recipients, Clock::time_point now);
+    double shareOf(const std::vector<Recipient>& recipients) const;
     bool encodeVideo(int lane, const studio::Shown& shown,
                      const std::shared_ptr<const studio::Picture>& picture);
     bool encodeJpegs(int lane, const studio::Shown& shown,
@@ -87,10 +112,11 @@ class Streamer {
     bool encodeStills(int lane, const studio::Shown& shown,
                       const std::shared_ptr<const studio::Picture>& picture);
     bool answerStillRequests(const studio::Shown& shown);
-    std::vector<ClientId> ready(int lane, bool vp9,
-                                const std::shared_ptr<const studio::Picture>& picture) const;
-    void hand(const std::vector<ClientId>& ids, int lane, FrameHeader header, const Bytes& bytes,
-              const std::shared_ptr<const studio::Picture>& picture);
+    template <typename Condition>
+    std::vector<Recipient> recipients(int lane, Condition condition) const;
+    std::vector<Recipient> ready(int lane, bool vp9, const std::shared_ptr<const void>& what) const;
+    void hand(const std::vector<Recipient>& recipients, int lane, FrameHeader header, const Bytes& bytes,
+              const std::shared_ptr<const void>& what);
     Bytes stillOf(const std::shared_ptr<const studio::Picture>& picture);
 
     studio::Session& session_;
@@ -104,10 +130,11 @@ class Streamer {
     uint64_t listener_ = 0;
 
     // Of the streamer's thread alone.
-    std::array<Video, 2> videos_;
+    std::array<Video, laneCount> videos_;
+    InspectedPicture inspected_;
     std::shared_ptr<const studio::Picture> stillPicture_;
     Bytes still_;
-    std::shared_ptr<const studio::Picture> resting_;  ///< the newest picture, and since when it is the newest
+    Resting resting_;  ///< the newest, and since when it is the newest
     Clock::time_point restsSince_{};
     std::thread thread_;
 };

@@ -3,16 +3,29 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
 
 #include "image/io/png/png.h"
-#include "serve/published_session.h"
+#include "serve/fake_session.h"
+#include "serve/remote/video_decoder.h"
 #include "serve/test_pictures.h"
-#include "serve/vp9_decoder.h"
 
 namespace limpid::serve {
 namespace {
 
 constexpr gpu::Extent extent{64, 48};
+
+/// Waits at most `seconds`; returns whether it holds.
+bool soon(const std::function<bool()>& condition, double seconds = 2.0) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+}
 
 class StreamerTest : public testing::Test {
   protected:
@@ -23,7 +36,7 @@ class StreamerTest : public testing::Test {
         streamer.start(id, vp9);
         return id;
     }
-    void publish(bool computing = true) { session.publish(wavePicture(extent, time++), computing); }
+    void publish(bool computing = true) { session.show(wavePicture(extent, time++), computing); }
     /// The next packet, or none after a while.
     std::optional<Packet> next(Streamer::ClientId id, double seconds = 2.0) {
         std::optional<Packet> packet;
@@ -31,7 +44,7 @@ class StreamerTest : public testing::Test {
         return packet;
     }
 
-    PublishedSession session;
+    FakeSession session;
     std::atomic<int> woken = 0;
     int time = 0;
     Streamer streamer{session, [this] { ++woken; }};
@@ -69,7 +82,7 @@ TEST_F(StreamerTest, HasTwoInFlightAndSendsTheNewest) {
 TEST_F(StreamerTest, ASlowClientDoesNotStopAFastOne) {
     const auto slow = client(true), fast = client(true);
     int frames = 0;
-    Vp9Decoder decoder;
+    VideoDecoder decoder;
     for (int i = 0; i < 20; ++i) {
         publish();
         if (i < 2) next(slow, 0.2);
@@ -85,7 +98,7 @@ TEST_F(StreamerTest, ASlowClientDoesNotStopAFastOne) {
 TEST_F(StreamerTest, AClientThatLostFramesGetsAKeyFrame) {
     const auto slow = client(true), fast = client(true);
     std::vector<uint32_t> held;
-    Vp9Decoder decoder;
+    VideoDecoder decoder;
     publish();
     for (int i = 0; i < 8; ++i) {
         if (auto packet = next(slow, i < 2 ? 1.0 : 0.02)) {
@@ -113,7 +126,7 @@ TEST_F(StreamerTest, AClientThatLostFramesGetsAKeyFrame) {
 TEST_F(StreamerTest, SendsTheStillOnceAndBitForBit) {
     const auto id = client(true);
     const studio::Picture picture = noisePicture(extent);
-    session.publish(picture, false);
+    session.show(picture, false);
     const auto video = next(id);
     ASSERT_TRUE(video);
     EXPECT_EQ(video->header.codec, Codec::Vp9);
@@ -134,7 +147,7 @@ TEST_F(StreamerTest, SendsTheStillOnceAndBitForBit) {
 TEST_F(StreamerTest, SendsTheComparedPicture) {
     const auto id = client(false);
     const studio::Picture other = noisePicture(extent);
-    session.publish(wavePicture(extent, 0), true, std::make_shared<const studio::Picture>(other));
+    session.show(wavePicture(extent, 0), true, std::make_shared<const studio::Picture>(other));
     const auto a = next(id), b = next(id);
     ASSERT_TRUE(a && b);
     EXPECT_FALSE(a->header.compared);
@@ -160,16 +173,132 @@ TEST_F(StreamerTest, StartsAgainWithAnotherCodecAtRest) {
 
 TEST_F(StreamerTest, ChangesItsSizeWithAKeyFrame) {
     const auto id = client(true);
-    Vp9Decoder decoder;
+    VideoDecoder decoder;
     for (const gpu::Extent size : {gpu::Extent{64, 48}, gpu::Extent{33, 17}, gpu::Extent{64, 48}}) {
-        session.publish(wavePicture(size, 0), true);
+        session.show(wavePicture(size, 0), true);
         const auto packet = next(id);
         ASSERT_TRUE(packet);
         EXPECT_TRUE(packet->header.key);
         EXPECT_EQ(packet->header.width, size.width);
-        EXPECT_EQ(decoder.decode(*packet->bytes).extent, size);
+        decoder.decode(*packet->bytes);
+        EXPECT_EQ(decoder.picture().extent, size);
         streamer.received(id, packet->header.frame);
     }
+}
+
+TEST_F(StreamerTest, SendsTheInspectedImageInsteadOfThePicture) {
+    const auto id = client(true);
+    auto image = std::make_shared<image::Image>(20, 10, 1);
+    for (size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i) / 200.0f;
+    session.show(wavePicture(extent, 0), false);
+    session.publish([&](studio::Shown& next) { next.inspected = image; });
+    const auto still = [&] {
+        for (;;) {
+            const auto packet = next(id);
+            if (!packet) return packet;
+            streamer.received(id, packet->header.frame);
+            if (packet->header.lossless && packet->header.inspected) return packet;
+        }
+    };
+    const auto first = still();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->header.width, 20);
+    EXPECT_EQ(studio::packedTexels(image::decodeImage(*first->bytes, "still.png")),
+              studio::shownTexels(*image, {}));
+    // Another view is another picture, although the image is the same.
+    session.publish([](studio::Shown& next) { next.state.view.falseColor = true; });
+    const auto second = still();
+    ASSERT_TRUE(second);
+    EXPECT_EQ(studio::packedTexels(image::decodeImage(*second->bytes, "still.png")),
+              studio::shownTexels(*image, {.falseColor = true}));
+    session.publish([](studio::Shown& next) { next.inspected.reset(); });
+    const auto picture = next(id);
+    ASSERT_TRUE(picture);
+    EXPECT_FALSE(picture->header.inspected);
+    EXPECT_EQ(picture->header.width, extent.width);
+}
+
+TEST_F(StreamerTest, SendsEachMotionOnce) {
+    const auto id = client(false);
+    const auto publishMotion = [&](uint32_t width) {
+        session.publish([&](studio::Shown& next) {
+            next.motion = std::make_shared<const image::Image>(width, width, 4);
+        });
+    };
+    publish();
+    const auto picture = next(id);
+    ASSERT_TRUE(picture);
+    publishMotion(8);
+    const auto motion = next(id);
+    ASSERT_TRUE(motion);
+    EXPECT_EQ(motion->header.codec, Codec::Motion);
+    EXPECT_EQ(motion->bytes->size(), 8u * motion->header.width * motion->header.height);
+    EXPECT_GT(motion->header.width, 0);
+    EXPECT_FALSE(next(id, 0.1)) << "comes twice";
+    publishMotion(0);
+    const auto none = next(id);
+    ASSERT_TRUE(none);
+    EXPECT_EQ(none->header.codec, Codec::Motion);
+    EXPECT_EQ(none->header.width, 0) << "this method has no motion";
+    EXPECT_TRUE(none->bytes->empty());
+}
+
+// What is being encoded when a client starts again is not for it: it has asked for the other codec, or its
+// new decoder has no frame that this one continues.
+TEST_F(StreamerTest, AClientThatStartsAgainWhileItsPictureIsEncodedGetsANewBeginning) {
+    const studio::Picture large = noisePicture({1280, 720});
+    const auto id = client(true);
+    for (int i = 0; i < 6; ++i) {
+        session.show(large, true);
+        const auto packet = next(id, 5.0);
+        ASSERT_TRUE(packet);
+        streamer.received(id, packet->header.frame);
+        session.show(large, true);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2 + 2 * i));
+        const bool vp9 = i % 2 == 0;
+        streamer.start(id, vp9);
+        const auto after = next(id, 5.0);
+        ASSERT_TRUE(after);
+        EXPECT_EQ(after->header.codec, vp9 ? Codec::Vp9 : Codec::Jpeg) << i;
+        EXPECT_TRUE(after->header.key) << i;
+        streamer.received(id, after->header.frame);
+        streamer.start(id, true);
+    }
+}
+
+TEST_F(StreamerTest, ANewcomerDoesNotWaitLongForAKeyFrame) {
+    const auto first = client(true);
+    publish();
+    ASSERT_TRUE(next(first));
+    // No further picture comes: frames are slow.
+    const auto newcomer = client(true);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto packet = next(newcomer);
+    ASSERT_TRUE(packet);
+    EXPECT_TRUE(packet->header.key);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(350));
+}
+
+TEST_F(StreamerTest, AClientThatLostFramesGetsTheKeyFrameWhenItIsDue) {
+    const auto slow = client(true), fast = client(true);
+    std::vector<uint32_t> held;
+    std::chrono::steady_clock::time_point key;
+    for (int i = 0; i < 3; ++i) {
+        publish();
+        const auto packet = next(fast);
+        ASSERT_TRUE(packet);
+        streamer.received(fast, packet->header.frame);
+        if (packet->header.key) key = std::chrono::steady_clock::now();
+        if (const auto other = next(slow, 0.1)) held.push_back(other->header.frame);
+    }
+    ASSERT_EQ(held.size(), 2u);
+    // Just before the time at which it may have one, it can take one, and nothing else happens until then.
+    std::this_thread::sleep_until(key + std::chrono::milliseconds(400));
+    for (const uint32_t frame : held) streamer.received(slow, frame);
+    const auto packet = next(slow);
+    ASSERT_TRUE(packet);
+    EXPECT_TRUE(packet->header.key);
+    EXPECT_LT(std::chrono::steady_clock::now() - key, std::chrono::milliseconds(750));
 }
 
 TEST_F(StreamerTest, ForgetsClientsThatGo) {

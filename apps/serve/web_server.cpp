@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -25,9 +26,10 @@
 namespace limpid::serve {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr unsigned maxConnections = 1200;  ///< open sockets, most of which say nothing
 constexpr size_t maxClients = 32;          ///< WebSockets
-constexpr int stillSeconds = 60;           ///< for /picture.png
 constexpr size_t maxUploads = 2;           ///< at the same time
 constexpr int maxHeaderBytes = 1024;
 constexpr size_t chunkBytes = 65536;
@@ -74,6 +76,11 @@ void allowManyFiles() {
     ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+Bytes bytesOf(std::string_view text) {
+    const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+    return std::make_shared<const std::vector<std::byte>>(begin, begin + text.size());
+}
+
 /// An answer that is being sent.
 struct Answer {
     Bytes body;
@@ -91,7 +98,7 @@ struct WebServer::Impl {
     lws_context* context = nullptr;
     std::map<lws*, std::unique_ptr<Client>> clients;
     std::map<lws*, Answer> answers;
-    std::set<lws*> waiting;  ///< for /picture.png
+    std::map<lws*, Clock::time_point> waiting;  ///< for /picture.png, until then
     Uploads uploads;
     std::map<lws*, std::unique_ptr<Upload>> uploading;
     std::mutex stillMutex;
@@ -123,7 +130,8 @@ struct WebServer::Impl {
     bool hasToken(lws* wsi) const { return sameToken(argumentOf(wsi, "token="), token); }
 
     int refuse(lws* wsi, unsigned status) const;
-    int answer(lws* wsi, const char* type, Bytes body);
+    int answer(lws* wsi, const char* type, Bytes body, unsigned status = HTTP_STATUS_OK);
+    void answerLater(lws* wsi, const char* type, const Bytes& body, unsigned status);
     int sendAnswer(lws* wsi);
     int http(lws* wsi, const std::string& path);
     int confirmUpgrade(lws* wsi);
@@ -142,10 +150,10 @@ int WebServer::Impl::refuse(lws* wsi, unsigned status) const {
     return -1;
 }
 
-int WebServer::Impl::answer(lws* wsi, const char* type, Bytes body) {
+int WebServer::Impl::answer(lws* wsi, const char* type, Bytes body, unsigned status) {
     std::array<unsigned char, LWS_PRE + 2048> buffer{};
     unsigned char *start = buffer.data() + LWS_PRE, *at = start, *end = buffer.data() + buffer.size() - 1;
-    if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, type, body->size(), &at, end)) return -1;
+    if (lws_add_http_common_headers(wsi, status, type, body->size(), &at, end)) return -1;
     for (const Extra& extra : securityHeaders) {
         if (lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(extra.name),
                                         reinterpret_cast<const unsigned char*>(extra.value),
@@ -156,6 +164,12 @@ int WebServer::Impl::answer(lws* wsi, const char* type, Bytes body) {
     answers[wsi] = {std::move(body), 0};
     lws_callback_on_writable(wsi);
     return 0;
+}
+
+/// Outside of a callback for this connection, which a fault would end.
+void WebServer::Impl::answerLater(lws* wsi, const char* type, const Bytes& body, unsigned status) {
+    if (answer(wsi, type, body, status) != 0)
+        lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
 }
 
 int WebServer::Impl::sendAnswer(lws* wsi) {
@@ -187,9 +201,7 @@ int WebServer::Impl::http(lws* wsi, const std::string& path) {
     const std::string_view name = path == "/" ? "index.html" : std::string_view(path).substr(1);
     for (const PageFile& file : pageFiles()) {
         if (file.name != name) continue;
-        const auto* const begin = reinterpret_cast<const std::byte*>(file.text.data());
-        return answer(wsi, std::string(file.type).c_str(),
-                      std::make_shared<const std::vector<std::byte>>(begin, begin + file.text.size()));
+        return answer(wsi, std::string(file.type).c_str(), bytesOf(file.text));
     }
     return refuse(wsi, 404);
 }
@@ -203,8 +215,10 @@ int WebServer::Impl::confirmUpgrade(lws* wsi) {
 }
 
 int WebServer::Impl::askForStill(lws* wsi) {
-    waiting.insert(wsi);
-    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, stillSeconds);
+    waiting[wsi] = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(settings.stillSeconds));
+    // The library's own limit would close the connection without an answer.
+    lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, static_cast<int>(settings.stillSeconds) + 10);
     const std::lock_guard lock(stillMutex);
     if (std::exchange(stillAsked, true)) return 0;
     streamer->requestStill([this](Bytes bytes) {
@@ -246,7 +260,7 @@ int WebServer::Impl::endUpload(lws* wsi) {
     return answer(wsi, "text/plain", std::make_shared<const std::vector<std::byte>>());
 }
 
-/// On the server's thread, after another one has called wake().
+/// On the server's thread, after another one has called wake(), and several times a second.
 void WebServer::Impl::afterWake() {
     for (const auto& [wsi, client] : clients) lws_callback_on_writable(wsi);
     Bytes done;
@@ -254,11 +268,17 @@ void WebServer::Impl::afterWake() {
         const std::lock_guard lock(stillMutex);
         done = std::exchange(still, nullptr);
     }
-    if (!done) return;
-    for (lws* const wsi : std::exchange(waiting, {})) {
-        if (answer(wsi, "image/png", done) != 0)
-            lws_set_timeout(wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+    if (done) {
+        for (const auto& [wsi, until] : std::exchange(waiting, {}))
+            answerLater(wsi, "image/png", done, HTTP_STATUS_OK);
     }
+    const auto now = Clock::now();
+    std::erase_if(waiting, [&](const auto& each) {
+        if (each.second > now) return false;
+        answerLater(each.first, "text/plain", bytesOf("There is no picture in full size yet: try again.\n"),
+                    HTTP_STATUS_GATEWAY_TIMEOUT);
+        return true;
+    });
 }
 
 int WebServer::Impl::sendToClient(lws* wsi, Client& client) {

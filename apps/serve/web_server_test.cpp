@@ -8,17 +8,18 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "base/error.h"
 #include "image/io/png/png.h"
+#include "serve/fake_session.h"
 #include "serve/protocol.h"
-#include "serve/remote/fake_session.h"
 #include "serve/remote/remote_socket.h"
 #include "serve/remote/video_decoder.h"
+#include "serve/test_pictures.h"
 #include "serve/token.h"
 
 namespace limpid::serve {
@@ -30,6 +31,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 constexpr unsigned headerSeconds = 2;
+constexpr double stillSeconds = 0.5;
 constexpr double patience = 10.0;
 
 /// Smooth colours, shifted by `step`: video must be able to keep it.
@@ -41,18 +43,6 @@ studio::Picture gradient(uint32_t width, uint32_t height, uint32_t step) {
                                      0xff000000u);
     }
     return picture;
-}
-
-double psnr(const studio::Picture& a, const studio::Picture& b) {
-    double sum = 0.0;
-    for (size_t i = 0; i < a.texels.size(); ++i) {
-        for (int shift = 0; shift < 24; shift += 8) {
-            const double difference =
-                double(a.texels[i] >> shift & 0xff) - double(b.texels.at(i) >> shift & 0xff);
-            sum += difference * difference;
-        }
-    }
-    return 10.0 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(a.texels.size()) / sum);
 }
 
 struct Frame {
@@ -139,6 +129,7 @@ class WebServerTest : public testing::Test {
             fs::create_symlink(root / "secret.glb", root / "scenes/link.glb");
             files = std::make_unique<SceneFiles>(root / "scenes");
             settings.headerSeconds = headerSeconds;
+            settings.stillSeconds = stillSeconds;
             settings.uploads = 1000;
             session.show(gradient(64, 48, 0), false);
             server = std::make_unique<WebServer>(session, settings, *files, token);
@@ -366,6 +357,61 @@ TEST_F(WebServerTest, VideoIsCloseAndTheStillIsExact) {
     EXPECT_EQ(texels, last.texels);
     const std::string http = get("/picture.png?token=" + token());
     EXPECT_EQ(http.substr(http.find("\r\n\r\n") + 4), still.bytes);
+}
+
+TEST_F(WebServerTest, SaysThatThereIsNoPictureInFullSize) {
+    session().publish([](studio::Shown& next) { next.state.viewport = {128, 96}; });
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string answer = get("/picture.png?token=" + token());
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::duration<double>(stillSeconds));
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 504"));
+    EXPECT_THAT(answer, HasSubstr("no picture in full size"));
+    session().show(gradient(128, 96, 0), false);
+    EXPECT_THAT(get("/picture.png?token=" + token()), StartsWith("HTTP/1.1 200"));
+}
+
+TEST_F(WebServerTest, InspectedImagesAndMotionReachTheClient) {
+    session().show(gradient(64, 48, 0), false);
+    Viewer viewer(port(), token(), "vp9");
+    auto image = std::make_shared<image::Image>(32, 24, 3);
+    for (size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<float>(i % 7) / 7.0f;
+    auto moved = std::make_shared<image::Image>(64, 48, 4);
+    for (size_t i = 0; i < moved->pixels.size(); i += 4) {
+        moved->pixels[i] = -6.4f;
+        moved->pixels[i + 3] = 1.0f;
+    }
+    session().publish([&](studio::Shown& next) {
+        next.inspected = image;
+        next.motion = moved;
+    });
+    bool hasMotion = false;
+    std::optional<Frame> still;
+    while (!hasMotion || !still) {
+        Frame frame = viewer.picture(
+            [](const Frame& f) { return f.header.codec == Codec::Motion || f.header.inspected; });
+        if (frame.header.codec == Codec::Motion) {
+            EXPECT_EQ(frame.header.width, 2);
+            EXPECT_EQ(frame.header.height, 2);
+            ASSERT_EQ(frame.bytes.size(), 32u);
+            float x = 0.0f;
+            std::memcpy(&x, frame.bytes.data(), sizeof(x));
+            EXPECT_FLOAT_EQ(x, -0.1f);
+            hasMotion = true;
+        } else if (frame.header.lossless) {
+            still = std::move(frame);
+        }
+    }
+    EXPECT_EQ(studio::packedTexels(image::decodeImage(std::as_bytes(std::span(still->bytes)), "still")),
+              studio::shownTexels(*image, {}));
+    viewer.say({{"type", "read"}, {"position", {0.5, 0.0}}, {"id", 8}});
+    const json values = viewer.text("values");
+    EXPECT_EQ(values.at("id"), 8);
+    EXPECT_EQ(values.at("pixel"), json({16, 0}));
+    EXPECT_EQ(values.at("values").at(2).get<float>(), image->at(16, 0, 2));
+    session().publish([&](studio::Shown& next) { next.inspected.reset(), next.motion.reset(); });
+    viewer.picture([](const Frame& f) { return !f.header.inspected && f.header.width == 64; });
+    viewer.say({{"type", "read"}, {"position", {0.5, 0.0}}, {"id", 9}});
+    EXPECT_FALSE(viewer.text("values").contains("values"));
 }
 
 TEST_F(WebServerTest, JpegIsForPagesWithoutVideo) {

@@ -1,6 +1,7 @@
 // Buttons for what is done once, which stand at the start of their sections.
 
 import {byId, make, setText} from './dom.js';
+import {makePresets} from './presets.js';
 import {makeUpload} from './upload.js';
 import {say} from './status.js';
 
@@ -28,10 +29,11 @@ async function copy(text) {
 
 class CommandLine {
   constructor(store, ask) {
-    this.text = make('code', {id: 'command', tabIndex: 0});
+    this.text = make('code', {id: 'command', tabIndex: 0, role: 'textbox', 'aria-readonly': 'true',
+                               'aria-label': 'Command line'});
     this.copy = make('button', {type: 'button', textContent: 'copy', click: () => copy(this.text.textContent)});
     this.box = make('div', {className: 'command', hidden: true}, this.text, this.copy);
-    this.button = make('button', {type: 'button', textContent: 'command line', click: () => ask('command_line'),
+    this.button = make('button', {type: 'button', id: 'command-line', textContent: 'command line', click: () => ask('command_line'),
                                   title: 'The limpid render command that makes this frame again'});
     store.addEventListener('facts', () => this.show(store.facts));
   }
@@ -58,7 +60,7 @@ function openScene(connection) {
   return {element, setScenes};
 }
 
-/// Elements by section.
+/// Elements by section: some stand at its start, some at its end.
 export function makeActions(store, connection, ask, status) {
   const button = (request, text, title) => {
     const element = make('button', {type: 'button', textContent: text, title, click: () => ask(request)});
@@ -69,29 +71,37 @@ export function makeActions(store, connection, ask, status) {
   const scenes = openScene(connection);
   const upload = makeUpload(connection);
   const command = new CommandLine(store, ask);
+  const presets = makePresets(store);
+  const noMotion = make('p', {className: 'note', id: 'no-motion', role: 'status',
+                              textContent: 'This method has no motion: choose a denoiser.', hidden: true});
   const elements = {
     scene: make('div', {}, make('p', {className: 'note', id: 'device'}), scenes.element, upload.element,
                 row(make('button', {type: 'button', id: 'download', textContent: 'download PNG',
-                                    title: 'The picture as it is shown, lossless',
+                                    title: 'The rendered picture, lossless',
                                     click: () => downloadPng(connection)}),
-                    button('reset', 'start anew', 'Histories and means begin again'), command.button), command.box),
+                    button('reset', 'reset', 'Means, histories and the frame number begin again'),
+                button('step', 'step', 'Renders one frame, also while rendering is stopped'), command.button), command.box),
     camera: row(button('reset_camera', 'reset camera', 'Back to the camera of the start'),
-                button('see_all', 'see everything', 'To where the whole scene is seen'),
-                button('step', 'one frame', 'Renders one frame, also while rendering is stopped')),
+                button('see_all', 'see everything', 'To where the whole scene is seen')),
     light: row(button('add_point', 'add a point', 'A lamp at the camera'),
                button('add_sun', 'add a sun', 'A sun above the scene')),
     look: row(button('measure_exposure', 'measure exposure', 'Sets the exposure for what is seen now')),
-    compare: make('p', {className: 'note', id: 'scores'}),
-    inspect: status.table,
+    compare: make('div', {}, row(button('keep_settings', 'keep these settings',
+                                        'Compares what you change from now on with the settings as they are')),
+                  make('p', {className: 'note', id: 'scores'})),
+    method: presets.element,
   };
-  const hello = ({requests, scenes: names, uploads}) => {
+  const endings = {inspect: make('div', {}, noMotion, status.table)};
+  const hello = ({requests, scenes: names, uploads, presets: list}) => {
     scenes.setScenes(names ?? []);
     upload.setLargest(uploads ?? 0);
+    presets.setPresets(list ?? []);
     for (const element of Object.values(elements)) {
       for (const each of element.querySelectorAll('[data-request]')) {
         each.hidden = !requests.includes(each.dataset.request);
       }
     }
   };
-  return {elements, hello};
+  const showMotion = exists => { noMotion.hidden = exists; };
+  return {elements, endings, hello, showMotion};
 }

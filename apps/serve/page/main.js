@@ -9,6 +9,8 @@ import {Store} from './store.js';
 import {Stream, codecsHere} from './stream.js';
 import {makeActions} from './actions.js';
 import {makeDivider} from './divider.js';
+import {makeInspection} from './inspection.js';
+import {parseMotion} from './arrows.js';
 import {rememberMovements} from './movements.js';
 import {makeKeys} from './keys.js';
 import {makeToolbar} from './toolbar.js';
@@ -23,10 +25,11 @@ const store = new Store(changes => connection.sendNumbered('edit', {changes}));
 const ask = (request, content = {}) => connection.sendNumbered('ask', {request, ...content});
 const status = new Status(store);
 const actions = makeActions(store, connection, ask, status);
-const panel = new Panel(store, ask, actions.elements);
+const panel = new Panel(store, ask, actions);
 const toolbar = makeToolbar(store, picture, ask);
 const showDivider = makeDivider(picture, () => ({
-  left: store.value('denoiser') === 'none' ? store.value('integrator') ?? '' : store.value('denoiser') ?? '',
+  left: store.value('pass') ? store.facts.images?.[store.value('image')] ?? store.value('pass')
+      : store.value('denoiser') === 'none' ? store.value('integrator') ?? '' : store.value('denoiser') ?? '',
   right: store.facts.compared_with || store.value('compare') || '',
 }));
 const movements = rememberMovements(store);
@@ -40,8 +43,17 @@ const stream = new Stream({
     if (header.side === 'right') return void (stage.dataset.comparedLossless = header.lossless);
     stage.dataset.frame = header.frame;
     stage.dataset.kind = header.kind;
+    stage.dataset.inspected = header.inspected;
     stage.dataset.lossless = header.lossless;
     stage.classList.add('has-picture');
+    if (header.inspected) inspection.imageChanged();
+  },
+  move: header => {
+    // What moved until now may still arrive.
+    if (!store.value('arrows')) return;
+    const motion = parseMotion(header);
+    picture.setMotion(motion);
+    actions.showMotion(motion.columns > 0);
   },
   received: frame => connection.send('received', {frame}),
   fail: error => {
@@ -67,6 +79,7 @@ const gestures = new Gestures(stage, picture, {
   touchesPixels: toolbar.touchesPixels,
 });
 
+const inspection = makeInspection(store, picture, stage, position => connection.sendNumbered('read', {position}));
 const isInside = position => position.every(v => v >= 0 && v <= 1);
 const viewport = watchViewport(stage, picture, store);
 makeKeys({store, stage, picture, ask, toolbar});
@@ -86,10 +99,15 @@ const handlers = {
     if (first) viewport.send();
     picture.setExtent(store.value('viewport'));
     if (store.value('compare') === 'nothing' && picture.isCompared) picture.show('right', null);
+    if (!store.value('arrows')) {
+      picture.setMotion(null);
+      actions.showMotion(true);
+    }
     showDivider();
   },
   facts: message => store.receiveFacts(message.facts),
   ack: message => store.acknowledge(message.id, message.message),
+  values: message => inspection.showValues(message),
   refused: message => say(`Refused: ${message.why}`),
 };
 

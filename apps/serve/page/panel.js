@@ -7,8 +7,9 @@ import {LightDesk} from './lights.js';
 const firstSections = ['scene', 'camera', 'light', 'method', 'look', 'compare', 'inspect'];
 const openAtFirst = ['scene', 'method', 'look'];
 const onlyWithClip = ['playing', 'time'];
-// The page sets the first; the others concern images that the program does not send.
-const hidden = ['viewport', 'arrows', 'pass', 'image', 'view.channels', 'view.stops', 'view.false_color'];
+const onlyWithPass = ['image', 'view.channels', 'view.stops', 'view.false_color'];
+// The page sets the first; the others belong to EXR files, which it does not have, and to buttons.
+const hidden = ['viewport', 'layers', 'kept_settings', 'running'];
 
 const idOf = key => 'field-' + key.replace(/[^a-z0-9]/gi, '-');
 
@@ -16,7 +17,7 @@ export class Panel {
   #rows = new Map();     // key -> {element, show, reset}
   #sections = new Map(); // name -> <details>
 
-  /// `actions` gives elements for the start of a section: section name -> element.
+  /// `actions` gives elements for the start and the end of a section: section name -> element.
   constructor(store, ask, actions) {
     this.store = store;
     this.ask = ask;
@@ -41,7 +42,8 @@ export class Panel {
       const rows = this.store.fields.filter(f => f.section === name && !hidden.includes(f.key)).map(f => this.row(f));
       const details = make('details', {className: 'section', open: again ? open.has(name) : openAtFirst.includes(name)},
                            make('summary', {}, make('span', {textContent: name}), make('span', {className: 'count'})),
-                           make('div', {className: 'body'}, this.actions[name] ?? null, ...rows));
+                           make('div', {className: 'body'}, this.actions.elements[name] ?? null, ...rows,
+                                this.actions.endings[name] ?? null));
       details.dataset.section = name;
       this.#sections.set(name, details);
     }
@@ -111,7 +113,7 @@ export class Panel {
     element.classList.toggle('changed', differs);
     reset.hidden = !differs;
     if (onlyWithClip.includes(key)) element.classList.toggle('absent', !(facts.duration > 0));
-    if (key === 'image') element.classList.toggle('absent', !(facts.images?.length > 0));
+    if (onlyWithPass.includes(key)) element.classList.toggle('absent', !this.store.value('pass'));
     if (key === 'time' && facts.duration > 0) field.slider.max = facts.duration;
   }
 

@@ -1,5 +1,7 @@
 // The picture on its canvas: both sides of a comparison, enlarged pixels, and where a point of the page is in it.
 
+import {drawArrows} from './arrows.js';
+
 const largestZoom = 64;
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
@@ -10,6 +12,7 @@ export class Picture extends EventTarget {
   #center = [0.5, 0.5]; // of the picture, at the stage's centre
   #split = 0.5;
   #extent = null; // the state's viewport: the picture is shown as large, also while fewer pixels are rendered
+  #motion = null; // of arrows.js; null: none is shown
   #waits = false;
 
   constructor(canvas) {
@@ -33,6 +36,13 @@ export class Picture extends EventTarget {
     this.redraw();
     if (side === 'right' && !before !== !now) this.dispatchEvent(new Event('compared'));
     this.dispatchEvent(new Event('shown'));
+  }
+
+  /// Arrows over the picture; null removes them.
+  setMotion(motion) {
+    if (motion === this.#motion) return;
+    this.#motion = motion;
+    this.redraw();
   }
 
   resize(width, height) {
@@ -128,7 +138,13 @@ export class Picture extends EventTarget {
       context.drawImage(image, place.x, place.y, place.width, place.height);
     };
     if (this.#left) draw(this.#left);
-    if (!this.#right) return;
+    if (this.#right) this.drawRight(draw);
+    const ratio = canvas.width / Math.max(canvas.clientWidth, 1);
+    canvas.dataset.arrows = this.#motion ? drawArrows(context, this.#motion, place, ratio) : 0;
+  }
+
+  drawRight(draw) {
+    const {context, canvas} = this;
     const cut = Math.round(this.#split * canvas.width);
     context.save();
     context.beginPath();

@@ -1,6 +1,6 @@
 // What the program tells: the line below the picture, messages, the times of passes, values of pixels.
 
-import {byId, make, numberText, setText} from './dom.js';
+import {byId, debounced, make, numberText, setText} from './dom.js';
 
 const units = ['bytes', 'KiB', 'MiB', 'GiB', 'TiB'];
 
@@ -16,19 +16,19 @@ function millisecondsText(milliseconds) {
 }
 
 export class Status {
-  #shownFault = '';
-  #dismissed = '';
+  #dismissed = {fault: null, message: null}; // texts that are not shown any more
 
   constructor(store) {
     this.store = store;
     for (const name of ['facts', 'state']) store.addEventListener(name, () => this.show());
     byId('dismiss').addEventListener('click', () => {
-      this.#dismissed = this.#shownFault;
+      for (const id of Object.keys(this.#dismissed)) this.#dismissed[id] = byId(id).textContent;
+      say('');
       this.show();
     });
     this.passes = make('tbody');
     this.memory = make('p', {className: 'note'});
-    this.table = make('div', {className: 'passes'}, make('table', {}, make('caption', {textContent: 'Times of passes'}),
+    this.table = make('div', {className: 'passes'}, make('table', {}, make('caption', {textContent: 'Passes: click on one to see its images'}),
         make('thead', {}, make('tr', {}, make('th', {scope: 'col', textContent: 'pass'}),
                                make('th', {scope: 'col', textContent: 'time'}))), this.passes), this.memory);
   }
@@ -39,8 +39,8 @@ export class Status {
     setText(byId('scene-name'), facts.scene || 'no scene');
     setText(byId('device'), facts.device);
     setText(byId('activity'), this.activity(facts));
-    setText(byId('fact-time'), `${millisecondsText(facts.frame_milliseconds ?? 0)} a frame`);
-    setText(byId('fact-samples'), facts.samples > 0 ? `${facts.samples} samples` : `frame ${facts.frames}`);
+    setText(byId('fact-time'), facts.frame_milliseconds > 0 ? `${millisecondsText(facts.frame_milliseconds)} a frame` : '');
+    setText(byId('fact-samples'), facts.samples > 0 ? `${facts.samples} ${facts.samples === 1 ? 'sample' : 'samples'}` : `frame ${facts.frames}`);
     setText(byId('fact-size'), (facts.extent ?? []).join(' × '));
     byId('cancel').hidden = !facts.activity;
     this.showMessages(facts);
@@ -54,23 +54,33 @@ export class Status {
   }
 
   showMessages(facts) {
-    setText(byId('message'), facts.message ?? '');
-    this.#shownFault = facts.fault ?? '';
-    if (!this.#shownFault) this.#dismissed = '';
-    const hidden = !this.#shownFault || this.#shownFault === this.#dismissed;
-    setText(byId('fault'), hidden ? '' : this.#shownFault);
-    byId('dismiss').hidden = hidden;
+    // The command line has a place of its own.
+    const said = {fault: facts.fault ?? '', message: facts.message === facts.command ? '' : facts.message ?? ''};
+    for (const [id, text] of Object.entries(said)) {
+      if (text !== this.#dismissed[id]) this.#dismissed[id] = null;
+      setText(byId(id), this.#dismissed[id] === null ? text : '');
+    }
     setText(byId('values'), facts.values ?? '');
     byId('values').hidden = !facts.values;
     setText(byId('scores'), facts.scores ?? '');
+  }
+
+  /// A click on a pass shows its images, another one the picture.
+  passRow() {
+    const name = make('button', {type: 'button', title: 'Shows the images of this pass', click: () => {
+      const pass = name.textContent;
+      this.store.edit({pass: pass === this.store.value('pass') ? '' : pass});
+    }});
+    return make('tr', {}, make('td', {}, name), make('td'));
   }
 
   showPasses(facts) {
     const passes = facts.passes ?? [];
     while (this.passes.rows.length > passes.length) this.passes.lastChild.remove();
     passes.forEach(({name, milliseconds}, i) => {
-      const row = this.passes.rows[i] ?? this.passes.appendChild(make('tr', {}, make('td'), make('td')));
-      setText(row.cells[0], name);
+      const row = this.passes.rows[i] ?? this.passes.appendChild(this.passRow());
+      setText(row.cells[0].firstChild, name);
+      row.cells[0].firstChild.setAttribute('aria-pressed', name === this.store.value('pass'));
       setText(row.cells[1], millisecondsText(milliseconds));
     });
     if (facts.memory !== undefined) {
@@ -80,7 +90,11 @@ export class Status {
   }
 }
 
-/// A message of the page itself, until the next.
+const saySeconds = 10;
+const hush = debounced(1000 * saySeconds, () => say(''));
+
+/// A message of the page itself, until the next, or for a while.
 export function say(text) {
   setText(byId('page-message'), text);
+  if (text) hush();
 }

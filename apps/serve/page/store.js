@@ -95,10 +95,11 @@ export class Store extends EventTarget {
     this.#changed('state');
   }
 
-  edit(changes, {remembers = true} = {}) {
+  /// `name`: what undo calls it, if not the fields by their names.
+  edit(changes, {remembers = true, name} = {}) {
     const before = Object.fromEntries(Object.keys(changes).map(key => [key, this.value(key)]));
     if (same(before, changes)) return;
-    if (remembers) this.remember(before, changes);
+    if (remembers) this.remember(before, changes, name);
     const id = this.send(changes);
     for (const [key, value] of Object.entries(changes)) this.#pending.set(key, {value, id, number: Infinity});
     this.#changed('state');
@@ -109,22 +110,26 @@ export class Store extends EventTarget {
   }
 
   /// A step that undo() takes back: edit() remembers by itself; movements of the camera are remembered when they end.
-  remember(before, after) {
+  remember(before, after, name) {
     const last = this.#undo.at(-1), now = performance.now();
     const keys = Object.keys(after).join(), isHeld = Object.keys(after).some(key => this.#held.has(key));
     if (isHeld && last?.keys === keys && now - last.time < mergeMilliseconds) {
       last.after = after;
       last.time = now;
     } else {
-      this.#undo.push({before, after, keys, time: now});
+      this.#undo.push({before, after, keys, time: now, name: name ?? this.nameOf(after)});
     }
     this.#redo.length = 0;
     this.#changed('history');
   }
 
-  /// The fields that the next step changes; undefined: there is none.
-  undoes() { return this.#undo.at(-1)?.keys; }
-  redoes() { return this.#redo.at(-1)?.keys; }
+  nameOf(changes) {
+    return Object.keys(changes).map(key => this.field(key)?.label ?? key).join(', ').replaceAll('_', ' ');
+  }
+
+  /// What the next step changes; undefined: there is none.
+  undoes() { return this.#undo.at(-1)?.name; }
+  redoes() { return this.#redo.at(-1)?.name; }
   undo() { this.#step(this.#undo, this.#redo, 'before'); }
   redo() { this.#step(this.#redo, this.#undo, 'after'); }
 

@@ -1,9 +1,9 @@
 // Pictures as they arrive: VP9 by the browser's decoder, or single JPEG and PNG pictures, in the order in which they
 // were sent.
 
-const kinds = {1: 'vp9', 2: 'jpeg', 3: 'png'};
+const kinds = {1: 'vp9', 2: 'jpeg', 3: 'png', 4: 'motion'};
 const headerBytes = 32;
-const isKey = 1, isCompared = 2, isLossless = 4;
+const isKey = 1, isCompared = 2, isLossless = 4, isInspected = 8;
 
 const config = {
   codec: 'vp09.00.41.08',
@@ -15,6 +15,7 @@ const config = {
 export function parseHeader(buffer) {
   const view = new DataView(buffer), flags = view.getUint8(1);
   return {kind: kinds[view.getUint8(0)], key: Boolean(flags & isKey), lossless: Boolean(flags & isLossless),
+          inspected: Boolean(flags & isInspected),
           side: flags & isCompared ? 'right' : 'left', width: view.getUint16(4, true), height: view.getUint16(6, true),
           frame: view.getUint32(8, true), included: Number(view.getBigUint64(16, true)),
           data: new Uint8Array(buffer, headerBytes)};
@@ -98,16 +99,19 @@ class Side {
 }
 
 export class Stream {
-  /// `received` acknowledges a frame; `show(header, image)` owns the image; `fail` hears of what cannot be decoded.
-  constructor({show, received, fail}) {
+  /// `received` acknowledges a frame; `show(header, image)` owns the image; `move(header)` gets the motion;
+  /// `fail` hears of what cannot be decoded.
+  constructor({show, move, received, fail}) {
     this.received = received;
+    this.move = move;
     this.sides = {left: new Side(show, fail), right: new Side(show, fail)};
   }
 
   async take(buffer) {
     const header = parseHeader(buffer);
     try {
-      await this.sides[header.side].take(header);
+      if (header.kind === 'motion') this.move(header);
+      else await this.sides[header.side].take(header);
     } finally {
       this.received(header.frame);
     }

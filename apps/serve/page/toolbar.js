@@ -19,9 +19,9 @@ export function makeToolbar(store, picture, ask) {
   const toggle = key => store.edit({[key]: !store.value(key)});
   const pixels = byId('pixels');
   const showPressed = (id, pressed) => byId(id).setAttribute('aria-pressed', pressed);
-  const showStep = (id, name, keys, shortcut) => {
-    byId(id).disabled = !keys;
-    byId(id).title = keys ? `${name}: ${keys.replaceAll(',', ', ')} (${shortcut})` : `${name} (${shortcut})`;
+  const showStep = (id, name, what, shortcut) => {
+    byId(id).disabled = !what;
+    byId(id).title = what ? `${name}: ${what} (${shortcut})` : `${name} (${shortcut})`;
   };
   const togglePanel = () => {
     const hidden = document.body.classList.toggle('without-panel');

@@ -31,7 +31,7 @@ export function makeUpload(connection) {
     input.value = '';
   }});
   const element = make('div', {className: 'field', hidden: true},
-      make('div', {className: 'head'}, make('label', {htmlFor: 'upload', textContent: 'open a file of this device'})),
+      make('div', {className: 'head'}, make('label', {htmlFor: 'upload', textContent: 'open a file from this device'})),
       input);
   const stage = byId('stage');
   stage.addEventListener('dragover', event => largest > 0 && event.preventDefault());

@@ -402,11 +402,12 @@ std::vector<Entry> makeEntries() {
         for (size_t i = 0; i < group.infos.size(); ++i) all.push_back(parameterEntry(group, i));
     }
     const State initial;
-    const auto fromScene = [](const std::string& section) {
-        return section == "light" || section == "camera";
+    // The exposure is measured for each scene.
+    const auto fromScene = [](const Field& field) {
+        return field.section == "light" || field.section == "camera" || field.key == "exposure";
     };
     for (Entry& entry : all) {
-        if (!fromScene(entry.field.section)) entry.field.defaultValue = entry.get(initial);
+        if (!fromScene(entry.field)) entry.field.defaultValue = entry.get(initial);
     }
     return all;
 }

@@ -92,6 +92,13 @@ TEST(StateJson, HasAllParameters) {
     EXPECT_FALSE(findField("nothing"));
 }
 
+TEST(StateJson, WhatTheSceneDecidesHasNoDefault) {
+    for (const char* key : {"exposure", "eye", "fov", "lights"})
+        EXPECT_TRUE(findField(key)->defaultValue.is_null()) << key;
+    for (const char* key : {"seed", "denoiser", "tone_curve"})
+        EXPECT_FALSE(findField(key)->defaultValue.is_null()) << key;
+}
+
 TEST(StateJson, WhatDoesNotFitChangesNothing) {
     State state = stateWithLights();
     const json before = toJson(state);

@@ -35,12 +35,23 @@ class FakeSession final : public studio::Session {
     }
     void removeListener(uint64_t number) override { mailbox_.removeListener(number); }
 
+    /// Publishes the next snapshot: the last one, changed by the function.
+    template <typename Function>
+    void publish(Function function) {
+        const std::lock_guard lock(mutex_);
+        auto next = std::make_shared<studio::Shown>(*mailbox_.shown());
+        ++next->number;
+        function(*next);
+        mailbox_.publish(std::move(next));
+    }
     /// Shows a picture. `computing`: false: it is the last one for now.
-    void show(studio::Picture picture, bool computing) {
+    void show(studio::Picture picture, bool computing,
+              std::shared_ptr<const studio::Picture> compared = nullptr) {
         publish([&](studio::Shown& next) {
             next.facts.computing = computing;
             next.state.viewport = picture.extent;
             next.picture = std::make_shared<const studio::Picture>(std::move(picture));
+            next.compared = std::move(compared);
         });
     }
     std::vector<studio::Request> asked() const {
@@ -57,14 +68,6 @@ class FakeSession final : public studio::Session {
             function(next);
         });
         return number;
-    }
-    template <typename Function>
-    void publish(Function function) {
-        const std::lock_guard lock(mutex_);
-        auto next = std::make_shared<studio::Shown>(*mailbox_.shown());
-        ++next->number;
-        function(*next);
-        mailbox_.publish(std::move(next));
     }
 
     studio::Mailbox mailbox_;

@@ -1,0 +1,104 @@
+"""The panel: values, their defaults, undo, the search, presets."""
+
+from browser import check
+from page import choose, click_on, settle, type_into, value_of
+
+
+def test_controls(browser):
+    marked = browser.evaluate("[...document.querySelectorAll('.field.changed')].map(f => f.dataset.key).join()")
+    check(marked == 'max_samples', f'marked as changed, but by nobody: {marked}')
+    type_into(browser, '#field-seed-number', '7')
+    browser.wait("document.querySelector('[data-key=seed]').classList.contains('changed')", 'the mark of a change')
+    browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture', 30)
+    click_on(browser, '[data-key=seed] .reset')
+    check(value_of(browser, 'seed') == 0, 'the default does not come back')
+    check(not browser.evaluate("document.querySelector('[data-key=seed].changed') !== null"), 'the mark stays')
+    browser.evaluate("document.activeElement.blur()")
+    browser.key('z', 2)
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'undo')
+    browser.key('z', 2)
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", 'undo, twice')
+    browser.key('z', 10)
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 7", 'redo')
+    browser.key('z', 2)
+
+
+def test_search(browser):
+    click_on(browser, '#search')
+    browser.type('exposure')
+    shown = browser.evaluate('''[...document.querySelectorAll('.field[data-key]')]
+        .filter(f => f.offsetParent).map(f => f.dataset.key)''')
+    check('exposure' in shown and 'seed' not in shown and len(shown) < 10, f'found: {shown}')
+    found = browser.evaluate("document.getElementById('search-result').textContent")
+    check(found == f'{len(shown)} found', f'it says {found}')
+    browser.evaluate("document.getElementById('search').value = ''")
+    browser.type(' ')
+    check(browser.evaluate("document.querySelector('[data-key=seed]').offsetParent !== null"), 'the search stays')
+
+
+def test_keyboard_slider(browser):
+    """From the search, by the tabulator only."""
+    browser.evaluate("document.getElementById('search').focus()")
+    for _ in range(80):
+        browser.key('Tab')
+        if browser.evaluate("document.activeElement.id") == 'field-exposure':
+            break
+    else:
+        raise AssertionError('the tabulator does not reach the slider')
+    outline = browser.evaluate("getComputedStyle(document.activeElement).outlineStyle")
+    check(outline != 'none', 'the focus is not visible')
+    before = value_of(browser, 'exposure')
+    for _ in range(3):
+        browser.key('ArrowRight')
+    after = value_of(browser, 'exposure')
+    check(after > before, f'the arrow key changes {before} to {after}')
+    text = browser.evaluate("document.activeElement.getAttribute('aria-valuetext')")
+    check('stops' in text, f'the slider says {text}')
+    browser.evaluate("document.activeElement.blur()")
+    browser.key('z', 2)
+    browser.wait(f"Math.abs(document.getElementById('field-exposure-number').valueAsNumber - {before}) < 1e-3", 'undo')
+
+
+def test_presets(browser):
+    """One sets method and parameters; one step of undo takes it back."""
+    value = "document.getElementById('field-{}').{}"
+    chosen = "document.getElementById('preset').selectedOptions[0].textContent"
+    check(browser.evaluate(chosen) == 'none', 'a preset is in force at first')
+    flags = f"[{value.format('temporal-grey-restart', 'checked')}, {value.format('temporal-demodulate', 'checked')}]"
+    check(browser.evaluate(flags) == [False, True], 'the defaults')
+    browser.evaluate('''(() => {
+      const select = document.getElementById('preset');
+      select.selectedIndex = [...select.options].findIndex(option => option.textContent === 'history-tracking-course');
+      select.dispatchEvent(new Event('change'));
+    })()''')
+    browser.wait(f"{value.format('denoiser', 'selectedOptions[0].textContent')} === 'atrous'", 'the denoiser')
+    settle(browser, 'the picture of the preset')
+    check(browser.evaluate(flags) == [True, False], 'parameters of the preset')
+    check(browser.evaluate(chosen) == 'history-tracking-course', 'the list does not show the preset')
+    check('History tracking' in browser.evaluate("document.getElementById('preset-help').textContent"), 'no source')
+    check('history-tracking-course' in browser.evaluate("document.getElementById('undo').title"), 'undo has no name')
+    type_into(browser, '#field-atrous-levels-number', '3')
+    browser.wait(f"{chosen} === 'none'", 'a changed preset')
+    click_on(browser, '#undo')
+    browser.wait(f"{chosen} === 'history-tracking-course'", 'the preset again')
+    click_on(browser, '#undo')
+    browser.wait(f"{value.format('denoiser', 'selectedOptions[0].textContent')} === 'none'", 'undo')
+    check(browser.evaluate(flags) == [False, True], 'undo of parameters')
+    settle(browser, 'the path tracer')
+
+
+def test_messages(browser):
+    """Errors and messages can be hidden; the next one is shown again. The command line has its own place."""
+    fault = "document.getElementById('fault').textContent"
+    cross = "getComputedStyle(document.getElementById('dismiss')).display !== 'none'"
+    check(not browser.evaluate(cross), 'there is a cross without a message')
+    click_on(browser, '#command-line')
+    browser.wait("document.getElementById('command').textContent.startsWith('limpid render')", 'the command line')
+    message = browser.evaluate("document.getElementById('message').textContent")
+    check('limpid render' not in message, f'the command line is a message, too: {message}')
+    for name in ('broken.glb', 'torn.glb'):
+        browser.evaluate(f"fetch('/upload' + location.search + '&name={name}', {{method: 'POST', body: 'x'}})")
+        browser.wait(f"{fault}.includes('{name}')", 'the error')
+        click_on(browser, '#dismiss')
+        browser.wait(f"{fault} === ''", 'the end of the error')
+        check(not browser.evaluate(cross), 'the cross stays')

@@ -1,0 +1,87 @@
+"""Files that are sent, other pages, lost connections, and a program that is started again."""
+
+import json
+import pathlib
+import time
+
+from browser import check
+from page import box_of, center, click_on, open_page, settle, type_into, value_of
+
+
+def test_upload(browser, folder):
+    """A scene of this device, dropped on the picture."""
+    before = browser.evaluate("document.getElementById('scene-name').textContent")
+    file = pathlib.Path(folder) / 'dropped.obj'
+    file.write_text('v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n')
+    x, y = center(box_of(browser, '#stage'))
+    data = {'items': [], 'files': [str(file)], 'dragOperationsMask': 1}
+    for kind in ('dragEnter', 'dragOver', 'drop'):
+        browser.call('Input.dispatchDragEvent', type=kind, x=x, y=y, data=data)
+    browser.wait("document.getElementById('scene-name').textContent.includes('dropped')", 'the dropped scene')
+    browser.evaluate('''(() => {
+      const select = document.getElementById('open-scene');
+      select.value = [...select.options].map(o => o.value).find(value => value === 'builtin:cornell');
+      select.dispatchEvent(new Event('change'));
+    })()''')
+    browser.wait(f"document.getElementById('scene-name').textContent === {json.dumps(before)}", 'the first scene')
+    settle(browser, 'the first scene')
+
+
+def test_two_tabs(browser, address):
+    """Edits are seen in the other page, but not where a hand is on the control."""
+    first = browser.open_tab()
+    second = browser.session
+    browser.size(900, 400)
+    open_page(browser, address)
+    type_into(browser, '#field-seed-number', '11')
+    browser.session = first
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 11", "the other page's edit")
+    before = value_of(browser, 'exposure')
+    browser.size(900, 600)  # messages above the slider leave room for it
+    slider = box_of(browser, '#field-exposure')
+    x, y = slider['left'] + 0.75 * slider['width'], slider['top'] + slider['height'] / 2
+    browser.mouse('mousePressed', x, y, 1)
+    held = value_of(browser, 'exposure')
+    check(held != before, 'the slider is not held')
+    browser.session = second
+    now = "document.getElementById('field-exposure-number').valueAsNumber"
+    browser.wait(f"Math.abs({now} - {held}) < 1e-3", 'the slider')
+    type_into(browser, '#field-exposure-number', '-2')
+    check(value_of(browser, 'exposure') == -2, 'what was typed is lost')
+    browser.session = first
+    time.sleep(0.5)
+    check(value_of(browser, 'exposure') == held, f'a held slider jumps from {held} to {value_of(browser, "exposure")}')
+    browser.mouse('mouseReleased', x, y, 0)
+    browser.wait("document.getElementById('field-exposure-number').valueAsNumber === -2", 'the slider, let go')
+    type_into(browser, '#field-exposure-number', str(before))
+    click_on(browser, '[data-key=seed] .reset')
+    browser.session = second
+    browser.wait("document.getElementById('field-seed-number').valueAsNumber === 0", "the first page's edit")
+    browser.call('Page.close')
+    browser.session = first
+
+
+def test_reconnection(browser, relay):
+    """A cut network: the page says so, and connects by itself."""
+    relay.cut()
+    browser.wait("document.body.classList.contains('lost')", 'the page does not see that the connection is lost')
+    said = browser.evaluate("document.getElementById('connection').textContent")
+    check('connecting again' in said, f'it says {said}')
+    browser.evaluate("document.getElementById('stage').dataset.frame = ''")
+    relay.open = True
+    browser.wait("!document.body.classList.contains('lost')", 'the page does not connect again')
+    browser.wait("document.getElementById('stage').dataset.frame !== ''", 'no picture after connecting again')
+    type_into(browser, '#field-seed-number', '5')
+    browser.wait("document.getElementById('activity').textContent === 'finished'", 'the changed picture')
+    click_on(browser, '[data-key=seed] .reset')
+
+
+def test_restart(browser, server, relay):
+    """A program that is started again has another token: the page says where to go, which works."""
+    server.stop()
+    browser.wait("document.body.classList.contains('lost')", 'the page does not see that the program has ended')
+    server.start()
+    browser.wait("document.getElementById('connection').textContent.includes('open the address that it prints')",
+                 'the page does not say where to go')
+    open_page(browser, relay.address())
+    check(browser.evaluate("!document.body.classList.contains('lost')"), 'the new address does not work')
