@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "scene/device/light_tree.h"
 #include "scene/device/mip_levels.h"
 #include "scene/device/pack.h"
 #include "scene/device/tables/alias_table.h"
@@ -18,12 +19,10 @@ namespace {
 constexpr float environmentShare = 0.5f;
 /// The minimum probabilities of triangles and of punctual lights among the other samples, if there are both.
 constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
+/// With fewer lights there is no tree: their power is enough.
+constexpr size_t minTreeLights = 2;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
 constexpr double uniformShare = 0.25;
-
-double luminance(const vec3& c) {
-    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-}
 
 vec2 transformed(const TextureRef& ref, const vec2& uv) {
     const vec3 p(uv, 1.0f);
@@ -48,7 +47,7 @@ double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const
         for (int j = 0; i + j < side; ++j) {
             const float u = (static_cast<float>(i) + 1.0f / 3.0f) / static_cast<float>(side);
             const float v = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(side);
-            sum += luminance(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            sum += luminanceOf(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
             ++count;
         }
     }
@@ -78,9 +77,33 @@ class LightPacker {
             }
         }
         data_.params.triangleLightCount = static_cast<uint32_t>(weights_.size());
+        packTree();
     }
 
   private:
+    /// Packs nodes, trails, and the list of directional lights. Whether there is a tree depends on the number
+    /// of lights only, so that lights can be changed on the device.
+    void packTree() {
+        data_.features.lightTree = bounds_.size() - suns_.size() >= minTreeLights;
+        data_.features.suns = !suns_.empty();
+        if (!data_.features.lightTree) return;
+        LightTree tree(bounds_);
+        data_.lightTree = packLightTree(tree);
+        data_.params.firstLightTrail = static_cast<uint32_t>(data_.lightTree.size());
+        for (const uint32_t light : lightOfPrimitive_) {
+            const uint64_t trail = light == layout::NONE ? 0 : tree.trail(light);
+            data_.lightTree.emplace_back(static_cast<uint32_t>(trail), static_cast<uint32_t>(trail >> 32),
+                                         light, 0u);
+        }
+        data_.params.firstSun = static_cast<uint32_t>(data_.lightTree.size());
+        data_.params.sunCount = static_cast<uint32_t>(suns_.size());
+        for (const uint32_t sun : suns_) data_.lightTree.emplace_back(sun, 0u, 0u, 0u);
+        const bool moves =
+            !data_.motion.lights.empty() ||
+            std::ranges::any_of(scene_.lights, [](const auto& light) { return light.node != none; });
+        if (moves) data_.motion.lightTree = std::move(tree);
+    }
+
     void setProbabilities(size_t first, const AliasTable& table) {
         for (size_t i = 0; i < table.probabilities.size(); ++i)
             data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
@@ -132,6 +155,7 @@ class LightPacker {
                             static_cast<uint32_t>(weights_.size()),
                             static_cast<uint32_t>(tableStart),
                             {},
+                            {},
                             {}};
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
@@ -140,6 +164,7 @@ class LightPacker {
             if (isEmitter(scene_.materials[material])) {
                 light = packTriangle(index, instance, mesh, t, material);
                 moving.triangles.push_back(static_cast<uint32_t>(t));
+                moving.radiances.push_back(radiances_.back());
             }
             lightOfPrimitive_.push_back(light);
         }
@@ -159,7 +184,7 @@ class LightPacker {
         vec3 v[3];
         for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
         if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
-        double radiance = luminance(material.emission);
+        double radiance = luminanceOf(material.emission);
         const TextureRef& ref = material.emissionTexture;
         if (ref) {
             const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
@@ -181,6 +206,8 @@ class LightPacker {
         const bool changes = ref || material.clearcoat > 0.0f;  // varies between points, or with direction
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
+        radiances_.push_back(static_cast<float>(radiance));
+        bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance, material.doubleSided));
         const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
         return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
     }
@@ -188,7 +215,7 @@ class LightPacker {
     /// Returns its power. A spot counts as if it shone in all directions: outside its cone other lights
     /// matter, but inside it is that bright.
     double packPunctual(const PunctualLight& light) {
-        const double strength = luminance(light.intensity);
+        const double strength = luminanceOf(light.intensity);
         uint32_t kind = light.kind == PunctualLight::Kind::Spot ? layout::LIGHT_SPOT : layout::LIGHT_POINT;
         double power = 4.0 * std::numbers::pi * strength;
         if (light.kind == PunctualLight::Kind::Directional) {
@@ -200,6 +227,14 @@ class LightPacker {
         data_.lights.push_back(
             bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
         data_.lights.push_back(bits(light.intensity, 0u));
+        if (light.kind == PunctualLight::Kind::Directional) {
+            // A leaf without intensity keeps the tree's numbering that of the list.
+            suns_.push_back(static_cast<uint32_t>(bounds_.size()));
+            bounds_.emplace_back();
+            bounds_.back().center = data_.params.sceneCenter;
+        } else {
+            bounds_.push_back(punctualLightBounds(light));
+        }
         return finite(power);
     }
 
@@ -216,7 +251,9 @@ class LightPacker {
     std::vector<double> weights_;  ///< powers of the triangle lights, which come first
     std::vector<size_t> lamps_;    ///< the lamp that each belongs to: one material of one instance
     std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
-    std::vector<float> areas_;                ///< of the triangle lights
+    std::vector<float> areas_, radiances_;    ///< of the triangle lights
+    std::vector<LightBounds> bounds_;         ///< of all lights; empty ones of directional lights
+    std::vector<uint32_t> suns_;              ///< the directional lights
     std::vector<uint32_t> lightOfPrimitive_;  ///< index of the light, or NONE, for every primitive of an
                                               ///< emissive instance
 };
@@ -236,7 +273,7 @@ std::vector<double> environmentWeights(const Environment& env) {
                     const int column = (x + dx + width) % width;
                     sum +=
                         (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
-                        luminance(
+                        luminanceOf(
                             env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
                 }
             }
