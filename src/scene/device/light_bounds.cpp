@@ -81,7 +81,7 @@ LightBounds triangleLightBounds(const std::array<vec3, 3>& v, double radiance, b
 LightBounds punctualLightBounds(const PunctualLight& light) {
     LightBounds bounds;
     bounds.center = light.position;
-    bounds.intensity = finiteIntensity(luminanceOf(light.intensity));
+    bounds.intensity = finiteIntensity(strengthOf(light.intensity));
     if (light.range > 0.0f) bounds.range = light.range;
     bounds.spread = pi;
     bounds.falloff = pi / 2;

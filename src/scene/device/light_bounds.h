@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "base/math.h"
@@ -22,13 +23,14 @@ struct LightBounds {
     vec3 axis{0.0f, 0.0f, 1.0f};  ///< unit: of the cone that contains all directions of full emission
     float spread = 0.0f;          ///< half angle of that cone, radians; pi: all directions (theta_o)
     float falloff = 0.0f;         ///< angle over which emission falls to 0 beyond the cone, radians (theta_e)
-    float intensity = 0.0f;  ///< luminance times area in the brightest direction, finite; 0: never sampled
+    float intensity = 0.0f;       ///< strength in the brightest direction, finite; 0: never sampled
     float range = std::numeric_limits<float>::infinity();  ///< beyond this distance there is no light
     bool twoSided = false;                                 ///< emits in the opposite directions, too
     bool spot = false;                                     ///< one spot light, whose ramp is exact
+    bool inTree = true;                                    ///< false for directional lights
 };
 
-/// `radiance`: mean luminance over the triangle, towards the side from which v0, v1, v2 are
+/// `radiance`: mean strength over the triangle, towards the side from which v0, v1, v2 are
 /// counter-clockwise.
 LightBounds triangleLightBounds(const std::array<vec3, 3>& v, double radiance, bool twoSided);
 /// A point or spot light. Directional lights have no bounds.
@@ -36,9 +38,10 @@ LightBounds punctualLightBounds(const PunctualLight& light);
 /// Returns bounds that contain both. Lights without intensity are ignored.
 LightBounds unite(const LightBounds& a, const LightBounds& b);
 
-/// Luminance of a linear Rec. 709 colour.
-inline double luminanceOf(const vec3& c) {
-    return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
+/// By how much a colour counts: the root mean square of its components. Weights proportional to it minimise
+/// the summed variance of the three components, while luminance would neglect blue lamps.
+inline double strengthOf(const vec3& color) {
+    return std::sqrt(glm::dot(glm::dvec3(color), glm::dvec3(color)) / 3.0);
 }
 
 }  // namespace limpid::scene

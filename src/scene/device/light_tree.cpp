@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "scene/device/bvh.h"
 #include "scene/device/pack.h"
@@ -62,18 +63,34 @@ float LightSet::cost() const {
     return intensity * orientation * area;
 }
 
-LightSet lightSetOf(const LightBounds& light) {
-    LightSet bin;
-    bin.box.grow(light.center - vec3(light.radius));
-    bin.box.grow(light.center + vec3(light.radius));
-    bin.intensity = light.intensity;
+/// A light while the tree is built. It is split off by coordinates: its position and, for spots, its
+/// direction.
+struct SplitLight {
+    LightSet set;
+    std::array<float, 6> coordinates{};
+    uint32_t index = 0;
+    bool spot = false;
+};
+
+SplitLight splitLightOf(const LightBounds& light, uint32_t index) {
+    SplitLight result;
+    result.set.box.grow(light.center - vec3(light.radius));
+    result.set.box.grow(light.center + vec3(light.radius));
+    result.set.intensity = light.intensity;
+    result.set.count = 1;
     const bool aimed = !light.twoSided && light.spread < pi;
-    if (aimed) bin.directions = light.intensity * (0.5f + 0.5f * std::cos(light.spread)) * light.axis;
-    bin.count = 1;
-    return bin;
+    const vec3 direction = aimed ? light.axis : vec3(0.0f);
+    result.set.directions = light.intensity * (0.5f + 0.5f * std::cos(light.spread)) * direction;
+    for (int axis = 0; axis < 3; ++axis) {
+        result.coordinates[static_cast<size_t>(axis)] = light.center[axis];
+        result.coordinates[static_cast<size_t>(axis) + 3] = direction[axis];
+    }
+    result.index = index;
+    result.spot = light.spot;
+    return result;
 }
 
-/// A node of the binary tree. Nodes of a range of n lights take 2n - 1 places.
+/// A node of a binary tree. The nodes of n lights take 2n - 1 places.
 struct SplitNode {
     LightBounds bounds;
     float cost = 0.0f;
@@ -81,44 +98,91 @@ struct SplitNode {
     uint32_t light = 0;
 };
 
+/// The ranges of the coordinates of a set of lights, each divided into bins.
+struct Ranges {
+    std::array<float, 6> low, scale;  ///< scale 0: all lights are in one place
+    uint32_t axes = 3;                ///< 6: directions, too
+    int longest = 0;                  ///< of the first three
+
+    explicit Ranges(std::span<const SplitLight> lights);
+    uint32_t binOf(const SplitLight& light, size_t axis) const {
+        const float position = (light.coordinates[axis] - low[axis]) * scale[axis];
+        return std::min(static_cast<uint32_t>(position), lightBins - 1);
+    }
+};
+
+Ranges::Ranges(std::span<const SplitLight> lights) {
+    std::array<float, 6> high = lights[0].coordinates;
+    low = lights[0].coordinates;
+    for (const SplitLight& light : lights) {
+        if (light.spot) axes = 6;
+        for (size_t axis = 0; axis < 6; ++axis) {
+            low[axis] = std::min(low[axis], light.coordinates[axis]);
+            high[axis] = std::max(high[axis], light.coordinates[axis]);
+        }
+    }
+    for (size_t axis = 0; axis < 6; ++axis) {
+        const float bins = float{lightBins} / (high[axis] - low[axis]);
+        scale[axis] = std::isfinite(bins) ? bins : 0.0f;
+        if (axis < 3 &&
+            high[axis] - low[axis] > high[static_cast<size_t>(longest)] - low[static_cast<size_t>(longest)])
+            longest = static_cast<int>(axis);
+    }
+}
+
 }  // namespace
 
 class LightTreeBuilder {
   public:
     LightTreeBuilder(std::span<const LightBounds> lights, LightTree& tree)
-        : lights_(lights), tree_(tree), order_(lights.size()), nodes_(2 * lights.size() - 1) {
-        for (const LightBounds& light : lights) bins_.push_back(lightSetOf(light));
-        std::iota(order_.begin(), order_.end(), 0u);
+        : lights_(lights), tree_(tree), nodes_(2 * lights.size()) {
+        tree_.trails_.resize(lights.size(), uvec4(0u));
+        tree_.homes_.resize(lights.size(), layout::NONE);
+        order_.reserve(lights.size());
     }
 
-    void build() {
-        split(0, static_cast<uint32_t>(order_.size()), 0, 0);
-        tree_.trails_.resize(lights_.size());
-        tree_.homes_.resize(lights_.size());
-        collapse();
-        tree_.dirty_.resize(tree_.nodes_.size());
+    void build(size_t firstLamp) {
+        std::vector<uint32_t> root;
+        addTo(root, 0, firstLamp, width);
+        addTo(root, firstLamp, lights_.size(), LightTree::maxRootLamps);
+        if (!root.empty()) collapse(root);
     }
 
   private:
+    static constexpr size_t width = layout::LIGHT_NODE_WIDTH;
+
     struct Split {
-        int axis = -1;
+        size_t axis = 0;
         uint32_t bin = 0;
         float cost = std::numeric_limits<float>::infinity();
     };
+
+    /// Builds a tree of the lights from `first` to `end`, whose top becomes up to `room` children of the
+    /// root.
+    void addTo(std::vector<uint32_t>& root, size_t first, size_t end, size_t room) {
+        const auto start = static_cast<uint32_t>(order_.size());
+        for (size_t i = first; i < end; ++i)
+            if (lights_[i].inTree) order_.push_back(splitLightOf(lights_[i], static_cast<uint32_t>(i)));
+        const auto count = static_cast<uint32_t>(order_.size()) - start;
+        if (count == 0) return;
+        split(start, count, 2 * start, 1);
+        const std::vector<uint32_t> children = childrenOf(2 * start, room);
+        root.insert(root.end(), children.begin(), children.end());
+    }
 
     /// Builds the subtree of `count` lights from `first` into nodes_ from `at`.
     void split(uint32_t first, uint32_t count, uint32_t at, uint32_t depth) {
         SplitNode& node = nodes_[at];
         if (count == 1) {
-            node.light = order_[first];
+            node.light = order_[first].index;
             node.bounds = lights_[node.light];
-            node.cost = bins_[node.light].cost();
+            node.cost = order_[first].set.cost();
             return;
         }
         LightSet whole;
-        for (uint32_t i = first; i < first + count; ++i) whole.add(bins_[order_[i]]);
+        for (uint32_t i = first; i < first + count; ++i) whole.add(order_[i].set);
         node.cost = whole.cost();
-        const uint32_t left = divide(first, count, depth);
+        const uint32_t left = divide(std::span(order_).subspan(first, count), depth);
         node.left = at + 1;
         node.right = at + 2 * left;
         const auto buildLeft = [&] { split(first, left, node.left, depth + 1); };
@@ -134,92 +198,97 @@ class LightTreeBuilder {
 
     /// Returns the number of lights that go to the left. Uneven splits are allowed as long as even ones can
     /// finish within the depth that a trail describes.
-    uint32_t divide(uint32_t first, uint32_t count, uint32_t depth) {
-        const auto begin = order_.begin() + first, end = begin + count;
-        Aabb centers;
-        for (auto it = begin; it != end; ++it) centers.grow(lights_[*it].center);
-        const auto needed = static_cast<uint32_t>(std::bit_width(count - 1));
+    static uint32_t divide(std::span<SplitLight> lights, uint32_t depth) {
+        if (lights.size() == 2) return 1;
+        const Ranges ranges(lights);
+        const auto needed = static_cast<uint32_t>(std::bit_width(lights.size() - 1));
         if (depth + needed < LightTree::maxDepth) {
-            const Split best = bestSplit(first, count, centers);
-            if (best.axis >= 0) {
-                const auto middle = std::partition(begin, end, [&](uint32_t light) {
-                    return binIndex(light, best.axis, centers) <= best.bin;
+            const Split best = bestSplit(lights, ranges);
+            if (std::isfinite(best.cost)) {
+                const auto right = std::ranges::partition(lights, [&](const SplitLight& light) {
+                    return ranges.binOf(light, best.axis) <= best.bin;
                 });
-                return static_cast<uint32_t>(middle - begin);
+                return static_cast<uint32_t>(right.begin() - lights.begin());
             }
         }
-        const vec3 size = centers.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        std::nth_element(begin, begin + count / 2, end, [&](uint32_t a, uint32_t b) {
-            const float ca = lights_[a].center[axis], cb = lights_[b].center[axis];
-            return ca != cb ? ca < cb : a < b;
+        const auto middle = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
+        const auto axis = static_cast<size_t>(ranges.longest);
+        std::ranges::nth_element(lights, middle, {}, [&](const SplitLight& light) {
+            return std::pair(light.coordinates[axis], light.index);
         });
-        return count / 2;
+        return static_cast<uint32_t>(lights.size() / 2);
     }
 
-    Split bestSplit(uint32_t first, uint32_t count, const Aabb& centers) const {
+    static Split bestSplit(std::span<const SplitLight> lights, const Ranges& ranges) {
+        std::array<std::array<LightSet, lightBins>, 6> bins;
+        for (const SplitLight& light : lights) {
+            for (size_t axis = 0; axis < ranges.axes; ++axis)
+                bins[axis][ranges.binOf(light, axis)].add(light.set);
+        }
         Split best;
-        const vec3 size = centers.size();
-        const float longest = std::max({size.x, size.y, size.z});
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(size[axis] > 0.0f)) continue;
-            std::array<LightSet, lightBins> bins;
-            for (uint32_t i = first; i < first + count; ++i)
-                bins[binIndex(order_[i], axis, centers)].add(bins_[order_[i]]);
-            std::array<LightSet, lightBins> after = bins;
+        for (size_t axis = 0; axis < ranges.axes; ++axis) {
+            if (ranges.scale[axis] == 0.0f) continue;
+            // K_r of the paper: prefers to divide long sets across.
+            const float shape =
+                axis < 3 ? ranges.scale[axis] / ranges.scale[static_cast<size_t>(ranges.longest)] : 1.0f;
+            std::array<LightSet, lightBins> after = bins[axis];
             for (uint32_t i = lightBins - 1; i > 0; --i) after[i - 1].add(after[i]);
             LightSet before;
             for (uint32_t i = 0; i + 1 < lightBins; ++i) {
-                before.add(bins[i]);
-                if (before.count == 0 || after[i + 1].count == 0) continue;
-                // K_r of the paper: prefers to divide long sets across.
-                const float cost = longest / size[axis] * (before.cost() + after[i + 1].cost());
+                before.add(bins[axis][i]);
+                if (bins[axis][i].count == 0 || after[i + 1].count == 0) continue;
+                const float cost = shape * (before.cost() + after[i + 1].cost());
                 if (cost < best.cost) best = {axis, i, cost};
             }
         }
         return best;
     }
 
-    uint32_t binIndex(uint32_t light, int axis, const Aabb& centers) const {
-        const float low = centers.lower[axis], size = centers.upper[axis] - low;
-        const float position = (lights_[light].center[axis] - low) / size * static_cast<float>(lightBins);
-        return std::min(static_cast<uint32_t>(position), lightBins - 1);
-    }
-
-    /// Joins levels of the binary tree: a node takes the children of its costliest child until it has four.
-    void collapse() {
+    /// Joins levels of the binary trees.
+    void collapse(const std::vector<uint32_t>& root) {
         struct Task {
-            uint32_t binary, parent, slot;
-            uint64_t trail;
-            uint32_t depth;
+            std::vector<uint32_t> children;
+            uint32_t parent, depth;
+            uvec4 trail;
         };
-        std::vector<Task> tasks{{0, 0, 0, 0, 0}};
+        std::vector<Task> tasks{{root, 0, 0, uvec4(0u)}};
         for (size_t done = 0; done < tasks.size(); ++done) {
-            const Task task = tasks[done];
-            const auto index = static_cast<uint32_t>(tree_.nodes_.size());
-            if (index > 0) tree_.nodes_[task.parent][task.slot].index = index;
-            tree_.parents_.push_back(task.parent);
-            LightTree::Node& node = tree_.nodes_.emplace_back();
-            uint32_t slot = 0;
-            for (const uint32_t child : childrenOf(task.binary)) {
-                const SplitNode& from = nodes_[child];
-                const uint64_t trail = task.trail | uint64_t{slot} << (2 * task.depth);
-                node[slot] = {from.bounds, from.light, from.left == 0, true};
-                if (from.left == 0) {
+            const Task task = std::exchange(tasks[done], {});
+            const auto node = static_cast<uint32_t>(done);
+            const auto first = static_cast<uint32_t>(tree_.children_.size());
+            if (node > 0) tree_.children_[task.parent].index = first;
+            tree_.nodes_.push_back({first, task.parent});
+            for (uint32_t slot = 0; slot < task.children.size(); ++slot) {
+                const SplitNode& from = nodes_[task.children[slot]];
+                const bool isLight = from.left == 0, last = slot + 1 == task.children.size();
+                const uvec4 trail = trailWith(task.trail, task.depth, slot);
+                if (isLight) {
                     tree_.trails_[from.light] = trail;
-                    tree_.homes_[from.light] = index * LightTree::width + slot;
+                    tree_.homes_[from.light] = first + slot;
                 } else {
-                    tasks.push_back({child, index, slot, trail, task.depth + 1});
+                    tasks.push_back(
+                        {childrenOf(task.children[slot], width), first + slot, task.depth + 1, trail});
                 }
-                ++slot;
+                tree_.children_.push_back({from.bounds, from.light, node, isLight, last});
             }
         }
     }
 
-    std::vector<uint32_t> childrenOf(uint32_t binary) const {
-        if (nodes_[binary].left == 0) return {binary};  // a tree of one light
-        std::vector<uint32_t> children{nodes_[binary].left, nodes_[binary].right};
-        while (children.size() < LightTree::width) {
+    static uvec4 trailWith(uvec4 trail, uint32_t depth, uint32_t slot) {
+        const uint32_t bit =
+            depth == 0 ? 0 : layout::LIGHT_TRAIL_ROOT_BITS + (depth - 1) * layout::LIGHT_TRAIL_BITS;
+        const uint64_t placed = uint64_t{slot} << bit % 32;
+        const auto word = static_cast<int>(bit / 32);
+        trail[word] |= static_cast<uint32_t>(placed);
+        if (word < 3) trail[word + 1] |= static_cast<uint32_t>(placed >> 32);
+        return trail;
+    }
+
+    /// Replaces the costliest child by its children as long as there is room.
+    std::vector<uint32_t> childrenOf(uint32_t split, size_t room) const {
+        if (nodes_[split].left == 0) return {split};
+        std::vector<uint32_t> children{nodes_[split].left, nodes_[split].right};
+        while (children.size() < room) {
             const auto costliest = std::ranges::max_element(children, {}, [&](uint32_t child) {
                 return nodes_[child].left == 0 ? -1.0f : nodes_[child].cost;
             });
@@ -233,36 +302,37 @@ class LightTreeBuilder {
 
     std::span<const LightBounds> lights_;
     LightTree& tree_;
-    std::vector<LightSet> bins_;  ///< of the lights
-    std::vector<uint32_t> order_;
+    std::vector<SplitLight> order_;
     std::vector<SplitNode> nodes_;
 };
 
-LightTree::LightTree(std::span<const LightBounds> lights) {
-    if (!lights.empty()) LightTreeBuilder(lights, *this).build();
+LightTree::LightTree(std::span<const LightBounds> lights, size_t firstLamp) {
+    LightTreeBuilder(lights, *this).build(firstLamp);
 }
 
 void LightTree::setLight(uint32_t light, const LightBounds& bounds) {
-    const uint32_t home = homes_[light];
-    nodes_[home / width][home % width].bounds = bounds;
-    dirty_[home / width] = true;
+    if (homes_[light] == layout::NONE) return;
+    children_[homes_[light]].bounds = bounds;
+    changed_.push_back(homes_[light]);
 }
 
 std::vector<uint32_t> LightTree::refit() {
-    std::vector<uint32_t> changed;
-    for (auto i = static_cast<uint32_t>(nodes_.size()); i-- > 0;) {
-        if (!dirty_[i]) continue;
-        dirty_[i] = false;
-        changed.push_back(i);
-        if (i == 0) continue;
-        LightBounds all;
-        for (const Child& child : nodes_[i])
-            if (child.exists) all = unite(all, child.bounds);
-        for (Child& child : nodes_[parents_[i]])
-            if (child.exists && !child.isLight && child.index == i) child.bounds = all;
-        dirty_[parents_[i]] = true;
+    std::vector<bool> dirty(nodes_.size());
+    for (const uint32_t child : changed_) dirty[children_[child].node] = true;
+    for (auto i = static_cast<uint32_t>(nodes_.size()); i-- > 1;) {
+        if (!dirty[i]) continue;
+        const uint32_t parent = nodes_[i].parent;
+        uint32_t child = nodes_[i].first;
+        LightBounds all = children_[child].bounds;
+        while (!children_[child].last) all = unite(all, children_[++child].bounds);
+        children_[parent].bounds = all;
+        changed_.push_back(parent);
+        dirty[children_[parent].node] = true;
     }
-    std::ranges::reverse(changed);
+    std::vector<uint32_t> changed = std::exchange(changed_, {});
+    std::ranges::sort(changed);
+    const auto rest = std::ranges::unique(changed);
+    changed.erase(rest.begin(), rest.end());
     return changed;
 }
 
@@ -282,43 +352,36 @@ uint32_t packAngle(float angle) {
 
 }  // namespace
 
-void packLightNode(const LightTree::Node& node, std::span<uvec4> texels) {
+void packLightChild(const LightTree::Child& child, std::span<uvec4> texels) {
     // The packed axis is off by up to half a step of 1 / 32,767 in both coordinates.
     constexpr float axisError = 8e-5f;
     // A narrower ramp would vanish in the shader's rounding.
     constexpr float minFalloff = 0.02f;
-    for (uint32_t i = 0; i < LightTree::width; ++i) {
-        const LightTree::Child& child = node[i];
-        const LightBounds& b = child.bounds;
-        uvec4 &place = texels[2 * i], &effect = texels[2 * i + 1];
-        place = effect = uvec4(0u);
-        if (!child.exists) continue;
-        place = bits(b.center, halfBitsAbove(b.radius) << 16 | halfBitsAbove(b.range));
-        uint32_t link = child.index;
-        if (child.isLight) link |= layout::LIGHT_LINK_LEAF;
-        if (b.twoSided) link |= layout::LIGHT_LINK_TWO_SIDED;
+    const LightBounds& b = child.bounds;
+    uint32_t link = child.index;
+    if (child.isLight) link |= layout::LIGHT_LINK_LEAF;
+    if (child.last) link |= layout::LIGHT_LINK_LAST;
+    if (b.twoSided) link |= layout::LIGHT_LINK_TWO_SIDED;
+    uint32_t angles = packAngle(b.spread + axisError) | packAngle(std::max(b.falloff, minFalloff)) << 16;
+    if (b.spot) {
+        link |= layout::LIGHT_LINK_SPOT;
         // A spot's packed angles are those of its inner and outer cone.
-        uint32_t angles = packAngle(b.spread) | packAngle(b.spread + b.falloff + axisError) << 16;
-        if (b.spot) {
-            link |= layout::LIGHT_LINK_SPOT;
-        } else {
-            angles = packAngle(b.spread + axisError) | packAngle(std::max(b.falloff, minFalloff)) << 16;
-        }
-        effect = {packDirection(b.axis), angles, bits(b.intensity), link};
+        angles = packAngle(b.spread) | packAngle(b.spread + b.falloff + axisError) << 16;
     }
+    texels[0] = bits(b.center, halfBitsAbove(b.radius) << 16 | halfBitsAbove(b.range));
+    texels[1] = {packDirection(b.axis), angles, bits(b.intensity), link};
 }
 
 size_t lightTreeTexels(size_t lights) {
-    // Each node but the root replaces one entry of its parent by at least two.
-    return std::max<size_t>(lights, 2) * layout::LIGHT_NODE_TEXELS - layout::LIGHT_NODE_TEXELS;
+    // Every node but the root is a child, and has at least two.
+    return 2 * lights * layout::LIGHT_CHILD_TEXELS;
 }
 
 std::vector<uvec4> packLightTree(const LightTree& tree) {
+    constexpr size_t step = layout::LIGHT_CHILD_TEXELS;
     std::vector<uvec4> texels(lightTreeTexels(tree.lightCount()));
-    for (size_t i = 0; i < tree.nodes().size(); ++i) {
-        packLightNode(tree.nodes()[i],
-                      std::span(texels).subspan(i * layout::LIGHT_NODE_TEXELS, layout::LIGHT_NODE_TEXELS));
-    }
+    for (size_t i = 0; i < tree.children().size(); ++i)
+        packLightChild(tree.children()[i], std::span(texels).subspan(i * step, step));
     return texels;
 }
 

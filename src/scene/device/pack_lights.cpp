@@ -24,15 +24,28 @@ constexpr size_t minTreeLights = 2;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
 constexpr double uniformShare = 0.25;
 
+double luminance(const vec3& c) {
+    return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
+}
+
 vec2 transformed(const TextureRef& ref, const vec2& uv) {
     const vec3 p(uv, 1.0f);
     return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
 }
 
-/// Returns the mean luminance of the emission texture over a triangle, from points as dense as its texels (16
-/// to 1,024 points).
-double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
-                            vec2 c) {
+/// The mean radiance of a triangle, by luminance and by strengthOf().
+struct MeanRadiance {
+    double luminance = 0.0, strength = 0.0;
+};
+
+MeanRadiance meanOf(const vec3& radiance) {
+    return {luminance(radiance), strengthOf(radiance)};
+}
+
+/// Returns the mean of the emission texture over a triangle, from points as dense as its texels (16 to 1,024
+/// points).
+MeanRadiance meanOfTexture(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
+                           vec2 c) {
     a = transformed(ref, a);
     b = transformed(ref, b);
     c = transformed(ref, c);
@@ -41,17 +54,20 @@ double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const
     const double texels = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
     const int side =
         static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
-    double sum = 0.0;
+    MeanRadiance sum;
     int count = 0;
     for (int i = 0; i < side; ++i) {
         for (int j = 0; i + j < side; ++j) {
             const float u = (static_cast<float>(i) + 1.0f / 3.0f) / static_cast<float>(side);
             const float v = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(side);
-            sum += luminanceOf(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            const MeanRadiance at =
+                meanOf(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            sum.luminance += at.luminance;
+            sum.strength += at.strength;
             ++count;
         }
     }
-    return sum / count;
+    return {sum.luminance / count, sum.strength / count};
 }
 
 class LightPacker {
@@ -87,13 +103,11 @@ class LightPacker {
         data_.features.lightTree = bounds_.size() - suns_.size() >= minTreeLights;
         data_.features.suns = !suns_.empty();
         if (!data_.features.lightTree) return;
-        LightTree tree(bounds_);
+        LightTree tree(bounds_, weights_.size());
         data_.lightTree = packLightTree(tree);
         data_.params.firstLightTrail = static_cast<uint32_t>(data_.lightTree.size());
         for (const uint32_t light : lightOfPrimitive_) {
-            const uint64_t trail = light == layout::NONE ? 0 : tree.trail(light);
-            data_.lightTree.emplace_back(static_cast<uint32_t>(trail), static_cast<uint32_t>(trail >> 32),
-                                         light, 0u);
+            data_.lightTree.push_back(light == layout::NONE ? uvec4(0u) : tree.trail(light));
         }
         data_.params.firstSun = static_cast<uint32_t>(data_.lightTree.size());
         data_.params.sunCount = static_cast<uint32_t>(suns_.size());
@@ -184,13 +198,12 @@ class LightPacker {
         vec3 v[3];
         for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
         if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
-        double radiance = luminanceOf(material.emission);
+        MeanRadiance radiance = meanOf(material.emission);
         const TextureRef& ref = material.emissionTexture;
         if (ref) {
             const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
             const vec2 zero(0.0f);
-            radiance =
-                meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref,
+            radiance = meanOfTexture(scene_.textures[static_cast<size_t>(ref.texture)], ref,
                                      material.emission, uv.empty() ? zero : uv[index[0]],
                                      uv.empty() ? zero : uv[index[1]], uv.empty() ? zero : uv[index[2]]);
         }
@@ -206,16 +219,16 @@ class LightPacker {
         const bool changes = ref || material.clearcoat > 0.0f;  // varies between points, or with direction
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
-        radiances_.push_back(static_cast<float>(radiance));
-        bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance, material.doubleSided));
+        radiances_.push_back(static_cast<float>(radiance.strength));
+        bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance.strength, material.doubleSided));
         const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
-        return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
+        return addWeight(std::numbers::pi * area * sides * radiance.luminance, lamp->second);
     }
 
     /// Returns its power. A spot counts as if it shone in all directions: outside its cone other lights
     /// matter, but inside it is that bright.
     double packPunctual(const PunctualLight& light) {
-        const double strength = luminanceOf(light.intensity);
+        const double strength = luminance(light.intensity);
         uint32_t kind = light.kind == PunctualLight::Kind::Spot ? layout::LIGHT_SPOT : layout::LIGHT_POINT;
         double power = 4.0 * std::numbers::pi * strength;
         if (light.kind == PunctualLight::Kind::Directional) {
@@ -228,10 +241,8 @@ class LightPacker {
             bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
         data_.lights.push_back(bits(light.intensity, 0u));
         if (light.kind == PunctualLight::Kind::Directional) {
-            // A leaf without intensity keeps the tree's numbering that of the list.
             suns_.push_back(static_cast<uint32_t>(bounds_.size()));
-            bounds_.emplace_back();
-            bounds_.back().center = data_.params.sceneCenter;
+            bounds_.emplace_back().inTree = false;
         } else {
             bounds_.push_back(punctualLightBounds(light));
         }
@@ -273,7 +284,7 @@ std::vector<double> environmentWeights(const Environment& env) {
                     const int column = (x + dx + width) % width;
                     sum +=
                         (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
-                        luminanceOf(
+                        luminance(
                             env.radiance[static_cast<size_t>(row) * env.width + static_cast<size_t>(column)]);
                 }
             }

@@ -40,7 +40,7 @@ struct MovingLights {
     uint32_t firstDensity = 0;         ///< index of its table in lightDensity
     std::vector<uint32_t> triangles;   ///< indices in the mesh, in the order of the lights
     std::vector<float> probabilities;  ///< of choosing each by power, whatever its current size
-    std::vector<float> radiances;      ///< mean luminance of each
+    std::vector<float> radiances;      ///< mean strengths (light_bounds.h)
 };
 
 /// Nodes that can be refitted in parallel: their children are in earlier levels.

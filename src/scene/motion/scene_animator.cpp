@@ -316,13 +316,13 @@ void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame, Ligh
 }
 
 void SceneAnimator::addLightTree(LightTree& tree, SceneFrame& frame) {
-    constexpr uint32_t texels = layout::LIGHT_NODE_TEXELS;
+    constexpr uint32_t texels = layout::LIGHT_CHILD_TEXELS;
     const std::vector<uint32_t> changed = tree.refit();
     for (size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
         std::vector<uvec4> packed;
         do {
             packed.resize(packed.size() + texels);
-            packLightNode(tree.nodes()[changed[end]], std::span(packed).last(texels));
+            packLightChild(tree.children()[changed[end]], std::span(packed).last(texels));
             ++end;
         } while (end < changed.size() && changed[end] == changed[end - 1] + 1);
         addUpload(frame, "lightTree", uint64_t{changed[begin]} * texels * sizeof(uvec4), packed);

@@ -96,16 +96,21 @@ LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped relative to the mesh, so that the front face stays the front
 
-// lightTree: nodes (scene/device/light_tree.h), children of a node in two texels each: centre of the bounding
-// sphere | its radius and the range, upper halves of floats; axis (octahedral) | sin of half the angles of
-// the cone and of the ramp beyond it (2 x unorm16; a spot's: inner and outer cone) | intensity | link. Then a
-// texel for each entry of lightDensity: trail from the root (2 words) | light | 0. Then a texel for each
-// directional light: its index in `lights` | 0 | 0 | 0.
-LIMPID_CONST uint LIGHT_NODE_TEXELS = 8u;
-LIMPID_CONST uint LIGHT_LINK_LEAF = 0x80000000u;  // the link's index is that of a light, not of a node
+// lightTree: children of nodes (scene/device/light_tree.h), the root's first, those of a node one after the
+// other. A child: centre of the bounding sphere | its radius and the range, upper halves of floats; axis
+// (octahedral) | sin of half the angles of the cone and of the ramp beyond it (2 x unorm16; a spot's: inner
+// and outer cone) | intensity | link. Then a texel for each entry of lightDensity: trail from the root. Then
+// a texel for each directional light: its index in `lights` | 0 | 0 | 0.
+LIMPID_CONST uint LIGHT_CHILD_TEXELS = 2u;
+LIMPID_CONST uint LIGHT_NODE_WIDTH = 16u;      // largest number of children
+LIMPID_CONST uint LIGHT_TRAIL_BITS = 4u;       // number of a child
+LIMPID_CONST uint LIGHT_TRAIL_ROOT_BITS = 8u;  // the same for the root, which may have more
+LIMPID_CONST uint LIGHT_LINK_LEAF =
+    0x80000000u;  // the link's index is that of a light, not of a node's first child
 LIMPID_CONST uint LIGHT_LINK_TWO_SIDED = 0x40000000u;
 LIMPID_CONST uint LIGHT_LINK_SPOT = 0x20000000u;
-LIMPID_CONST uint LIGHT_LINK_INDEX = 0x1FFFFFFFu;
+LIMPID_CONST uint LIGHT_LINK_LAST = 0x10000000u;  // the node's last child
+LIMPID_CONST uint LIGHT_LINK_INDEX = 0x0FFFFFFFu;
 
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.

@@ -49,7 +49,7 @@ float usableShare(Receiver from, float cosine, float cosineB) {
     return max(usable, 0.0);
 }
 
-/// The weight of a child of a node: an upper bound of the irradiance that it can cause, except that distances are
+/// The weight of a child: an upper bound of the irradiance that it can cause, except that distances are
 /// those of its centre. 0 only if no light of it can reach the point. Formula: scene/device/light_bounds.h.
 float lightWeight(Receiver from, uvec4 place, uvec4 effect) {
     const float intensity = uintBitsToFloat(effect.z);
@@ -72,34 +72,26 @@ float lightWeight(Receiver from, uvec4 place, uvec4 effect) {
     return intensity > 0.0 && share > 0.0 ? clamp(weight, 1e-30, 1e30) : 0.0;
 }
 
-/// A node's children: their weights, and what they are.
-struct LightNode {
-    vec4 weights;
-    uvec4 links;
-};
-
-LightNode weighLightNode(Receiver from, uint node) {
-    LightNode result;
-    for (int i = 0; i < 4; ++i) {
-        const int at = int(node * LIGHT_NODE_TEXELS) + 2 * i;
-        const uvec4 place = imageLoad(lightTree, at), effect = imageLoad(lightTree, at + 1);
-        result.weights[i] = lightWeight(from, place, effect);
-        result.links[i] = effect.w;
-    }
-    return result;
-}
-
-float sumOf(vec4 v) {
-    return v.x + v.y + v.z + v.w;
-}
-
-/// A child's probability.
-float shareOfChild(vec4 weights, uint child) {
-    return weights[child] / max(sumOf(weights), 1e-30);
-}
-
 uint linkedIndex(uint link) {
     return link & LIGHT_LINK_INDEX;
+}
+
+/// While the children of a node are compared: those with any weight, their weights, and the one that is taken.
+struct LightShare {
+    float reaching, sum, taken;
+    uint next;  // its link
+};
+
+/// At most this share of the choices at a node is uniform among the children that reach the point, whatever their
+/// weights, since the brightest may be hidden: with up to four of them, each gets a tenth. With more, the share falls.
+float uniformShare(float reaching) {
+    return min(0.4, 1.6 / max(reaching, 1.0));
+}
+
+float probabilityOf(LightShare share) {
+    const float uniformly = uniformShare(share.reaching);
+    const float byWeight = (1.0 - uniformly) * share.taken / max(share.sum, 1e-30);
+    return share.taken > 0.0 ? byWeight + uniformly / share.reaching : 0.0;
 }
 
 /// A light of the tree, the probability of choosing it, and the irradiance that all lights of the tree might cause;
@@ -109,37 +101,67 @@ struct ChosenLight {
     float probability, irradiance;
 };
 
+/// Goes from the root to a light. If a node turns out to have no child that reaches the point, the walk ends without a
+/// light.
 ChosenLight chooseFromLightTree(Receiver from, inout uint rng) {
     ChosenLight chosen = ChosenLight(0u, 1.0, -1.0);
-    uint link = 0u;
-    while ((link & LIGHT_LINK_LEAF) == 0u && chosen.probability > 0.0) {
-        const LightNode node = weighLightNode(from, linkedIndex(link));
-        const vec4 w = node.weights;
-        if (chosen.irradiance < 0.0) chosen.irradiance = sumOf(w);
-        const float x = random(rng) * sumOf(w);
-        // Without `w > 0`, rounding could choose a child without weight.
-        uint child = 0u;
-        for (uint i = 1u; i < 4u; ++i) {
-            const float before = i == 1u ? w.x : i == 2u ? w.x + w.y : w.x + w.y + w.z;
-            if (w[i] > 0.0 && (x >= before || w[child] == 0.0)) child = i;
+    LightShare byWeight = LightShare(0.0, 0.0, 0.0, 0u);
+    uint child = 0u, uniformNext = 0u;
+    float uniformTaken = 0.0;
+    while (true) {
+        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
+        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
+        const float weight = lightWeight(from, place, effect), u = random(rng);
+        byWeight.sum += weight;
+        byWeight.reaching += weight > 0.0 ? 1.0 : 0.0;
+        if (u * byWeight.sum < weight) {
+            byWeight.taken = weight;
+            byWeight.next = effect.w;
         }
-        link = node.links[child];
-        chosen.probability *= shareOfChild(w, child);
+        if (weight > 0.0 && u * byWeight.reaching < 1.0) {
+            uniformTaken = weight;
+            uniformNext = effect.w;
+        }
+        ++child;
+        if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
+        if (random(rng) < uniformShare(byWeight.reaching)) {
+            byWeight.taken = uniformTaken;
+            byWeight.next = uniformNext;
+        }
+        chosen.probability *= probabilityOf(byWeight);
+        if (chosen.irradiance < 0.0) chosen.irradiance = byWeight.sum;
+        child = linkedIndex(byWeight.next);
+        if (byWeight.taken == 0.0 || (byWeight.next & LIGHT_LINK_LEAF) != 0u) break;
+        byWeight = LightShare(0.0, 0.0, 0.0, 0u);
+        uniformTaken = 0.0;
     }
-    chosen.light = linkedIndex(link);
+    chosen.light = child;
     return chosen;
 }
 
 /// Returns the probability with which chooseFromLightTree() chooses the light at the end of `trail`.
-float lightTreeProbability(Receiver from, uvec2 trail) {
+float lightTreeProbability(Receiver from, uvec4 trail) {
+    LightShare share = LightShare(0.0, 0.0, 0.0, 0u);
     float probability = 1.0;
-    uint link = 0u;
-    while ((link & LIGHT_LINK_LEAF) == 0u && probability > 0.0) {
-        const LightNode node = weighLightNode(from, linkedIndex(link));
-        const uint child = trail.x & 3u;
-        trail = uvec2((trail.x >> 2) | (trail.y << 30), trail.y >> 2);
-        link = node.links[child];
-        probability *= shareOfChild(node.weights, child);
+    uint first = 0u, child = 0u, bits = LIGHT_TRAIL_ROOT_BITS;
+    while (true) {
+        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
+        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
+        const float weight = lightWeight(from, place, effect);
+        share.sum += weight;
+        share.reaching += weight > 0.0 ? 1.0 : 0.0;
+        if (child - first == (trail.x & ((1u << bits) - 1u))) {
+            share.taken = weight;
+            share.next = effect.w;
+        }
+        ++child;
+        if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
+        probability *= probabilityOf(share);
+        first = child = linkedIndex(share.next);
+        if (share.taken == 0.0 || (share.next & LIGHT_LINK_LEAF) != 0u) break;
+        share = LightShare(0.0, 0.0, 0.0, 0u);
+        trail = (trail >> bits) | (uvec4(trail.yzw, 0u) << (32u - bits));
+        bits = LIGHT_TRAIL_BITS;
     }
     return probability;
 }

@@ -362,7 +362,7 @@ float lightPdf(Surface s, float distance, vec3 direction, LightShares shares, Sc
     if (first == NONE) return 0.0;
     float perArea;
     if (LIGHT_TREE && HAS_LIGHT_TREE) {
-        const uvec2 trail = imageLoad(lightTree, int(scene.firstLightTrail + first + s.primitive)).xy;
+        const uvec4 trail = imageLoad(lightTree, int(scene.firstLightTrail + first + s.primitive));
         perArea = s.area > 0.0 ? lightTreeProbability(shares.from, trail) / s.area : 0.0;
     } else {
         perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
