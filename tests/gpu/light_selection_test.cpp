@@ -14,7 +14,7 @@ using scene::MeshBuilder;
 using scene::Scene;
 
 constexpr gpu::Extent size{40, 30};
-constexpr uint32_t batches = 64, samplesPerBatch = 48;
+constexpr uint32_t batches = 64, samplesPerBatch = 240;
 
 /// A floor, a wall and blocks: matt, glossy, coated, and a pane of glass.
 Scene room() {

@@ -201,7 +201,7 @@ class LightTreeTest : public GpuTest {
             reaching += weights[end] > 0.0 ? 1.0 : 0.0;
         } while (!child(end++).is(layout::LIGHT_LINK_LAST));
         if (sum == 0.0) return probability;
-        const double uniformly = std::min(0.4, 1.6 / reaching);
+        const double uniformly = first == 0 ? std::min(0.2, 0.8 / reaching) : 0.0;
         for (uint32_t i = first; i < end; ++i) {
             if (weights[i] == 0.0) continue;
             const double share = probability * ((1.0 - uniformly) * weights[i] / sum + uniformly / reaching);

@@ -409,6 +409,11 @@ scene::PunctualLight spotLight(const vec3& position, const vec3& target, float i
     return light;
 }
 
+/// A few lights have no tree. These make them many.
+void addDarkLamps(scene::Scene& scene) {
+    for (int i = 0; i < 9; ++i) scene.lights.push_back(pointLight({0, 9, 0}, 0.0f));
+}
+
 /// The floor's irradiance estimated from single samples: mean and relative variance, and how often each lamp
 /// was chosen.
 struct FloorLight {
@@ -451,6 +456,7 @@ TEST_F(LightsTest, ANarrowSpotAmongBrightLampsElsewhere) {
     scene.lights = {spotLight({0.1f, 3, 0}, {0, 0, 0}, 10.0f, 0.05f), pointLight({4, 2, 0}, 5000.0f),
                     spotLight({-2, 3, 1}, {-5, 0, 1}, 8000.0f, 0.4f), pointLight({0.5f, -1, 0}, 3000.0f)};
     scene.lights[1].range = 4.0f;
+    addDarkLamps(scene);
     ASSERT_EQ(irradianceOf(scene.lights[1]) + irradianceOf(scene.lights[2]) + irradianceOf(scene.lights[3]),
               0.0);
     for (const bool byTree : {false, true}) {
@@ -508,6 +514,7 @@ TEST_F(LightsTest, TheTreeWeighsHitsByTheDensitiesOfSamples) {
     scene.environment = sunnyEnvironment();
     scene.lights = {pointLight({1, 2, 3}, 3.0f), pointLight({0, 3, 0}, 0.1f)};
     scene.lights[1].kind = scene::PunctualLight::Kind::Directional;
+    addDarkLamps(scene);
     for (const vec3& normal : {vec3(0.0f), vec3(0, 1, 0), glm::normalize(vec3(1, -1, 0.5f))}) {
         const std::vector<DrawnLight> drawn = draw(scene, {0.2f, 0.1f, -0.3f}, sampleCount, 10, normal, true);
         uint32_t hits = 0, different = 0, deltas = 0, ofEnvironment = 0;

@@ -82,14 +82,14 @@ struct LightShare {
     uint next;  // its link
 };
 
-/// At most this share of the choices at a node is uniform among the children that reach the point, whatever their
-/// weights, since the brightest may be hidden: with up to four of them, each gets a tenth. With more, the share falls.
-float uniformShare(float reaching) {
-    return min(0.4, 1.6 / max(reaching, 1.0));
+/// At the root, a share of the choices is uniform among the children that reach the point, whatever their weights,
+/// since the brightest may be hidden. It falls with their number.
+float uniformShare(float reaching, bool root) {
+    return root ? min(0.2, 0.8 / max(reaching, 1.0)) : 0.0;
 }
 
-float probabilityOf(LightShare share) {
-    const float uniformly = uniformShare(share.reaching);
+float probabilityOf(LightShare share, bool root) {
+    const float uniformly = uniformShare(share.reaching, root);
     const float byWeight = (1.0 - uniformly) * share.taken / max(share.sum, 1e-30);
     return share.taken > 0.0 ? byWeight + uniformly / share.reaching : 0.0;
 }
@@ -124,12 +124,13 @@ ChosenLight chooseFromLightTree(Receiver from, inout uint rng) {
         }
         ++child;
         if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
-        if (random(rng) < uniformShare(byWeight.reaching)) {
+        const bool root = chosen.irradiance < 0.0;
+        if (random(rng) < uniformShare(byWeight.reaching, root)) {
             byWeight.taken = uniformTaken;
             byWeight.next = uniformNext;
         }
-        chosen.probability *= probabilityOf(byWeight);
-        if (chosen.irradiance < 0.0) chosen.irradiance = byWeight.sum;
+        chosen.probability *= probabilityOf(byWeight, root);
+        if (root) chosen.irradiance = byWeight.sum;
         child = linkedIndex(byWeight.next);
         if (byWeight.taken == 0.0 || (byWeight.next & LIGHT_LINK_LEAF) != 0u) break;
         byWeight = LightShare(0.0, 0.0, 0.0, 0u);
@@ -156,7 +157,7 @@ float lightTreeProbability(Receiver from, uvec4 trail) {
         }
         ++child;
         if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
-        probability *= probabilityOf(share);
+        probability *= probabilityOf(share, bits == LIGHT_TRAIL_ROOT_BITS);
         first = child = linkedIndex(share.next);
         if (share.taken == 0.0 || (share.next & LIGHT_LINK_LEAF) != 0u) break;
         share = LightShare(0.0, 0.0, 0.0, 0u);
