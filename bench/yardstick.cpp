@@ -115,6 +115,7 @@ class OurSide {
         RenderSettings settings;
         settings.extent = {o.width, o.height};
         settings.pathtrace.maxDepth = static_cast<int>(o.maxDepth);
+        settings.pathtrace.lightTree = false;  // the Embree tracer chooses lights by power
         return settings;
     }
 

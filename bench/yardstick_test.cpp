@@ -75,6 +75,7 @@ class YardstickTest : public RenderTest {
         result.extent = {width, height};
         result.seed = seed;
         result.pathtrace.maxDepth = 4;
+        result.pathtrace.lightTree = false;
         return result;
     }
 

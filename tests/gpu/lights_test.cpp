@@ -112,12 +112,13 @@ class LightsTest : public GpuTest {
   protected:
     /// Samples lights at a point of a surface with this normal; without one, all directions are equal.
     std::vector<DrawnLight> draw(const scene::Scene& scene, const vec3& from, uint32_t count, uint32_t seed,
-                                 const vec3& normal = vec3(0.0f)) {
+                                 const vec3& normal = vec3(0.0f), bool byTree = false) {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
         const Params params{data.params, from, normal, count, seed};
         const Job job{.shader = shaders::lights_sample_comp,
                       .scene = &gpuScene,
+                      .constants = {{"LIGHT_TREE", byTree ? 1u : 0u}},
                       .params = gpu::paramsOf(params),
                       .count = count};
         return run<DrawnLight>(job, count);
@@ -408,6 +409,11 @@ scene::PunctualLight spotLight(const vec3& position, const vec3& target, float i
     return light;
 }
 
+/// A few lights have no tree. These make them many.
+void addDarkLamps(scene::Scene& scene) {
+    for (int i = 0; i < 9; ++i) scene.lights.push_back(pointLight({0, 9, 0}, 0.0f));
+}
+
 /// The floor's irradiance estimated from single samples: mean and relative variance, and how often each lamp
 /// was chosen.
 struct FloorLight {
@@ -450,18 +456,23 @@ TEST_F(LightsTest, ANarrowSpotAmongBrightLampsElsewhere) {
     scene.lights = {spotLight({0.1f, 3, 0}, {0, 0, 0}, 10.0f, 0.05f), pointLight({4, 2, 0}, 5000.0f),
                     spotLight({-2, 3, 1}, {-5, 0, 1}, 8000.0f, 0.4f), pointLight({0.5f, -1, 0}, 3000.0f)};
     scene.lights[1].range = 4.0f;
+    addDarkLamps(scene);
     ASSERT_EQ(irradianceOf(scene.lights[1]) + irradianceOf(scene.lights[2]) + irradianceOf(scene.lights[3]),
               0.0);
-    const FloorLight found = floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 7, {0, 1, 0}));
-    fmt::print("the narrow spot: {:.4f} of the samples, relative variance {:.2f}\n", found.frequencies[0],
-               found.variance);
-    EXPECT_GE(found.frequencies[0], 0.1);
-    EXPECT_LT(found.variance, 9.0);
-    EXPECT_NEAR(found.mean / irradianceOf(scene.lights[0]), 1.0, 0.03);
+    for (const bool byTree : {false, true}) {
+        const FloorLight found =
+            floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 7, {0, 1, 0}, byTree));
+        fmt::print("the narrow spot: {:.4f} of the samples, relative variance {:.2f}\n", found.frequencies[0],
+                   found.variance);
+        EXPECT_GE(found.frequencies[0], byTree ? 0.45 : 0.1);  // half are the environment's
+        EXPECT_LT(found.variance, byTree ? 1.5 : 9.0);
+        EXPECT_NEAR(found.mean / irradianceOf(scene.lights[0]), 1.0, 0.03);
+    }
 }
 
 /// No lamp is chosen with less than a tenth of its share of the incident light, and the estimate is correct:
-/// for few lamps, for the largest number that are all evaluated, and for more, of which candidates are drawn.
+/// for few lamps, for the largest number that are all evaluated without a tree, and for more, of which
+/// candidates are drawn.
 TEST_F(LightsTest, LampsAreDrawnByWhatArrives) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -480,17 +491,45 @@ TEST_F(LightsTest, LampsAreDrawnByWhatArrives) {
         }
         double sum = 0.0;
         for (const scene::PunctualLight& lamp : scene.lights) sum += irradianceOf(lamp);
-        const FloorLight found = floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 9, {0, 1, 0}));
-        const double error = std::sqrt(found.variance / sampleCount);
-        fmt::print("{} lamps: mean off by {:+.4f}, relative variance {:.2f}\n", count, found.mean / sum - 1.0,
-                   found.variance);
-        EXPECT_NEAR(found.mean / sum, 1.0, 4.5 * error + 1e-4) << count;
-        if (count > 256) continue;
-        for (size_t i = 0; i < count; ++i) {
-            const double share = irradianceOf(scene.lights[i]) / sum, f = found.frequencies[i];
-            EXPECT_GE(f + 4.5 * std::sqrt(f / sampleCount) + 1e-5, 0.1 * share)
-                << count << " lamps, number " << i;
+        for (const bool byTree : {false, true}) {
+            const FloorLight found =
+                floorLight(scene, draw(scene, vec3(0.0f), sampleCount, 9, {0, 1, 0}, byTree));
+            const double error = std::sqrt(found.variance / sampleCount);
+            fmt::print("{} lamps by {}: mean off by {:+.4f}, relative variance {:.2f}\n", count,
+                       byTree ? "tree" : "power", found.mean / sum - 1.0, found.variance);
+            EXPECT_NEAR(found.mean / sum, 1.0, 4.5 * error + 1e-4) << count;
+            if (!byTree && count > 256) continue;
+            for (size_t i = 0; i < count; ++i) {
+                const double share = irradianceOf(scene.lights[i]) / sum, f = found.frequencies[i];
+                EXPECT_GE(f + 4.5 * std::sqrt(f / sampleCount) + 1e-5, 0.1 * share)
+                    << count << " lamps by " << (byTree ? "tree" : "power") << ", number " << i;
+            }
         }
+    }
+}
+
+/// The density of a sample is that with which a ray that hits the same light is weighed.
+TEST_F(LightsTest, TheTreeWeighsHitsByTheDensitiesOfSamples) {
+    scene::Scene scene = sceneOf(severalTriangles);
+    scene.environment = sunnyEnvironment();
+    scene.lights = {pointLight({1, 2, 3}, 3.0f), pointLight({0, 3, 0}, 0.1f)};
+    scene.lights[1].kind = scene::PunctualLight::Kind::Directional;
+    addDarkLamps(scene);
+    for (const vec3& normal : {vec3(0.0f), vec3(0, 1, 0), glm::normalize(vec3(1, -1, 0.5f))}) {
+        const std::vector<DrawnLight> drawn = draw(scene, {0.2f, 0.1f, -0.3f}, sampleCount, 10, normal, true);
+        uint32_t hits = 0, different = 0, deltas = 0, ofEnvironment = 0;
+        for (const DrawnLight& light : drawn) {
+            deltas += light.delta;
+            ofEnvironment += !light.delta && light.distance > 1e20f;
+            if (light.delta || light.pdf == 0.0f || light.distance > 1e20f) continue;
+            ++hits;
+            different += std::abs(light.hitPdf / light.pdf - 1.0f) > 1e-3f;
+        }
+        EXPECT_GT(hits, sampleCount / 50);
+        EXPECT_LE(different, hits / 1000);
+        EXPECT_GT(deltas, sampleCount / 50);
+        EXPECT_NEAR(ofEnvironment, sampleCount / 2, 4.5 * std::sqrt(sampleCount / 4.0));
+        checkEnvironmentPdf(drawn);
     }
 }
 

@@ -36,8 +36,10 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
               const PathtraceSettings& settings, const PathtraceLaunch& launch,
               const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
-    dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
-                   {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}}, launch.extent);
+    dispatchTraced(
+        graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
+        {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}, {"LIGHT_TREE", settings.lightTree ? 1u : 0u}},
+        launch.extent);
 }
 
 }  // namespace
@@ -70,6 +72,8 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         t.add("through_glass", &S::throughGlass,
               "Write the layers of what smooth glass shows, or of what it mirrors where it mirrors more, "
               "which helps denoisers, and trace that light for every sample; off: the glass's own layers");
+        t.add("light_tree", &S::lightTree,
+              "Choose lights by what each can send to the point, by a tree over all lights; off: by power");
         return t;
     }();
     return table;

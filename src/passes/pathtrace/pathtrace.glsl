@@ -125,7 +125,7 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
     if (depth == 0u && passesBack(surface, culled, path.ray.origin)) return true;
     met(sight, path, hit, surface, bsdf, depth);
     if (surface.emission != vec3(0.0)) {
-        const float density = HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, path.shares) : 0.0;
+        const float density = HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, path.shares, params.scene) : 0.0;
         addEmission(path, surface.emission, density, depth);
     }
     if (depth == params.maxDepth + path.passages || surface.unlit) return false;
@@ -140,7 +140,7 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
 
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
-    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, LightShares(0.0, 0.0), true, cone.width, vec3(0.0),
+    Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, noLightShares(), true, cone.width, vec3(0.0),
                      PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false);
     float spread = cone.spread;
     FirstSight sight;

@@ -43,7 +43,7 @@ uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
     Hash64 hash;
     for (const auto* records : {&data.bvhNodes, &data.bvhInstances, &data.triangles, &data.vertices,
                                 &data.instances, &data.previousGeometry, &data.materials, &data.textureRefs,
-                                &data.lights, &data.motion.restVertices}) {
+                                &data.lights, &data.lightTree, &data.motion.restVertices}) {
         hash.addValues(*records);
     }
     for (const auto* records : {&data.bvhTriangles, &data.environment, &data.ggxTable, &data.dielectricTable,

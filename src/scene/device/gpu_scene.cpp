@@ -29,6 +29,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
     add("lights", Format::RGBA32Uint, data.lights);
     add("lightAlias", Format::RG32Uint, data.lightAlias);
     add("lightDensity", Format::R32Float, data.lightDensity);
+    add("lightTree", Format::RGBA32Uint, data.lightTree);
     add("environment", Format::RGBA32Float, data.environment);
     add("environmentAlias", Format::RG32Uint, data.environmentAlias);
     add("ggxTable", Format::RGBA32Float, data.ggxTable);
@@ -109,6 +110,8 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_VOLUME", features_.volume},
             {"HAS_SPECULAR_TEXTURES", features_.specularTextures},
             {"HAS_ROUGH_GLASS", features_.roughGlass},
+            {"HAS_LIGHT_TREE", features_.lightTree},
+            {"HAS_SUNS", features_.suns},
             {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

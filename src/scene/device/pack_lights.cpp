@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "scene/device/light_tree.h"
 #include "scene/device/mip_levels.h"
 #include "scene/device/pack.h"
 #include "scene/device/tables/alias_table.h"
@@ -18,11 +19,14 @@ namespace {
 constexpr float environmentShare = 0.5f;
 /// The minimum probabilities of triangles and of punctual lights among the other samples, if there are both.
 constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
+/// With fewer lights there is no tree. Its walk would make a scene with one lamp a quarter slower on a CPU,
+/// and their power, or what arrives from each lamp, is enough.
+constexpr size_t minTreeLights = 9;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
 constexpr double uniformShare = 0.25;
 
 double luminance(const vec3& c) {
-    return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+    return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
 }
 
 vec2 transformed(const TextureRef& ref, const vec2& uv) {
@@ -30,10 +34,19 @@ vec2 transformed(const TextureRef& ref, const vec2& uv) {
     return {glm::dot(ref.rowU, p), glm::dot(ref.rowV, p)};
 }
 
-/// Returns the mean luminance of the emission texture over a triangle, from points as dense as its texels (16
-/// to 1,024 points).
-double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
-                            vec2 c) {
+/// The mean radiance of a triangle, by luminance and by strengthOf().
+struct MeanRadiance {
+    double luminance = 0.0, strength = 0.0;
+};
+
+MeanRadiance meanOf(const vec3& radiance) {
+    return {luminance(radiance), strengthOf(radiance)};
+}
+
+/// Returns the mean of the emission texture over a triangle, from points as dense as its texels (16 to 1,024
+/// points).
+MeanRadiance meanOfTexture(const Texture& texture, const TextureRef& ref, const vec3& factor, vec2 a, vec2 b,
+                           vec2 c) {
     a = transformed(ref, a);
     b = transformed(ref, b);
     c = transformed(ref, c);
@@ -42,17 +55,20 @@ double meanTextureLuminance(const Texture& texture, const TextureRef& ref, const
     const double texels = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x);
     const int side =
         static_cast<int>(std::clamp(std::sqrt(2.0 * (std::isfinite(texels) ? texels : 0.0)), 5.0, 45.0));
-    double sum = 0.0;
+    MeanRadiance sum;
     int count = 0;
     for (int i = 0; i < side; ++i) {
         for (int j = 0; i + j < side; ++j) {
             const float u = (static_cast<float>(i) + 1.0f / 3.0f) / static_cast<float>(side);
             const float v = (static_cast<float>(j) + 1.0f / 3.0f) / static_cast<float>(side);
-            sum += luminance(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            const MeanRadiance at =
+                meanOf(vec3(nearestTexel(texture, a + u * (b - a) + v * (c - a))) * factor);
+            sum.luminance += at.luminance;
+            sum.strength += at.strength;
             ++count;
         }
     }
-    return sum / count;
+    return {sum.luminance / count, sum.strength / count};
 }
 
 class LightPacker {
@@ -78,9 +94,31 @@ class LightPacker {
             }
         }
         data_.params.triangleLightCount = static_cast<uint32_t>(weights_.size());
+        packTree();
     }
 
   private:
+    /// Packs nodes, trails, and the list of directional lights. Whether there is a tree depends on the number
+    /// of lights only, so that lights can be changed on the device.
+    void packTree() {
+        data_.features.lightTree = bounds_.size() - suns_.size() >= minTreeLights;
+        data_.features.suns = !suns_.empty();
+        if (!data_.features.lightTree) return;
+        LightTree tree(bounds_, weights_.size());
+        data_.lightTree = packLightTree(tree);
+        data_.params.firstLightTrail = static_cast<uint32_t>(data_.lightTree.size());
+        for (const uint32_t light : lightOfPrimitive_) {
+            data_.lightTree.push_back(light == layout::NONE ? uvec4(0u) : tree.trail(light));
+        }
+        data_.params.firstSun = static_cast<uint32_t>(data_.lightTree.size());
+        data_.params.sunCount = static_cast<uint32_t>(suns_.size());
+        for (const uint32_t sun : suns_) data_.lightTree.emplace_back(sun, 0u, 0u, 0u);
+        const bool moves =
+            !data_.motion.lights.empty() ||
+            std::ranges::any_of(scene_.lights, [](const auto& light) { return light.node != none; });
+        if (moves) data_.motion.lightTree = std::move(tree);
+    }
+
     void setProbabilities(size_t first, const AliasTable& table) {
         for (size_t i = 0; i < table.probabilities.size(); ++i)
             data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
@@ -132,6 +170,7 @@ class LightPacker {
                             static_cast<uint32_t>(weights_.size()),
                             static_cast<uint32_t>(tableStart),
                             {},
+                            {},
                             {}};
         for (size_t t = 0; t < mesh.triangleCount(); ++t) {
             const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
@@ -140,6 +179,7 @@ class LightPacker {
             if (isEmitter(scene_.materials[material])) {
                 light = packTriangle(index, instance, mesh, t, material);
                 moving.triangles.push_back(static_cast<uint32_t>(t));
+                moving.radiances.push_back(radiances_.back());
             }
             lightOfPrimitive_.push_back(light);
         }
@@ -159,13 +199,12 @@ class LightPacker {
         vec3 v[3];
         for (int k = 0; k < 3; ++k) v[k] = vec3(instance.transform * vec4(mesh.positions[index[k]], 1.0f));
         if (glm::determinant(mat3(instance.transform)) < 0.0f) std::swap(v[1], v[2]);
-        double radiance = luminance(material.emission);
+        MeanRadiance radiance = meanOf(material.emission);
         const TextureRef& ref = material.emissionTexture;
         if (ref) {
             const std::vector<vec2>& uv = ref.uvSet == 1 ? mesh.uv1 : mesh.uv0;
             const vec2 zero(0.0f);
-            radiance =
-                meanTextureLuminance(scene_.textures[static_cast<size_t>(ref.texture)], ref,
+            radiance = meanOfTexture(scene_.textures[static_cast<size_t>(ref.texture)], ref,
                                      material.emission, uv.empty() ? zero : uv[index[0]],
                                      uv.empty() ? zero : uv[index[1]], uv.empty() ? zero : uv[index[2]]);
         }
@@ -181,8 +220,10 @@ class LightPacker {
         const bool changes = ref || material.clearcoat > 0.0f;  // varies between points, or with direction
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
+        radiances_.push_back(static_cast<float>(radiance.strength));
+        bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance.strength, material.doubleSided));
         const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
-        return addWeight(std::numbers::pi * area * sides * radiance, lamp->second);
+        return addWeight(std::numbers::pi * area * sides * radiance.luminance, lamp->second);
     }
 
     /// Returns its power. A spot counts as if it shone in all directions: outside its cone other lights
@@ -200,6 +241,12 @@ class LightPacker {
         data_.lights.push_back(
             bits(vec3(std::cos(light.innerCone), std::cos(light.outerCone), light.range), 0u));
         data_.lights.push_back(bits(light.intensity, 0u));
+        if (light.kind == PunctualLight::Kind::Directional) {
+            suns_.push_back(static_cast<uint32_t>(bounds_.size()));
+            bounds_.emplace_back().inTree = false;
+        } else {
+            bounds_.push_back(punctualLightBounds(light));
+        }
         return finite(power);
     }
 
@@ -216,7 +263,9 @@ class LightPacker {
     std::vector<double> weights_;  ///< powers of the triangle lights, which come first
     std::vector<size_t> lamps_;    ///< the lamp that each belongs to: one material of one instance
     std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
-    std::vector<float> areas_;                ///< of the triangle lights
+    std::vector<float> areas_, radiances_;    ///< of the triangle lights
+    std::vector<LightBounds> bounds_;         ///< of all lights; empty ones of directional lights
+    std::vector<uint32_t> suns_;              ///< the directional lights
     std::vector<uint32_t> lightOfPrimitive_;  ///< index of the light, or NONE, for every primitive of an
                                               ///< emissive instance
 };

@@ -31,8 +31,9 @@ uint64_t SceneData::byteCount() const {
     uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightAlias) +
                    bytesIn(environmentAlias) + bytesIn(motion.morphDeltas) + bytesIn(lightDensity) +
                    bytesIn(dielectricTable);
-    for (const auto* records : {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances,
-                                &previousGeometry, &materials, &textureRefs, &lights, &motion.restVertices}) {
+    for (const auto* records :
+         {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances, &previousGeometry, &materials,
+          &textureRefs, &lights, &lightTree, &motion.restVertices}) {
         sum += bytesIn(*records);
     }
     for (const auto& buffer : texels) sum += bytesIn(buffer);

@@ -19,7 +19,7 @@ struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
          mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
-         roughGlass = false;
+         roughGlass = false, lightTree = false, suns = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 
@@ -31,7 +31,7 @@ struct AliasEntry {
 
 struct SceneData {
     std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
-        textureRefs, lights;
+        textureRefs, lights, lightTree;
     std::vector<vec4> bvhTriangles, environment, ggxTable, dielectricTable;
     std::vector<AliasEntry> lightAlias, environmentAlias;
     std::vector<float> lightDensity;

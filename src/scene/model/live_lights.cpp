@@ -45,6 +45,7 @@ void LiveLights::update(const Scene& scene) {
 void LiveLights::addTo(SceneFrame& frame) const {
     addWhole(frame, "lights", std::as_bytes(std::span(packed_.lights)));
     addWhole(frame, "lightAlias", std::as_bytes(std::span(packed_.lightAlias)));
+    addWhole(frame, "lightTree", std::as_bytes(std::span(packed_.lightTree)));
     addWhole(frame, "lightDensity", std::as_bytes(std::span(packed_.lightDensity)));
     for (size_t i = 0; i < emissions_.size(); ++i) {
         const uint64_t record = static_cast<uint64_t>(emitters_[i]) * layout::MATERIAL_TEXELS;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/device/bvh.h"
+#include "scene/device/light_tree.h"
 
 namespace limpid::scene {
 
@@ -38,7 +39,8 @@ struct MovingLights {
     uint32_t firstLight = 0;
     uint32_t firstDensity = 0;         ///< index of its table in lightDensity
     std::vector<uint32_t> triangles;   ///< indices in the mesh, in the order of the lights
-    std::vector<float> probabilities;  ///< of choosing each, whatever its current size
+    std::vector<float> probabilities;  ///< of choosing each by power, whatever its current size
+    std::vector<float> radiances;      ///< mean strengths (light_bounds.h)
 };
 
 /// Nodes that can be refitted in parallel: their children are in earlier levels.
@@ -67,6 +69,7 @@ struct MotionData {
     uint32_t firstRefitNode = 0, refitNodeCount = 0;  ///< nodes of deforming trees in bvhNodes
 
     std::vector<MovingLights> lights;
+    LightTree lightTree;  ///< over all lights; empty if no light moves
 };
 
 }  // namespace limpid::scene

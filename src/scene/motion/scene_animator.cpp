@@ -81,6 +81,7 @@ void SceneAnimator::setLights(const SceneData& data) {
     firstPunctual_ = data.lights.size() - scene_.lights.size() * layout::LIGHT_TEXELS;
     punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
     motion_.lights = data.motion.lights;
+    motion_.lightTree = data.motion.lightTree;
 }
 
 SceneAnimator::Moment SceneAnimator::momentAt(double time) const {
@@ -118,8 +119,10 @@ SceneFrame SceneAnimator::frame(double time, double previousTime) const {
     addPoses(now, before, frame);
     addInstances(now, before, frame);
     addMovingTree(now, frame);
-    addTriangleLights(now, frame);
-    addPunctualLights(now, frame);
+    LightTree tree = motion_.lightTree;
+    addTriangleLights(now, frame, tree);
+    addPunctualLights(now, frame, tree);
+    addLightTree(tree, frame);
     return frame;
 }
 
@@ -254,7 +257,7 @@ std::vector<vec3> SceneAnimator::worldPositions(uint32_t index, const Moment& mo
     return positions;
 }
 
-void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame) const {
+void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame, LightTree& tree) const {
     for (const MovingLights& lights : motion_.lights) {
         const Instance& instance = scene_.instances[lights.instance];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
@@ -285,20 +288,44 @@ void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame) cons
             addUpload<float>(frame, "lightDensity",
                              (uint64_t{lights.firstDensity} + lights.triangles[i]) * sizeof(float),
                              std::span(&density, 1));
+            if (tree.lightCount() == 0) continue;
+            tree.setLight(
+                lights.firstLight + static_cast<uint32_t>(i),
+                triangleLightBounds({v0, v1, v2}, double{lights.radiances[i]}, material.doubleSided));
         }
     }
 }
 
-void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame) const {
+void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame, LightTree& tree) const {
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
         const PunctualLight& light = scene_.lights[i];
         if (light.node == none) continue;
         const mat4& toWorld = now.pose.toWorld[static_cast<size_t>(light.node)];
         const uvec4* packed = &punctual_[i * layout::LIGHT_TEXELS];
-        const std::array<uvec4, 2> texels{bits(vec3(toWorld[3]), packed[0].w),
-                                          bits(-vec3(withoutScale(toWorld)[2]), packed[1].w)};
+        PunctualLight moved = light;
+        moved.position = vec3(toWorld[3]);
+        moved.direction = -vec3(withoutScale(toWorld)[2]);
+        const std::array<uvec4, 2> texels{bits(moved.position, packed[0].w),
+                                          bits(moved.direction, packed[1].w)};
         addUpload<uvec4>(frame, "lights", (firstPunctual_ + i * layout::LIGHT_TEXELS) * sizeof(uvec4),
                          texels);
+        if (tree.lightCount() == 0 || light.kind == PunctualLight::Kind::Directional) continue;
+        tree.setLight(static_cast<uint32_t>(firstPunctual_ / layout::LIGHT_TEXELS + i),
+                      punctualLightBounds(moved));
+    }
+}
+
+void SceneAnimator::addLightTree(LightTree& tree, SceneFrame& frame) {
+    constexpr uint32_t texels = layout::LIGHT_CHILD_TEXELS;
+    const std::vector<uint32_t> changed = tree.refit();
+    for (size_t begin = 0, end = 0; begin < changed.size(); begin = end) {
+        std::vector<uvec4> packed;
+        do {
+            packed.resize(packed.size() + texels);
+            packLightChild(tree.children()[changed[end]], std::span(packed).last(texels));
+            ++end;
+        } while (end < changed.size() && changed[end] == changed[end - 1] + 1);
+        addUpload(frame, "lightTree", uint64_t{changed[begin]} * texels * sizeof(uvec4), packed);
     }
 }
 

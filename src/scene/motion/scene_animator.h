@@ -48,8 +48,10 @@ class SceneAnimator {
     void addPoses(const Moment& now, const Moment& before, SceneFrame& frame) const;
     void addInstances(const Moment& now, const Moment& before, SceneFrame& frame) const;
     void addMovingTree(const Moment& now, SceneFrame& frame) const;
-    void addTriangleLights(const Moment& now, SceneFrame& frame) const;
-    void addPunctualLights(const Moment& now, SceneFrame& frame) const;
+    /// These two also move the lights in `tree`, unless it is empty.
+    void addTriangleLights(const Moment& now, SceneFrame& frame, LightTree& tree) const;
+    void addPunctualLights(const Moment& now, SceneFrame& frame, LightTree& tree) const;
+    static void addLightTree(LightTree& tree, SceneFrame& frame);
     std::vector<vec3> worldPositions(uint32_t instance, const Moment& moment) const;
 
     const Scene& scene_;

@@ -24,6 +24,10 @@ layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
 layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
 layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
 layout(constant_id = 18) const bool HAS_ROUGH_GLASS = true;   // rough boundaries that refract
+layout(constant_id = 19) const bool HAS_LIGHT_TREE = false;    // several lights that are not directional
+layout(constant_id = 23) const bool HAS_SUNS = true;          // directional lights
+// A setting of the pass, not of the scene: choose lights by the tree, else by power.
+layout(constant_id = 24) const bool LIGHT_TREE = true;
 
 layout(set = 0, binding = 0, rgba32ui) uniform readonly uimageBuffer bvhNodes;
 layout(set = 0, binding = 1, rgba32f) uniform readonly imageBuffer bvhTriangles;
@@ -45,6 +49,7 @@ layout(set = 0, binding = 16, r32ui) uniform readonly uimageBuffer texels1;
 layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;
 layout(set = 0, binding = 18, r32ui) uniform readonly uimageBuffer texels3;
 layout(set = 0, binding = 19, rgba32ui) uniform readonly uimageBuffer previousGeometry;
-// Bindings from 20 on belong to the pass that includes this file.
+layout(set = 0, binding = 62, rgba32ui) uniform readonly uimageBuffer lightTree;
+// Bindings from 20 to 61 belong to the pass that includes this file.
 
 #endif

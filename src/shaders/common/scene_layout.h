@@ -96,6 +96,22 @@ LIMPID_CONST uint LIGHT_KIND_MASK = 7u;
 LIMPID_CONST uint LIGHT_MIRRORED =
     8u;  // v1 and v2 are swapped relative to the mesh, so that the front face stays the front
 
+// lightTree: children of nodes (scene/device/light_tree.h), the root's first, those of a node one after the
+// other. A child: centre of the bounding sphere | its radius and the range, upper halves of floats; axis
+// (octahedral) | sin of half the angles of the cone and of the ramp beyond it (2 x unorm16; a spot's: inner
+// and outer cone) | intensity | link. Then a texel for each entry of lightDensity: trail from the root. Then
+// a texel for each directional light: its index in `lights` | 0 | 0 | 0.
+LIMPID_CONST uint LIGHT_CHILD_TEXELS = 2u;
+LIMPID_CONST uint LIGHT_NODE_WIDTH = 4u;       // largest number of children
+LIMPID_CONST uint LIGHT_TRAIL_BITS = 2u;       // number of a child
+LIMPID_CONST uint LIGHT_TRAIL_ROOT_BITS = 8u;  // the same for the root, which may have more
+LIMPID_CONST uint LIGHT_LINK_LEAF =
+    0x80000000u;  // the link's index is that of a light, not of a node's first child
+LIMPID_CONST uint LIGHT_LINK_TWO_SIDED = 0x40000000u;
+LIMPID_CONST uint LIGHT_LINK_SPOT = 0x20000000u;
+LIMPID_CONST uint LIGHT_LINK_LAST = 0x10000000u;  // the node's last child
+LIMPID_CONST uint LIGHT_LINK_INDEX = 0x0FFFFFFFu;
+
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
 // environment: radiance | probability of choosing this texel.
@@ -129,6 +145,9 @@ struct SceneParams {
     float sceneRadius;
     uint triangleLightCount;  // number in `lights` and `lightAlias`; punctual lights follow
     uint punctualCount;
+    uint sunCount;                   // directional lights among them
+    uint firstLightTrail;            // texel of lightTree where trails begin
+    uint firstSun;                   // texel of lightTree where the list of directional lights begins
     float environmentProbability;    // of choosing the environment in next-event estimation
     float triangleLightProbability;  // of triangles rather than punctual lights, at points that a punctual
                                      // light reaches

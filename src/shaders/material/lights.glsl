@@ -5,9 +5,13 @@
 #define LIMPID_LIGHTS_GLSL
 
 #include "shaders/material/environment.glsl"
+#include "shaders/material/light_tree.glsl"
 #include "shaders/material/material.glsl"
 #include "shaders/trace/trace.glsl"
 
+/// With both, directional lights and the tree each get at least this share of the samples, since what is brighter may
+/// be hidden.
+const float MIN_TREE_OR_SUN_SHARE = 0.3;
 /// Up to this number of punctual lights, next-event estimation evaluates all of them.
 const uint PUNCTUAL_LIGHTS_ALL_LOOKED_AT = 256u;
 /// With more lights, it evaluates this many candidates, drawn by power.
@@ -16,24 +20,21 @@ const uint PUNCTUAL_CANDIDATES = 32u;
 /// contribution.
 const float PUNCTUAL_UNIFORM_SHARE = 0.4;
 
-/// The point that is lit.
-struct Receiver {
-    vec3 position, normal, geometricNormal;
-    bool bothSides;  // light may also arrive from behind the surface
-    float grazing;   // minimum weight of a light in front of the surface, for materials where the cosine does
-                     // not matter
-};
-
 Receiver receiverAt(Surface s) {
     const bool coated = HAS_CLEARCOAT && s.clearcoat > 0.0;
     return Receiver(s.position, s.normal, s.geometricNormal, HAS_TRANSMISSION && s.transmission > 0.0, coated ? 0.1 : 0.0);
 }
 
-/// The probabilities of sampling the environment and the emissive triangles; the remainder is for punctual
-/// lights.
+/// The probabilities of sampling the environment, and the emissive triangles or the light tree; the remainder is for
+/// punctual lights that are not in the tree.
 struct LightShares {
     float environment, triangles;
+    Receiver from;  // of which the tree's probabilities depend
 };
+
+LightShares noLightShares() {
+    return LightShares(0.0, 0.0, Receiver(vec3(0.0), vec3(0.0), vec3(0.0), false, 0.0));
+}
 
 struct LightSample {
     vec3 direction;
@@ -80,6 +81,7 @@ vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float
     return emission;
 }
 
+/// The density is that of a point of this triangle.
 LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 from, vec2 u) {
     const vec3 v0 = uintBitsToFloat(r0.xyz), v1 = uintBitsToFloat(r1.xyz), v2 = uintBitsToFloat(r2.xyz);
     const vec2 barycentrics = sampleTriangle(u);
@@ -99,7 +101,7 @@ LightSample sampleTriangleLight(uvec4 r0, uvec4 r1, uvec4 r2, uvec4 r3, vec3 fro
     light.distance = sqrt(distance2);
     light.direction = toLight / max(light.distance, 1e-37);
     const bool visible = cosine > 0.0 && doubleArea > 0.0;
-    light.pdf = visible ? uintBitsToFloat(r1.w) * 2.0 * distance2 / (doubleArea * cosine) : 0.0;
+    light.pdf = visible ? 2.0 * distance2 / (doubleArea * cosine) : 0.0;
     const vec2 order = (r0.w & LIGHT_MIRRORED) != 0u ? barycentrics.yx : barycentrics;
     light.radiance = visible ? lightEmission(r3, r2.w, order, cosine) : vec3(0.0);
     light.delta = false;
@@ -201,8 +203,8 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
     return best;
 }
 
-LightShares lightShares(bool punctual, SceneParams scene) {
-    LightShares shares = LightShares(HAS_ENVIRONMENT ? scene.environmentProbability : 0.0, 0.0);
+LightShares lightShares(Receiver from, bool punctual, SceneParams scene) {
+    LightShares shares = LightShares(HAS_ENVIRONMENT ? scene.environmentProbability : 0.0, 0.0, from);
     if (HAS_TRIANGLE_LIGHTS) shares.triangles = 1.0 - shares.environment;
     if (HAS_PUNCTUAL_LIGHTS) {
         shares.triangles *= punctual ? scene.triangleLightProbability : 1.0;
@@ -217,23 +219,34 @@ LightSample chooseTriangleLight(Receiver from, float choice, float decision, vec
     const uvec2 entry = imageLoad(lightAlias, int(index)).xy;
     index = decision < uintBitsToFloat(entry.x) ? index : entry.y;
     const int at = int(index * LIGHT_TEXELS);
-    return sampleTriangleLight(imageLoad(lights, at), imageLoad(lights, at + 1), imageLoad(lights, at + 2),
-                               imageLoad(lights, at + 3), from.position, u);
+    const uvec4 r1 = imageLoad(lights, at + 1);
+    LightSample light = sampleTriangleLight(imageLoad(lights, at), r1, imageLoad(lights, at + 2),
+                                            imageLoad(lights, at + 3), from.position, u);
+    light.pdf *= uintBitsToFloat(r1.w);
+    return light;
 }
 
-/// Samples a light; pdf 0: no light reaches the point. `shares` are needed by lightPdf() and similar
-/// functions for a ray that leaves from here.
-LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
+LightSample noLight() {
+    return LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
+}
+
+LightSample environmentLight(vec2 choice, vec2 u, SceneParams scene) {
+    const EnvironmentSample s = sampleEnvironment(choice, u, scene);
+    return LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf, false);
+}
+
+/// Samples a light by power, or punctual lights by choosePunctualLight().
+LightSample sampleLightByPower(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
     PunctualChoice punctual = PunctualChoice(0, 0.0);
     if (HAS_PUNCTUAL_LIGHTS) punctual = choosePunctualLight(from, scene, rng);
-    shares = lightShares(punctual.pdf > 0.0, scene);
+    shares = lightShares(from, punctual.pdf > 0.0, scene);
     const float choice = random(rng), decision = random(rng);
     const vec2 u = random2(rng);
-    LightSample light = LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
+    LightSample light = noLight();
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
-            const EnvironmentSample s = sampleEnvironment(vec2(choice / shares.environment, decision), u, scene);
-            light = LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf * shares.environment, false);
+            light = environmentLight(vec2(choice / shares.environment, decision), u, scene);
+            light.pdf *= shares.environment;
         }
     }
     const float rest = choice - shares.environment;
@@ -252,12 +265,108 @@ LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out Li
     return light;
 }
 
+/// A directional light, chosen by the irradiance it causes without shadows, and the irradiance of all.
+struct SunChoice {
+    int at;  // position in `lights`
+    float probability, irradiance;
+};
+
+SunChoice chooseSun(Receiver from, SceneParams scene, inout uint rng) {
+    SunChoice sun = SunChoice(0, 0.0, 0.0);
+    float u = random(rng), chosen = 0.0;
+    for (uint i = 0u; i < scene.sunCount; ++i) {
+        const int at = int(imageLoad(lightTree, int(scene.firstSun + i)).x * LIGHT_TEXELS);
+        const float weight = usableLight(from, samplePunctualLight(at, from.position));
+        if (!(weight > 0.0)) continue;
+        sun.irradiance += weight;
+        const float share = weight / sun.irradiance;
+        const bool taken = u < share;
+        if (taken) {
+            sun.at = at;
+            chosen = weight;
+        }
+        // The rescaled remainder is again uniform.
+        u = taken ? u / share : (u - share) / (1.0 - share);
+    }
+    sun.probability = chosen / max(sun.irradiance, 1e-30);
+    return sun;
+}
+
+/// A light of the light list. The density does not include the probability of choosing this light.
+LightSample sampleListedLight(uint index, Receiver from, vec2 u) {
+    const int at = int(index * LIGHT_TEXELS);
+    LightSample light = noLight();
+    if (HAS_TRIANGLE_LIGHTS) {
+        light = sampleTriangleLight(imageLoad(lights, at), imageLoad(lights, at + 1), imageLoad(lights, at + 2),
+                                    imageLoad(lights, at + 3), from.position, u);
+    }
+    if (HAS_PUNCTUAL_LIGHTS) {
+        const LightSample punctual = samplePunctualLight(at, from.position);
+        const uint kind = imageLoad(lights, at).w & LIGHT_KIND_MASK;
+        if (kind >= LIGHT_POINT) {
+            light = punctual;
+            light.pdf = 1.0;
+        }
+    }
+    return light;
+}
+
+/// Samples the environment, a directional light or a light of the tree. Each gets samples only if it can reach the
+/// point.
+LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
+    const ChosenLight chosen = chooseFromLightTree(from, rng);
+    SunChoice sun = SunChoice(0, 0.0, 0.0);
+    if (HAS_SUNS) sun = chooseSun(from, scene, rng);
+    const float both = chosen.irradiance + sun.irradiance;
+    float ofTree = chosen.irradiance > 0.0 ? 1.0 : 0.0;
+    if (HAS_SUNS) {
+        if (chosen.irradiance > 0.0 && sun.irradiance > 0.0)
+            ofTree = clamp(chosen.irradiance / both, MIN_TREE_OR_SUN_SHARE, 1.0 - MIN_TREE_OR_SUN_SHARE);
+    }
+    shares = LightShares(0.0, 0.0, from);
+    if (HAS_ENVIRONMENT) shares.environment = both > 0.0 ? scene.environmentProbability : 1.0;
+    shares.triangles = (1.0 - shares.environment) * ofTree;
+    const float choice = random(rng);
+    const vec2 u = random2(rng);
+    LightSample light = noLight();
+    if (chosen.probability > 0.0) {
+        light = sampleListedLight(chosen.light, from, u);
+        light.pdf *= chosen.probability * shares.triangles;
+    }
+    if (HAS_SUNS) {
+        if (sun.probability > 0.0 && choice >= shares.environment + shares.triangles) {
+            light = samplePunctualLight(sun.at, from.position);
+            light.pdf = sun.probability * (1.0 - shares.environment - shares.triangles);
+        }
+    }
+    if (HAS_ENVIRONMENT) {
+        if (choice < shares.environment) {
+            light = environmentLight(vec2(choice / shares.environment, random(rng)), u, scene);
+            light.pdf *= shares.environment;
+        }
+    }
+    return light;
+}
+
+/// Samples a light; pdf 0: no light reaches the point. `shares` are needed by lightPdf() and similar
+/// functions for a ray that leaves from here.
+LightSample sampleLight(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
+    if (LIGHT_TREE && HAS_LIGHT_TREE) return sampleLightByTree(from, scene, rng, shares);
+    return sampleLightByPower(from, scene, rng, shares);
+}
+
 /// Returns the density per solid angle with which sampleLight draws the hit point of a ray of length
 /// `distance`.
-float lightPdf(Surface s, float distance, vec3 direction, LightShares shares) {
+float lightPdf(Surface s, float distance, vec3 direction, LightShares shares, SceneParams scene) {
     const uint first = imageLoad(instances, int(s.instance * INSTANCE_TEXELS) + 3).y;
     if (first == NONE) return 0.0;
-    const float perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
+    float perArea;
+    if (LIGHT_TREE && HAS_LIGHT_TREE) {
+        const uvec4 trail = imageLoad(lightTree, int(scene.firstLightTrail + first + s.primitive));
+        perArea = s.area > 0.0 ? lightTreeProbability(shares.from, trail) / s.area : 0.0;
+    } else {
+        perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
+    }
     const float cosine = abs(dot(s.geometricNormal, direction));
     return cosine > 0.0 ? shares.triangles * perArea * distance * distance / cosine : 0.0;
 }

@@ -32,7 +32,7 @@ void main() {
         if (isHit(hit)) {
             const Surface s = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -light.direction, RayCone(0.0, false, false));
             drawn.hitDistance = hit.t;
-            drawn.hitPdf = lightPdf(s, hit.t, light.direction, shares);
+            drawn.hitPdf = lightPdf(s, hit.t, light.direction, shares, params.scene);
         } else if (HAS_ENVIRONMENT) {
             drawn.hitPdf = environmentLightPdf(latLongOf(light.direction), shares, params.scene);
         }

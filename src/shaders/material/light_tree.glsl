@@ -1,0 +1,170 @@
+// Chooses a light for a point by walking the light tree (scene/device/light_tree.h), and returns the probability of
+// that choice.
+#ifndef LIMPID_LIGHT_TREE_GLSL
+#define LIMPID_LIGHT_TREE_GLSL
+
+#include "shaders/common/rng.glsl"
+#include "shaders/common/sampling.glsl"
+#include "shaders/common/scene_data.glsl"
+
+/// The point that is lit.
+struct Receiver {
+    vec3 position, normal, geometricNormal;
+    bool bothSides;  // light may also arrive from behind the surface
+    float grazing;   // minimum weight of a light in front of the surface, for materials where the cosine does
+                     // not matter
+};
+
+/// Cosine of max(a - b, 0), for angles from 0 to pi.
+float cosineOfDifference(float cosineA, float cosineB) {
+    const float sines = sqrt(max(1.0 - cosineA * cosineA, 0.0) * max(1.0 - cosineB * cosineB, 0.0));
+    return cosineA > cosineB ? 1.0 : cosineA * cosineB + sines;
+}
+
+/// The packed angle is sin(angle / 2).
+float cosineOfPacked(float sine) {
+    return 1.0 - 2.0 * sine * sine;
+}
+
+/// Share of the strongest emission that may leave in a direction, at `cosineW` from the axis, from any point of a
+/// sphere of angular radius `cosineB`.
+float emittedShare(float cosineW, float cosineB, vec2 angles, uint link) {
+    const float spread = cosineOfPacked(angles.x), edge = cosineOfPacked(angles.y);
+    const float within = cosineOfDifference(cosineOfDifference(cosineW, spread), cosineB);
+    float share = (within - edge) / max(1.0 - edge, 1e-7);
+    if (HAS_PUNCTUAL_LIGHTS) {
+        // The ramp of punctualAttenuation().
+        const float ramp = min((cosineW - edge) / max(0.001, spread - edge), 1.0);
+        if ((link & LIGHT_LINK_SPOT) != 0u) share = ramp > 0.0 ? ramp * ramp : 0.0;
+    }
+    return min(share, 1.0);
+}
+
+/// Returns the largest usable share of light from a sphere of angular radius `cosineB`, seen at `cosine` from the
+/// surface's normal.
+float usableShare(Receiver from, float cosine, float cosineB) {
+    const float nearest = cosineOfDifference(from.bothSides ? abs(cosine) : cosine, cosineB);
+    // Rounding must not remove a light at the horizon.
+    const float usable = max(nearest + 1e-4, from.bothSides ? 0.01 : from.grazing);
+    return max(usable, 0.0);
+}
+
+/// The weight of a child: an upper bound of the irradiance that it can cause, except that distances are
+/// those of its centre. 0 only if no light of it can reach the point. Formula: scene/device/light_bounds.h.
+float lightWeight(Receiver from, uvec4 place, uvec4 effect) {
+    const float intensity = uintBitsToFloat(effect.z);
+    const float radius = uintBitsToFloat(place.w & 0xFFFF0000u), range = uintBitsToFloat(place.w << 16);
+    const vec3 way = uintBitsToFloat(place.xyz) - from.position;
+    const float distance2 = dot(way, way), radius2 = radius * radius;
+    const float inverse = inversesqrt(max(distance2, 1e-37));
+    const vec3 direction = way * inverse;
+    const float cosineB = distance2 > radius2 ? sqrt(max(1.0 - radius2 * inverse * inverse, 0.0)) : -1.0;
+    float cosineW = -dot(decodeOctahedral(effect.x), direction);
+    if ((effect.w & LIGHT_LINK_TWO_SIDED) != 0u) cosineW = abs(cosineW);
+    float share = emittedShare(cosineW, cosineB, unpackUnorm2x16(effect.y), effect.w) *
+                  usableShare(from, dot(from.normal, direction), cosineB);
+    if (HAS_PUNCTUAL_LIGHTS) {
+        const float ratio = max(distance2 * inverse - radius, 0.0) / range;
+        const float r2 = ratio * ratio;
+        share *= max(1.0 - r2 * r2, 0.0);
+    }
+    const float weight = intensity * share / max(max(distance2, radius2), 1e-37);
+    return intensity > 0.0 && share > 0.0 ? clamp(weight, 1e-30, 1e30) : 0.0;
+}
+
+uint linkedIndex(uint link) {
+    return link & LIGHT_LINK_INDEX;
+}
+
+/// While the children of a node are compared: those with any weight, their weights, and the one that is taken.
+struct LightShare {
+    float reaching, sum, taken;
+    uint next;  // its link
+};
+
+/// At the root, a share of the choices is uniform among the children that reach the point, whatever their weights,
+/// since the brightest may be hidden. It falls with their number.
+float uniformShare(float reaching, bool root) {
+    return root ? min(0.2, 0.8 / max(reaching, 1.0)) : 0.0;
+}
+
+float probabilityOf(LightShare share, bool root) {
+    const float uniformly = uniformShare(share.reaching, root);
+    const float byWeight = (1.0 - uniformly) * share.taken / max(share.sum, 1e-30);
+    return share.taken > 0.0 ? byWeight + uniformly / share.reaching : 0.0;
+}
+
+/// A light of the tree, the probability of choosing it, and the irradiance that all lights of the tree might cause;
+/// both 0: none can reach the point.
+struct ChosenLight {
+    uint light;
+    float probability, irradiance;
+};
+
+/// Goes from the root to a light. If a node turns out to have no child that reaches the point, the walk ends without a
+/// light.
+ChosenLight chooseFromLightTree(Receiver from, inout uint rng) {
+    ChosenLight chosen = ChosenLight(0u, 1.0, -1.0);
+    LightShare byWeight = LightShare(0.0, 0.0, 0.0, 0u);
+    uint child = 0u, uniformNext = 0u;
+    float uniformTaken = 0.0;
+    while (true) {
+        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
+        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
+        const float weight = lightWeight(from, place, effect), u = random(rng);
+        byWeight.sum += weight;
+        byWeight.reaching += weight > 0.0 ? 1.0 : 0.0;
+        if (u * byWeight.sum < weight) {
+            byWeight.taken = weight;
+            byWeight.next = effect.w;
+        }
+        if (weight > 0.0 && u * byWeight.reaching < 1.0) {
+            uniformTaken = weight;
+            uniformNext = effect.w;
+        }
+        ++child;
+        if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
+        const bool root = chosen.irradiance < 0.0;
+        if (random(rng) < uniformShare(byWeight.reaching, root)) {
+            byWeight.taken = uniformTaken;
+            byWeight.next = uniformNext;
+        }
+        chosen.probability *= probabilityOf(byWeight, root);
+        if (root) chosen.irradiance = byWeight.sum;
+        child = linkedIndex(byWeight.next);
+        if (byWeight.taken == 0.0 || (byWeight.next & LIGHT_LINK_LEAF) != 0u) break;
+        byWeight = LightShare(0.0, 0.0, 0.0, 0u);
+        uniformTaken = 0.0;
+    }
+    chosen.light = child;
+    return chosen;
+}
+
+/// Returns the probability with which chooseFromLightTree() chooses the light at the end of `trail`.
+float lightTreeProbability(Receiver from, uvec4 trail) {
+    LightShare share = LightShare(0.0, 0.0, 0.0, 0u);
+    float probability = 1.0;
+    uint first = 0u, child = 0u, bits = LIGHT_TRAIL_ROOT_BITS;
+    while (true) {
+        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
+        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
+        const float weight = lightWeight(from, place, effect);
+        share.sum += weight;
+        share.reaching += weight > 0.0 ? 1.0 : 0.0;
+        if (child - first == (trail.x & ((1u << bits) - 1u))) {
+            share.taken = weight;
+            share.next = effect.w;
+        }
+        ++child;
+        if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
+        probability *= probabilityOf(share, bits == LIGHT_TRAIL_ROOT_BITS);
+        first = child = linkedIndex(share.next);
+        if (share.taken == 0.0 || (share.next & LIGHT_LINK_LEAF) != 0u) break;
+        share = LightShare(0.0, 0.0, 0.0, 0u);
+        trail = (trail >> bits) | (uvec4(trail.yzw, 0u) << (32u - bits));
+        bits = LIGHT_TRAIL_BITS;
+    }
+    return probability;
+}
+
+#endif
