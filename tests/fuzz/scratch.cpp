@@ -54,8 +54,8 @@ const Scratch& scratch() {
 scene::SceneData pack(const scene::Scene& scene) {
     scene::SceneData data;
     data.features.vertexData = true;
-    scene::packMaterials(scene, data);
-    scene::packGeometry(scene, data);
+    scene::packMaterials(scene, data, {});
+    scene::packGeometry(scene, data, {});
     scene::packLights(scene, data);
     return data;
 }
