@@ -3,7 +3,7 @@
 // device, and the validation layers must say nothing (they are on with LIMPID_VALIDATION=1; Studio::finish()
 // throws then).
 //
-// The number of frames is LIMPID_SOAK_FRAMES (default: 1500).
+// It runs only with LIMPID_SOAK_FRAMES, the number of frames: 100000 take hours on a CPU.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ constexpr std::array denoisers{"svgf", "atrous", "temporal", "none", "bilateral"
 
 uint64_t wantedFrames() {
     const char* const text = std::getenv("LIMPID_SOAK_FRAMES");
-    return text ? std::strtoull(text, nullptr, 10) : 1500;
+    return text ? std::strtoull(text, nullptr, 10) : 0;
 }
 
 /// Resident memory of this process, in MB.
@@ -80,6 +80,7 @@ class Soak : public testing::Test {
   protected:
     void SetUp() override {
         if (gpu::enumerateDevices().empty()) GTEST_SKIP() << "NOT TESTED: this machine has no Vulkan device.";
+        if (wantedFrames() == 0) GTEST_SKIP() << "NOT TESTED: LIMPID_SOAK_FRAMES is not set.";
         studio::StudioSettings settings;
         settings.source.scene = scenes[0];
         settings.render.extent = {64, 48};
@@ -160,9 +161,13 @@ TEST_F(Soak, MemoryStaysFlat) {
     const uint64_t frames = wantedFrames();
     uint64_t pictures = 0, reported = 0, scenesShown = 0;
     double hostThen = 0.0, hostNow = 0.0;
-    uint64_t deviceThen = 0, deviceNow = 0;
+    uint64_t deviceThen = 0, deviceNow = 0, disturbedAt = 0;
     for (uint64_t done = 0; done < frames && !studio_->hasEnded();) {
-        disturb();
+        // Not by time: the first frames wait for shaders to be compiled.
+        if (done == 0 || done >= disturbedAt + 5) {
+            disturbedAt = done;
+            disturb();
+        }
         pictures += visit();
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const auto shown = studio_->shown();
@@ -185,7 +190,7 @@ TEST_F(Soak, MemoryStaysFlat) {
     visitors_.clear();
     EXPECT_FALSE(studio_->hasEnded());
     EXPECT_GT(pictures, frames / 100);
-    EXPECT_GT(scenesShown, frames / 200);
+    EXPECT_GT(scenesShown, frames / 500);
     EXPECT_LT(hostNow, 1.1 * hostThen + 8.0);
     EXPECT_LE(deviceNow, deviceThen + deviceThen / 10);
     studio_->finish();
