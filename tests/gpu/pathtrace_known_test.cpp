@@ -19,7 +19,8 @@ class KnownAnswerTest : public RenderTest {
         settings.samplesPerLaunch = 64;
         settings.pathtrace.maxDepth = depth;
         settings.pathtrace.rouletteDepth = rouletteDepth;
-        const Rendered picture = renderer(settings, 512);
+        // Long paths are noisy: with 512 samples the mean of one seed deviates by 0.13 %.
+        const Rendered picture = renderer(settings, depth > 8 ? 2048 : 512);
         const int bounces = integrator == Integrator::Direct ? std::min(depth, 1) : depth;
         const double expected = (1.0 - std::pow(double{albedo}, bounces + 1)) / (1.0 - double{albedo});
         const std::string how = fmt::format("{}, albedo {} depth {} roulette from {}", nameOf(integrator),
