@@ -19,7 +19,7 @@ struct PathtraceSettings {
     bool samplerTea = false;
     bool throughMirrors = true;
     bool throughGlass = true;
-    bool lightTree = true;
+    bool lightTree = false;
     bool operator==(const PathtraceSettings&) const = default;
 };
 const ParamTable<PathtraceSettings>& pathtraceParams();
