@@ -153,9 +153,7 @@ void drawField(const Drawing& with, const Field& field) {
         if (with.facts.duration <= 0.0) return;
     json value = now;
     ImGui::PushID(field.key.c_str());
-    // The exposure of a scene is measured: it has no default.
-    const bool changed =
-        field.key != "exposure" && !field.defaultValue.is_null() && now != field.defaultValue;
+    const bool changed = !field.defaultValue.is_null() && now != field.defaultValue;
     if (changed && drawDot(with, field)) value = field.defaultValue;
     drawControl(with, field, value);
     explainRow(with, helpOf(field, now));
