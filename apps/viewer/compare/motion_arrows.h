@@ -13,9 +13,7 @@ struct Arrow {
 };
 
 /// One for every square of 32 pixels of the window in whose middle something has moved by more than a quarter
-/// of a pixel: from where it was in the frame before to where it is. `motion` as docs/layers.md has it: the
-/// previous place minus this one, pixels of the picture; with four components, the last one 0 where it is not
-/// valid.
+/// of a pixel: from where it was in the frame before to where it is. `motion` as for studio::motionAt().
 std::vector<Arrow> motionArrows(const image::Image& motion, float windowWidth, float windowHeight);
 
 }  // namespace limpid::viewer

@@ -1,0 +1,25 @@
+#include "studio/compare/motion_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limpid::studio {
+namespace {
+
+constexpr float leastMotion = 0.25f;  ///< pixels
+
+uint32_t pixelAt(float share, uint32_t length) {
+    return std::min(static_cast<uint32_t>(share * static_cast<float>(length)), length - 1);
+}
+
+}  // namespace
+
+vec2 motionAt(const image::Image& motion, const vec2& position) {
+    const uint32_t column = pixelAt(position.x, motion.width), row = pixelAt(position.y, motion.height);
+    if (motion.components > 3 && motion.at(column, row, 3) <= 0.0f) return vec2(0.0f);
+    const vec2 back(motion.at(column, row, 0), motion.at(column, row, 1));
+    const bool moves = std::isfinite(back.x) && std::isfinite(back.y) && glm::length(back) >= leastMotion;
+    return moves ? back : vec2(0.0f);
+}
+
+}  // namespace limpid::studio
