@@ -15,10 +15,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "serve/protocol.h"
 #include "serve/remote/remote_socket.h"
 #include "serve/remote/video_decoder.h"
 #include "serve/serve.h"
+#include "serve/session/protocol.h"
 #include "studio/studio.h"
 #endif
 

@@ -4,9 +4,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "serve/access.h"
-#include "serve/token.h"
-#include "serve/web_server.h"
+#include "serve/web/access.h"
+#include "serve/web/token.h"
+#include "serve/web/web_server.h"
 
 namespace limpid::serve {
 

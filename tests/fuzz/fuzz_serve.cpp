@@ -1,7 +1,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "serve/protocol.h"
+#include "serve/session/protocol.h"
 #include "studio/state/state_json.h"
 #include "targets.h"
 

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "scene/model/scene_source.h"
-#include "serve/protocol.h"
 #include "serve/remote/remote_socket.h"
-#include "serve/web_server.h"
+#include "serve/session/protocol.h"
+#include "serve/web/web_server.h"
 #include "studio/studio.h"
 
 namespace limpid::serve {

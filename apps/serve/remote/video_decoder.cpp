@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "serve/yuv.h"
+#include "serve/stream/yuv.h"
 
 namespace limpid::serve {
 

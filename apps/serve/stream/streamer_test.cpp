@@ -1,4 +1,4 @@
-#include "serve/streamer.h"
+#include "serve/stream/streamer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "image/io/png/png.h"
-#include "serve/fake_session.h"
 #include "serve/remote/video_decoder.h"
-#include "serve/test_pictures.h"
+#include "serve/session/fake_session.h"
+#include "serve/stream/test_pictures.h"
 
 namespace limpid::serve {
 namespace {

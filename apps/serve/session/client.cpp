@@ -1,9 +1,9 @@
-#include "serve/client.h"
+#include "serve/session/client.h"
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "serve/inspection.h"
+#include "serve/stream/inspection.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {

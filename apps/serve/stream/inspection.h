@@ -33,9 +33,8 @@ struct MotionGrid {
     uint16_t columns = 0, rows = 0;
     std::vector<vec2> offsets;  ///< to the place in the frame before, in shares of the picture; 0: at rest
 };
-/// A cell for every 32 pixels of the viewport. `motion` as docs/layers.md has it: pixels, the place before
-/// minus this one; with four components, the last one 0 where it is not valid. Less than a quarter of a pixel
-/// counts as rest. An image without pixels gives a grid without cells.
+/// A cell for every 32 pixels of the viewport, with what studio::motionAt() says of its centre. An image
+/// without pixels gives a grid without cells.
 MotionGrid motionGrid(const image::Image& motion, gpu::Extent viewport);
 /// Two floats for each cell, little endian, row by row.
 std::vector<std::byte> packed(const MotionGrid& grid);

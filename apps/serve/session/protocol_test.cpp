@@ -1,4 +1,4 @@
-#include "serve/protocol.h"
+#include "serve/session/protocol.h"
 
 #include <gtest/gtest.h>
 

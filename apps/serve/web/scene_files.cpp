@@ -1,4 +1,4 @@
-#include "serve/scene_files.h"
+#include "serve/web/scene_files.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "serve/access.h"
+#include "serve/web/access.h"
 
 #include <array>
 #include <string>

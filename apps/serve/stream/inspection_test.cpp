@@ -1,4 +1,4 @@
-#include "serve/inspection.h"
+#include "serve/stream/inspection.h"
 
 #include <gtest/gtest.h>
 

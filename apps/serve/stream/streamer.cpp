@@ -1,11 +1,11 @@
-#include "serve/streamer.h"
+#include "serve/stream/streamer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "base/log.h"
-#include "serve/still_encoder.h"
+#include "serve/stream/still_encoder.h"
 
 namespace limpid::serve {
 namespace {

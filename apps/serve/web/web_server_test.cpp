@@ -1,4 +1,4 @@
-#include "serve/web_server.h"
+#include "serve/web/web_server.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,12 +15,12 @@
 
 #include "base/error.h"
 #include "image/io/png/png.h"
-#include "serve/fake_session.h"
-#include "serve/protocol.h"
 #include "serve/remote/remote_socket.h"
 #include "serve/remote/video_decoder.h"
-#include "serve/test_pictures.h"
-#include "serve/token.h"
+#include "serve/session/fake_session.h"
+#include "serve/session/protocol.h"
+#include "serve/stream/test_pictures.h"
+#include "serve/web/token.h"
 
 namespace limpid::serve {
 namespace {

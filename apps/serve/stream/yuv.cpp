@@ -1,4 +1,4 @@
-#include "serve/yuv.h"
+#include "serve/stream/yuv.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "serve/protocol.h"
+#include "serve/session/protocol.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/frame/parameters.h"
-#include "serve/preset_edits.h"
+#include "serve/session/preset_edits.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {

@@ -1,9 +1,9 @@
-#include "serve/video_encoder.h"
+#include "serve/stream/video_encoder.h"
 
 #include <gtest/gtest.h>
 
 #include "serve/remote/video_decoder.h"
-#include "serve/test_pictures.h"
+#include "serve/stream/test_pictures.h"
 
 namespace limpid::serve {
 namespace {

@@ -1,10 +1,10 @@
-#include "serve/yuv.h"
+#include "serve/stream/yuv.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "serve/test_pictures.h"
+#include "serve/stream/test_pictures.h"
 
 namespace limpid::serve {
 namespace {

@@ -1,4 +1,4 @@
-#include "serve/video_encoder.h"
+#include "serve/stream/video_encoder.h"
 
 #include <vpx/vp8cx.h>
 #include <vpx/vpx_encoder.h>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "serve/yuv.h"
+#include "serve/stream/yuv.h"
 
 namespace limpid::serve {
 namespace {

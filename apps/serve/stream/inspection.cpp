@@ -1,16 +1,17 @@
-#include "serve/inspection.h"
+#include "serve/stream/inspection.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
+#include "studio/compare/motion_sample.h"
 
 namespace limpid::serve {
 namespace {
 
 using nlohmann::json;
 
-constexpr float spacing = 32.0f;      ///< pixels of the viewport between two arrows
-constexpr float leastMotion = 0.25f;  ///< pixels of the picture
+constexpr float spacing = 32.0f;  ///< pixels of the viewport between two arrows
 
 uint32_t pixelAt(float share, uint32_t length) {
     return std::min(static_cast<uint32_t>(share * static_cast<float>(length)), length - 1);
@@ -22,18 +23,8 @@ json numberOf(float value) {
     return value;
 }
 
-uint16_t cells(uint32_t pixels) {
+uint16_t cellsAlong(uint32_t pixels) {
     return static_cast<uint16_t>(std::max(std::lround(static_cast<float>(pixels) / spacing), 1l));
-}
-
-/// Shares of the picture; 0 where nothing is known to have moved.
-vec2 offsetAt(const image::Image& motion, float x, float y) {
-    const uint32_t column = pixelAt(x, motion.width), row = pixelAt(y, motion.height);
-    if (motion.components > 3 && motion.at(column, row, 3) <= 0.0f) return vec2(0.0f);
-    const vec2 pixels(motion.at(column, row, 0), motion.at(column, row, 1));
-    if (!std::isfinite(pixels.x) || !std::isfinite(pixels.y) || glm::length(pixels) < leastMotion)
-        return vec2(0.0f);
-    return pixels / vec2(motion.width, motion.height);
 }
 
 }  // namespace
@@ -60,13 +51,12 @@ json valuesAt(const image::Image* image, const std::array<float, 2>& position) {
 MotionGrid motionGrid(const image::Image& motion, gpu::Extent viewport) {
     MotionGrid grid;
     if (motion.width == 0 || motion.height == 0) return grid;
-    grid.columns = cells(viewport.width);
-    grid.rows = cells(viewport.height);
+    grid.columns = cellsAlong(viewport.width);
+    grid.rows = cellsAlong(viewport.height);
+    const vec2 cells(grid.columns, grid.rows), pixels(motion.width, motion.height);
     for (uint32_t row = 0; row < grid.rows; ++row) {
         for (uint32_t column = 0; column < grid.columns; ++column)
-            grid.offsets.push_back(
-                offsetAt(motion, (static_cast<float>(column) + 0.5f) / static_cast<float>(grid.columns),
-                         (static_cast<float>(row) + 0.5f) / static_cast<float>(grid.rows)));
+            grid.offsets.push_back(studio::motionAt(motion, (vec2(column, row) + 0.5f) / cells) / pixels);
     }
     return grid;
 }

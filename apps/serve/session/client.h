@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "serve/scene_files.h"
-#include "serve/streamer.h"
+#include "serve/stream/streamer.h"
+#include "serve/web/scene_files.h"
 #include "studio/session.h"
 
 namespace limpid::serve {

@@ -1,4 +1,4 @@
-#include "serve/preset_edits.h"
+#include "serve/session/preset_edits.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "serve/scene_files.h"
 #include "serve/serve.h"
+#include "serve/web/scene_files.h"
 
 namespace limpid::serve {
 

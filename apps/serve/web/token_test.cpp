@@ -1,4 +1,4 @@
-#include "serve/token.h"
+#include "serve/web/token.h"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "serve/inspection.h"
-#include "serve/protocol.h"
-#include "serve/video_encoder.h"
+#include "serve/session/protocol.h"
+#include "serve/stream/inspection.h"
+#include "serve/stream/video_encoder.h"
 
 namespace limpid::serve {
 

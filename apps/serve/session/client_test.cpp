@@ -1,9 +1,9 @@
-#include "serve/client.h"
+#include "serve/session/client.h"
 
 #include <gtest/gtest.h>
 
-#include "serve/fake_session.h"
-#include "serve/test_pictures.h"
+#include "serve/session/fake_session.h"
+#include "serve/stream/test_pictures.h"
 
 namespace limpid::serve {
 namespace {

@@ -1,4 +1,4 @@
-#include "serve/uploads.h"
+#include "serve/web/uploads.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
-#include "serve/still_encoder.h"
+#include "serve/stream/still_encoder.h"
 
 #include <gtest/gtest.h>
 
 #include "image/io/png/png.h"
-#include "serve/test_pictures.h"
+#include "serve/stream/test_pictures.h"
 
 namespace limpid::serve {
 namespace {

@@ -14,7 +14,7 @@ foreach(FILE ${FILES})
   string(APPEND ROWS "    {\"${FILE}\", \"${TYPE_${EXTENSION}}\", textOf(file${NUMBER}, sizeof(file${NUMBER}) - 1)},\n")
   math(EXPR NUMBER "${NUMBER} + 1")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"serve/page_files.h\"
+file(WRITE ${OUTPUT} "#include \"serve/web/page_files.h\"
 
 #include <array>
 

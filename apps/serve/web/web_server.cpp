@@ -1,4 +1,4 @@
-#include "serve/web_server.h"
+#include "serve/web/web_server.h"
 
 #include <fmt/format.h>
 #include <libwebsockets.h>
@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "base/error.h"
-#include "serve/access.h"
-#include "serve/client.h"
-#include "serve/page_files.h"
-#include "serve/streamer.h"
-#include "serve/token.h"
-#include "serve/uploads.h"
+#include "serve/session/client.h"
+#include "serve/stream/streamer.h"
+#include "serve/web/access.h"
+#include "serve/web/page_files.h"
+#include "serve/web/token.h"
+#include "serve/web/uploads.h"
 
 namespace limpid::serve {
 namespace {

@@ -1,4 +1,4 @@
-#include "serve/still_encoder.h"
+#include "serve/stream/still_encoder.h"
 
 #include <turbojpeg.h>
 
