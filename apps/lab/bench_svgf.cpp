@@ -47,15 +47,16 @@ struct Stages {
 
 /// A pass belongs to the stage whose name it begins with. A stage without a pass ("tiles" on GPUs) takes no
 /// time.
-constexpr std::array<std::pair<const char*, const char*>, 9> stageNames{{{"path tracing", "pathtrace"},
-                                                                         {"surfaces", "surfaces"},
-                                                                         {"reprojection", "svgf/reproject"},
-                                                                         {"tiles", "svgf/tiles"},
-                                                                         {"lags", "svgf/lags"},
-                                                                         {"anti-lag", "svgf/antilag"},
-                                                                         {"variance", "svgf/variance"},
-                                                                         {"a-trous levels", "svgf/level"},
-                                                                         {"composition", "svgf/compose"}}};
+constexpr std::array<std::pair<const char*, const char*>, 10> stageNames{{{"path tracing", "pathtrace"},
+                                                                          {"surfaces", "surfaces"},
+                                                                          {"reprojection", "svgf/reproject"},
+                                                                          {"tiles", "svgf/tiles"},
+                                                                          {"lags", "svgf/lags"},
+                                                                          {"anti-lag", "svgf/antilag"},
+                                                                          {"variance", "svgf/variance"},
+                                                                          {"a-trous levels", "svgf/level"},
+                                                                          {"young pixels", "svgf/young"},
+                                                                          {"composition", "svgf/compose"}}};
 
 Stages stagesOf(const std::map<std::string, PassCost>& costs) {
     Stages stages;

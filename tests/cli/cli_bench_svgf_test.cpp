@@ -22,7 +22,7 @@ TEST_F(CliBenchSvgfTest, StagesTrianglesAndLevels) {
     ASSERT_TRUE(bench.is_object()) << result.output;
 
     for (const char* stage : {"path tracing", "surfaces", "reprojection", "tiles", "anti-lag", "variance",
-                              "a-trous levels", "composition"})
+                              "a-trous levels", "young pixels", "composition"})
         EXPECT_GT(bench["ms"][stage].get<double>(), 0.0) << stage;
     ASSERT_GE(bench["scenes"].size(), 5u);
     for (size_t i = 1; i < bench["scenes"].size(); ++i)

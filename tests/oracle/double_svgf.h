@@ -22,6 +22,8 @@ struct DoubleSvgfParams {
     bool reflections = true;
     double antilag = 2.0, antilagNoise = 3.0, antilagPixel = 1e9;
     bool antilagAround = false;
+    double fireflies = 0.0;
+    int youngRadius = 0;
     double stabilisationAlpha = 0.5, stabilisationNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     double lobeTest = 0.0, phiRoughness = 0.0;
@@ -124,7 +126,24 @@ SvgfVariance svgfYoungVariance(const denoise::HostFrame& frame, SvgfSignal signa
                                const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
                                const std::vector<dvec4>& moments, const DoubleSvgfParams& params);
 
-/// Computes level `i` of step 6. Uses only the size and the camera of the frame.
+/// The factor of each pixel's light by which step 5 dims fireflies, and what float32 may make of it. `color`:
+/// c with the sigma of step 5.
+struct SvgfDimming {
+    std::vector<double> factor, least, most;
+};
+SvgfDimming svgfDimming(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
+                        const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
+                        const DoubleSvgfParams& params);
+
+/// Applies the filling of young pixels of step 6 to `filtered`, the result of level 0; `color` is its input.
+/// Returns the pixels of which float32 may decide otherwise that there is nothing to fill them with.
+std::vector<bool> svgfFillYoung(const denoise::HostFrame& frame, SvgfSignal signal,
+                                const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
+                                const std::vector<dvec4>& moments, const DoubleSvgfParams& params,
+                                std::vector<dvec4>& filtered);
+
+/// Computes level `i` of step 6, without young pixels being filled. Uses only the size and the camera of the
+/// frame.
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 

@@ -10,7 +10,9 @@ namespace limpid::test {
 namespace {
 
 constexpr double minCosine = 0.05;  // limits the slope of surfaces seen at grazing angles
-constexpr double youngFrames = 4.0;
+constexpr double youngFrames = 4.0, freshFrames = 8.0;
+/// With less in sum, neighbours show other surfaces.
+constexpr double leastWeights = 1e-3;
 constexpr double largestHalf = 65504.0;
 /// Smaller sums of weights may underflow in float32.
 constexpr double minWeights = 1e-30;
@@ -165,7 +167,86 @@ Deviation deviationAround(const Neighbours& neighbours, size_t p, const std::vec
     return {svgfDeviation(mean.x, mean.y), rounding * mean.y};
 }
 
+bool isCloseToLeast(double weights) {
+    return std::abs(weights / leastWeights - 1.0) < 1e-3;
+}
+
+/// Mean and variance of the neighbours' m1.
+struct Around {
+    double mean = 0.0, variance = 0.0, weights = 0.0;
+    double error = 0.0;  ///< bounds float32's error of the variance
+};
+
+Around meansAround(const Neighbours& neighbours, size_t p, const std::vector<dvec4>& moments) {
+    Around result;
+    double squares = 0.0;
+    neighbours.around(p, 1, 1, [&](size_t q, int i, int j) {
+        if (p == q || moments[q].w <= 0.0) return;
+        const double w = neighbours.weight(p, q, dvec2(i, j));
+        result.weights += w;
+        result.mean += w * moments[q].x;
+        squares += w * moments[q].x * moments[q].x;
+    });
+    if (result.weights <= 0.0) return result;
+    result.mean /= result.weights;
+    squares /= result.weights;
+    result.variance = std::max(squares - result.mean * result.mean, 0.0);
+    result.error = (16 * 0x1p-24 + 2e-6 * std::max(-std::log(result.weights), 0.0)) * squares;
+    return result;
+}
+
 }  // namespace
+
+SvgfDimming svgfDimming(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
+                        const std::vector<dvec4>& color, const std::vector<dvec4>& moments,
+                        const DoubleSvgfParams& params) {
+    const Neighbours neighbours(frame, signal, surfaces, params);
+    const std::vector<double> ones(frame.pixelCount(), 1.0);
+    SvgfDimming result{ones, ones, ones};
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const double n = moments[p].w, l = luminance(dvec3(color[p]));
+        if (params.fireflies <= 0.0 || !neighbours.sees(p) || n >= freshFrames) continue;
+        const Around around = meansAround(neighbours, p, moments);
+        const auto factor = [&](double variance) {
+            const double usual = around.mean + params.fireflies * n * n * std::sqrt(std::max(variance, 0.0)) +
+                                 0.001 * std::abs(around.mean) + 1e-6;
+            const double limit = std::max(usual, l - params.phiColor * color[p].w);
+            return l > limit ? limit / l : 1.0;
+        };
+        const bool close = isCloseToLeast(around.weights), counts = around.weights >= leastWeights;
+        if (!counts && !close) continue;
+        if (counts) result.factor[p] = factor(around.variance);
+        result.least[p] = factor(around.variance - around.error);
+        result.most[p] = close ? 1.0 : factor(around.variance + around.error);
+    }
+    return result;
+}
+
+std::vector<bool> svgfFillYoung(const denoise::HostFrame& frame, SvgfSignal signal,
+                                const SvgfSurfaces& surfaces, const std::vector<dvec4>& color,
+                                const std::vector<dvec4>& moments, const DoubleSvgfParams& params,
+                                std::vector<dvec4>& filtered) {
+    const Neighbours neighbours(frame, signal, surfaces, params);
+    std::vector<bool> doubtful(frame.pixelCount());
+    for (size_t p = 0; p < frame.pixelCount(); ++p) {
+        const double n = moments[p].w;
+        if (params.youngRadius <= 0 || !neighbours.sees(p) || n >= youngFrames) continue;
+        int radius = params.youngRadius;
+        while (radius * radius * std::max(n, 1.0) > params.youngRadius * params.youngRadius) --radius;
+        dvec3 sum(0.0);
+        double variance = 0.0, weights = 0.0;
+        neighbours.around(p, 1, radius, [&](size_t q, int i, int j) {
+            const double w = (radius + 1 - std::abs(i)) * (radius + 1 - std::abs(j)) * moments[q].w *
+                             neighbours.weight(p, q, dvec2(i, j));
+            sum += w * dvec3(color[q]);
+            variance += w * w * color[q].w * color[q].w;
+            weights += w;
+        });
+        doubtful[p] = isCloseToLeast(weights);
+        if (weights >= leastWeights) filtered[p] = {sum / weights, std::sqrt(variance) / weights};
+    }
+    return doubtful;
+}
 
 dvec2 svgfSlope(const denoise::HostFrame& frame, size_t p, const dvec3& normal, double distance) {
     const CameraParams& camera = frame.camera;

@@ -36,7 +36,9 @@ constexpr std::array svgfSteps{"preset=svgf-paper",
                                "svgf.phi_roughness=0",
                                "pathtrace.through_mirrors=off",
                                "pathtrace.through_glass=off",
-                               "svgf.stabilisation_alpha=1"};
+                               "svgf.stabilisation_alpha=1",
+                               "svgf.fireflies=0",
+                               "svgf.young_radius=0"};
 
 std::vector<std::string> wordsOf(const std::string& variant) {
     std::vector<std::string> words;

@@ -47,7 +47,7 @@ TEST(RecordingTest, AFrameIsListedWithoutADevice) {
     EXPECT_THAT(passesOf(graph, settings),
                 ElementsAre("ingest", "svgf/reproject joint", "svgf/tiles joint", "svgf/lags joint",
                             "svgf/antilag joint", "svgf/variance joint", "svgf/level 1 joint",
-                            "svgf/level 2 joint", "svgf/compose"));
+                            "svgf/young joint", "svgf/level 2 joint", "svgf/compose"));
     const gpu::RecordedPass& reproject = graph.passes().at(1);
     ASSERT_FALSE(reproject.hazards.empty());
     EXPECT_EQ(reproject.hazards[0].earlierPass, "ingest");

@@ -18,6 +18,8 @@
 #include "svgf_tiles.comp.h"
 #include "svgf_variance.comp.h"
 #include "svgf_variance_buffers.comp.h"
+#include "svgf_young.comp.h"
+#include "svgf_young_buffers.comp.h"
 
 namespace limpid::denoise {
 namespace {
@@ -80,6 +82,8 @@ class Svgf {
         for (int number = 1; number <= settings_.levels; ++number) {
             for (size_t i = 0; i < all.size(); ++i)
                 filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
+            for (size_t i = 0; i < all.size() && number == 1 && fillsYoung(); ++i)
+                fillYoung(all[i], surfaces, accumulated[i], filtered[i]);
         }
         SvgfImages images{.beauty = beautyOf(filtered), .moments = accumulated.front().moments};
         if (!signalsToo) return images;
@@ -275,6 +279,8 @@ class Svgf {
         params.depthScale = log2e / settings_.phiDepth;
         params.roughnessScale = log2e / (255.0f * std::max(settings_.phiRoughness, 1e-6f));
         params.stabilisationNoise = settings_.stabilisationNoise;
+        params.fireflies = settings_.fireflies;
+        params.youngRadius = settings_.youngRadius;
         return params;
     }
 
@@ -288,6 +294,7 @@ class Svgf {
         const SvgfFilterParams params = filterParams(1);
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
+        constants.push_back({"FIREFLIES", settings_.fireflies > 0.0f ? 1u : 0u});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -323,6 +330,22 @@ class Svgf {
                          .constants = constants,
                          .extent = levelInvocations(extent_, step, {1, SVGF_COLUMN})});
         return filtered;
+    }
+
+    /// After the first level, whose result is replaced. A last level stabilises, and has to come afterwards.
+    bool fillsYoung() const { return settings_.youngRadius > 0 && settings_.levels > 1; }
+
+    void fillYoung(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+                   ImageHandle filtered) {
+        graph_.dispatch({.pass = "svgf/young " + signal.name,
+                         .shader = choose(shaders::svgf_young_comp, shaders::svgf_young_buffers_comp),
+                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                                      {"moments", accumulated.moments},
+                                      {"signal", accumulated.color},
+                                      {"filtered", filtered}},
+                         .params = gpu::paramsOf(filterParams(1)),
+                         .constants = filterConstants(signal),
+                         .extent = extent_});
     }
 
     ImageHandle beautyOf(const std::vector<ImageHandle>& filtered) {
@@ -409,6 +432,16 @@ const ParamTable<SvgfSettings>& svgf::params() {
         t.add("antilag_around", &S::antilagAround,
               "Look for changes in 3x3 tiles together, too; finds small changes over large areas, which the "
               "noise of one tile hides");
+        t.add(
+             "fireflies", &S::fireflies, 0.0, 1e6, "deviations",
+             "Light above its neighbours' mean that a pixel may have in its first frame (4 times as much in "
+             "its second, and so on); lower leaves fewer bright blots after a cut and loses more light; 0 is "
+             "off")
+            .slider(0, 50);
+        t.add(
+            "young_radius", &S::youngRadius, 0, 16, "pixels",
+            "Reach of the first filter pass where there is only one frame yet (half as far with four); more "
+            "is smoother and slower there; 0 (and fewer than 2 levels) is off");
         t.add("stabilisation_alpha", &S::stabilisationAlpha, 0.01, 1.0, "",
               "Minimum weight of a frame's filtered light in the stabilised mean; lower flickers less and "
               "follows changes later; 1 (and 0 levels) is off");

@@ -25,6 +25,8 @@ struct SvgfSettings {
     float antilagNoise = 2.5f;
     float antilagPixel = 2.5f;
     bool antilagAround = true;
+    float fireflies = 8.0f;
+    int youngRadius = 4;
     float stabilisationAlpha = 0.5f;
     float stabilisationNoise = 0.5f;
     int levels = 4;
@@ -43,9 +45,10 @@ struct SvgfSettings {
 /// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
 /// for "joint", or for "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL",
 /// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work), "svgf/lags SIGNAL"
-/// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL"
-/// and so on, "svgf/compose". Histories: the surfaces, and for each signal "svgf/SIGNAL color", "svgf/SIGNAL
-/// moments" and, unless it is fed back, "svgf/SIGNAL stable".
+/// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL",
+/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2 SIGNAL" and so on, "svgf/compose". Histories: the
+/// surfaces, and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it is fed back,
+/// "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 /// The same, and each filtered signal: rgba32f, with albedo, without emission, alpha 1.

@@ -21,12 +21,14 @@ LIMPID_CONST int SVGF_COLUMN = 3;
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
+LIMPID_CONST float SVGF_FRESH = 8.0;       // frames of history below which fireflies are dimmed
 LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // length of history; 2 is the first, minus rounding
 LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // smaller lags change little and cost as much memory traffic
 LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angles use the slope of this one
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;      // minimum tolerance, relative to the distance
 LIMPID_CONST float SVGF_MIN_ALPHA = 0.02;        // of narrower lobes, which would leave few pixels to average
 LIMPID_CONST float SVGF_MAX_LOBE_SCALE = 1e4;    // more would compare the rounding of normals
+LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;      // sums of weights below which neighbours show other surfaces
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
 /// How tiles interpret the moments.
@@ -83,6 +85,8 @@ struct SvgfFilterParams {
     float depthScale;          // log2(e) / phi_depth
     float roughnessScale;      // log2(e) / phi_roughness, of 1 / 255
     float stabilisationNoise;  // tolerated difference from the stabilised history
+    float fireflies;           // tolerated deviations from the neighbours, of a history of one frame
+    int youngRadius;           // pixels, of a history of one frame
 };
 
 #ifndef __cplusplus

@@ -1,5 +1,5 @@
-// Estimates the deviation of pixels with a short history from the moments of their neighbours. docs/denoising.md,
-// SVGF, step 5.
+// Estimates the deviation of pixels with a short history from the moments of their neighbours, and dims fireflies
+// among them. docs/denoising.md, SVGF, step 5.
 #include "denoise/methods/svgf/shaders/svgf_moments.glsl"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
@@ -14,6 +14,7 @@ UPDATE_HALF4(3, color);
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
 
 layout(constant_id = 3) const bool BOOST = true;
+layout(constant_id = 4) const bool FIREFLIES = true;
 
 const int RADIUS = 3;
 
@@ -21,10 +22,51 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
+/// Old enough to have a deviation of its own, but still too young to bear a firefly.
+bool isFresh(ivec2 at) {
+    if (!FIREFLIES || at.x >= int(params.width) || at.y >= int(params.height)) return false;
+    return imageLoad(moments, at).w < SVGF_FRESH && LOAD_HALF4_ALPHA(color, at) >= 0.0;
+}
+
+/// The sums of weight, luminance and squared luminance over the 8 neighbours. Their means are read from the moments,
+/// since other invocations dim `color` at the same time.
+vec3 luminancesAround(ivec2 at) {
+    const SurfaceCentre centre = centreOf(surfaceAt(at), at);
+    vec3 sums = vec3(0.0);
+    for (int i = 0; i < 9; ++i) {
+        const ivec2 from = ivec2(i % 3, i / 3) - 1, there = at + from;
+        const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
+        const vec2 m = imageLoad(moments, inside).xw;
+        const float exponent = surfaceExponent(centre, surfaceAt(inside), perDepthOf(centre, from));
+        if (i == 4 || inside != there || m.y <= 0.0) continue;
+        sums += exp2(exponent) * vec3(1.0, m.x, m.x * m.x);
+    }
+    return sums;
+}
+
+/// `light` and its deviation. The longer the history, the less one sample can do.
+vec4 withoutFirefly(ivec2 at, vec4 light, float frames) {
+    const vec3 sums = luminancesAround(at);
+    const float l = luminance(light.rgb);
+    if (sums.x < SVGF_MIN_WEIGHTS) return light;
+    const vec2 mean = sums.yz / sums.x;
+    const float deviation = sqrt(max(mean.y - mean.x * mean.x, 0.0));
+    const float usual = mean.x + params.fireflies * frames * frames * deviation + SVGF_LUMINANCE_FLOOR * abs(mean.x);
+    const float limit = max(usual + 1e-6, l - params.phiColor * light.a);
+    return l > limit ? vec4(light.rgb * (limit / l), light.a) : light;
+}
+
+/// For pixels that isFresh() says.
+void dimFresh(ivec2 at) {
+    STORE_HALF4(color, at, withoutFirefly(at, LOAD_HALF4(color, at), imageLoad(moments, at).w));
+}
+
 /// `sum` has the weighted moments and the weights of all neighbours.
 void storeDeviation(ivec2 at, vec3 sum) {
     const vec2 mean = sum.xy / max(sum.z, 1e-30);
-    const float boost = svgfBoost(BOOST, imageLoad(moments, at).w);
-    const vec3 light = LOAD_HALF4(color, at).rgb;
-    STORE_HALF4(color, at, vec4(light, min(boost * sqrt(max(mean.y - mean.x * mean.x, 0.0)), MAX_HALF)));
+    const float frames = imageLoad(moments, at).w;
+    const float deviation = svgfBoost(BOOST, frames) * sqrt(max(mean.y - mean.x * mean.x, 0.0));
+    vec4 light = vec4(LOAD_HALF4(color, at).rgb, min(deviation, MAX_HALF));
+    if (FIREFLIES) light = withoutFirefly(at, light, frames);
+    STORE_HALF4(color, at, light);
 }

@@ -45,7 +45,11 @@ void main() {
     const uint own = gl_LocalInvocationIndex;
     if (own == 0u) count = 0u;
     barrier();
-    if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (isYoung(at))
+        young[atomicAdd(count, 1u)] = own;
+    else if (isFresh(at))
+        dimFresh(at);
     barrier();
     if (count == 0u) return;
     const uint share = sharers(), number = own / share, part = own % share;
