@@ -10,7 +10,7 @@ namespace limpid::test {
 namespace {
 
 constexpr double minCosine = 0.05;  // limits the slope of surfaces seen at grazing angles
-constexpr double youngFrames = 4.0, freshFrames = 8.0;
+constexpr double youngFrames = 4.0;
 /// With less in sum, neighbours show other surfaces.
 constexpr double leastWeights = 1e-3;
 constexpr double largestHalf = 65504.0;
@@ -205,7 +205,7 @@ SvgfDimming svgfDimming(const denoise::HostFrame& frame, SvgfSignal signal, cons
     SvgfDimming result{ones, ones, ones};
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         const double n = moments[p].w, l = luminance(dvec3(color[p]));
-        if (params.fireflies <= 0.0 || !neighbours.sees(p) || n >= freshFrames) continue;
+        if (params.fireflies <= 0.0 || !neighbours.sees(p) || n >= youngFrames) continue;
         const Around around = meansAround(neighbours, p, moments);
         const auto factor = [&](double variance) {
             const double usual = around.mean + params.fireflies * n * n * std::sqrt(std::max(variance, 0.0)) +

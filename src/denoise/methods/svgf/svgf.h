@@ -25,7 +25,7 @@ struct SvgfSettings {
     float antilagNoise = 2.5f;
     float antilagPixel = 2.5f;
     bool antilagAround = true;
-    float fireflies = 8.0f;
+    float fireflies = 16.0f;
     int youngRadius = 4;
     float stabilisationAlpha = 0.5f;
     float stabilisationNoise = 0.5f;

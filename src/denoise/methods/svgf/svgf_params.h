@@ -21,7 +21,6 @@ LIMPID_CONST int SVGF_COLUMN = 3;
 LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
-LIMPID_CONST float SVGF_FRESH = 8.0;       // frames of history below which fireflies are dimmed
 LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // length of history; 2 is the first, minus rounding
 LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // smaller lags change little and cost as much memory traffic
 LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angles use the slope of this one

@@ -36,7 +36,6 @@ void main() {
         const ivec2 at = first + ivec2(0, n);
         young[n] = isYoung(at);
         any = any || young[n];
-        if (!young[n] && isFresh(at)) dimFresh(at);
         sums[n] = vec3(0.0);
         if (young[n]) centres[n] = centreOf(surfaceAt(at), at);
     }

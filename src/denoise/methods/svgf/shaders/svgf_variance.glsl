@@ -22,12 +22,6 @@ bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && LOAD_HALF4_ALPHA(color, at) == SVGF_STILL_YOUNG;
 }
 
-/// Old enough to have a deviation of its own, but still too young to bear a firefly.
-bool isFresh(ivec2 at) {
-    if (!FIREFLIES || at.x >= int(params.width) || at.y >= int(params.height)) return false;
-    return imageLoad(moments, at).w < SVGF_FRESH && LOAD_HALF4_ALPHA(color, at) >= 0.0;
-}
-
 /// The sums of weight, luminance and squared luminance over the 8 neighbours. Their means are read from the moments,
 /// since other invocations dim `color` at the same time.
 vec3 luminancesAround(ivec2 at) {
@@ -54,11 +48,6 @@ vec4 withoutFirefly(ivec2 at, vec4 light, float frames) {
     const float usual = mean.x + params.fireflies * frames * frames * deviation + SVGF_LUMINANCE_FLOOR * abs(mean.x);
     const float limit = max(usual + 1e-6, l - params.phiColor * light.a);
     return l > limit ? vec4(light.rgb * (limit / l), light.a) : light;
-}
-
-/// For pixels that isFresh() says.
-void dimFresh(ivec2 at) {
-    STORE_HALF4(color, at, withoutFirefly(at, LOAD_HALF4(color, at), imageLoad(moments, at).w));
 }
 
 /// `sum` has the weighted moments and the weights of all neighbours.

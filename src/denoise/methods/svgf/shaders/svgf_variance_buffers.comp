@@ -45,11 +45,7 @@ void main() {
     const uint own = gl_LocalInvocationIndex;
     if (own == 0u) count = 0u;
     barrier();
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (isYoung(at))
-        young[atomicAdd(count, 1u)] = own;
-    else if (isFresh(at))
-        dimFresh(at);
+    if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
     barrier();
     if (count == 0u) return;
     const uint share = sharers(), number = own / share, part = own % share;
