@@ -1,20 +1,11 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs. Young pixels are either few and scattered, or many in one
-// place. So a group collects its young pixels and distributes the rows of their taps over all of its invocations.
+// svgf_variance.glsl with gpu::Backing::Buffer, for GPUs.
 #define LIMPID_FILTER_BUFFERS
+#include "denoise/methods/svgf/shaders/svgf_sharers.glsl"
 #include "denoise/methods/svgf/shaders/svgf_variance.glsl"
 
-const uint GROUP = 16;
-layout(local_size_x = 16, local_size_y = 16) in;
-
-shared uint count;
-shared uint young[GROUP * GROUP];
 shared vec3 sums[GROUP * GROUP];
-
-ivec2 youngAt(uint number) {
-    return ivec2(gl_WorkGroupID.xy * GROUP + uvec2(young[number] % GROUP, young[number] / GROUP));
-}
 
 /// svgf_variance.comp shares neighbours between pixels; here most young pixels have none beside them that are young.
 void addNeighbour(inout vec3 sum, SurfaceCentre centre, ivec2 at, ivec2 from) {
@@ -36,24 +27,15 @@ vec3 rowsSum(ivec2 at, int first, int step) {
     return sum;
 }
 
-/// The number of invocations per young pixel; more than there are rows would be idle. There must be a young pixel.
-uint sharers() {
-    return min(GROUP * GROUP / count, 2u * uint(RADIUS) + 1u);
-}
-
 void main() {
-    const uint own = gl_LocalInvocationIndex;
-    if (own == 0u) count = 0u;
-    barrier();
-    if (isYoung(ivec2(gl_GlobalInvocationID.xy))) young[atomicAdd(count, 1u)] = own;
-    barrier();
+    const uint count = collectYoung(isYoung(ivec2(gl_GlobalInvocationID.xy)));
     if (count == 0u) return;
-    const uint share = sharers(), number = own / share, part = own % share;
-    const bool has = number < count;
-    if (has) sums[own] = rowsSum(youngAt(number), int(part), int(share));
+    const Share share = shareOf(count, 2u * uint(RADIUS) + 1u);
+    const uint own = gl_LocalInvocationIndex;
+    if (share.any) sums[own] = rowsSum(share.at, int(share.part), int(share.sharers));
     barrier();
-    if (!has || part != 0u) return;
+    if (!share.any || share.part != 0u) return;
     vec3 sum = sums[own];
-    for (uint i = 1u; i < share; ++i) sum += sums[own + i];
-    storeDeviation(youngAt(number), sum);
+    for (uint i = 1u; i < share.sharers; ++i) sum += sums[own + i];
+    storeDeviation(share.at, sum);
 }
