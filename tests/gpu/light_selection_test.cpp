@@ -13,8 +13,8 @@ namespace {
 using scene::MeshBuilder;
 using scene::Scene;
 
-constexpr gpu::Extent size{40, 30};
-constexpr uint32_t batches = 64, samplesPerBatch = 240;
+constexpr gpu::Extent size{32, 24};
+constexpr uint32_t batches = 48, samplesPerBatch = 200;
 
 /// A floor, a wall and blocks: matt, glossy, coated, and a pane of glass.
 Scene room() {
