@@ -32,6 +32,7 @@ struct ServeBench {
     std::string codec = "vp9";
     double seconds = 10.0;
     uint32_t steps = 30;
+    uint32_t threads = 0;
 };
 
 #ifdef LIMPID_HAVE_SERVE
@@ -224,7 +225,10 @@ void run(const ServeBench& o) {
                           cameraStart(o.studio), settings);
     StageTimes stages(studio);
     serve::ServeSettings serving;
-    serving.timed = [&](serve::Stage stage, double milliseconds) { stages.add(nameOf(stage), milliseconds); };
+    serving.stream.encoderThreads = o.threads;
+    serving.stream.timed = [&](serve::Stage stage, double milliseconds) {
+        stages.add(nameOf(stage), milliseconds);
+    };
     std::promise<std::string> address;
     std::atomic<bool> ends = false;
     auto server = std::async(std::launch::async, [&] {
@@ -265,6 +269,9 @@ void addServeBench(CLI::App& bench) {
     command->add_option("--seconds", o->seconds, "For the frames per second (10)")
         ->check(CLI::Range(0.1, 3600.0));
     command->add_option("--steps", o->steps, "Gestures for the latency (30)")->check(CLI::Range(1, 100000));
+    command
+        ->add_option("--threads", o->threads, "Of the video encoder (three quarters of the cores, up to 16)")
+        ->check(CLI::Range(1, 64));
     command->callback([o] { run(*o); });
 }
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "serve/stream/stage_times.h"
+#include "serve/stream/stream_settings.h"
 #include "studio/session.h"
 
 namespace limpid::serve {
@@ -19,7 +19,7 @@ struct ServeSettings {
     uint64_t uploads = 0;                    ///< bytes of the largest file that may be uploaded; 0: none
     unsigned headerSeconds = 10;             ///< for a connection to say what it wants
     double stillSeconds = 60.0;              ///< for /picture.png to wait for a picture
-    StageTimed timed;                        ///< gets the times of the pictures' stages; may be empty
+    StreamSettings stream;
 };
 
 /// Serves until `stop` returns true, which is asked several times a second. `ready` gets the address of the

@@ -34,10 +34,17 @@ bool isFull(const studio::Shown& shown) {
                              shown.picture->extent == shown.state.viewport);
 }
 
+/// The renderer, the server and other clients' programs need some cores, too.
+uint32_t threadsFor(const StreamSettings& settings) {
+    if (settings.encoderThreads > 0) return settings.encoderThreads;
+    const uint32_t cores = std::thread::hardware_concurrency();
+    return std::clamp(cores - cores / 4, 1u, maxThreads);
+}
+
 }  // namespace
 
-Streamer::Streamer(studio::Session& session, std::function<void()> wake, StageTimed timed)
-    : session_(session), wake_(std::move(wake)), timed_(std::move(timed)) {
+Streamer::Streamer(studio::Session& session, std::function<void()> wake, StreamSettings settings)
+    : session_(session), wake_(std::move(wake)), settings_(std::move(settings)) {
     listener_ = session_.addListener([this] {
         {
             const std::lock_guard lock(mutex_);
@@ -146,7 +153,7 @@ void Streamer::requestStill(std::function<void(Bytes)> done) {
 }
 
 void Streamer::note(Stage stage, double milliseconds) const {
-    if (timed_) timed_(stage, milliseconds);
+    if (settings_.timed) settings_.timed(stage, milliseconds);
 }
 
 void Streamer::run() {
@@ -333,8 +340,7 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
     const double highest =
         highestBitsPerPixel * framesASecond * picture->extent.width * picture->extent.height;
     const auto bits = static_cast<uint32_t>(std::clamp(shareOf(to) * highest, 3e5, 6e7));
-    const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, maxThreads);
-    if (!video.encoder) video.encoder.emplace(picture->extent, bits, threads);
+    if (!video.encoder) video.encoder.emplace(picture->extent, bits, threadsFor(settings_));
     video.encoder->setBitrate(bits);
     VideoEncoder::Frame frame = video.encoder->encode(*picture, key, seconds);
     video.lastFrame = now;

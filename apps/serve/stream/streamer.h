@@ -15,7 +15,7 @@
 #include "serve/session/protocol.h"
 #include "serve/stream/inspection.h"
 #include "serve/stream/pace.h"
-#include "serve/stream/stage_times.h"
+#include "serve/stream/stream_settings.h"
 #include "serve/stream/video_encoder.h"
 
 namespace limpid::serve {
@@ -31,9 +31,8 @@ struct Packet {
 
 class Streamer {
   public:
-    /// `wake` is called on the streamer's thread when there is something to send, `timed` (may be empty) for
-    /// each picture with the time of a stage. The session outlives this.
-    Streamer(studio::Session& session, std::function<void()> wake, StageTimed timed = {});
+    /// `wake` is called on the streamer's thread when there is something to send. The session outlives this.
+    Streamer(studio::Session& session, std::function<void()> wake, StreamSettings settings = {});
     ~Streamer();
 
     /// Ends the thread; nobody is woken any more.
@@ -131,7 +130,7 @@ class Streamer {
 
     studio::Session& session_;
     std::function<void()> wake_;
-    StageTimed timed_;
+    StreamSettings settings_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool ends_ = false, news_ = false;

@@ -121,12 +121,13 @@ TEST_F(StreamerTest, TellsTheTimeOfEachStage) {
     std::mutex mutex;
     std::map<Stage, double> times;
     FakeSession other;
+    StreamSettings settings;
+    settings.timed = [&](Stage stage, double milliseconds) {
+        const std::lock_guard lock(mutex);
+        times[stage] += milliseconds;
+    };
     Streamer timed(
-        other, [] {},
-        [&](Stage stage, double milliseconds) {
-            const std::lock_guard lock(mutex);
-            times[stage] += milliseconds;
-        });
+        other, [] {}, settings);
     const auto id = timed.add();
     timed.start(id, true);
     other.show(wavePicture({640, 480}, 0), true);

@@ -300,9 +300,9 @@ int WebServer::Impl::sendToClient(lws* wsi, Client& client) {
     }
     const size_t size = buffer.size() - LWS_PRE;
     if (lws_write(wsi, buffer.data() + LWS_PRE, size, kind) < static_cast<int>(size)) return -1;
-    if (encoded && settings.timed)
-        settings.timed(Stage::Send,
-                       std::chrono::duration<double, std::milli>(Clock::now() - *encoded).count());
+    if (encoded && settings.stream.timed)
+        settings.stream.timed(Stage::Send,
+                              std::chrono::duration<double, std::milli>(Clock::now() - *encoded).count());
     lws_callback_on_writable(wsi);
     return 0;
 }
@@ -400,7 +400,7 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
                                 settings.bind, settings.port,
                                 self.tls ? ", or the certificate or its key cannot be read" : ""));
     self.streamer = std::make_unique<Streamer>(
-        session, [&self] { self.wake(); }, settings.timed);
+        session, [&self] { self.wake(); }, settings.stream);
     self.listener = session.addListener([&self] { self.wake(); });
 }
 
