@@ -9,10 +9,12 @@
 #include "cli/options/studio_options.h"
 #include "lab/bench.h"
 #ifdef LIMPID_HAVE_SERVE
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <future>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "serve/remote/remote_socket.h"
@@ -30,6 +32,7 @@ struct ServeBench {
     std::string codec = "vp9";
     double seconds = 10.0;
     uint32_t steps = 30;
+    uint32_t threads = 0;
 };
 
 #ifdef LIMPID_HAVE_SERVE
@@ -69,7 +72,11 @@ class BenchViewer {
         }
         const auto bytes = std::as_bytes(std::span(message->bytes));
         const serve::FrameHeader header = serve::unpackedHeader(bytes);
-        if (header.codec == serve::Codec::Vp9) decoder_.decode(bytes.subspan(serve::frameHeaderBytes));
+        if (header.codec == serve::Codec::Vp9) {
+            const auto begin = Clock::now();
+            decoder_.decode(bytes.subspan(serve::frameHeaderBytes));
+            decoding_.push_back(since(begin) * 1e3);
+        }
         say({{"type", "received"}, {"frame", header.frame}});
         newest_ = header.message;
         extent_ = {header.width, header.height};
@@ -83,6 +90,8 @@ class BenchViewer {
     }
     void forgetBytes() { bytes_ = 0; }
     size_t bytes() const { return bytes_; }
+    /// Milliseconds, of each picture so far.
+    const std::vector<double>& decoding() const { return decoding_; }
     gpu::Extent extent() const { return extent_; }
 
   private:
@@ -93,8 +102,54 @@ class BenchViewer {
     std::map<uint64_t, uint64_t> numbers_;  ///< of messages, by the client's
     uint64_t steers_ = 0, newest_ = 0;
     size_t bytes_ = 0;
+    std::vector<double> decoding_;
     gpu::Extent extent_;
 };
+
+/// How long frames take in each stage, milliseconds, while it collects.
+class StageTimes {
+  public:
+    /// The studio outlives this.
+    explicit StageTimes(studio::Studio& studio) : studio_(studio) {
+        listener_ = studio_.addListener([this] { noteFrame(); });
+    }
+    ~StageTimes() { studio_.removeListener(listener_); }
+    StageTimes(const StageTimes&) = delete;
+    StageTimes& operator=(const StageTimes&) = delete;
+
+    void collect(bool collects) { collects_ = collects; }
+    /// On any thread.
+    void add(const std::string& stage, double milliseconds) {
+        if (!collects_) return;
+        const std::lock_guard lock(mutex_);
+        times_[stage].push_back(milliseconds);
+    }
+    std::vector<double> of(const std::string& stage) const {
+        const std::lock_guard lock(mutex_);
+        const auto found = times_.find(stage);
+        return found == times_.end() ? std::vector<double>() : found->second;
+    }
+
+  private:
+    void noteFrame() {
+        const auto shown = studio_.shown();
+        const studio::Facts& facts = shown->facts;
+        if (std::exchange(frames_, facts.framesEver) == facts.framesEver) return;
+        add("render", facts.renderMilliseconds);
+        add("download", facts.downloadMilliseconds);
+    }
+
+    studio::Studio& studio_;
+    uint64_t listener_ = 0, frames_ = 0;
+    std::atomic<bool> collects_ = false;
+    mutable std::mutex mutex_;
+    std::map<std::string, std::vector<double>> times_;
+};
+
+const char* nameOf(serve::Stage stage) {
+    constexpr std::array names{"convert", "encode", "send"};
+    return names.at(static_cast<size_t>(stage));
+}
 
 /// Milliseconds from a gesture to the first decoded picture that includes it, when nothing else moves the
 /// camera.
@@ -129,7 +184,20 @@ double rate(BenchViewer& viewer, double seconds) {
     return static_cast<double>(pictures) / since(start);
 }
 
-void measure(const ServeBench& o, const std::string& url) {
+/// The medians, in the order in which a picture passes the stages.
+void printStages(const StageTimes& times, const BenchViewer& viewer, double seconds) {
+    std::string text;
+    const auto add = [&](const char* stage, const std::vector<double>& values) {
+        if (!values.empty())
+            text += fmt::format("{}{} {:.2f} ms", text.empty() ? "" : ", ", stage, median(values));
+    };
+    for (const char* stage : {"render", "download", "convert", "encode", "send"}) add(stage, times.of(stage));
+    add("decode", viewer.decoding());
+    fmt::print("stages: {} (medians); {:.1f} frames/s were rendered\n", text,
+               static_cast<double>(times.of("render").size()) / seconds);
+}
+
+void measure(const ServeBench& o, const std::string& url, StageTimes& stages) {
     const size_t colon = url.rfind(':'), equals = url.rfind('=');
     BenchViewer viewer(std::stoi(url.substr(colon + 1)), url.substr(equals + 1), o.codec);
     const auto start = Clock::now();
@@ -138,13 +206,16 @@ void measure(const ServeBench& o, const std::string& url) {
     }
     latencies(viewer, 3);  // pipelines are made, the encoder is warm
     const std::vector<double> times = latencies(viewer, o.steps);
+    stages.collect(true);
     const double pictures = rate(viewer, o.seconds);
+    stages.collect(false);
     fmt::print("{} of {} x {} ({})\n", o.studio.scene.source.scene, viewer.extent().width,
                viewer.extent().height, o.codec);
     fmt::print("latency: {:.1f} ms median, {:.1f} ms of 95 %, {:.1f} ms at most ({} gestures)\n",
                median(times), times[(times.size() - 1) * 95 / 100], times.back(), times.size());
     fmt::print("rate: {:.1f} frames/s, {:.2f} Mbit/s ({} s)\n", pictures,
                static_cast<double>(viewer.bytes()) * 8e-6 / o.seconds, o.seconds);
+    printStages(stages, viewer, o.seconds);
 }
 
 void run(const ServeBench& o) {
@@ -152,12 +223,18 @@ void run(const ServeBench& o) {
     apply(o.studio, settings);
     studio::Studio studio(o.studio.device.device, tracerChoice(o.studio), sceneLoader(),
                           cameraStart(o.studio), settings);
+    StageTimes stages(studio);
+    serve::ServeSettings serving;
+    serving.stream.encoderThreads = o.threads;
+    serving.stream.timed = [&](serve::Stage stage, double milliseconds) {
+        stages.add(nameOf(stage), milliseconds);
+    };
     std::promise<std::string> address;
     std::atomic<bool> ends = false;
     auto server = std::async(std::launch::async, [&] {
         try {
             serve::serve(
-                studio, {}, [&] { return ends || studio.hasEnded(); },
+                studio, serving, [&] { return ends || studio.hasEnded(); },
                 [&](const std::string& url) { address.set_value(url); });
         } catch (...) {
             address.set_exception(std::current_exception());
@@ -165,7 +242,7 @@ void run(const ServeBench& o) {
     });
     std::exception_ptr fault;
     try {
-        measure(o, address.get_future().get());
+        measure(o, address.get_future().get(), stages);
     } catch (...) {
         fault = std::current_exception();
     }
@@ -192,6 +269,9 @@ void addServeBench(CLI::App& bench) {
     command->add_option("--seconds", o->seconds, "For the frames per second (10)")
         ->check(CLI::Range(0.1, 3600.0));
     command->add_option("--steps", o->steps, "Gestures for the latency (30)")->check(CLI::Range(1, 100000));
+    command
+        ->add_option("--threads", o->threads, "Of the video encoder (three quarters of the cores, up to 16)")
+        ->check(CLI::Range(1, 64));
     command->callback([o] { run(*o); });
 }
 

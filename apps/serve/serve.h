@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "serve/stream/stream_settings.h"
 #include "studio/session.h"
 
 namespace limpid::serve {
@@ -18,6 +19,7 @@ struct ServeSettings {
     uint64_t uploads = 0;                    ///< bytes of the largest file that may be uploaded; 0: none
     unsigned headerSeconds = 10;             ///< for a connection to say what it wants
     double stillSeconds = 60.0;              ///< for /picture.png to wait for a picture
+    StreamSettings stream;
 };
 
 /// Serves until `stop` returns true, which is asked several times a second. `ready` gets the address of the

@@ -31,6 +31,9 @@ struct StudioSettings {
     Resolution resolution = Resolution::Automatic;
     /// Fields that are set once the first scene is there (state_json.h); null: none.
     nlohmann::json state;
+    /// A frame begins while the picture of the one before it is brought to the host. Empty: except on CPUs,
+    /// which would compute that frame first.
+    std::optional<bool> overlaps;
     bool writesFiles = true;           ///< requests may write into the working folder
     std::filesystem::path weights;     ///< of networks; empty: those that come with Limpid
     std::filesystem::path shaders;     ///< Limpid's src: shaders are compiled anew when saved; empty: not

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "image/io/picture.h"
@@ -92,6 +95,38 @@ TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
     EXPECT_NE(good->picture->texels, resized->picture->texels);
     EXPECT_EQ(good->facts.frames, resized->facts.frames) << "another exposure needs no frame";
     studio->finish();
+}
+
+/// The next frame begins before the picture of the last one is published; what is published stays the same.
+TEST_F(StudioTest, FramesOverlapWithTheirPictures) {
+    std::array<std::shared_ptr<const Shown>, 2> rested;
+    for (const bool overlaps : {false, true}) {
+        StudioSettings settings = small();
+        settings.overlaps = overlaps;
+        const auto studio = make(settings);
+        rested[overlaps] = rest(*studio);
+        // A hand moves the camera each time that it sees a new picture.
+        std::shared_ptr<const Picture> last = rested[overlaps]->picture;
+        uint64_t hand = studio->steer({.orbit = {0.01f, 0.0f}}), number = 0;
+        std::atomic<int> pictures = 0, late = 0;
+        const uint64_t listener = studio->addListener([&] {
+            const auto shown = studio->shown();
+            EXPECT_GT(shown->number, std::exchange(number, shown->number));
+            if (std::exchange(last, shown->picture) == shown->picture || pictures == 20) return;
+            late += shown->messages < hand;
+            if (++pictures < 20) hand = studio->steer({.orbit = {0.01f, 0.0f}});
+        });
+        wait(*studio, 0, [&](const Shown&) { return pictures == 20; });
+        studio->removeListener(listener);
+        EXPECT_EQ(late > 10, overlaps)
+            << late << " of 20 pictures were published when the next frame had begun";
+        const auto moved = rest(*studio, hand);
+        EXPECT_NE(moved->picture->texels, rested[overlaps]->picture->texels);
+        EXPECT_EQ(rest(*studio, studio->ask({Kind::ResetCamera}))->picture->texels,
+                  rested[overlaps]->picture->texels);
+        studio->finish();
+    }
+    EXPECT_EQ(rested[0]->picture->texels, rested[1]->picture->texels);
 }
 
 /// The old scene is shown until the new one is there; one that fails changes nothing.

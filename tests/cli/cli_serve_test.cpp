@@ -69,6 +69,13 @@ TEST_F(CliServeTest, BenchMeasuresBothCodecs) {
         ASSERT_TRUE(std::regex_search(result.output, match, std::regex("rate: ([0-9.]+) frames/s")))
             << result.output;
         EXPECT_GT(std::stod(match[1]), 0.0);
+        const bool video = codec == "vp9";
+        for (const char* stage : {"render", "download", "convert", "encode", "send", "decode"}) {
+            const bool ofVideo = std::string(stage) == "convert" || std::string(stage) == "decode";
+            const std::regex time("stages: .*" + std::string(stage) + " ([0-9.]+) ms");
+            EXPECT_EQ(std::regex_search(result.output, time), video || !ofVideo) << stage << "\n"
+                                                                                 << result.output;
+        }
     }
 }
 

@@ -114,6 +114,7 @@ export class Panel {
     reset.hidden = !differs;
     if (onlyWithClip.includes(key)) element.classList.toggle('absent', !(facts.duration > 0));
     if (onlyWithPass.includes(key)) element.classList.toggle('absent', !this.store.value('pass'));
+    if (field.denoisers) element.classList.toggle('absent', !field.denoisers.includes(this.store.value('denoiser')));
     if (key === 'time' && facts.duration > 0) field.slider.max = facts.duration;
   }
 

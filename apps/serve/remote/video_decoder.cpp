@@ -3,12 +3,19 @@
 #include <vpx/vp8dx.h>
 #include <vpx/vpx_decoder.h>
 
+#include <algorithm>
 #include <string>
+#include <thread>
 
 #include "base/error.h"
 #include "serve/stream/yuv.h"
 
 namespace limpid::serve {
+namespace {
+
+constexpr unsigned maxThreads = 4;
+
+}  // namespace
 
 struct VideoDecoder::Impl {
     vpx_codec_ctx_t codec{};
@@ -17,7 +24,10 @@ struct VideoDecoder::Impl {
 };
 
 VideoDecoder::VideoDecoder() : impl_(std::make_unique<Impl>()) {
-    if (vpx_codec_dec_init(&impl_->codec, vpx_codec_vp9_dx(), nullptr, 0) != VPX_CODEC_OK)
+    // As browsers: the encoder makes tiles that are decoded side by side.
+    vpx_codec_dec_cfg_t config{};
+    config.threads = std::clamp(std::thread::hardware_concurrency(), 1u, maxThreads);
+    if (vpx_codec_dec_init(&impl_->codec, vpx_codec_vp9_dx(), &config, 0) != VPX_CODEC_OK)
         throw Error("libvpx has no VP9 decoder");
 }
 

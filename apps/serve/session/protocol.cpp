@@ -150,21 +150,23 @@ const char* nameOf(Field::Kind kind) {
 }
 
 json describe(const Field& field) {
-    return {{"key", field.key},
-            {"section", field.section},
-            {"label", field.label},
-            {"help", field.help},
-            {"unit", field.unit},
-            {"kind", nameOf(field.kind)},
-            {"minimum", field.minimum},
-            {"maximum", field.maximum},
-            {"slider",
-             {{"min", field.slider.min},
-              {"max", field.slider.max},
-              {"scale", field.slider.scale == SliderScale::Linear ? "linear" : "logarithmic"},
-              {"smallest", field.slider.smallest}}},
-            {"choices", field.choices},
-            {"default", field.defaultValue}};
+    json result{{"key", field.key},
+                {"section", field.section},
+                {"label", field.label},
+                {"help", field.help},
+                {"unit", field.unit},
+                {"kind", nameOf(field.kind)},
+                {"minimum", field.minimum},
+                {"maximum", field.maximum},
+                {"slider",
+                 {{"min", field.slider.min},
+                  {"max", field.slider.max},
+                  {"scale", field.slider.scale == SliderScale::Linear ? "linear" : "logarithmic"},
+                  {"smallest", field.slider.smallest}}},
+                {"choices", field.choices},
+                {"default", field.defaultValue}};
+    if (!field.denoisers.empty()) result["denoisers"] = field.denoisers;
+    return result;
 }
 
 /// The groups of parameters that take part in each pipeline.

@@ -1,5 +1,6 @@
 #include "serve/session/protocol.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -46,6 +47,18 @@ TEST(Protocol, ReadsEveryRequestOfHello) {
     }
     EXPECT_FALSE(hello.at("fields").empty());
     EXPECT_LT(hello.dump().size(), 1u << 20);
+}
+
+TEST(Protocol, SaysWhichDenoisersHaveAPart) {
+    const nlohmann::json hello = helloMessage({}, 0);
+    const auto denoisersOf = [&](const char* key) -> std::vector<std::string> {
+        for (const auto& field : hello.at("fields"))
+            if (field.at("key") == key) return field.value("denoisers", std::vector<std::string>());
+        return {"there is no such field"};
+    };
+    EXPECT_THAT(denoisersOf("part.temporal"), testing::UnorderedElementsAre("temporal", "svgf", "atrous"));
+    EXPECT_THAT(denoisersOf("part.spatial"), testing::UnorderedElementsAre("svgf", "atrous", "bilateral"));
+    EXPECT_THAT(denoisersOf("seed"), testing::IsEmpty());
 }
 
 TEST(Protocol, RefusesWhatIsNoMessage) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "base/log.h"
 #include "serve/stream/still_encoder.h"
@@ -10,15 +11,14 @@
 namespace limpid::serve {
 namespace {
 
-constexpr double shortestFrame = 1.0 / 60.0;  ///< seconds between two pictures
-constexpr double restSeconds = 0.25;          ///< after which a picture is sent losslessly
+constexpr double restSeconds = 0.25;  ///< after which a picture is sent losslessly
 // Seconds from a key frame to the next that clients need: a slow one must not turn the video into key frames.
 // Who has just come sees nothing before it.
 constexpr double betweenKeys = 0.5, betweenKeysForNewcomers = 0.1;
 constexpr double longestWait = 0.5;  ///< seconds
 constexpr double highestBitsPerPixel = 0.16;
 constexpr double framesASecond = 60.0;
-constexpr uint32_t maxThreads = 8;
+constexpr uint32_t maxThreads = 16;
 
 // How the bitrate follows a connection: down where answers come later than those of an empty one, else slowly
 // up.
@@ -34,10 +34,17 @@ bool isFull(const studio::Shown& shown) {
                              shown.picture->extent == shown.state.viewport);
 }
 
+/// The renderer, the server and other clients' programs need some cores, too.
+uint32_t threadsFor(const StreamSettings& settings) {
+    if (settings.encoderThreads > 0) return settings.encoderThreads;
+    const uint32_t cores = std::thread::hardware_concurrency();
+    return std::clamp(cores - cores / 4, 1u, maxThreads);
+}
+
 }  // namespace
 
-Streamer::Streamer(studio::Session& session, std::function<void()> wake)
-    : session_(session), wake_(std::move(wake)) {
+Streamer::Streamer(studio::Session& session, std::function<void()> wake, StreamSettings settings)
+    : session_(session), wake_(std::move(wake)), settings_(std::move(settings)) {
     listener_ = session_.addListener([this] {
         {
             const std::lock_guard lock(mutex_);
@@ -145,6 +152,10 @@ void Streamer::requestStill(std::function<void(Bytes)> done) {
     changed_.notify_one();
 }
 
+void Streamer::note(Stage stage, double milliseconds) const {
+    if (settings_.timed) settings_.timed(stage, milliseconds);
+}
+
 void Streamer::run() {
     double patience = 0.0;
     for (;;) {
@@ -184,10 +195,11 @@ double Streamer::step() {
 double Streamer::secondsToNext(const studio::Shown& shown) const {
     double patience = longestWait;
     const auto now = Clock::now();
-    const auto waitFor = [&](double seconds) { patience = std::clamp(seconds + 0.0002, 0.0, patience); };
+    const auto waitFor = [&](double seconds) { patience = std::clamp(seconds, 0.0, patience); };
     for (const Video& video : videos_) {
-        const double since = secondsBetween(std::max(video.lastFrame, video.lastJpeg), now);
-        if (since < shortestFrame) waitFor(shortestFrame - since);
+        for (const Pace& pace : {video.pace, video.jpegPace}) {
+            if (!pace.isDue(now, false)) waitFor(secondsBetween(now, pace.latest()));
+        }
         if (video.keyDue) waitFor(secondsBetween(now, *video.keyDue));
     }
     const double rested = secondsBetween(restsSince_, now);
@@ -212,11 +224,11 @@ bool Streamer::streamPicture(int lane, const studio::Shown& shown) {
 bool Streamer::streamMotion(const studio::Shown& shown) {
     Video& video = videos_[motionLane];
     const auto now = Clock::now();
-    if (!shown.motion || secondsBetween(video.lastFrame, now) < shortestFrame) return false;
+    if (!shown.motion || !video.pace.isDue(now, true)) return false;
     const auto to =
         recipients(motionLane, [&](const Client&, const Lane& lane) { return lane.last != shown.motion; });
     if (to.empty()) return false;
-    video.lastFrame = now;
+    video.pace.note(now);
     const MotionGrid grid = motionGrid(*shown.motion, shown.state.viewport);
     const FrameHeader header{.codec = Codec::Motion,
                              .width = grid.columns,
@@ -266,7 +278,7 @@ void Streamer::hand(const std::vector<Recipient>& recipients, int number, FrameH
         const auto found = clients_.find(id);
         if (found == clients_.end() || found->second.starts != starts) continue;
         Lane& lane = found->second.lanes[static_cast<size_t>(number)];
-        lane.waiting = Packet{header, bytes};
+        lane.waiting = Packet{header, bytes, Clock::now()};
         lane.last = what;
         lane.joins = false;
         lane.still = header.lossless;
@@ -309,24 +321,32 @@ double Streamer::shareOf(const std::vector<Recipient>& recipients) const {
     return share;
 }
 
+/// Whether a picture that somebody can take is to be sent now. `seen`: the last one that was asked for.
+bool Streamer::isDue(const Pace& pace, std::shared_ptr<const void>& seen,
+                     const std::shared_ptr<const void>& what) {
+    return pace.isDue(Clock::now(), std::exchange(seen, what) != what);
+}
+
 bool Streamer::encodeVideo(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
     std::vector<Recipient> to = ready(number, true, picture);
     Video& video = videos_[static_cast<size_t>(number)];
     const auto now = Clock::now();
     const double seconds = secondsBetween(video.lastFrame, now);
-    if (to.empty() || seconds < shortestFrame) return false;
+    if (to.empty() || !isDue(video.pace, video.paced, picture)) return false;
     if (video.encoder && video.encoder->extent() != picture->extent) video.encoder.reset();
     const bool key = !video.encoder || mayForceKey(number, to, now);
     if (to.empty()) return false;
     const double highest =
         highestBitsPerPixel * framesASecond * picture->extent.width * picture->extent.height;
     const auto bits = static_cast<uint32_t>(std::clamp(shareOf(to) * highest, 3e5, 6e7));
-    const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, maxThreads);
-    if (!video.encoder) video.encoder.emplace(picture->extent, bits, threads);
+    if (!video.encoder) video.encoder.emplace(picture->extent, bits, threadsFor(settings_));
     video.encoder->setBitrate(bits);
     VideoEncoder::Frame frame = video.encoder->encode(*picture, key, seconds);
     video.lastFrame = now;
+    video.pace.note(now);
+    note(Stage::Convert, frame.convertMilliseconds);
+    note(Stage::Encode, frame.encodeMilliseconds);
     if (frame.bytes.empty())
         return false;  // the rate control has dropped it: the next one continues the last
     if (frame.key) video.lastKey = now;
@@ -344,13 +364,14 @@ bool Streamer::encodeVideo(int number, const studio::Shown& shown,
 bool Streamer::encodeJpegs(int number, const studio::Shown& shown,
                            const std::shared_ptr<const studio::Picture>& picture) {
     const std::vector<Recipient> to = ready(number, false, picture);
-    Clock::time_point& last = videos_[static_cast<size_t>(number)].lastJpeg;
+    Video& video = videos_[static_cast<size_t>(number)];
+    if (to.empty() || !isDue(video.jpegPace, video.jpegPaced, picture)) return false;
     const auto now = Clock::now();
-    if (to.empty() || secondsBetween(last, now) < shortestFrame) return false;
-    last = now;
+    video.jpegPace.note(now);
     const int quality = static_cast<int>(std::lround(40.0 + 50.0 * shareOf(to)));
-    hand(to, number, headerOf(Codec::Jpeg, number, shown, *picture),
-         std::make_shared<const std::vector<std::byte>>(encodeJpeg(*picture, quality)), picture);
+    const auto bytes = std::make_shared<const std::vector<std::byte>>(encodeJpeg(*picture, quality));
+    note(Stage::Encode, secondsBetween(now, Clock::now()) * 1e3);
+    hand(to, number, headerOf(Codec::Jpeg, number, shown, *picture), bytes, picture);
     return true;
 }
 

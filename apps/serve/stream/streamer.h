@@ -14,6 +14,8 @@
 
 #include "serve/session/protocol.h"
 #include "serve/stream/inspection.h"
+#include "serve/stream/pace.h"
+#include "serve/stream/stream_settings.h"
 #include "serve/stream/video_encoder.h"
 
 namespace limpid::serve {
@@ -24,12 +26,13 @@ using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 struct Packet {
     FrameHeader header;
     Bytes bytes;
+    std::chrono::steady_clock::time_point encoded{};
 };
 
 class Streamer {
   public:
     /// `wake` is called on the streamer's thread when there is something to send. The session outlives this.
-    Streamer(studio::Session& session, std::function<void()> wake);
+    Streamer(studio::Session& session, std::function<void()> wake, StreamSettings settings = {});
     ~Streamer();
 
     /// Ends the thread; nobody is woken any more.
@@ -86,7 +89,9 @@ class Streamer {
     /// What is made for a lane, shared by all clients.
     struct Video {
         std::optional<VideoEncoder> encoder;
-        Clock::time_point lastFrame{}, lastKey{}, lastJpeg{};
+        Clock::time_point lastFrame{}, lastKey{};
+        Pace pace, jpegPace;
+        std::shared_ptr<const void> paced, jpegPaced;  ///< what was last asked whether it is due
         std::optional<Clock::time_point> keyDue;  ///< clients wait for a key frame, which may be made then
     };
     /// What is in the main lane.
@@ -104,6 +109,8 @@ class Streamer {
     FrameHeader headerOf(Codec codec, int lane, const studio::Shown& shown,
                          const studio::Picture& picture) const;
     bool mayForceKey(int lane, std::vector<Recipient>& recipients, Clock::time_point now);
+    static bool isDue(const Pace& pace, std::shared_ptr<const void>& seen,
+                      const std::shared_ptr<const void>& what);
     double shareOf(const std::vector<Recipient>& recipients) const;
     bool encodeVideo(int lane, const studio::Shown& shown,
                      const std::shared_ptr<const studio::Picture>& picture);
@@ -119,8 +126,11 @@ class Streamer {
               const std::shared_ptr<const void>& what);
     Bytes stillOf(const std::shared_ptr<const studio::Picture>& picture);
 
+    void note(Stage stage, double milliseconds) const;
+
     studio::Session& session_;
     std::function<void()> wake_;
+    StreamSettings settings_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool ends_ = false, news_ = false;

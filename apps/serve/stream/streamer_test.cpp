@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <thread>
 
 #include "image/io/png/png.h"
@@ -77,6 +80,61 @@ TEST_F(StreamerTest, HasTwoInFlightAndSendsTheNewest) {
     EXPECT_EQ(third->header.snapshot, 7u) << "not the newest";
     streamer.received(id, first->header.frame);
     EXPECT_FALSE(next(id, 0.1)) << "one number counts twice";
+}
+
+/// Pictures come faster than they are encoded.
+TEST_F(StreamerTest, ASlowEncoderHoldsNobodyUpAndSkipsStalePictures) {
+    constexpr int pictures = 40;
+    const auto id = client(true);
+    const auto noise = std::make_shared<const studio::Picture>(noisePicture({1920, 1080}));
+    std::vector<std::chrono::duration<double>> publishing;
+    std::vector<uint64_t> snapshots;
+    const auto take = [&](const std::optional<Packet>& packet) {
+        if (!packet) return;
+        snapshots.push_back(packet->header.snapshot);
+        streamer.received(id, packet->header.frame);
+    };
+    for (int i = 0; i < pictures; ++i) {
+        const auto another = i % 2 == 0 ? noise : std::make_shared<const studio::Picture>(*noise);
+        const auto begin = std::chrono::steady_clock::now();
+        session.publish([&](studio::Shown& shown) {
+            shown.facts.computing = true;
+            shown.picture = another;
+        });
+        publishing.push_back(std::chrono::steady_clock::now() - begin);
+        take(streamer.take(id));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    while (snapshots.empty() || snapshots.back() < pictures) {
+        const auto packet = next(id, 10.0);
+        ASSERT_TRUE(packet) << "the last picture does not come";
+        take(packet);
+    }
+    std::ranges::sort(publishing);
+    EXPECT_LT(publishing[pictures / 2].count(), 0.005) << "s: the renderer waits for the encoder";
+    EXPECT_LT(snapshots.size(), pictures / 2u) << "stale pictures queue";
+    EXPECT_TRUE(std::ranges::is_sorted(snapshots, std::less_equal<>()));
+}
+
+/// Stages are timed for `limpid bench serve`.
+TEST_F(StreamerTest, TellsTheTimeOfEachStage) {
+    std::mutex mutex;
+    std::map<Stage, double> times;
+    FakeSession other;
+    StreamSettings settings;
+    settings.timed = [&](Stage stage, double milliseconds) {
+        const std::lock_guard lock(mutex);
+        times[stage] += milliseconds;
+    };
+    Streamer timed(
+        other, [] {}, settings);
+    const auto id = timed.add();
+    timed.start(id, true);
+    other.show(wavePicture({640, 480}, 0), true);
+    ASSERT_TRUE(soon([&] { return timed.take(id).has_value(); }));
+    timed.stop();
+    EXPECT_GT(times[Stage::Convert], 0.0);
+    EXPECT_GT(times[Stage::Encode], times[Stage::Convert]);
 }
 
 TEST_F(StreamerTest, ASlowClientDoesNotStopAFastOne) {

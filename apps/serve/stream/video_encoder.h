@@ -23,6 +23,7 @@ class VideoEncoder {
     struct Frame {
         std::vector<std::byte> bytes;
         bool key = false;
+        double convertMilliseconds = 0.0, encodeMilliseconds = 0.0;
     };
     /// The next frame, which continues the last one unless `key`. `seconds`: since the last one, for the rate
     /// control.

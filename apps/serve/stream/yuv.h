@@ -17,7 +17,7 @@ struct Plane {
 
 /// Y'CbCr = M R'G'B' as in ITU-R BT.709-6, item 3.3 and 3.4, rounded: Y' from 16 to 235, Cb and Cr from 16 to
 /// 240. The chroma of two by two pixels is that of their mean. `planes`: Y', and Cb and Cr of half the size,
-/// rounded up.
+/// rounded up. Uses several threads.
 void toYuv420(const studio::Picture& picture, const Plane& y, const Plane& cb, const Plane& cr);
 
 /// The inverse, with the nearest chroma sample; opaque. For tests and measurements.

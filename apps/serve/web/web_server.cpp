@@ -284,11 +284,13 @@ void WebServer::Impl::afterWake() {
 int WebServer::Impl::sendToClient(lws* wsi, Client& client) {
     std::vector<unsigned char> buffer;
     lws_write_protocol kind = LWS_WRITE_TEXT;
+    std::optional<Clock::time_point> encoded;
     if (const std::optional<std::string> text = client.nextText()) {
         buffer.resize(LWS_PRE + text->size());
         std::memcpy(buffer.data() + LWS_PRE, text->data(), text->size());
     } else if (const std::optional<Packet> packet = client.nextPacket()) {
         kind = LWS_WRITE_BINARY;
+        encoded = packet->encoded;
         const auto header = packed(packet->header);
         buffer.resize(LWS_PRE + header.size() + packet->bytes->size());
         std::memcpy(buffer.data() + LWS_PRE, header.data(), header.size());
@@ -298,6 +300,9 @@ int WebServer::Impl::sendToClient(lws* wsi, Client& client) {
     }
     const size_t size = buffer.size() - LWS_PRE;
     if (lws_write(wsi, buffer.data() + LWS_PRE, size, kind) < static_cast<int>(size)) return -1;
+    if (encoded && settings.stream.timed)
+        settings.stream.timed(Stage::Send,
+                              std::chrono::duration<double, std::milli>(Clock::now() - *encoded).count());
     lws_callback_on_writable(wsi);
     return 0;
 }
@@ -394,7 +399,8 @@ WebServer::WebServer(studio::Session& session, const ServeSettings& settings, co
         throw Error(fmt::format("{}:{} cannot be served: the address is in use or not this machine's{}",
                                 settings.bind, settings.port,
                                 self.tls ? ", or the certificate or its key cannot be read" : ""));
-    self.streamer = std::make_unique<Streamer>(session, [&self] { self.wake(); });
+    self.streamer = std::make_unique<Streamer>(
+        session, [&self] { self.wake(); }, settings.stream);
     self.listener = session.addListener([&self] { self.wake(); });
 }
 

@@ -42,11 +42,19 @@ void LiveRender::render(Moment moment) {
     settings_ = next_;
     camera_ = moment.camera;
     renderer_->render(std::move(moment));
-    picture_.reset();
+    startCopy();
     ++version_;
     shown_ = true;
     ++framesOfSame_;
     ++frames_;
+}
+
+void LiveRender::startCopy() {
+    picture_.reset();
+    copy_ = 1 - copy_;
+    std::shared_ptr<PictureCopy>& copy = copies_[copy_];
+    if (!copy || copy.use_count() > 1) copy = std::make_shared<PictureCopy>(device_);
+    copy->start(renderer_->graph(), renderer_->displayed());
 }
 
 uint64_t LiveRender::samples() const {
@@ -66,12 +74,7 @@ bool LiveRender::expose(float stops) {
 }
 
 std::shared_ptr<const Picture> LiveRender::picture() {
-    if (!picture_) {
-        gpu::FrameGraph& graph = renderer_->graph();
-        const gpu::ImageHandle shown = renderer_->displayed();
-        picture_ =
-            std::make_shared<const Picture>(Picture{graph.extent(shown), graph.downloadUint(device_, shown)});
-    }
+    if (!picture_) picture_ = copies_[copy_]->picture();
     return picture_;
 }
 

@@ -1,12 +1,14 @@
 // A picture that is rendered on and on: one integrator, denoiser and settings, frame after frame.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "image/tone_curve.h"
 #include "renderer/frame/frame_renderer.h"
+#include "studio/loop/picture_copy.h"
 #include "studio/loop/stage.h"
 #include "studio/picture.h"
 
@@ -31,6 +33,7 @@ class LiveRender {
     bool differs(const RenderSettings& settings, uint32_t samples) const;
     /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`
     /// numbers the frames of pipelines that denoise.
+    /// Does not wait for the device.
     void render(Moment moment);
     /// Something is another than it was: samples() of pipelines that denoise count from here.
     void noteChange() { framesOfSame_ = 0; }
@@ -50,10 +53,15 @@ class LiveRender {
     bool expose(float stops);
     /// The last frame, exposed and encoded. Waits for the device.
     std::shared_ptr<const Picture> picture();
+    /// The last frame on its way to the host: it stays the same when further frames are rendered. Null: its
+    /// picture is there already.
+    std::shared_ptr<PictureCopy> underWay() const { return picture_ ? nullptr : copies_[copy_]; }
     /// Changes with the picture.
     uint64_t version() const { return version_; }
 
   private:
+    void startCopy();
+
     gpu::Device& device_;
     const gpu::ShaderReplacements& shaders_;
     std::function<bool()> interrupted_;
@@ -63,7 +71,10 @@ class LiveRender {
     uint32_t samples_ = 1;
     float exposure_ = 0.0f;
     image::ToneCurve curve_ = image::ToneCurve::Standard, nextCurve_ = curve_;
-    std::shared_ptr<const Picture> picture_;  ///< null: not downloaded yet
+    /// Of the last frame and the one before it. Copies that somebody still holds are not used again.
+    std::array<std::shared_ptr<PictureCopy>, 2> copies_;
+    size_t copy_ = 0;                         ///< index of the last frame's
+    std::shared_ptr<const Picture> picture_;  ///< of the last frame; null: nobody has asked for it yet
     CameraParams camera_{};
     bool shown_ = false;
     uint64_t launches_ = 0;  ///< of the mean

@@ -13,8 +13,7 @@
 namespace limpid::studio {
 namespace {
 
-constexpr double betweenTimes = 0.25;   ///< seconds between reads of the passes' times, which wait for the
-                                        ///< device
+constexpr double betweenTimes = 0.25;   ///< seconds between reads of the passes' times
 constexpr double betweenSources = 0.5;  ///< seconds between checks of the shaders' files
 constexpr double settleSeconds = 0.3;   ///< without a change, after which nothing counts as moving
 
@@ -79,7 +78,7 @@ bool RenderLoop::renderWhatIsDue() {
     measureExposure();
     if (main_) main_.setToneCurve(curveOf(main_.settings().pipeline));
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
-    noteTimes(main);
+    noteFrameTime(main);
     comparison_.setToneCurve(state_.toneCurve);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
@@ -87,13 +86,33 @@ bool RenderLoop::renderWhatIsDue() {
 }
 
 void RenderLoop::renderTimed(const CameraParams& camera) {
-    const auto begin = Clock::now();
-    const size_t pipelines = device_.pipelineCount();
+    Begun frame{.copy = nullptr, .when = Clock::now(), .pipelines = device_.pipelineCount()};
     render(camera);
-    main_.picture();  // waits for the device
+    frame.copy = main_.underWay();
+    begun_ = std::move(frame);
+    if (!overlaps()) awaitFrame();
+}
+
+/// Whether the picture of a frame is brought to the host while the next one is computed.
+bool RenderLoop::overlaps() const {
+    return settings_.overlaps.value_or(!device_.isCpu());
+}
+
+/// Waits until the device has finished the frame that was begun last, and notes its times.
+void RenderLoop::awaitFrame() {
+    if (!begun_) return;
+    const Begun frame = *std::exchange(begun_, std::nullopt);
+    frame.copy->wait();
+    const double seconds = secondsSince(frame.when);
+    facts_.renderMilliseconds = seconds * 1e3;
     // A frame that had to compile shaders says nothing of the others.
-    if (device_.pipelineCount() == pipelines)
-        resolution_.note(uint64_t{wanted_.extent.width} * wanted_.extent.height, secondsSince(begin));
+    const gpu::Extent extent = main_.settings().extent;
+    if (device_.pipelineCount() == frame.pipelines)
+        resolution_.note(uint64_t{extent.width} * extent.height, seconds);
+    if (!due(lastTimes_, betweenTimes)) return;
+    facts_.timings.addPasses(main_.renderer().passTimes());
+    facts_.memoryBytes = device_.allocatedBytes();
+    facts_.sceneBytes = stage_->onDevice().byteCount();
 }
 
 void RenderLoop::render(const CameraParams& camera) {
@@ -122,16 +141,12 @@ void RenderLoop::render(const CameraParams& camera) {
     facts_.frames = playback_.frames();
 }
 
-void RenderLoop::noteTimes(bool rendered) {
+void RenderLoop::noteFrameTime(bool rendered) {
     const auto now = Clock::now();
     if (rendered && frameBefore_)
         facts_.timings.addFrame(std::chrono::duration<double, std::milli>(now - lastFrame_).count());
     lastFrame_ = now;
     frameBefore_ = rendered;
-    if (!rendered || !due(lastTimes_, betweenTimes)) return;
-    facts_.timings.addPasses(main_.renderer().passTimes());
-    facts_.memoryBytes = device_.allocatedBytes();
-    facts_.sceneBytes = stage_->onDevice().byteCount();
 }
 
 /// Measures the exposure once there is a picture that uses one.

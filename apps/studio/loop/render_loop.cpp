@@ -105,6 +105,8 @@ void RenderLoop::run() {
     if (!stage_ && !settings_.source.scene.empty()) load(settings_.source, SceneLoading::Why::First, "");
     bool rests = false;
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
+        // The newest messages are for the next frame, which begins when the device has finished the last one.
+        awaitFrame();
         const bool waits = comparison_.isScoring() || loading_ || resolution_.isCoarse();
         handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
         finishLoading();
@@ -116,6 +118,7 @@ void RenderLoop::run() {
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
     }
+    publishWaiting();
     finish();
 }
 
@@ -123,6 +126,8 @@ void RenderLoop::handleMessages(double patience) {
     std::deque<Message> messages = std::exchange(held_, {});
     std::ranges::move(mailbox_.take(patience), std::back_inserter(messages));
     for (Message& message : messages) {
+        // Others than gestures may take long.
+        if (!std::holds_alternative<Gesture>(message.content)) publishWaiting();
         if (loading_.isFirst() && !concernsLoading(message)) {
             held_.push_back(std::move(message));
             continue;
@@ -157,28 +162,39 @@ void RenderLoop::announce() {
     publish();
 }
 
-/// Makes the snapshot of what there is now.
+/// Chooses what the next snapshot shows. The picture of a frame that the device still computes is not among
+/// it.
+void RenderLoop::choosePictures() {
+    LiveRender* const other = comparison_.picture();
+    if (!other || !*other)
+        compared_.reset();
+    else if (!compared_ || std::exchange(comparedOf_, other->version()) != other->version())
+        compared_ = other->picture();
+    if (!state_.arrows)
+        motion_.reset();
+    else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
+        motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
+    inspect();
+    if (begun_ && main_.underWay() == begun_->copy) return;
+    if (picture_ && pictureOf_ == main_.version()) return;
+    const auto begin = Clock::now();
+    picture_ = main_.picture();
+    pictureOf_ = main_.version();
+    facts_.downloadMilliseconds = secondsSince(begin) * 1e3;
+}
+
+/// Makes the snapshot of what there is now. If its picture is under way, it is published when that is there,
+/// and the next frame has begun.
 void RenderLoop::publish() {
+    publishWaiting();
     auto shown = std::make_shared<Shown>();
     facts_.comparedWith = comparison_.name();
     facts_.scores = comparison_.scores();
     facts_.errors = comparison_.errors();
     facts_.framesEver = rendered();
     facts_.extent = wanted_.extent;
-    if (main_) {
-        if (!picture_ || std::exchange(pictureOf_, main_.version()) != main_.version())
-            picture_ = main_.picture();
-        LiveRender* const other = comparison_.picture();
-        if (!other || !*other)
-            compared_.reset();
-        else if (!compared_ || std::exchange(comparedOf_, other->version()) != other->version())
-            compared_ = other->picture();
-        if (!state_.arrows)
-            motion_.reset();
-        else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
-            motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
-        inspect();
-    }
+    if (main_) choosePictures();
+    const bool isUnderWay = begun_ && main_ && main_.underWay() == begun_->copy;
     shown->number = ++publications_;
     shown->messages = messages_;
     shown->state = state_;
@@ -188,7 +204,21 @@ void RenderLoop::publish() {
     shown->compared = compared_;
     shown->inspected = inspected_;
     shown->motion = motion_;
-    mailbox_.publish(std::move(shown));
+    if (isUnderWay)
+        waiting_ = {std::move(shown), begun_->copy};
+    else
+        mailbox_.publish(std::move(shown));
+}
+
+/// Publishes the snapshot that waits for its picture, if there is one.
+void RenderLoop::publishWaiting() {
+    if (!waiting_) return;
+    const Waiting now = *std::exchange(waiting_, std::nullopt);
+    const auto begin = Clock::now();
+    picture_ = now.copy->picture();
+    facts_.downloadMilliseconds = secondsSince(begin) * 1e3;
+    now.shown->picture = picture_;
+    mailbox_.publish(now.shown);
 }
 
 /// Downloads the image of a pass that is shown instead of the picture.

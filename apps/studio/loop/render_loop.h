@@ -89,13 +89,17 @@ class RenderLoop {
     bool renderWhatIsDue();
     void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
-    void noteTimes(bool rendered);
+    bool overlaps() const;
+    void awaitFrame();
+    void noteFrameTime(bool rendered);
     void measureExposure();
     float stopsOf(const Pipeline& pipeline) const;
     image::ToneCurve curveOf(const Pipeline& pipeline) const;
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
+    void choosePictures();
     void publish();
+    void publishWaiting();
     void announce();
 
     void saveWhatIsAsked();
@@ -161,6 +165,20 @@ class RenderLoop {
 
     SceneLoading loading_;
     std::deque<Message> held_;  ///< messages that wait for the first scene
+
+    /// A frame that the device computes.
+    struct Begun {
+        std::shared_ptr<PictureCopy> copy;
+        Clock::time_point when;
+        size_t pipelines = 0;  ///< of the device before it
+    };
+    std::optional<Begun> begun_;
+    /// A snapshot whose picture is on its way to the host.
+    struct Waiting {
+        std::shared_ptr<Shown> shown;
+        std::shared_ptr<PictureCopy> copy;
+    };
+    std::optional<Waiting> waiting_;
 
     // The pictures that were published last.
     uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0;

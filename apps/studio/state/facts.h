@@ -25,6 +25,8 @@ struct Facts {
     double duration = 0.0;   ///< of the clip or the path, seconds; 0: nothing plays
     std::vector<std::string> cameras;
     Timings timings;
+    /// Of the last frame: until the device had finished it, and to bring its picture to the host after that.
+    double renderMilliseconds = 0.0, downloadMilliseconds = 0.0;
     uint64_t memoryBytes = 0, sceneBytes = 0;  ///< on the device
     float sceneRadius = 1.0f;                  ///< world units
     std::string comparedWith, scores;

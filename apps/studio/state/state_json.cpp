@@ -291,10 +291,13 @@ Entry parameterEntry(const ParamGroup& group, size_t number) {
 Entry partEntry(size_t part) {
     const DenoiserPart& info = denoiserParts[part];
     const std::string key = "part." + std::string(info.name), help(info.help);
-    return flag(
+    Entry entry = flag(
         {key.c_str(), "method", info.name.data(), help.c_str()}, [part](State & s) -> auto& {
             return s.parts.on[part];
         });
+    for (const std::string_view name : denoiserNames())
+        if (hasPart(parseDenoiser(name), part)) entry.field.denoisers.emplace_back(name);
+    return entry;
 }
 
 void addMethod(std::vector<Entry>& all) {

@@ -278,6 +278,9 @@ class FrameGraph {
     std::vector<uint32_t> downloadUint(Device& device, ImageHandle image);
     /// Returns the image behind a handle of the last executed frame. Only for code in src/gpu.
     const Image& imageOnDevice(Device& device, ImageHandle image);
+    /// The same; throws Error if the image cannot be downloaded, because no pass wrote it or its memory was
+    /// reused.
+    const Image& downloadable(Device& device, ImageHandle image);
     /// Returns the time per pass of the latest finished frame (waits for the last one submitted).
     std::vector<PassTime> passTimes(Device& device);
 

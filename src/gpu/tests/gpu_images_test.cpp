@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <vector>
 
 #include "gpu/tests/gpu_test_fixture.h"
+#include "gpu/vulkan/image_readback.h"
 #include "test_buffer_image.comp.h"
 
 namespace limpid::gpu {
@@ -111,6 +113,48 @@ TEST_F(GpuTest, AHostPassStandsBetweenThoseOfTheDevice) {
         for (size_t i = 0; i < values.size(); ++i)
             ASSERT_EQ(values[i], i + 4 < ramp.size() ? 4 * glm::unpackHalf1x16(ramp[i + 4]) : 0.0f) << i;
         EXPECT_EQ(graph.passTimes(device()).size(), 3u);
+    }
+}
+
+/// Each frame overwrites what the one before it computed.
+TEST_F(GpuTest, ReadbacksKeepWhatTheirFrameHas) {
+    const auto floats = [](std::span<const std::byte> bytes) {
+        std::vector<float> values(bytes.size() / sizeof(float));
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+        return values;
+    };
+    for (const Backing backing : {Backing::Image, Backing::Buffer}) {
+        FrameGraph graph;
+        std::vector<ImageReadback> readbacks;
+        std::vector<std::vector<float>> expected;
+        for (int frame = 0; frame < 4; ++frame) {
+            graph.beginFrame();
+            const ImageHandle image = graph.transient("image", rgba, odd, backing);
+            expected.emplace_back(4 * pixelsOf(odd), static_cast<float>(frame));
+            graph.upload(image, bytesOf(expected.back()));
+            graph.execute(device());
+            readbacks.emplace_back(device()).start(graph, image);
+        }
+        for (size_t i = 0; i < readbacks.size(); ++i)
+            EXPECT_EQ(floats(readbacks[i].pixels()), expected[i]) << "of frame " << i;
+    }
+}
+
+TEST_F(GpuTest, AReadbackIsUsedAgainForOtherSizes) {
+    ImageReadback readback(device());
+    EXPECT_TRUE(readback.pixels().empty());
+    for (const Extent extent : {Extent{4, 3}, odd, Extent{2, 2}}) {
+        FrameGraph graph;
+        graph.beginFrame();
+        const ImageHandle image = graph.transient("image", Format::R32Uint, extent);
+        const std::vector<uint32_t> numbers(pixelsOf(extent), extent.width);
+        graph.upload(image, bytesOf(numbers));
+        EXPECT_THAT(faultOf([&] { readback.start(graph, image); }), HasSubstr("has not been executed"));
+        graph.execute(device());
+        readback.start(graph, image);
+        const auto pixels = readback.pixels();
+        ASSERT_EQ(pixels.size(), 4 * numbers.size());
+        EXPECT_EQ(std::memcmp(pixels.data(), numbers.data(), pixels.size()), 0);
     }
 }
 

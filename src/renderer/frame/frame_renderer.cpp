@@ -1,6 +1,9 @@
 #include "renderer/frame/frame_renderer.h"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
+#include <utility>
 
 namespace limpid {
 namespace {
@@ -106,8 +109,25 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
     if (!settings_.pipeline.accumulates()) return;
     samplesInMean_ += taken.count;
     // Only sample 0 goes through the pixel's centre.
-    if (taken.first == 0)
-        ids_ = images_.ids ? graph_.downloadUint(device_, images_.ids) : std::vector<uint32_t>();
+    if (taken.first == 0) readIds();
+}
+
+/// Pictures that move need no ids, and should not wait for them.
+void FrameRenderer::readIds() {
+    ids_.clear();
+    idsUnderWay_ = bool(images_.ids);
+    if (!idsUnderWay_) return;
+    if (!idsReadback_) idsReadback_.emplace(device_);
+    idsReadback_->start(graph_, images_.ids);
+}
+
+const std::vector<uint32_t>& FrameRenderer::ids() {
+    if (std::exchange(idsUnderWay_, false)) {
+        const std::span<const std::byte> pixels = idsReadback_->pixels();
+        ids_.resize(pixels.size() / sizeof(uint32_t));
+        if (!ids_.empty()) std::memcpy(ids_.data(), pixels.data(), pixels.size());
+    }
+    return ids_;
 }
 
 std::vector<gpu::PassTime> FrameRenderer::denoisingTimes() {
@@ -130,7 +150,7 @@ RenderedLayers FrameRenderer::download() {
     }
     const bool accumulates = settings_.pipeline.accumulates();
     RenderedLayers layers = downloadLayers(graph_, device_, wanted, accumulates ? samplesInMean_ : samples_);
-    if (accumulates) layers.ids = ids_;
+    if (accumulates) layers.ids = ids();
     return layers;
 }
 

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gpu/vulkan/device.h"
+#include "gpu/vulkan/image_readback.h"
 #include "renderer/frame/frame.h"
 #include "renderer/frame/frame_download.h"
 #include "renderer/frame/moment.h"
@@ -70,8 +72,8 @@ class FrameRenderer {
     std::vector<float> download(const LayerInfo& layer) {
         return graph_.downloadFloat(device_, images_[layer]);
     }
-    /// Ids that belong to the mean: those through the pixels' centres.
-    const std::vector<uint32_t>& ids() const { return ids_; }
+    /// Ids that belong to the mean: those through the pixels' centres. Waits for the launch that found them.
+    const std::vector<uint32_t>& ids();
     bool hasLaunched() const { return !graph_.passes().empty(); }
     RenderCounters counters();
     /// All zero without temporal accumulation.
@@ -91,6 +93,7 @@ class FrameRenderer {
 
   private:
     void goTo(Moment moment);
+    void readIds();
 
     gpu::Device& device_;
     scene::GpuScene& scene_;
@@ -108,6 +111,8 @@ class FrameRenderer {
     FrameImages images_;
     Display display_;
     gpu::ImageHandle displayed_;
+    std::optional<gpu::ImageReadback> idsReadback_;
+    bool idsUnderWay_ = false;
     std::vector<uint32_t> ids_;
 };
 

@@ -37,6 +37,7 @@ def test(browser, server, program, folder):
     timed('controls', lambda: controls.test_controls(browser))
     timed('search', lambda: controls.test_search(browser))
     timed('presets', lambda: controls.test_presets(browser))
+    timed('parts', lambda: controls.test_parts(browser))
     timed('messages', lambda: controls.test_messages(browser))
     timed('keyboard', lambda: controls.test_keyboard_slider(browser))
     fit_stage(browser)

@@ -87,6 +87,20 @@ def test_presets(browser):
     settle(browser, 'the path tracer')
 
 
+def test_parts(browser):
+    """Only switches for parts that the chosen denoiser has."""
+    shown = """['temporal', 'spatial', 'demodulation'].filter(name => {
+      const row = document.querySelector(`[data-key="part.${name}"]`);
+      row.closest('details').open = true;
+      return row.offsetParent !== null;
+    }).join()"""
+    for denoiser, parts in (('temporal', 'temporal,demodulation'), ('bilateral', 'spatial,demodulation'),
+                            ('atrous', 'temporal,spatial,demodulation'), ('none', '')):
+        choose(browser, 'denoiser', denoiser)
+        browser.wait(f"{shown} === '{parts}'", f'the parts of {denoiser}')
+    settle(browser, 'the path tracer')
+
+
 def test_messages(browser):
     """Errors and messages can be hidden; the next one is shown again. The command line has its own place."""
     fault = "document.getElementById('fault').textContent"

@@ -12,16 +12,10 @@
 namespace limpid::gpu {
 namespace {
 
-std::vector<std::byte> downloadPixels(FrameGraph::Impl& graph, Device& device, ImageHandle handle) {
-    const RecordedImage& recorded = graph.frame.images[graph.indexOf(handle)];
-    FrameExecutor& executor = graph.executed(device);
-    if (!recorded.written && recorded.role != RecordedImage::Role::Previous) {
-        throw Error(formatText("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
-    }
-    if (recorded.overwritten)
-        throw Error(formatText("image '{}' cannot be downloaded: its memory was reused", recorded.name));
-    const Image& image = executor.image(recorded);
-    std::vector<std::byte> pixels(recorded.bytes());
+std::vector<std::byte> downloadPixels(FrameGraph& graph, Device& device, ImageHandle handle) {
+    const Image& image = graph.downloadable(device, handle);
+    std::vector<std::byte> pixels(uint64_t{image.extent.width} * image.extent.height *
+                                  bytesPerTexel(image.format));
     device.waitIdle();
     device.impl().transfer().download(image, pixels);
     return pixels;
@@ -108,17 +102,27 @@ const Image& FrameGraph::imageOnDevice(Device& device, ImageHandle image) {
     return impl_->executed(device).image(recorded);
 }
 
+const Image& FrameGraph::downloadable(Device& device, ImageHandle handle) {
+    const RecordedImage& recorded = impl_->frame.images[impl_->indexOf(handle)];
+    const FrameExecutor& executor = impl_->executed(device);
+    if (!recorded.written && recorded.role != RecordedImage::Role::Previous)
+        throw Error(formatText("image '{}' cannot be downloaded: no pass wrote it", recorded.name));
+    if (recorded.overwritten)
+        throw Error(formatText("image '{}' cannot be downloaded: its memory was reused", recorded.name));
+    return executor.image(recorded);
+}
+
 std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) {
     switch (format(image)) {
         case Format::R32Float:
         case Format::RG32Float:
         case Format::RGBA32Float:
-            return reinterpretAs<float>(downloadPixels(*impl_, device, image));
+            return reinterpretAs<float>(downloadPixels(*this, device, image));
         case Format::R16Float:
         case Format::RGBA16Float:
-            return convertAll<uint16_t>(downloadPixels(*impl_, device, image), halfToFloat);
+            return convertAll<uint16_t>(downloadPixels(*this, device, image), halfToFloat);
         case Format::RGBA8Unorm:
-            return convertAll<uint8_t>(downloadPixels(*impl_, device, image),
+            return convertAll<uint8_t>(downloadPixels(*this, device, image),
                                        [](uint8_t value) { return static_cast<float>(value) / 255.0f; });
         default:
             throw Error(
@@ -132,7 +136,7 @@ std::vector<uint32_t> FrameGraph::downloadUint(Device& device, ImageHandle image
         case Format::RG32Uint:
         case Format::RGBA32Uint:
         case Format::RGBA8Unorm:
-            return reinterpretAs<uint32_t>(downloadPixels(*impl_, device, image));
+            return reinterpretAs<uint32_t>(downloadPixels(*this, device, image));
         default:
             throw Error(
                 formatText("image '{}' is {}: use downloadFloat", name(image), toString(format(image))));

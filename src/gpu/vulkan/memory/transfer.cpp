@@ -12,20 +12,18 @@ namespace {
 /// The maximum size of staging memory: a scene of gigabytes must not need a second copy of itself.
 constexpr uint64_t chunkBytes = uint64_t{64} << 20;
 
-/// Makes writes of earlier frames visible to the copy.
+}  // namespace
+
 void beforeCopy(const Context& context, VkCommandBuffer commands) {
     memoryBarrier(context, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
 }
 
-/// Makes the copy visible to the host. Frames begin with a barrier of their own.
 void afterCopy(const Context& context, VkCommandBuffer commands) {
     memoryBarrier(context, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
-
-}  // namespace
 
 Transfer::Transfer(std::shared_ptr<const Context> context)
     : context_(std::move(context)),

@@ -10,6 +10,11 @@
 
 namespace limpid::gpu {
 
+/// Makes writes of earlier frames visible to a copy.
+void beforeCopy(const Context& context, VkCommandBuffer commands);
+/// Makes the copy visible to the host. Frames begin with a barrier of their own.
+void afterCopy(const Context& context, VkCommandBuffer commands);
+
 class Transfer {
   public:
     explicit Transfer(std::shared_ptr<const Context> context);
