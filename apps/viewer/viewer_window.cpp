@@ -161,9 +161,11 @@ void ViewerWindow::sendChanges(studio::Session& session) {
     panel_.asked.clear();
 }
 
-/// Keeps an edit for undo, unless it is one of undo itself. The window's size is no edit.
+/// Keeps an edit for undo, unless it is one of undo itself. The window's size and the pass that is looked at
+/// (which follows the pointer) are none.
 void ViewerWindow::noteStep(nlohmann::json changes) {
     changes.erase("viewport");
+    changes.erase("pass");
     if (!panel_.steps) panel_.history.note(changes, panel_.values);
 }
 

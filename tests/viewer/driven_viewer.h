@@ -2,6 +2,7 @@
 // output files.
 #pragma once
 
+#include <fmt/format.h>
 #include <signal.h>
 
 #include <chrono>
@@ -133,6 +134,11 @@ class DrivenViewer {
         throw std::runtime_error("cannot scroll to '" + name + "'");
     }
     void click(const std::string& name) const { press(name, 0.03); }
+    void hover(const std::string& name) const {
+        const Control c = reveal(name);
+        xdotool(fmt::format("mousemove {} {}", static_cast<int>(c.left) + 10,
+                            static_cast<int>(0.5f * (c.top + c.bottom))));
+    }
     /// Clicks at a fraction of the control's width.
     void press(const std::string& name, double share) const {
         const Control c = reveal(name);

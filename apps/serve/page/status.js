@@ -1,6 +1,7 @@
 // What the program tells: the line below the picture, messages, the times of passes, values of pixels.
 
 import {byId, debounced, make, numberText, setText} from './dom.js';
+import {PassPreview} from './pass_preview.js';
 
 const units = ['bytes', 'KiB', 'MiB', 'GiB', 'TiB'];
 
@@ -26,9 +27,10 @@ export class Status {
       say('');
       this.show();
     });
-    this.passes = make('tbody');
+    this.preview = new PassPreview(store);
+    this.passes = make('tbody', {pointerleave: () => this.preview.leave()});
     this.memory = make('p', {className: 'note'});
-    this.table = make('div', {className: 'passes'}, make('table', {}, make('caption', {textContent: 'Passes: click on one to see its images'}),
+    this.table = make('div', {className: 'passes'}, make('table', {}, make('caption', {textContent: 'Passes: point at one to see its images, click to keep them'}),
         make('thead', {}, make('tr', {}, make('th', {scope: 'col', textContent: 'pass'}),
                                make('th', {scope: 'col', textContent: 'time'}))), this.passes), this.memory);
   }
@@ -65,13 +67,14 @@ export class Status {
     setText(byId('scores'), facts.scores ?? '');
   }
 
-  /// A click on a pass shows its images, another one the picture.
   passRow() {
-    const name = make('button', {type: 'button', title: 'Shows the images of this pass', click: () => {
-      const pass = name.textContent;
-      this.store.edit({pass: pass === this.store.value('pass') ? '' : pass});
-    }});
-    return make('tr', {}, make('td', {}, name), make('td'));
+    const name = make('button', {type: 'button', title: 'Shows the images of this pass',
+                                 click: () => this.preview.click(name.textContent)});
+    const row = make('tr', {}, make('td', {}, name), make('td'));
+    row.addEventListener('pointerenter', event => {
+      if (event.pointerType === 'mouse') this.preview.enter(name.textContent);
+    });
+    return row;
   }
 
   showPasses(facts) {
@@ -80,7 +83,7 @@ export class Status {
     passes.forEach(({name, milliseconds}, i) => {
       const row = this.passes.rows[i] ?? this.passes.appendChild(this.passRow());
       setText(row.cells[0].firstChild, name);
-      row.cells[0].firstChild.setAttribute('aria-pressed', name === this.store.value('pass'));
+      row.cells[0].firstChild.setAttribute('aria-pressed', name === this.preview.chosen());
       setText(row.cells[1], millisecondsText(milliseconds));
     });
     if (facts.memory !== undefined) {

@@ -17,6 +17,15 @@ struct Area {
     float left = 0.0f, top = 0.0f, width = 0.0f, height = 0.0f;
 };
 
+/// The pass of the list that the pointer is over. Its images are shown while it stays there.
+struct PassPreview {
+    std::string pass;      ///< empty: the pointer is elsewhere
+    double since = 0.0;    ///< ImGui::GetTime() when the pointer came to it
+    bool clicked = false;  ///< this pass was clicked: State::pass is what the click says
+    bool shown = false;    ///< State::pass is that of this preview
+    std::string usually;   ///< State::pass of before; only if shown
+};
+
 /// What the panel changes: the studio's state, and what belongs to this window alone.
 struct PanelState {
     studio::State state;
@@ -31,8 +40,9 @@ struct PanelState {
     float divider = 0.65f;   ///< share of the picture's width: what is compared with lies right of it
     bool magnifier = false;  ///< beside the mouse
     bool shown = true;
-    bool showsKeys = false;     ///< the list of keys, over everything
-    bool holdsPose = false;     ///< a control is held or typed into: State::pose is what it says
+    bool showsKeys = false;  ///< the list of keys, over everything
+    bool holdsPose = false;  ///< a control is held or typed into: State::pose is what it says
+    PassPreview passPreview;
     std::string probe;          ///< what lies under the mouse in the image that is inspected
     Area area;                  ///< where the picture is shown; the panel is right of it
     float statusHeight = 0.0f;  ///< pixels of the window, of the last picture

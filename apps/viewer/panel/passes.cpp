@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/text/bytes_text.h"
 #include "viewer/panel/fields.h"
@@ -13,12 +14,39 @@ namespace {
 
 using studio::Facts;
 using studio::PassTrack;
-using studio::State;
 using studio::Track;
 
-/// Draws the controls for the pass that is selected in the list.
+constexpr double previewDelay = 0.15;  ///< seconds; a pointer that only passes by shows nothing
+
+/// The pass that a click has chosen; empty: the picture.
+std::string chosenPass(const PanelState& panel) {
+    return panel.passPreview.shown ? panel.passPreview.usually : panel.state.pass;
+}
+
+/// Ends the preview: after a click on the chosen pass, the picture is shown although the pointer is there.
+void choosePass(PanelState& panel, const std::string& pass) {
+    panel.state.pass = pass;
+    panel.passPreview.shown = false;
+    panel.passPreview.clicked = true;
+}
+
+/// `pass`: the one under the pointer; empty: none.
+void preview(PanelState& panel, const std::string& pass) {
+    PassPreview& now = panel.passPreview;
+    if (pass != now.pass) {
+        now.pass = pass;
+        now.since = ImGui::GetTime();
+        now.clicked = false;
+    }
+    if (pass.empty()) return endPassPreview(panel);
+    if (now.clicked || (!now.shown && ImGui::GetTime() - now.since < previewDelay)) return;
+    if (!std::exchange(now.shown, true)) now.usually = panel.state.pass;
+    panel.state.pass = pass;
+}
+
+/// Draws the controls for the pass that is chosen in the list. For a preview the list must not move.
 void drawInspector(const Drawing& with) {
-    if (with.panel.state.pass.empty() || with.facts.images.empty()) return;
+    if (chosenPass(with.panel).empty() || with.facts.images.empty()) return;
     beginRows();
     for (const char* key : {"image", "view.channels", "view.stops", "view.false_color"}) drawField(with, key);
     endRows();
@@ -45,8 +73,14 @@ void drawSums(const Drawing& with) {
 
 }  // namespace
 
+void endPassPreview(PanelState& panel) {
+    if (panel.passPreview.shown) panel.state.pass = panel.passPreview.usually;
+    panel.passPreview = {};
+}
+
 void drawPasses(const Drawing& with) {
-    State& state = with.panel.state;
+    PanelState& panel = with.panel;
+    std::string pointedAt;
     drawInspector(with);
     drawSums(with);
     if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_RowBg)) return;
@@ -57,9 +91,11 @@ void drawPasses(const Drawing& with) {
     for (const PassTrack& pass : with.facts.timings.passes()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (ImGui::Selectable(pass.name.c_str(), pass.name == state.pass,
+        const bool chosen = pass.name == chosenPass(panel);
+        if (ImGui::Selectable(pass.name.c_str(), chosen,
                               ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
-            state.pass = pass.name == state.pass ? std::string() : pass.name;
+            choosePass(panel, chosen ? std::string() : pass.name);
+        if (ImGui::IsItemHovered()) pointedAt = pass.name;
         with.controls.note("pass " + pass.name);
         ImGui::TableNextColumn();
         plot(("##" + pass.name).c_str(), pass.milliseconds, {graphWidth, ImGui::GetTextLineHeight()});
@@ -67,6 +103,8 @@ void drawPasses(const Drawing& with) {
         ImGui::Text("%.3f ms", static_cast<double>(pass.milliseconds.last()));
     }
     ImGui::EndTable();
+    preview(panel, pointedAt);
+    with.controls.note("pass shown", panel.state.pass);
 }
 
 }  // namespace limpid::viewer

@@ -264,7 +264,10 @@ void drawSections(const Drawing& with) {
     drawMethod(with);
     drawLook(with);
     drawCompare(with);
-    if (section(with, "passes", false)) drawPasses(with);
+    if (section(with, "passes", false))
+        drawPasses(with);
+    else
+        endPassPreview(with.panel);
     drawOutput(with);
     drawWindow(with);
 }
@@ -289,6 +292,7 @@ bool matches(const std::string& search, std::initializer_list<std::string_view> 
 
 void drawFound(const Drawing& with) {
     PanelState& panel = with.panel;
+    endPassPreview(panel);
     std::string heading;
     bool any = false;
     const auto under = [&](const std::string& name) {

@@ -45,6 +45,7 @@ def test(browser, server, program, folder):
     timed('comparison', lambda: comparison.test_comparison(browser))
     timed('inspection', lambda: inspection.test_inspection(browser))
     timed('arrows', lambda: inspection.test_arrows(browser))
+    timed('preview', lambda: inspection.test_preview(browser))
     timed('upload', lambda: sessions.test_upload(browser, folder))
     timed('tabs', lambda: sessions.test_two_tabs(browser, address))
     timed('reconnection', lambda: sessions.test_reconnection(browser, relay))

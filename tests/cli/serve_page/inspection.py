@@ -66,6 +66,33 @@ def test_inspection(browser):
     browser.wait(f"!({INSPECTED})", 'the picture, by a click on the pass')
 
 
+def test_preview(browser):
+    """The images of a pass are shown while the mouse rests on it; what a click has chosen comes back."""
+    shown = "document.getElementById('inspected').hidden ? '' : document.getElementById('inspected-name').textContent"
+    row = "[...document.querySelectorAll('.passes button')].find(each => each.textContent === '{}')"
+    x, y = stage_center(browser)
+
+    def rest_on(name):
+        browser.evaluate(f"({row.format(name)}).scrollIntoView({{block: 'center'}})")
+        browser.mouse('mouseMoved', *center(browser.evaluate(f"""(({{left, top, width, height}}) =>
+            ({{left, top, width, height}}))(({row.format(name)}).getBoundingClientRect())""")), 0)
+
+    rest_on(PASS)
+    browser.wait(f"({shown}).startsWith('{PASS}')", 'the pass under the mouse')
+    rest_on('svgf/compose')
+    browser.wait(f"({shown}).startsWith('svgf/compose')", 'the next pass under the mouse')
+    browser.mouse('mouseMoved', x, y, 0)
+    browser.wait(f"({shown}) === ''", 'the picture, as the mouse left')
+    click_on_pass(browser, PASS)
+    browser.wait(f"({shown}).startsWith('{PASS}')", 'the chosen pass')
+    rest_on('svgf/compose')
+    browser.wait(f"({shown}).startsWith('svgf/compose')", 'the pass under the mouse, again')
+    browser.mouse('mouseMoved', x, y, 0)
+    browser.wait(f"({shown}).startsWith('{PASS}')", 'the chosen pass, again')
+    click_on(browser, '#show-picture')
+    browser.wait(f"!({INSPECTED})", 'the picture')
+
+
 def test_arrows(browser):
     """What the camera moves has arrows; a method without motion says so."""
     arrows = "Number(document.getElementById('picture').dataset.arrows)"
