@@ -112,6 +112,7 @@ void RenderLoop::run() {
         changedFacts_ |= messageAges();
         changedFacts_ |= comparison_.hasScored();
         const bool rendered = stage_ && renderWhatIsDue();
+        changedFacts_ |= answerProbe();
         if (std::exchange(facts_.computing, rendered) != rendered) changedFacts_ = true;
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
@@ -178,6 +179,7 @@ void RenderLoop::publish() {
         else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
             motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
         inspect();
+        explain();
     }
     shown->number = ++publications_;
     shown->messages = messages_;
@@ -187,6 +189,7 @@ void RenderLoop::publish() {
     shown->picture = picture_;
     shown->compared = compared_;
     shown->inspected = inspected_;
+    shown->reasons = reasonsShown_;
     shown->motion = motion_;
     mailbox_.publish(std::move(shown));
 }
@@ -214,6 +217,16 @@ void RenderLoop::inspect() {
     inspected_ =
         std::make_shared<const image::Image>(std::move(images[static_cast<size_t>(state_.image)].second));
     inspectedOf_ = wanted;
+}
+
+/// Downloads why histories were kept or rejected, for the pixels that are inspected.
+void RenderLoop::explain() {
+    if (state_.pass.empty() || main_.lacksReasons()) {
+        reasonsShown_.reset();
+    } else if (std::exchange(reasonsOf_, main_.frames()) != main_.frames() || !reasonsShown_) {
+        auto reasons = std::make_shared<const HistoryReasons>(main_.renderer().historyReasons());
+        reasonsShown_ = reasons->signals.empty() ? nullptr : std::move(reasons);
+    }
 }
 
 }  // namespace limpid::studio

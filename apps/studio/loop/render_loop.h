@@ -3,6 +3,7 @@
 // loop_files.cpp, and render_loop.cpp for the rest.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -95,6 +96,9 @@ class RenderLoop {
     image::ToneCurve curveOf(const Pipeline& pipeline) const;
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
+    bool wantsReasons() const { return !state_.pass.empty() || probeAt_; }
+    void explain();
+    bool answerProbe();
     void publish();
     void announce();
 
@@ -152,9 +156,10 @@ class RenderLoop {
     bool interruptible_ = false;
     bool ending_ = false;
     bool step_ = false, measureExposure_ = false;
-    std::vector<std::string> toSave_;  ///< extensions of pictures that were asked for
-    float fovOfLast_ = 0.0f;           ///< degrees
-    float speed_ = 1.0f;               ///< of flying, world units a second
+    std::optional<std::array<float, 2>> probeAt_;  ///< a probe that waits for a frame with reasons
+    std::vector<std::string> toSave_;              ///< extensions of pictures that were asked for
+    float fovOfLast_ = 0.0f;                       ///< degrees
+    float speed_ = 1.0f;                           ///< of flying, world units a second
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
@@ -163,10 +168,11 @@ class RenderLoop {
     std::deque<Message> held_;  ///< messages that wait for the first scene
 
     // The pictures that were published last.
-    uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0;
+    uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0, reasonsOf_ = 0;
     float exposureOf_ = 0.0f;
     std::shared_ptr<const Picture> picture_, compared_;
     std::shared_ptr<const image::Image> inspected_, motion_;
+    std::shared_ptr<const HistoryReasons> reasonsShown_;
     std::tuple<uint64_t, std::string, int> inspectedOf_;
 };
 

@@ -41,6 +41,8 @@ def test_inspection(browser):
     values = "document.getElementById('inspected-values').textContent"
     first = browser.wait(f"{values}.startsWith('(') && {values}", 'the values under the mouse')
     check(': ' in first, f'the values are {first}')
+    history = browser.wait("document.getElementById('inspected-history').textContent", 'what became of the history')
+    check('history kept: ' in history, f'the history: {history}')
     browser.mouse('mouseMoved', x + 40, y, 0)
     browser.wait(f"{values}.split(':')[0] !== '{first.split(':')[0]}'", 'the values of another pixel')
     evaluate(browser, 'window.before = await pixels();')
