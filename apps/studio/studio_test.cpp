@@ -174,7 +174,9 @@ TEST_F(StudioTest, TellsWhyHistoriesWereKeptOrRejected) {
 }
 
 TEST_F(StudioTest, ProbesTellWhyTheHistoryWasKept) {
-    const auto studio = make(small());
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    const auto studio = make(settings);
     rest(*studio, studio->edit({{"denoiser", "temporal"}}));
     const Request probe{.kind = Kind::Probe, .position = {0.5f, 0.5f}};
     const auto told =
