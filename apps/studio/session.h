@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "renderer/frame/history_reasons.h"
 #include "studio/camera/gesture.h"
 #include "studio/picture.h"
 #include "studio/state/facts.h"
@@ -27,7 +28,9 @@ struct Shown {
     Facts facts;
     std::shared_ptr<const Picture> picture, compared;  ///< null: there is none
     std::shared_ptr<const image::Image> inspected;     ///< the image of State::pass; null: none is inspected
-    std::shared_ptr<const image::Image> motion;        ///< with State::arrows; null: the pipeline has none
+    /// With State::pass, if the denoiser keeps histories: why it kept or rejected those of each pixel.
+    std::shared_ptr<const HistoryReasons> reasons;
+    std::shared_ptr<const image::Image> motion;  ///< with State::arrows; null: the pipeline has none
 };
 
 /// Things to do once. Positions are from 0 to 1 in the picture, from its upper left corner.

@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "image/io/picture.h"
+#include "studio/compare/history_text.h"
 #include "studio/state/state_file.h"
 #include "studio/state/state_json.h"
 
@@ -157,6 +158,72 @@ TEST_F(StudioTest, ScenesLoadBesideTheRendering) {
                              [](const Shown& s) { return s.facts.scenesShown == 2; });
     EXPECT_NE(opened->facts.scene, first->facts.scene);
     EXPECT_TRUE(opened->facts.fault.empty());
+    studio->finish();
+}
+
+bool hasText(const HistoryReasons& reasons, const std::string& wanted) {
+    for (uint32_t y = 0; y < reasons.extent.height; ++y) {
+        for (uint32_t x = 0; x < reasons.extent.width; ++x) {
+            const std::array<float, 2> at{(static_cast<float>(x) + 0.5f) / 64.0f,
+                                          (static_cast<float>(y) + 0.5f) / 48.0f};
+            if (historyText(reasons, at).find(wanted) != std::string::npos) return true;
+        }
+    }
+    return false;
+}
+
+/// One frame follows each edit or gesture.
+TEST_F(StudioTest, TellsWhyHistoriesWereKeptOrRejected) {
+    StudioSettings settings = small("builtin:cornell-moving");
+    settings.resolution = Resolution::Full;
+    settings.maxSamples = 1;
+    const auto studio = make(settings);
+    const auto first = rest(*studio, studio->edit({{"denoiser", "svgf"}, {"svgf.antilag", 0.0}}));
+    EXPECT_FALSE(first->reasons) << "nobody has asked";
+    const auto asked = rest(*studio, studio->edit({{"pass", "svgf/compose"}}));
+    ASSERT_TRUE(asked->reasons) << "another frame was needed";
+    EXPECT_EQ(asked->facts.frames, first->facts.frames + 1);
+    EXPECT_THAT(historyText(*asked->reasons, {0.5f, 0.5f}), HasSubstr("history kept: "));
+    EXPECT_FALSE(hasText(*asked->reasons, "rejected"));
+
+    rest(*studio, studio->steer({.fly = {0.0f, 0.0f, 1.0f}}));  // frees the camera, and into the room
+    const auto moved = rest(*studio, studio->steer({.look = {0.1f, 0.0f}, .fly = {0.1f, 0.0f, 0.0f}}));
+    ASSERT_TRUE(moved->reasons);
+    EXPECT_TRUE(hasText(*moved->reasons, "history rejected: outside the previous picture"));
+    EXPECT_TRUE(hasText(*moved->reasons, "other object"));
+    const auto cut = rest(*studio, studio->edit({{"time", 1.5}}));
+    EXPECT_EQ(historyText(*cut->reasons, {0.5f, 0.5f}), "no history: first frame after a cut");
+
+    const auto listed = rest(*studio, studio->edit({{"pass", "svgf/reasons diffuse"}}));
+    EXPECT_THAT(listed->facts.images,
+                testing::ElementsAre("svgf/diffuse reasons", "svgf/diffuse history", HasSubstr("surfaces"),
+                                     HasSubstr("surfaces"), HasSubstr("moments")));
+    EXPECT_EQ(listed->facts.frames, cut->facts.frames) << "the frame had it already";
+    const auto closed = rest(*studio, studio->edit({{"pass", ""}}));
+    EXPECT_FALSE(closed->reasons);
+    rest(*studio, studio->edit({{"denoiser", "bilateral"}}));
+    const auto single = rest(*studio, studio->edit({{"pass", "bilateral"}}));
+    EXPECT_TRUE(single->inspected);
+    EXPECT_FALSE(single->reasons) << "it keeps no histories";
+    studio->finish();
+}
+
+TEST_F(StudioTest, ProbesTellWhyTheHistoryWasKept) {
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    const auto studio = make(settings);
+    rest(*studio, studio->edit({{"denoiser", "temporal"}}));
+    const Request probe{.kind = Kind::Probe, .position = {0.5f, 0.5f}};
+    const auto told =
+        wait(*studio, studio->ask(probe), [](const Shown& s) { return !s.facts.allValues.empty(); });
+    EXPECT_THAT(told->facts.allValues, HasSubstr("pixel (32, 24)\nhistory kept: "));
+    EXPECT_THAT(told->facts.allValues, HasSubstr("temporal/color: "));
+    EXPECT_TRUE(rest(*studio, studio->ask(probe))->facts.allValues.empty());
+    // Stopped, no frame is rendered for it.
+    const auto paused = rest(*studio, studio->edit({{"running", false}, {"denoiser", "none"}}));
+    const auto values =
+        wait(*studio, studio->ask(probe), [](const Shown& s) { return !s.facts.allValues.empty(); });
+    EXPECT_EQ(values->facts.framesEver, paused->facts.framesEver);
     studio->finish();
 }
 

@@ -249,14 +249,16 @@ void ViewerWindow::writeControls() {
     const studio::Facts& facts = shown_->facts;
     std::string values = facts.allValues;
     std::ranges::replace(values, '\n', ';');
-    const std::string text =
-        fmt::format(
-            "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nvalues\t{}\ncompared\t{}\n"
-            "scenes\t{}\nactivity\t{}\nrendering\t{}\n",
-            facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe, values,
-            facts.comparedWith, facts.scenesShown, facts.activityText(),
-            facts.computing || !pending_.empty() ? "yes" : "no") +
-        controls_.lines();
+    std::string reasons = panel_.reasons;
+    std::ranges::replace(reasons, '\n', ';');
+    const std::string text = fmt::format(
+                                 "frames\t{}\nsamples\t{}\nfault\t{}\nmessage\t{}\nprobe\t{}\nreasons\t{}"
+                                 "\nvalues\t{}\ncompared\t{}\n"
+                                 "scenes\t{}\nactivity\t{}\nrendering\t{}\n",
+                                 facts.frames, facts.samplesInMean, facts.fault, facts.message, panel_.probe,
+                                 reasons, values, facts.comparedWith, facts.scenesShown, facts.activityText(),
+                                 facts.computing || !pending_.empty() ? "yes" : "no") +
+                             controls_.lines();
     if (text == controlsText_) return;
     controlsText_ = text;
     writeTextAtomically(settings_.controls, text);

@@ -94,6 +94,7 @@ TEST_F(ViewEventsTest, PassesShowTheirImages) {
     change(viewer, "false colour");
     viewer.xdotool("mousemove 430 850");
     viewer.waitFor("the probe", [&] { return viewer.fact("probe").starts_with("(53, 106)"); });
+    viewer.waitFor("the history", [&] { return viewer.fact("reasons").starts_with("history kept: "); });
     viewer.choose("denoiser", "none");  // this one has no such pass
     viewer.settledPicture();
     EXPECT_FALSE(viewer.controls().contains("image"));

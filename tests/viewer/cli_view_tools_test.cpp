@@ -348,6 +348,7 @@ TEST_F(ViewToolsTest, TheMagnifierTheArrowsAndTheProbe) {
     viewer.waitFor("values", [&] { return !viewer.fact("values").empty(); });
     EXPECT_THAT(viewer.fact("values"), HasSubstr("pixel (53, 106)"));
     EXPECT_THAT(viewer.fact("values"), HasSubstr("pathtrace/normal: "));
+    EXPECT_THAT(viewer.fact("values"), HasSubstr("history "));
     viewer.xdotool("key p");
     viewer.waitFor("no values", [&] { return viewer.fact("values").empty(); });
     EXPECT_EQ(viewer.leave(), 0) << viewer.get("log");

@@ -1,4 +1,5 @@
-// The image of a pass instead of the picture: what it is, the values under the pointer, and the way back.
+// The image of a pass instead of the picture: what it is, the values under the pointer, why the denoiser kept or rejected
+// the history there, and the way back.
 
 import {byId, numberText, setText} from './dom.js';
 
@@ -33,16 +34,17 @@ export function makeInspection(store, picture, stage, read) {
     box.addEventListener(name, event => event.stopPropagation());
   }
   byId('show-picture').addEventListener('click', () => store.edit({pass: ''}));
+  const showValues = ({pixel, values, history}) => {
+    setText(byId('inspected-values'), values ? `(${pixel.join(', ')}): ${values.map(valueText).join(', ')}` : hint);
+    setText(byId('inspected-history'), values && history || '');
+  };
   const show = () => {
     box.hidden = !isOn();
-    if (!isOn()) return setText(byId('inspected-values'), hint);
+    if (!isOn()) return showValues({});
     const image = store.facts.images?.[store.value('image')];
     setText(byId('inspected-name'), image && image !== store.value('pass') ? `${store.value('pass')}: ${image}`
                                                                          : store.value('pass'));
   };
   for (const name of ['state', 'facts']) store.addEventListener(name, show);
-  const showValues = ({pixel, values}) => {
-    setText(byId('inspected-values'), values ? `(${pixel.join(', ')}): ${values.map(valueText).join(', ')}` : hint);
-  };
   return {showValues, imageChanged: ask};
 }

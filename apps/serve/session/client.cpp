@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "serve/stream/inspection.h"
+#include "studio/compare/history_text.h"
 #include "studio/state/state_json.h"
 
 namespace limpid::serve {
@@ -81,6 +82,8 @@ void Client::handle(std::string_view text) {
                           [&](const Read& read) {
                               const auto shown = session_.shown();
                               json reply = valuesAt(shown->inspected.get(), read.position);
+                              if (shown->reasons)
+                                  reply["history"] = studio::historyText(*shown->reasons, read.position);
                               reply.update({{"type", "values"}, {"id", message.id}});
                               replies_.push_back(reply.dump());
                           }},

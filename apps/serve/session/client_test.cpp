@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "denoise/stages/reproject/reasons_params.h"
 #include "serve/session/fake_session.h"
 #include "serve/stream/test_pictures.h"
 
@@ -73,6 +74,18 @@ TEST_F(ClientTest, ReadsValuesOfTheInspectedImage) {
     session.publish([&](studio::Shown& next) { next.inspected = image; });
     EXPECT_TRUE(say(R"({"type":"read","id":5,"position":[0.9,0.5]})"));
     EXPECT_EQ(next("values"), (json{{"type", "values"}, {"id", 5}, {"pixel", {1, 0}}, {"values", {4.0}}}));
+}
+
+TEST_F(ClientTest, TellsWhyTheHistoryWasRejected) {
+    auto image = std::make_shared<image::Image>(2, 1, 1);
+    const HistoryReasons told{
+        .extent = {2, 1}, .signals = {{"joint", {denoise::REASON_CUT, 1, denoise::REASON_OFF_SCREEN, 1}}}};
+    session.publish([&](studio::Shown& next) {
+        next.inspected = image;
+        next.reasons = std::make_shared<const HistoryReasons>(told);
+    });
+    EXPECT_TRUE(say(R"({"type":"read","id":5,"position":[0.9,0.5]})"));
+    EXPECT_EQ(next("values").at("history"), "history rejected: outside the previous picture");
 }
 
 TEST_F(ClientTest, LimitsTheRate) {

@@ -1,16 +1,13 @@
 #include "studio/compare/motion_sample.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "studio/compare/pixel_at.h"
 
 namespace limpid::studio {
 namespace {
 
 constexpr float leastMotion = 0.25f;  ///< pixels
-
-uint32_t pixelAt(float share, uint32_t length) {
-    return std::min(static_cast<uint32_t>(share * static_cast<float>(length)), length - 1);
-}
 
 }  // namespace
 

@@ -41,7 +41,9 @@ void LiveRender::render(Moment moment) {
     }
     settings_ = next_;
     camera_ = moment.camera;
+    renderer_->setReasons(reasons_);
     renderer_->render(std::move(moment));
+    hasReasons_ = reasons_;
     startCopy();
     ++version_;
     shown_ = true;

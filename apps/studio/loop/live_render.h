@@ -46,6 +46,12 @@ class LiveRender {
     const RenderSettings& settings() const { return settings_; }
     const CameraParams& camera() const { return camera_; }
     FrameRenderer& renderer() { return *renderer_; }
+    /// For frames to come: whether their denoiser also tells why it kept or rejected histories.
+    void setReasons(bool wanted) { reasons_ = wanted; }
+    /// The last frame does not tell it, but another one would.
+    bool lacksReasons() const {
+        return *this && !hasReasons_ && settings_.pipeline.denoiser && !settings_.pipeline.usesNetwork();
+    }
     /// For frames to come, and for the next expose().
     void setToneCurve(image::ToneCurve curve) { nextCurve_ = curve; }
     /// Exposes the last frame differently, without rendering it again. Waits for the device. Returns false if
@@ -77,6 +83,7 @@ class LiveRender {
     std::shared_ptr<const Picture> picture_;  ///< of the last frame; null: nobody has asked for it yet
     CameraParams camera_{};
     bool shown_ = false;
+    bool reasons_ = false, hasReasons_ = false;
     uint64_t launches_ = 0;  ///< of the mean
     uint64_t framesOfSame_ = 0;
     uint64_t frames_ = 0;

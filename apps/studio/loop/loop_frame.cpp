@@ -50,6 +50,7 @@ bool RenderLoop::mustRender() {
         comparison_.noteChange();
     }
     if (std::exchange(step_, false) || other || resized) return true;
+    if (state_.running && wantsReasons() && main_.lacksReasons()) return true;
     // Nothing is known of the device's speed yet: the coarse picture is not the last one.
     const bool unmeasured = !moves && resolution_.isCoarse();
     return state_.running && (unmeasured || settings_.quitAfter > 0 ||
@@ -132,6 +133,7 @@ void RenderLoop::render(const CameraParams& camera) {
     moment.scene = stage_->nextFrame(step, playback_.shownTime());
     if (comparison_.mustRender(state_, wanted_, camera, moment.scene.has_value()))
         comparison_.render(*stage_, state_, wanted_, moment, false);
+    main_.setReasons(wantsReasons());
     main_.render(std::move(moment));
     fovOfLast_ = state_.fovDegrees;
     playback_.advance(camera, rig_.key());

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "scene/framing/framing.h"
+#include "studio/compare/history_text.h"
+#include "studio/compare/pixel_at.h"
 #include "studio/loop/render_loop.h"
 #include "studio/state/state_json.h"
 
@@ -18,10 +20,6 @@ struct Overloaded : Functions... {
 };
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
-
-uint32_t pixelAt(float position, uint32_t pixels) {
-    return static_cast<uint32_t>(std::clamp(position, 0.0f, 0.9999f) * static_cast<float>(pixels));
-}
 
 }  // namespace
 
@@ -85,8 +83,12 @@ void RenderLoop::carryOut(const Request& request) {
     if (kind == Kind::ResetCamera) resetCamera();
     if (kind == Kind::SeeAll) seeAll();
     if (kind == Kind::Focus) attempt([&] { focus(request.position); });
-    if (kind == Kind::Probe && main_)
-        facts_.allValues = facts_.allValues.empty() ? probeAll(request.position) : std::string();
+    if (kind == Kind::Probe && main_) {
+        if (facts_.allValues.empty())
+            probeAt_ = request.position;
+        else
+            facts_.allValues.clear();
+    }
     if (kind == Kind::AddPoint || kind == Kind::AddSun) attempt([&] { addLamp(kind == Kind::AddSun); });
     if (kind == Kind::RemoveLamp) attempt([&] { takeLampAway(request.index); });
     if (kind == Kind::KeepSettings) state_.comparison.keep(withParts(state_.render, state_.parts));
@@ -149,6 +151,14 @@ void RenderLoop::placeCamera() {
     startAnew();
 }
 
+/// Returns true if it has filled Facts::allValues. Waits for a frame that tells about histories, too, unless
+/// rendering is stopped.
+bool RenderLoop::answerProbe() {
+    if (!probeAt_ || !main_ || (state_.running && main_.lacksReasons())) return false;
+    facts_.allValues = probeAll(*std::exchange(probeAt_, std::nullopt));
+    return true;
+}
+
 std::string RenderLoop::probeAll(const std::array<float, 2>& position) {
     const gpu::Extent extent = wanted_.extent;
     const auto valuesAt = [&](const image::Image& picture) {
@@ -161,6 +171,9 @@ std::string RenderLoop::probeAll(const std::array<float, 2>& position) {
     };
     std::string text = fmt::format("pixel ({}, {})\n", pixelAt(position[0], extent.width),
                                    pixelAt(position[1], extent.height));
+    if (const std::string history = historyText(main_.renderer().historyReasons(), position);
+        !history.empty())
+        text += history + "\n";
     std::vector<std::string> seen;
     for (const gpu::RecordedPass& pass : main_.renderer().graph().passes()) {
         if (main_.renderer().graph().imagesWrittenBy(pass.name).empty()) continue;

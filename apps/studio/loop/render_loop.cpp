@@ -114,6 +114,7 @@ void RenderLoop::run() {
         changedFacts_ |= messageAges();
         changedFacts_ |= comparison_.hasScored();
         const bool rendered = stage_ && renderWhatIsDue();
+        changedFacts_ |= answerProbe();
         if (std::exchange(facts_.computing, rendered) != rendered) changedFacts_ = true;
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
@@ -175,6 +176,7 @@ void RenderLoop::choosePictures() {
     else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
         motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
     inspect();
+    explain();
     if (begun_ && main_.underWay() == begun_->copy) return;
     if (picture_ && pictureOf_ == main_.version()) return;
     const auto begin = Clock::now();
@@ -203,6 +205,7 @@ void RenderLoop::publish() {
     shown->picture = picture_;
     shown->compared = compared_;
     shown->inspected = inspected_;
+    shown->reasons = reasonsShown_;
     shown->motion = motion_;
     if (isUnderWay)
         waiting_ = {std::move(shown), begun_->copy};
@@ -244,6 +247,16 @@ void RenderLoop::inspect() {
     inspected_ =
         std::make_shared<const image::Image>(std::move(images[static_cast<size_t>(state_.image)].second));
     inspectedOf_ = wanted;
+}
+
+/// Downloads why histories were kept or rejected, for the pixels that are inspected.
+void RenderLoop::explain() {
+    if (state_.pass.empty() || main_.lacksReasons()) {
+        reasonsShown_.reset();
+    } else if (std::exchange(reasonsOf_, main_.frames()) != main_.frames() || !reasonsShown_) {
+        auto reasons = std::make_shared<const HistoryReasons>(main_.renderer().historyReasons());
+        reasonsShown_ = reasons->signals.empty() ? nullptr : std::move(reasons);
+    }
 }
 
 }  // namespace limpid::studio

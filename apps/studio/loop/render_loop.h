@@ -3,6 +3,7 @@
 // loop_files.cpp, and render_loop.cpp for the rest.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -98,6 +99,9 @@ class RenderLoop {
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
     void choosePictures();
+    bool wantsReasons() const { return !state_.pass.empty() || probeAt_; }
+    void explain();
+    bool answerProbe();
     void publish();
     void publishWaiting();
     void announce();
@@ -156,9 +160,10 @@ class RenderLoop {
     bool interruptible_ = false;
     bool ending_ = false;
     bool step_ = false, measureExposure_ = false;
-    std::vector<std::string> toSave_;  ///< extensions of pictures that were asked for
-    float fovOfLast_ = 0.0f;           ///< degrees
-    float speed_ = 1.0f;               ///< of flying, world units a second
+    std::optional<std::array<float, 2>> probeAt_;  ///< a probe that waits for a frame with reasons
+    std::vector<std::string> toSave_;              ///< extensions of pictures that were asked for
+    float fovOfLast_ = 0.0f;                       ///< degrees
+    float speed_ = 1.0f;                           ///< of flying, world units a second
     Clock::time_point lastTimes_{}, lastSources_{}, lastFrame_{};
     bool frameBefore_ = false;
     Clock::time_point messageSince_{};
@@ -181,10 +186,11 @@ class RenderLoop {
     std::optional<Waiting> waiting_;
 
     // The pictures that were published last.
-    uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0;
+    uint64_t pictureOf_ = 0, comparedOf_ = 0, motionOf_ = 0, reasonsOf_ = 0;
     float exposureOf_ = 0.0f;
     std::shared_ptr<const Picture> picture_, compared_;
     std::shared_ptr<const image::Image> inspected_, motion_;
+    std::shared_ptr<const HistoryReasons> reasonsShown_;
     std::tuple<uint64_t, std::string, int> inspectedOf_;
 };
 

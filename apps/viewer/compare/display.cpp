@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "studio/compare/history_text.h"
 #include "viewer/compare/motion_arrows.h"
 #include "viewer/looks/theme.h"
 
@@ -177,11 +178,13 @@ void Display::inspect(PanelState& panel, const studio::Shown& shown) {
     inspected_ = shown.inspected;
     inspectedBy_ = panel.state.view;
     panel.probe.clear();
+    panel.reasons.clear();
     if (!inspected_) return;
     if (!same)
         inspector_.show(device_, shownTexels(*inspected_, inspectedBy_),
                         {inspected_->width, inspected_->height});
     panel.probe = probeOf(*inspected_, panel.area);
+    if (shown.reasons) panel.reasons = studio::historyText(*shown.reasons, mousePosition(panel.area));
 }
 
 void Display::Uploaded::show(gpu::Device& device, const std::shared_ptr<const studio::Picture>& now) {

@@ -44,6 +44,7 @@ struct PanelState {
     bool holdsPose = false;  ///< a control is held or typed into: State::pose is what it says
     PassPreview passPreview;
     std::string probe;          ///< what lies under the mouse in the image that is inspected
+    std::string reasons;        ///< why the history was kept or rejected there
     Area area;                  ///< where the picture is shown; the panel is right of it
     float statusHeight = 0.0f;  ///< pixels of the window, of the last picture
 };

@@ -51,6 +51,7 @@ void drawInspector(const Drawing& with) {
     for (const char* key : {"image", "view.channels", "view.stops", "view.false_color"}) drawField(with, key);
     endRows();
     ImGui::TextUnformatted(with.panel.probe.c_str());
+    ImGui::TextWrapped("%s", with.panel.reasons.c_str());
 }
 
 void plot(const char* name, const Track& track, ImVec2 size, const char* text = nullptr) {

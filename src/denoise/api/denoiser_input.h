@@ -15,6 +15,13 @@ struct Surfaces {
     gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
 };
 
+/// For debugging: whether methods with histories also tell why they kept or rejected those of each pixel, in
+/// DenoiserOutput::reasons.
+struct ReasonsRequest {
+    bool wanted = false;
+    bool cut = false;  ///< no pixel has motion, because the frame continues none
+};
+
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
 /// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
 /// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
@@ -34,6 +41,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;
+    ReasonsRequest reasons;
 };
 
 /// Uploads the frame's images; optional layers that are empty become zeros, but roughness, hit distance, and

@@ -11,9 +11,11 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "base/params.h"
 #include "denoise/api/denoiser_input.h"
+#include "denoise/stages/reproject/reasons.h"
 #include "gpu/graph/frame_graph.h"
 
 namespace limpid::denoise {
@@ -26,6 +28,8 @@ struct DenoiserOutput {
     gpu::ImageHandle disocclusion;  ///< TemporalImages::disocclusion; empty without temporal accumulation
     /// The fourth component counts the frames of a pixel's history; empty without temporal accumulation.
     gpu::ImageHandle frames;
+    /// With DenoiserInput::reasons.wanted, for each signal; empty without temporal accumulation.
+    std::vector<SignalReasons> reasons = {};
 };
 
 }  // namespace limpid::denoise

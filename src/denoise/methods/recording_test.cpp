@@ -14,12 +14,15 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
+using testing::UnorderedElementsAreArray;
 
 constexpr gpu::Extent extent{64, 32};
 constexpr gpu::ForeignImage nowhere{.image = 1, .view = 1};
 
 /// The names of the passes of an SVGF frame of foreign images, in their order.
-std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& settings) {
+std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& settings,
+                                  bool reasons = false) {
     graph.beginFrame();
     const auto import = [&](const char* name) {
         return graph.import(name, gpu::Format::RGBA32Float, extent, nowhere);
@@ -33,7 +36,9 @@ std::vector<std::string> passesOf(gpu::FrameGraph& graph, const FilterSettings& 
     IngestParams params{};
     params.width = extent.width;
     params.height = extent.height;
-    svgf::record(graph, ingest(graph, images, params, {.twoSignals = settings.svgf.separate}), settings);
+    DenoiserInput input = ingest(graph, images, params, {.twoSignals = settings.svgf.separate});
+    input.reasons.wanted = reasons;
+    svgf::record(graph, input, settings);
     std::vector<std::string> names;
     for (const gpu::RecordedPass& pass : graph.passes()) names.push_back(pass.name);
     return names;
@@ -52,6 +57,18 @@ TEST(RecordingTest, AFrameIsListedWithoutADevice) {
     ASSERT_FALSE(reproject.hazards.empty());
     EXPECT_EQ(reproject.hazards[0].earlierPass, "ingest");
     EXPECT_GT(graph.imageBytes(), uint64_t{extent.width} * extent.height * 50);
+}
+
+/// They cost nothing unless they are wanted.
+TEST(RecordingTest, ReasonsAreTwoMorePasses) {
+    gpu::FrameGraph graph;
+    std::vector<std::string> names = passesOf(graph, {});
+    const uint64_t bytes = graph.imageBytes();
+    EXPECT_THAT(names, Not(Contains(HasSubstr("reasons"))));
+    names.insert(names.end(), {"svgf/reasons diffuse", "svgf/reasons specular"});
+    EXPECT_THAT(passesOf(graph, {}, true), UnorderedElementsAreArray(names));
+    constexpr uint64_t bytesOfAPixel = 8 + 4;
+    EXPECT_EQ(graph.imageBytes(), bytes + 2 * bytesOfAPixel * extent.width * extent.height);
 }
 
 TEST(RecordingTest, HistoriesLiveFromFrameToFrame) {

@@ -206,12 +206,14 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
                            const FrameInput& input) {
     FrameImages out;
     static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
-    const denoise::DenoiserInput frame{{out}, input.camera, input.samples, input.filters};
+    denoise::DenoiserInput frame{{out}, input.camera, input.samples, input.filters};
+    frame.reasons = {.wanted = input.reasons, .cut = !input.hasPrevious};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =
         settings.pipeline.denoiser->record(graph, frame, settings.denoisers, settings.networks);
     out.beauty = denoised.beauty;
     out.disocclusion = denoised.disocclusion;
+    out.reasons = denoised.reasons;
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "gpu/graph/frame_graph.h"
 #include "passes/pathtrace/pathtrace.h"
@@ -25,6 +26,7 @@ struct FrameInput {
     uint32_t samples = 1;                        ///< per pixel, in this frame
     uint32_t launchSamples = UINT32_MAX;         ///< maximum per launch, if a denoiser follows
     gpu::Backing filters = gpu::Backing::Image;  ///< storage of images that filters read many times
+    bool reasons = false;  ///< for debugging: the denoiser also tells why it kept or rejected histories
 };
 
 /// The images that a frame leaves on the device; those that a pipeline does not compute are empty. Without
@@ -42,7 +44,8 @@ struct FrameImages : PathtraceLayers {
         return layer.index == beautyLayer.index ? beauty : LayerSet::operator[](layer);
     }
 
-    gpu::ImageHandle disocclusion;  ///< denoise::TemporalImages::disocclusion
+    gpu::ImageHandle disocclusion;                ///< denoise::TemporalImages::disocclusion
+    std::vector<denoise::SignalReasons> reasons;  ///< denoise::DenoiserOutput::reasons
     /// Index of the denoiser's first pass in the graph; empty without a denoiser.
     std::optional<size_t> firstDenoisingPass;
 };

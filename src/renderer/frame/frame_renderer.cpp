@@ -99,6 +99,7 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
     input.samples = taken.count;
     input.launchSamples = samplesPerLaunch(device_, settings_);
     input.filters = filters_;
+    input.reasons = reasons_;
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
     if (display_) displayed_ = display_(graph_, images_);
@@ -160,6 +161,15 @@ image::Image FrameRenderer::motion() {
     image::Image motion(extent.width, extent.height, 4);
     motion.pixels = graph_.downloadFloat(device_, images_.motion);
     return motion;
+}
+
+HistoryReasons FrameRenderer::historyReasons() {
+    HistoryReasons result;
+    for (const denoise::SignalReasons& reasons : images_.reasons) {
+        result.extent = graph_.extent(reasons.image);
+        result.signals.push_back({reasons.signal, graph_.downloadUint(device_, reasons.image)});
+    }
+    return result;
 }
 
 RenderCounters FrameRenderer::counters() {

@@ -13,6 +13,7 @@
 #include "gpu/vulkan/image_readback.h"
 #include "renderer/frame/frame.h"
 #include "renderer/frame/frame_download.h"
+#include "renderer/frame/history_reasons.h"
 #include "renderer/frame/moment.h"
 #include "renderer/frame/reset_rule.h"
 #include "renderer/layers/layers.h"
@@ -65,6 +66,11 @@ class FrameRenderer {
     /// Overrides the device's default, for measurements and tests.
     void setFilterBacking(gpu::Backing backing) { filters_ = backing; }
 
+    /// For debugging: whether the following frames also tell why the denoiser kept or rejected histories.
+    void setReasons(bool wanted) { reasons_ = wanted; }
+    /// Those of the last frame. Waits for the device.
+    HistoryReasons historyReasons();
+
     /// Downloads the last frame; without settings.layers only the layers that make up beauty. Waits for the
     /// device. Throws Error before the frame's first launch.
     RenderedLayers download();
@@ -100,6 +106,7 @@ class FrameRenderer {
     RenderSettings settings_;
     uint64_t samples_;
     gpu::Backing filters_;
+    bool reasons_ = false;
     gpu::FrameGraph graph_;
     Moment moment_;
     AccumulationState state_;       ///< state of the frame

@@ -23,6 +23,20 @@ def click_on_pass(browser, name):
     browser.evaluate("document.getElementById('this-pass').removeAttribute('id')")
 
 
+def find_history(browser, x, y):
+    """Some pixels see a surface, whose history was kept, and others may not."""
+    history = "document.getElementById('inspected-history').textContent"
+    told = []
+    for across in range(-160, 161, 40):
+        for down in range(-100, 101, 50):
+            browser.mouse('mouseMoved', x + across, y + down, 0)
+            time.sleep(0.2)
+            told.append(browser.evaluate(history))
+            if 'history kept: ' in told[-1]:
+                return
+    check(False, f'no pixel has a history: {set(told)}')
+
+
 def test_inspection(browser):
     """A click on a pass shows its images and the values under the mouse; another click shows the picture."""
     choose(browser, 'denoiser', 'svgf')
@@ -43,6 +57,7 @@ def test_inspection(browser):
     check(': ' in first, f'the values are {first}')
     browser.mouse('mouseMoved', x + 40, y, 0)
     browser.wait(f"{values}.split(':')[0] !== '{first.split(':')[0]}'", 'the values of another pixel')
+    find_history(browser, x, y)
     evaluate(browser, 'window.before = await pixels();')
     click_on(browser, '#field-view-false-color')
     browser.wait("document.getElementById('field-view-false-color').checked", 'the edit')

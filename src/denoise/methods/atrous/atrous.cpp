@@ -152,7 +152,8 @@ DenoiserOutput atrous::record(gpu::FrameGraph& graph, const DenoiserInput& input
     const gpu::ImageHandle filtered = filterAtrous(
         graph, input, {.first = accumulated.color, .minAlbedo = accumulated.minAlbedo, .isMean = true},
         settings.atrous);
-    return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion, accumulated.color};
+    return {antialias(graph, input, filtered, settings.taa), accumulated.disocclusion, accumulated.color,
+            accumulated.reasons};
 }
 
 }  // namespace limpid::denoise

@@ -51,6 +51,7 @@ struct Accumulated {
     History feedback;        ///< of colors; `current` is what the next frame reads
     ImageHandle stable;      ///< half4: the last level's result, or as `feedback` where that is not kept
     ImageHandle stablePast;  ///< half4: stable light of before, weight of the light of now
+    History momentsKept;     ///< `current` is `moments`
 };
 
 class Svgf {
@@ -86,6 +87,8 @@ class Svgf {
                 fillYoung(all[i], surfaces, accumulated[i], filtered[i]);
         }
         SvgfImages images{.beauty = beautyOf(filtered), .moments = accumulated.front().moments};
+        for (size_t i = 0; i < all.size() && input_.reasons.wanted; ++i)
+            images.reasons.push_back(reasons(all[i], surfaces, accumulated[i]));
         if (!signalsToo) return images;
         if (settings_.separate) {
             images.diffuse = radianceOf("diffuse", filtered.front(), input_.albedo);
@@ -227,7 +230,22 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        return {color, moments.current, tileSums, tiles, feedback, stable.current, stablePast};
+        return {color, moments.current, tileSums, tiles, feedback, stable.current, stablePast, moments};
+    }
+
+    SignalReasons reasons(const Signal& signal, const Surfaces& surfaces,
+                          const Accumulated& accumulated) const {
+        const SvgfReprojectParams params = reprojectParams(false);
+        return recordReasons(
+            graph_, input_, surfaces,
+            {.method = "svgf",
+             .signal = signal.name,
+             .tests = params.tests,
+             .frames = accumulated.momentsKept,
+             .longest = params.longest,
+             .shortens = settings_.antilag > 0.0f,
+             .reflectionMotion = signal.reflects ? input_.reflectionMotion : ImageHandle{},
+             .lobeScale = hasRoughness(signal) && settings_.lobeTest > 0.0f ? params.lobeScale : 0.0f});
     }
 
     void shortenHistory(const Signal& signal, const Accumulated& accumulated) {
@@ -493,7 +511,7 @@ SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, cons
 DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const FilterSettings& settings) {
     const SvgfImages images = Svgf(graph, input, settings.svgf).record(false);
-    return {antialias(graph, input, images.beauty, settings.taa), {}, images.moments};
+    return {antialias(graph, input, images.beauty, settings.taa), {}, images.moments, images.reasons};
 }
 
 }  // namespace limpid::denoise

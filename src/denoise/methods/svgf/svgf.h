@@ -46,17 +46,18 @@ struct SvgfSettings {
 /// for "joint", or for "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL",
 /// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work), "svgf/lags SIGNAL"
 /// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL",
-/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2 SIGNAL" and so on, "svgf/compose". Histories: the
-/// surfaces, and for each signal "svgf/SIGNAL color", "svgf/SIGNAL moments" and, unless it is fed back,
-/// "svgf/SIGNAL stable".
+/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2 SIGNAL" and so on, "svgf/compose", and for
+/// debugging "svgf/reasons SIGNAL". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
+/// "svgf/SIGNAL moments" and, unless it is fed back, "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 /// The same, and each filtered signal: rgba32f, with albedo, without emission, alpha 1.
 struct SvgfImages {
     gpu::ImageHandle beauty;
-    gpu::ImageHandle diffuse;   ///< without `separate`: all light that was filtered
-    gpu::ImageHandle specular;  ///< empty without `separate`
-    gpu::ImageHandle moments;   ///< of diffuse light, or of all: svgf_moments.glsl
+    gpu::ImageHandle diffuse;                 ///< without `separate`: all light that was filtered
+    gpu::ImageHandle specular;                ///< empty without `separate`
+    gpu::ImageHandle moments;                 ///< of diffuse light, or of all: svgf_moments.glsl
+    std::vector<SignalReasons> reasons = {};  ///< DenoiserOutput::reasons
 };
 SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const SvgfSettings& settings);

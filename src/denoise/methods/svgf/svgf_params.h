@@ -25,8 +25,6 @@ LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // length of history; 2 is the first,
 LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // smaller lags change little and cost as much memory traffic
 LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angles use the slope of this one
 LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;      // minimum tolerance, relative to the distance
-LIMPID_CONST float SVGF_MIN_ALPHA = 0.02;        // of narrower lobes, which would leave few pixels to average
-LIMPID_CONST float SVGF_MAX_LOBE_SCALE = 1e4;    // more would compare the rounding of normals
 LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;      // sums of weights below which neighbours show other surfaces
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
@@ -44,7 +42,7 @@ struct SvgfReprojectParams {
     uint height;
     ReprojectTests tests;
     float minAlbedo;  // 0: light is not demodulated
-    float lobeScale;  // 8 log2(e) / lobe_test^2
+    float lobeScale;  // lobe.glsl
     float alpha;
     float alphaMoments;
     float alphaFast;

@@ -114,7 +114,16 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
          .params = gpu::paramsOf(params),
          .constants = {{"TWO_LIGHTS", input.specular ? 1u : 0u}, {"TURNS", input.previousNormal ? 1u : 0u}},
          .extent = extent});
-    return {color.current, disocclusion, params.minAlbedo};
+    TemporalImages images{color.current, disocclusion, params.minAlbedo};
+    if (input.reasons.wanted)
+        images.reasons.push_back(recordReasons(graph, input, surfaces,
+                                               {.method = "temporal",
+                                                .signal = "joint",
+                                                .tests = params.tests,
+                                                .instances = settings.identity,
+                                                .frames = color,
+                                                .longest = params.maxHistory}));
+    return images;
 }
 
 DisocclusionCounts countDisocclusion(std::span<const uint32_t> disocclusion) {
@@ -140,7 +149,7 @@ DenoiserOutput composeTemporal(gpu::FrameGraph& graph, const DenoiserInput& inpu
     const gpu::ImageHandle picture = settings.temporal.showDisocclusion
                                          ? showDisocclusion(graph, beauty, accumulated.disocclusion)
                                          : antialias(graph, input, beauty, settings.taa);
-    return {picture, accumulated.disocclusion, accumulated.color};
+    return {picture, accumulated.disocclusion, accumulated.color, accumulated.reasons};
 }
 
 DenoiserOutput temporal::record(gpu::FrameGraph& graph, const DenoiserInput& input,

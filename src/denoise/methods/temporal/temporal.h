@@ -32,10 +32,12 @@ struct TemporalImages {
     gpu::ImageHandle color;
     gpu::ImageHandle disocclusion;  ///< r32ui: DISOCCLUSION_* and SAMPLE_REJECTED of temporal_params.h
     float minAlbedo = 0.0f;         ///< 0: `color` contains the albedo
+    std::vector<SignalReasons> reasons = {};  ///< DenoiserOutput::reasons
 };
 
-/// One frame. Passes: "surfaces", "temporal/accumulate". `color` and the surfaces are histories of the graph:
-/// the pass reads those of the previous frame. They need no clearing when the camera moves.
+/// One frame. Passes: "surfaces", "temporal/accumulate", and for debugging "temporal/reasons joint". `color`
+/// and the surfaces are histories of the graph: the pass reads those of the previous frame. They need no
+/// clearing when the camera moves.
 TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput& input,
                                     const TemporalSettings& settings);
 

@@ -33,6 +33,19 @@ struct Expected {
     float normalScale;
 };
 
+bool sameNormal(float cosine) {
+    return cosine > params.tests.normal;
+}
+
+bool sameDistance(float depth, Expected expected) {
+    return abs(expected.depth - depth) < expected.tolerance;
+}
+
+/// What a tap's weight is multiplied by.
+float normalWeight(float cosine, Expected expected) {
+    return exp2(expected.normalScale * (cosine - 1.0));
+}
+
 struct Taps {
     Past sum;
     float weight;
@@ -67,11 +80,11 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     Past there = loadFirst(inside);
     if (LOAD_AT_ONCE) loadRest(there, inside);
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
-                        cosine > params.tests.normal &&
-                        abs(expected.depth - depth) < expected.tolerance &&
+                        sameNormal(cosine) &&
+                        sameDistance(depth, expected) &&
                         (!comparesInstances() ||
                          (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
-    if (weighsNormals()) weight *= exp2(expected.normalScale * (cosine - 1.0));
+    if (weighsNormals()) weight *= normalWeight(cosine, expected);
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);
     addPast(taps.sum, there, weight);
@@ -114,19 +127,23 @@ Past pastAt(vec2 position, Expected expected) {
     return dividedBy(taps.sum, taps.weight);
 }
 
-/// `surface` is the pixel's texel of the `surfaces` image; `moved` one of the `motion` image.
-Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
-    const vec2 size = vec2(params.width, params.height);
-    const Reprojection was = reprojectionOf(moved, vec2(at), size);
-    const float z = distanceOf(surface);
-    if (z <= 0.0 || !was.onScreen) return NO_PAST;
-    const float depthBefore = z + was.depthChange;
+/// `surface` is the pixel's texel of the `surfaces` image.
+Expected expectedOf(ivec2 at, uvec2 surface, Reprojection was, vec2 size) {
+    const float depthBefore = distanceOf(surface) + was.depthChange;
     const vec3 normal = normalOf(surface);
     const float tolerance = depthTolerance(params.camera, depthBefore, normal, vec2(at), size, params.tests);
     vec3 normalBefore = normal;
     if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
-    return pastAt(was.position, Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
-                                         weighsNormals() ? normalScaleOf(surface) : 0.0));
+    return Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
+                    weighsNormals() ? normalScaleOf(surface) : 0.0);
+}
+
+/// `moved` is a texel of the `motion` image.
+Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
+    const vec2 size = vec2(params.width, params.height);
+    const Reprojection was = reprojectionOf(moved, vec2(at), size);
+    if (distanceOf(surface) <= 0.0 || !was.onScreen) return NO_PAST;
+    return pastAt(was.position, expectedOf(at, surface, was, size));
 }
 
 #endif

@@ -2,6 +2,7 @@
 // steps 2 and 3.
 #include "denoise/methods/svgf/svgf_params.h"
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/reproject/lobe.glsl"
 #include "denoise/stages/surfaces/surface_texel.glsl"
 
 layout(constant_id = 1) const bool REFLECTIONS = false;  // follow the reflected image instead of the surface
@@ -68,32 +69,12 @@ bool weighsNormals() {
     return LOBES;
 }
 
-/// Normals that differ by an angle d turn the reflected ray by 2 d, and the lobe of GGX is about as wide as its alpha,
-/// the squared roughness. So the weight is exp(-(2 d / (lobe_test alpha))^2), with d^2 = 2 (1 - cosine).
 float normalScaleOf(uvec2 surface) {
-    const float roughness = roughnessOf(surface), alpha = max(roughness * roughness, SVGF_MIN_ALPHA);
-    return min(params.lobeScale / (alpha * alpha), SVGF_MAX_LOBE_SCALE);
+    return lobeNormalScale(roughnessOf(surface), params.lobeScale);
 }
 
 #include "denoise/stages/reproject/history.glsl"
-
-/// The mean over the 3x3 pixels of the same instance: each pixel's value comes from one random ray, or none.
-vec4 reflectionMotionAt(ivec2 at) {
-    const uint own = imageLoad(instances, at).x;
-    vec4 sum = vec4(0.0);
-    for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-            const ivec2 there = at + ivec2(i, j);
-            const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
-            const vec4 moved = LOAD_LAYER(reflectionMotion, inside);
-            const vec3 motionThere = moved.xyz / max(moved.w, 1e-20);
-            const bool valid = moved.w > 0.0 && isFinite(vec3(moved.w)) && isFinite(motionThere);
-            if (inside == there && valid && imageLoad(instances, inside).x == own)
-                sum += vec4(motionThere, 1.0);
-        }
-    }
-    return sum;
-}
+#include "denoise/stages/reproject/reflection_motion.glsl"
 
 Past accumulated(Past past, vec3 x) {
     const float frames = min(past.moments.w + 1.0, params.longest);

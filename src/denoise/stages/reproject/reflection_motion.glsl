@@ -1,0 +1,28 @@
+// How the reflection that a pixel shows has moved. docs/denoising.md, SVGF, step 2.
+//
+// The including shader declares beforehand `params` with width and height, READ_LAYER `reflectionMotion`, and the image
+// `instances`.
+#ifndef LIMPID_REFLECTION_MOTION_GLSL
+#define LIMPID_REFLECTION_MOTION_GLSL
+
+#include "denoise/stages/guides.glsl"
+
+/// The mean over the 3x3 pixels of the same instance: each pixel's value comes from one random ray, or none.
+vec4 reflectionMotionAt(ivec2 at) {
+    const uint own = imageLoad(instances, at).x;
+    vec4 sum = vec4(0.0);
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+            const ivec2 there = at + ivec2(i, j);
+            const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
+            const vec4 moved = LOAD_LAYER(reflectionMotion, inside);
+            const vec3 motionThere = moved.xyz / max(moved.w, 1e-20);
+            const bool valid = moved.w > 0.0 && isFinite(vec3(moved.w)) && isFinite(motionThere);
+            if (inside == there && valid && imageLoad(instances, inside).x == own)
+                sum += vec4(motionThere, 1.0);
+        }
+    }
+    return sum;
+}
+
+#endif
