@@ -81,6 +81,7 @@ void ViewerWindow::run(studio::Studio& studio) {
             screen_ = std::make_unique<Screen>(window_, options_);
         }
         --restless;
+        if (panel_.passPreview.isAboutToShow()) restless = std::max(restless, 1);
     }
     studio.removeListener(listener);
     shown_ = studio.shown();

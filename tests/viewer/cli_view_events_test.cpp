@@ -105,22 +105,26 @@ TEST_F(ViewEventsTest, ThePassUnderThePointerIsShown) {
     DrivenViewer viewer(folder_, "builtin:cornell --max-spp 3 --denoiser svgf");
     viewer.settledPicture();
     open(viewer, "section passes");
-    const std::string first = "svgf/reproject diffuse", second = "svgf/compose";
+    const std::string first = "svgf/reproject diffuse", second = "svgf/reproject specular";
     const auto shows = [&](const std::string& pass) {
         viewer.waitFor("'" + pass + "' to be shown", [&] { return viewer.value("pass shown") == pass; });
     };
+    const auto restOn = [&](const std::string& pass) {
+        viewer.waitFor("the pointer on '" + pass + "'", [&] {
+            viewer.hover("pass " + pass);  // again where the list has moved in the meantime
+            std::this_thread::sleep_for(std::chrono::milliseconds(400));
+            return viewer.value("pass shown") == pass;
+        });
+    };
     viewer.waitFor("passes", [&] { return viewer.controls().contains("pass " + second); });
-    viewer.hover("pass " + first);
-    shows(first);
+    restOn(first);
     EXPECT_FALSE(viewer.controls().contains("image"));  // the list does not move
-    viewer.hover("pass " + second);
-    shows(second);
+    restOn(second);
     viewer.xdotool("mousemove 430 850");
     shows("");
     viewer.click("pass " + first);
     viewer.waitFor("images", [&] { return viewer.controls().contains("image"); });
-    viewer.hover("pass " + second);
-    shows(second);
+    restOn(second);
     viewer.xdotool("mousemove 430 850");
     shows(first);
     viewer.click("pass " + first);  // the pointer stays, and the picture is shown

@@ -24,6 +24,9 @@ struct PassPreview {
     bool clicked = false;  ///< this pass was clicked: State::pass is what the click says
     bool shown = false;    ///< State::pass is that of this preview
     std::string usually;   ///< State::pass of before; only if shown
+
+    /// Pictures of the window are needed, although nothing happens.
+    bool isAboutToShow() const { return !pass.empty() && !shown && !clicked; }
 };
 
 /// What the panel changes: the studio's state, and what belongs to this window alone.

@@ -92,6 +92,8 @@ def test_preview(browser):
         browser.mouse('mouseMoved', *center(browser.evaluate(f"""(({{left, top, width, height}}) =>
             ({{left, top, width, height}}))(({row.format(name)}).getBoundingClientRect())""")), 0)
 
+    choose(browser, 'denoiser', 'svgf')
+    browser.wait(f'Boolean({row.format(PASS)})', 'the pass')
     rest_on(PASS)
     browser.wait(f"({shown}).startsWith('{PASS}')", 'the pass under the mouse')
     rest_on('svgf/compose')
