@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"SvgfBuffers", "svgf", gpu::Backing::Buffer},
                     Case{.name = "SvgfWithoutSearch", .method = "svgf", .search = false},
                     Case{.name = "SvgfJointAntilag", .method = "svgf", .separate = false, .antilag = true}),
-    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
 
 // Known answers: a plane of 9x7 pixels, of which one is looked at.
 
@@ -292,8 +292,8 @@ TEST_P(ReasonsByHandTest, SamplesThatAreNoNumbersLeaveNoHistory) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reasons, ReasonsByHandTest, testing::Values("temporal", "svgf"),
-                         [](const testing::TestParamInfo<const char*>& info) {
-                             return std::string(info.param);
+                         [](const testing::TestParamInfo<const char*>& one) {
+                             return std::string(one.param);
                          });
 
 class LobeReasonsTest : public ReasonsByHandTest {

@@ -1,5 +1,7 @@
 #include "studio/state/timings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace limpid::studio {
@@ -12,6 +14,11 @@ bool due(Clock::time_point& last, double seconds) {
     if (secondsSince(last) < seconds) return false;
     last = Clock::now();
     return true;
+}
+
+std::string durationText(float milliseconds) {
+    if (milliseconds >= 999.5f) return fmt::format("{:.1f} s", milliseconds / 1000.0f);
+    return fmt::format("{:.3g} ms", milliseconds);
 }
 
 void Track::add(float value) {

@@ -15,6 +15,9 @@ double secondsSince(Clock::time_point then);
 /// True once `seconds` have gone by since `last`, which is now then.
 bool due(Clock::time_point& last, double seconds);
 
+/// For the user: three digits, and seconds from one second on.
+std::string durationText(float milliseconds);
+
 /// The last values, oldest first.
 class Track {
   public:

@@ -18,6 +18,14 @@ TEST(Timings, PassesOfOneNameAddUpInTheFramesOrder) {
     EXPECT_EQ(timings.passes()[0].milliseconds.values(), (std::vector<float>{2.0f, 7.0f, 1.0f}));
 }
 
+TEST(Timings, DurationsAreShort) {
+    EXPECT_EQ(durationText(0.01234f), "0.0123 ms");
+    EXPECT_EQ(durationText(16.66f), "16.7 ms");
+    EXPECT_EQ(durationText(999.4f), "999 ms");
+    EXPECT_EQ(durationText(999.6f), "1.0 s");
+    EXPECT_EQ(durationText(32467.7f), "32.5 s");
+}
+
 TEST(Timings, TheOldestAreForgotten) {
     Track track;
     for (int i = 0; i < 500; ++i) track.add(static_cast<float>(i));

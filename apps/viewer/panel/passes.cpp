@@ -62,7 +62,7 @@ void plot(const char* name, const Track& track, ImVec2 size, const char* text = 
 
 void drawSums(const Drawing& with) {
     const Facts& facts = with.facts;
-    const std::string last = fmt::format("{:.1f} ms a frame", facts.timings.frames().last());
+    const std::string last = studio::durationText(facts.timings.frames().last()) + " a frame";
     plot("##frames", facts.timings.frames(),
          {ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetTextLineHeight()}, last.c_str());
     with.controls.note("frame times", last);
@@ -101,7 +101,7 @@ void drawPasses(const Drawing& with) {
         ImGui::TableNextColumn();
         plot(("##" + pass.name).c_str(), pass.milliseconds, {graphWidth, ImGui::GetTextLineHeight()});
         ImGui::TableNextColumn();
-        ImGui::Text("%.3f ms", static_cast<double>(pass.milliseconds.last()));
+        ImGui::TextUnformatted(studio::durationText(pass.milliseconds.last()).c_str());
     }
     ImGui::EndTable();
     preview(panel, pointedAt);

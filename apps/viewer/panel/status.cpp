@@ -50,8 +50,8 @@ void drawStatus(const Drawing& with) {
     const studio::State& state = with.panel.state;
     if (facts.scenesShown > 0)
         drawText(colors.quiet,
-                 fmt::format("{}x{}, {:.1f} ms a frame, {}", state.render.extent.width,
-                             state.render.extent.height, facts.timings.frames().last(), facts.device));
+                 fmt::format("{}x{}, {} a frame, {}", state.render.extent.width, state.render.extent.height,
+                             studio::durationText(facts.timings.frames().last()), facts.device));
     if (!facts.fault.empty()) {
         drawText(colors.fault, facts.fault);
         with.controls.note("error", facts.fault);
