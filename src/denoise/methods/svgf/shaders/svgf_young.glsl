@@ -42,11 +42,9 @@ void addTap(inout Sum sum, SurfaceCentre centre, ivec2 at, ivec2 from, int radiu
     sum.squares += weight * weight * light.a * light.a;
 }
 
-/// Both loads at once, as most pixels are not young.
 bool isYoung(ivec2 at) {
-    if (at.x >= int(params.width) || at.y >= int(params.height)) return false;
-    const float frames = imageLoad(moments, at).w, deviation = LOAD_HALF4_ALPHA(signal, at);
-    return frames < SVGF_YOUNG && deviation >= 0.0;
+    return at.x < int(params.width) && at.y < int(params.height) && imageLoad(moments, at).w < SVGF_YOUNG &&
+           LOAD_HALF4_ALPHA(signal, at) >= 0.0;
 }
 
 /// The sum over every `step`-th row, from the number `first` on.
