@@ -14,9 +14,8 @@ namespace limpid::studio {
 /// the two words of a pixel (denoise/stages/reproject/reasons_params.h).
 std::string reasonText(uint32_t reason, uint32_t frames);
 
-/// The same for a pixel: one line, or one for each signal if they differ ("diffuse: ..."). `position`: from 0
-/// to
-/// 1. Empty if there are no signals.
+/// The same for a pixel: one line, or one for each signal if they differ ("diffuse: ..."). Empty if there are
+/// no signals. `position`: from 0 to 1.
 std::string historyText(const HistoryReasons& reasons, const std::array<float, 2>& position);
 
 }  // namespace limpid::studio
