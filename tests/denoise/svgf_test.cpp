@@ -54,7 +54,8 @@ struct Case {
     int jumpAt = -1;       ///< from this frame on the light is three times as bright
     bool hasNans = false;  ///< and infinities, in radiance, albedo and roughness
     bool hasRoughness = true;
-    int mixesFrom = 0;  ///< before this frame, filtered light is not stabilised
+    int mixesFrom = 0;          ///< before this frame, filtered light is not stabilised
+    bool hasNegatives = false;  ///< a quarter of the light is 0, a quarter below 0
 };
 
 SvgfSettings preset(const char* name) {
@@ -185,6 +186,13 @@ HostFrame SvgfPassTest::frameOf(int number) {
     if (c.jumpAt >= 0 && number >= c.jumpAt) {
         for (auto* layer : {&frame.diffuse, &frame.specular}) {
             for (float& value : *layer) value *= 3.0f;
+        }
+    }
+    if (c.hasNegatives) {
+        for (size_t i = 0; i < frame.pixelCount() * 4; ++i) {
+            const float factor = (i / 32) % 2 == 0 ? 1.0f : (i / 4) % 2 == 0 ? -1.0f : 0.0f;
+            frame.diffuse[i] *= factor;
+            frame.specular[i] *= factor;
         }
     }
     if (!c.hasRoughness) frame.roughness.clear();
@@ -462,7 +470,8 @@ INSTANTIATE_TEST_SUITE_P(
                  .settings = {.levels = 3},
                  .frames = 10,
                  .jumpAt = 6,
-                 .hasNans = true}),
+                 .hasNans = true},
+            Case{.name = "Negatives", .options = moving, .settings = {.levels = 0}, .hasNegatives = true}),
         testing::Bool(), testing::Values(gpu::Backing::Image, gpu::Backing::Buffer)),
     nameOf);
 

@@ -209,8 +209,8 @@ SvgfDimming svgfDimming(const denoise::HostFrame& frame, SvgfSignal signal, cons
         const Around around = meansAround(neighbours, p, moments);
         const auto factor = [&](double variance) {
             const double usual = around.mean + params.fireflies * n * n * std::sqrt(std::max(variance, 0.0)) +
-                                 0.001 * std::abs(around.mean) + 1e-6;
-            const double limit = std::max(usual, l - params.phiColor * color[p].w);
+                                 0.001 * std::abs(around.mean);
+            const double limit = std::max(std::max(usual, 0.0) + 1e-6, l - params.phiColor * color[p].w);
             return l > limit ? limit / l : 1.0;
         };
         const bool close = isCloseToLeast(around.weights), counts = around.weights >= leastWeights;

@@ -49,6 +49,17 @@ TEST_F(SvgfYoungByHand, AFireflyIsDimmedToTheLimitOfItsNeighbours) {
     EXPECT_EQ(factor(1), 1.0);
 }
 
+TEST_F(SvgfYoungByHand, DarkAndNegativeLightIsNeverDimmed) {
+    params.fireflies = 2.0;
+    for (dvec4& m : moments) m = dvec4(-1, 1, -1, 1);
+    const auto factor = [&](double light) {
+        color[middle] = dvec4(dvec3(light), 1);
+        return svgfDimming(frame, SvgfSignal::Diffuse, surfaces, color, moments, params).factor[middle];
+    };
+    for (const double light : {-2.0, -0.5, 0.0, 9e-7}) EXPECT_EQ(factor(light), 1.0) << light;
+    EXPECT_NEAR(factor(1e-4), 0.01, 1e-9) << "never brighter, nor of the other sign";
+}
+
 TEST_F(SvgfYoungByHand, APixelWithoutNeighboursIsNotDimmed) {
     for (dvec3& normal : surfaces.normal) normal = {1, 0, 0};
     surfaces.normal[middle] = {0, 0, 1};

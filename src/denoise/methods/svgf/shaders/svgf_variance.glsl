@@ -46,7 +46,8 @@ vec4 withoutFirefly(ivec2 at, vec4 light, float frames) {
     const vec2 mean = sums.yz / sums.x;
     const float deviation = sqrt(max(mean.y - mean.x * mean.x, 0.0));
     const float usual = mean.x + params.fireflies * frames * frames * deviation + SVGF_LUMINANCE_FLOOR * abs(mean.x);
-    const float limit = max(usual + 1e-6, l - params.phiColor * light.a);
+    // Above 0 also where light is negative, as rounding can make it.
+    const float limit = max(max(usual, 0.0) + 1e-6, l - params.phiColor * light.a);
     return l > limit ? vec4(light.rgb * (limit / l), light.a) : light;
 }
 
