@@ -74,6 +74,15 @@ std::vector<Signal> signalsOf(const SvgfSettings& settings) {
     return {{"diffuse", SvgfSignal::Diffuse}, {"specular", SvgfSignal::Specular}};
 }
 
+/// The accumulated light, with its deviation in space where the history is short.
+gpu::ImageHandle withVariance(const gpu::FrameGraph& graph, const std::string& signal) {
+    for (const gpu::ImageHandle image : graph.imagesWrittenBy("svgf/variance " + signal)) {
+        const std::string name = graph.name(image);
+        if (name.ends_with(" color") || name.ends_with(" accumulated")) return image;
+    }
+    throw Error("svgf/variance writes no light");
+}
+
 using CaseParam = std::tuple<Case, bool, gpu::Backing>;
 
 std::string nameOf(const testing::TestParamInfo<CaseParam>& info) {
@@ -233,9 +242,7 @@ Stored SvgfPassTest::stored(const Signal& signal) {
             graph_.downloadFloat(device(), written("svgf/lags " + signal.name, "tiles"));
         result.tiles.assign(tiles.begin(), tiles.end());
     }
-    const std::vector<gpu::ImageHandle> images = graph_.imagesWrittenBy("svgf/variance " + signal.name);
-    if (images.size() != 1) throw Error("the variance of young pixels is not one image");
-    result.color = download(images[0]);
+    result.color = download(withVariance(graph_, signal.name));
     if (stabilises()) result.stablePast = download("svgf/reproject " + signal.name, "stable past");
     return result;
 }
@@ -489,7 +496,7 @@ class SvgfVarianceTest : public DenoiseTest {
     static constexpr int frames = 40;
 
     void addDeviations(const std::string& signal, std::vector<double>& sums) {
-        const std::vector<dvec4> color = download(graph_.imagesWrittenBy("svgf/variance " + signal)[0]);
+        const std::vector<dvec4> color = download(withVariance(graph_, signal));
         for (size_t p = 0; p < sums.size(); ++p) sums[p] += color[p].w * color[p].w;
     }
 

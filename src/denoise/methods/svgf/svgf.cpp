@@ -48,6 +48,7 @@ struct Accumulated {
     ImageHandle moments;     ///< half4: see svgf_moments.glsl
     ImageHandle tileSums;    ///< rgba32f: see svgf_tiles.glsl
     ImageHandle tiles;       ///< r32f: lag
+    ImageHandle youngTiles;  ///< r32f: number of young pixels; only with buffers
     History feedback;        ///< of colors; `current` is what the next frame reads
     ImageHandle stable;      ///< half4: the last level's result, or as `feedback` where that is not kept
     ImageHandle stablePast;  ///< half4: stable light of before, weight of the light of now
@@ -110,6 +111,11 @@ class Svgf {
                  .albedo = input_.albedoSpecular,
                  .specular = true,
                  .reflects = reflects}};
+    }
+
+    /// The number of tiles, `edge` pixels long and high, that cover the picture.
+    Extent tilesOf(uint32_t edge) const {
+        return {(extent_.width + edge - 1) / edge, (extent_.height + edge - 1) / edge};
     }
 
     const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
@@ -185,8 +191,7 @@ class Svgf {
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
         const std::string name = "svgf/" + signal.name;
-        const Extent tileExtent{(extent_.width + SVGF_TILE - 1) / SVGF_TILE,
-                                (extent_.height + SVGF_TILE - 1) / SVGF_TILE};
+        const Extent tileExtent = tilesOf(SVGF_TILE);
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA16Float, extent_);
@@ -230,7 +235,11 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        return {color, moments.current, tileSums, tiles, feedback, stable.current, stablePast, moments};
+        const ImageHandle youngTiles =
+            buffers_ ? graph_.transient(name + " young tiles", Format::R32Float, tilesOf(SVGF_YOUNG_TILE))
+                     : ImageHandle{};
+        return {color,    moments.current, tileSums,   tiles,  youngTiles,
+                feedback, stable.current,  stablePast, moments};
     }
 
     SignalReasons reasons(const Signal& signal, const Surfaces& surfaces,
@@ -313,11 +322,13 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         constants.push_back({"FIREFLIES", settings_.fireflies > 0.0f ? 1u : 0u});
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
+                                           {"moments", accumulated.moments},
+                                           {"color", accumulated.color}};
+        if (buffers_) bindings.push_back({"youngTiles", accumulated.youngTiles});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
-                         .bindings = {{"surfaces", surfaces.surfaces.current},
-                                      {"moments", accumulated.moments},
-                                      {"color", accumulated.color}},
+                         .bindings = bindings,
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = buffers_ ? extent_ : levelInvocations(extent_, 1, {1, SVGF_COLUMN})});
@@ -355,12 +366,14 @@ class Svgf {
 
     void fillYoung(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
                    ImageHandle filtered) {
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
+                                           {"moments", accumulated.moments},
+                                           {"signal", accumulated.color},
+                                           {"filtered", filtered}};
+        if (buffers_) bindings.push_back({"youngTiles", accumulated.youngTiles});
         graph_.dispatch({.pass = "svgf/young " + signal.name,
                          .shader = choose(shaders::svgf_young_comp, shaders::svgf_young_buffers_comp),
-                         .bindings = {{"surfaces", surfaces.surfaces.current},
-                                      {"moments", accumulated.moments},
-                                      {"signal", accumulated.color},
-                                      {"filtered", filtered}},
+                         .bindings = bindings,
                          .params = gpu::paramsOf(filterParams(1)),
                          .constants = filterConstants(signal),
                          .extent = extent_});

@@ -12,7 +12,8 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-LIMPID_CONST int SVGF_TILE = 8;  // pixels along an edge
+LIMPID_CONST int SVGF_TILE = 8;         // pixels along an edge
+LIMPID_CONST int SVGF_YOUNG_TILE = 16;  // pixels along an edge of the squares whose young pixels are counted
 // Number of pixels in a column, a step apart, that one invocation of a level filters. A row of invocations
 // filters a row of pixels, so it reads whole cache lines at any step. More pixels per invocation leave too
 // few invocations in flight.

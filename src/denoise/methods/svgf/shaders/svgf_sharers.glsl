@@ -3,8 +3,10 @@
 #ifndef LIMPID_SVGF_SHARERS_GLSL
 #define LIMPID_SVGF_SHARERS_GLSL
 
-const uint GROUP = 16;
-layout(local_size_x = 16, local_size_y = 16) in;
+#include "denoise/methods/svgf/svgf_params.h"
+
+const uint GROUP = uint(SVGF_YOUNG_TILE);
+layout(local_size_x = SVGF_YOUNG_TILE, local_size_y = SVGF_YOUNG_TILE) in;
 
 shared uint youngCount;
 shared uint youngPixels[GROUP * GROUP];

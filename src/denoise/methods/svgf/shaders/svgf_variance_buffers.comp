@@ -5,6 +5,8 @@
 #include "denoise/methods/svgf/shaders/svgf_sharers.glsl"
 #include "denoise/methods/svgf/shaders/svgf_variance.glsl"
 
+layout(set = 0, binding = 4, r32f) uniform writeonly image2D youngTiles;
+
 shared vec3 sums[GROUP * GROUP];
 
 /// svgf_variance.comp shares neighbours between pixels; here most young pixels have none beside them that are young.
@@ -29,6 +31,7 @@ vec3 rowsSum(ivec2 at, int first, int step) {
 
 void main() {
     const uint count = collectYoung(isYoung(ivec2(gl_GlobalInvocationID.xy)));
+    if (gl_LocalInvocationIndex == 0u) imageStore(youngTiles, ivec2(gl_WorkGroupID.xy), vec4(float(count)));
     if (count == 0u) return;
     const Share share = shareOf(count, 2u * uint(RADIUS) + 1u);
     const uint own = gl_LocalInvocationIndex;
