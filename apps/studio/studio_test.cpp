@@ -98,6 +98,28 @@ TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
     studio->finish();
 }
 
+/// Compiling takes seconds on some drivers. Nobody should take that for a program that hangs.
+TEST_F(StudioTest, ShadersThatAreCompiledAreTold) {
+    const auto studio = make(small());
+    const auto first = rest(*studio);
+    std::atomic<int> told = 0;
+    const uint64_t listener = studio->addListener([&] {
+        const auto shown = studio->shown();
+        if (!shown->facts.compiling) return;
+        ++told;
+        EXPECT_TRUE(shown->facts.computing);
+        EXPECT_EQ(shown->picture, first->picture) << "the last picture stays";
+    });
+    const auto filtered = rest(*studio, studio->edit({{"denoiser", "atrous"}}));
+    const int before = told;
+    EXPECT_GE(before, 1);
+    EXPECT_FALSE(filtered->facts.compiling);
+    rest(*studio, studio->edit({{"seed", 3}}));
+    EXPECT_EQ(told, before) << "they are there";
+    studio->removeListener(listener);
+    studio->finish();
+}
+
 /// The next frame begins before the picture of the last one is published; what is published stays the same.
 TEST_F(StudioTest, FramesOverlapWithTheirPictures) {
     std::array<std::shared_ptr<const Shown>, 2> rested;

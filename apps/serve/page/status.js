@@ -51,6 +51,7 @@ export class Status {
 
   activity(facts) {
     if (facts.activity) return facts.activity;
+    if (facts.compiling) return 'compiling shaders';
     if (facts.computing) return 'rendering';
     return this.store.value('running') === false ? 'stopped' : 'finished';
   }

@@ -56,6 +56,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     };
     main_.setInterruption(interrupted);
     comparison_.setInterruption(interrupted);
+    device_.onNewPipelines([this] { tellCompiling(); });
 }
 
 void RenderLoop::say(const std::string& message) {
@@ -161,6 +162,16 @@ void RenderLoop::finish() {
 void RenderLoop::announce() {
     facts_.computing = true;
     publish();
+}
+
+/// Tells the clients why this frame takes longer. Nothing else of what they have changes: the frame is under
+/// way.
+void RenderLoop::tellCompiling() {
+    publishWaiting();
+    auto shown = std::make_shared<Shown>(*mailbox_.shown());
+    shown->number = ++publications_;
+    shown->facts.compiling = true;
+    mailbox_.publish(std::move(shown));
 }
 
 /// Chooses what the next snapshot shows. The picture of a frame that the device still computes is not among

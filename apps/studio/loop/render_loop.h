@@ -105,6 +105,7 @@ class RenderLoop {
     void publish();
     void publishWaiting();
     void announce();
+    void tellCompiling();
 
     void saveWhatIsAsked();
     void save(const std::filesystem::path& file);

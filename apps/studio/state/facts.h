@@ -22,6 +22,7 @@ struct Facts {
     uint64_t frames = 0;         ///< since the last reset
     uint64_t framesEver = 0;
     bool computing = false;  ///< false: the picture is finished, or rendering is stopped
+    bool compiling = false;  ///< the frame that is computed needs shaders that were not compiled before
     double duration = 0.0;   ///< of the clip or the path, seconds; 0: nothing plays
     std::vector<std::string> cameras;
     Timings timings;

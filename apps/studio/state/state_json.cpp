@@ -488,6 +488,7 @@ json toJson(const Facts& facts) {
             {"samples", facts.samplesInMean},
             {"frames", facts.frames},
             {"computing", facts.computing},
+            {"compiling", facts.compiling},
             {"duration", facts.duration},
             {"cameras", facts.cameras},
             {"frame_milliseconds", facts.timings.frames().last()},

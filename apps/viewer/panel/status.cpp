@@ -19,6 +19,10 @@ void drawText(ImU32 color, const std::string& text) {
     ImGui::PopStyleColor();
 }
 
+const char* frameText(const Facts& facts) {
+    return facts.compiling ? "compiling shaders" : facts.computing ? "computing" : "finished";
+}
+
 /// What takes longer than a frame, or how far the picture is.
 void drawActivity(const Drawing& with) {
     const Facts& facts = with.facts;
@@ -30,7 +34,7 @@ void drawActivity(const Drawing& with) {
         return;
     }
     if (facts.scenesShown == 0) return ImGui::TextUnformatted("no scene");
-    std::string text = !with.panel.state.running ? "paused" : facts.computing ? "computing" : "finished";
+    std::string text = with.panel.state.running ? frameText(facts) : "paused";
     if (facts.samplesInMean > 0)
         text += fmt::format(": {} of {} samples", facts.samplesInMean, with.panel.state.maxSamples);
     else
@@ -45,8 +49,7 @@ void drawStatus(const Drawing& with) {
     const Accents colors = accentsOf(with.panel.memory.dark);
     const float start = ImGui::GetCursorPosY();
     drawActivity(with);
-    with.controls.note(
-        "status", facts.activity.empty() ? facts.computing ? "computing" : "finished" : facts.activityText());
+    with.controls.note("status", facts.activity.empty() ? frameText(facts) : facts.activityText());
     const studio::State& state = with.panel.state;
     if (facts.scenesShown > 0)
         drawText(colors.quiet,

@@ -375,6 +375,37 @@ TEST_F(GpuTest, ConstantsSetTheWorkgroupSize) {
                 AllOf(HasSubstr("test_group_size.comp"), HasSubstr("maxComputeWorkGroupSize")));
 }
 
+TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
+    FrameGraph graph;
+    size_t before = device().pipelineCount();
+    int announced = 0;
+    device().onNewPipelines([&] {
+        ++announced;
+        EXPECT_EQ(device().pipelineCount(), before) << "too late";
+    });
+    const auto run = [&](uint32_t width) {
+        graph.beginFrame();
+        const ImageHandle image = graph.transient("size", Format::RG32Uint, odd);
+        graph.dispatch({.pass = "size",
+                        .shader = shaders::test_group_size_comp,
+                        .bindings = {{"result", image}},
+                        .constants = {{"groupWidth", width}, {"groupHeight", 4}},
+                        .extent = odd});
+        graph.execute(device());
+    };
+    run(8);
+    EXPECT_EQ(announced, 1);
+    run(8);
+    EXPECT_EQ(announced, 1);
+    before = device().pipelineCount();
+    run(16);
+    EXPECT_EQ(announced, 2);
+    EXPECT_EQ(device().pipelineCount(), before + 1);
+    device().onNewPipelines({});
+    run(4);
+    EXPECT_EQ(announced, 2);
+}
+
 TEST_F(GpuTest, AFailedFrameDoesNotHarmTheNext) {
     FrameGraph graph;
     graph.beginFrame();

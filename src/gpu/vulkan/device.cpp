@@ -107,6 +107,10 @@ size_t Device::pipelineCount() const {
     return impl_->pipelines->size();
 }
 
+void Device::onNewPipelines(std::function<void()> listener) {
+    impl_->pipelines->onNewPipelines(std::move(listener));
+}
+
 Backing filterBacking(const Device& device) {
     return device.isCpu() ? Backing::Image : Backing::Buffer;
 }

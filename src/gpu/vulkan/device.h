@@ -124,6 +124,11 @@ class Device {
     void loadPipelineCache(std::span<const std::byte> data);
     /// Number of pipelines created so far.
     size_t pipelineCount() const;
+    /// Calls `listener` whenever a frame needs pipelines that do not exist yet, in the thread that executes
+    /// or prepares the frame, before they are created. That can take seconds if the driver has to compile
+    /// shaders; lavapipe compiles them later, while it computes the frame. Not thread-safe; call it between
+    /// frames. An empty function ends it.
+    void onNewPipelines(std::function<void()> listener);
 
     struct Impl;
     Impl& impl() { return *impl_; }

@@ -76,6 +76,7 @@ FrameExecutor& FrameGraph::Impl::readyToRun(Device& device) {
 void FrameGraph::execute(Device& device) {
     FrameExecutor& executor = impl_->readyToRun(device);
     executor.setInterruption(device.isCpu() ? impl_->interrupted : nullptr);
+    device.impl().pipelines->prepare(impl_->frame.dispatches);
     executor.execute(impl_->frame);
     impl_->frame.executed = true;
 }

@@ -197,6 +197,8 @@ void PipelineCache::prepare(std::span<const RecordedDispatch> dispatches) {
             jobs.push_back({&dispatch, &layoutsOf(*dispatch.shader)});
         }
     }
+    if (jobs.empty()) return;
+    if (listener_) listener_();
     forEachOnThreads(jobs.size(), [&](size_t i) {
         const RecordedDispatch& dispatch = *jobs[i].dispatch;
         Made made = makePipeline(dispatch, *jobs[i].layouts);

@@ -2,6 +2,7 @@
 // the first dispatch that needs them.
 #pragma once
 
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -27,6 +28,8 @@ class PipelineCache {
     Pipeline get(const RecordedDispatch& dispatch);
     /// Creates missing pipelines, on as many threads as the machine has cores. Thread-safe.
     void prepare(std::span<const RecordedDispatch> dispatches);
+    /// Device::onNewPipelines().
+    void onNewPipelines(std::function<void()> listener) { listener_ = std::move(listener); }
 
     /// Returns what the driver has compiled so far (VkPipelineCache), with a checksum.
     std::vector<std::byte> data() const;
@@ -62,6 +65,7 @@ class PipelineCache {
 
     std::shared_ptr<const Context> context_;
     UniqueDriverCache driverCache_;
+    std::function<void()> listener_;
     mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
     std::map<uint64_t, Layouts> layouts_;  ///< key: Shader::hash
     std::map<Key, Made> pipelines_;
