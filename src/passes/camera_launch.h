@@ -3,6 +3,7 @@
 
 #include "gpu/graph/frame_graph.h"
 #include "shaders/common/camera.h"
+#include "shaders/common/sampler.h"
 
 namespace limpid {
 
@@ -14,6 +15,13 @@ enum class Jitter : uint32_t {
     Off = JITTER_OFF,      ///< the centre
 };
 
+/// The random numbers, --sampler (shaders/common/rng.glsl).
+enum class Sampler : uint32_t {
+    Pcg = SAMPLER_PCG,
+    Tea = SAMPLER_TEA,
+    Sobol = SAMPLER_SOBOL,
+};
+
 /// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;
@@ -21,11 +29,13 @@ struct CameraLaunch {
     CameraParams previousCamera;  ///< camera of the previous frame of a sequence, for motion
     bool hasPrevious = false;     ///< false: no previous frame, all motion is invalid
     uint32_t firstSample = 0;     ///< samples per pixel since the last reset, before this launch
-    uint32_t stream = 0;          ///< stream of random numbers; in a still, the launch's number
+    /// Number of the first sample in sequences of points: over all launches and frames, without gaps.
+    uint32_t firstPoint = 0;
+    uint32_t stream = 0;  ///< stream of random numbers; in a still, the launch's number
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
     uint64_t samplesBefore = 0;  ///< per pixel in the mean, before this launch
-    bool samplerTea = false;     ///< --sampler tea instead of PCG (shaders/common/rng.glsl)
+    Sampler sampler = Sampler::Pcg;
 };
 
 inline ViewParams viewParams(const CameraLaunch& launch) {
@@ -36,6 +46,7 @@ inline ViewParams viewParams(const CameraLaunch& launch) {
     view.width = launch.extent.width;
     view.height = launch.extent.height;
     view.firstSample = launch.firstSample;
+    view.firstPoint = launch.firstPoint;
     view.stream = launch.stream;
     view.seed = launch.seed;
     view.jitter = static_cast<uint32_t>(launch.jitter);

@@ -45,7 +45,7 @@ TEST_F(CliMannersTest, HelpHasGroupsAndLinesOfAHundredColumns) {
     for (const char* group :
          {"\nScene and camera:\n", "\nOutput:\n", "\nSampling:\n", "\nMethod:\n", "\nLong renders:\n"})
         EXPECT_THAT(help, HasSubstr(group));
-    EXPECT_THAT(help, HasSubstr("--sampler pcg|tea"));
+    EXPECT_THAT(help, HasSubstr("--sampler pcg|sobol|tea"));
     EXPECT_THAT(help, HasSubstr("[0.01 to 179]"));
 }
 

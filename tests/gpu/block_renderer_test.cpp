@@ -35,32 +35,45 @@ class BlockRendererTest : public RenderTest {
             ASSERT_NEAR(a[i], b[i], 1e-4f * (std::abs(b[i]) + 1e-4f)) << layer.info->name << " " << i;
         }
     }
+
+    /// Compares the sums of blocks with the running mean over all samples of frame `number`.
+    void expectTheRunningMeans(const RenderSettings& settings, uint64_t number) {
+        const scene::Scene scene = prepared();
+        scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+        // The blocks' launches equal those of the running mean: 48 samples are 16 launches of 3.
+        const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
+        FrameRenderer frames(device(), gpuScene, settings, plan.samples);
+        BlockRenderer renderer(frames, plan);
+        Moment moment{.camera = camera(scene, settings)};
+        moment.number = number;
+        renderer.begin(moment);
+        FrameSums sums(settings.extent, plan, layerNames());
+        for (const uint32_t block : {2u, 0u, 1u}) {
+            EXPECT_EQ(renderer.render(block, always), plan.samplesOf(block));
+            renderer.addTo(sums);
+        }
+        FrameRenderer still(device(), gpuScene, settings, 120);
+        still.render(moment);
+        const RenderedLayers expected = still.download(), got = sums.means();
+        EXPECT_EQ(got.samples, 120u);
+        EXPECT_EQ(got.ids, expected.ids);
+        EXPECT_EQ(sums.counts.rays, still.counters().rays);
+        EXPECT_EQ(sums.counts.clamped, 0u);
+        for (const LayerSums& layer : sums.layers) {
+            expectNear(layer, got[*layer.info], expected[*layer.info]);
+        }
+    }
 };
 
 TEST_F(BlockRendererTest, SumsAreTheRunningMeansOfTheSameSamples) {
-    const scene::Scene scene = prepared();
-    const RenderSettings settings = smallLayers();
-    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
-    // The blocks' launches equal those of the running mean: 48 samples are 16 launches of 3.
-    const BlockPlan plan{.samples = 120, .blockSamples = 48, .launchSamples = 3};
-    FrameRenderer frames(device(), gpuScene, settings, plan.samples);
-    BlockRenderer renderer(frames, plan);
-    renderer.begin({.camera = camera(scene, settings)});
-    FrameSums sums(settings.extent, plan, layerNames());
-    for (const uint32_t block : {2u, 0u, 1u}) {
-        EXPECT_EQ(renderer.render(block, always), plan.samplesOf(block));
-        renderer.addTo(sums);
-    }
-    FrameRenderer still(device(), gpuScene, settings, 120);
-    still.render({.camera = camera(scene, settings)});
-    const RenderedLayers expected = still.download(), got = sums.means();
-    EXPECT_EQ(got.samples, 120u);
-    EXPECT_EQ(got.ids, expected.ids);
-    EXPECT_EQ(sums.counts.rays, still.counters().rays);
-    EXPECT_EQ(sums.counts.clamped, 0u);
-    for (const LayerSums& layer : sums.layers) {
-        expectNear(layer, got[*layer.info], expected[*layer.info]);
-    }
+    expectTheRunningMeans(smallLayers(), 0);
+}
+
+TEST_F(BlockRendererTest, PointsGoOnFromBlockToBlockAndFromFrameToFrame) {
+    RenderSettings settings = smallLayers();
+    settings.pathtrace.samplerSobol = true;
+    expectTheRunningMeans(settings, 0);
+    expectTheRunningMeans(settings, 7);
 }
 
 TEST_F(BlockRendererTest, APartOfABlockIsItsFirstSamples) {

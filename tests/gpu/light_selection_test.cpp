@@ -1,5 +1,5 @@
-// Compares pictures whose lights are chosen by the tree with pictures whose lights are chosen by power: their
-// means over many samples must agree. Slow.
+// Compares pictures whose lights are chosen by the tree with pictures whose lights are chosen by power, and
+// samplers with each other: their means over many samples must agree. Slow.
 #include "scene/builtin/builtin_parts.h"
 #include "scene/builtin/procedural_textures.h"
 #include "scene/model/prepare.h"
@@ -130,7 +130,20 @@ struct Estimate {
 
 class LightSelectionTest : public RenderTest {
   protected:
-    void check(Scene scene, scene::Tracer tracer) {
+    static PathtraceSettings byTree() {
+        PathtraceSettings settings;
+        settings.lightTree = true;
+        return settings;
+    }
+    static PathtraceSettings byPower(bool sobol = false) {
+        PathtraceSettings settings;
+        settings.lightTree = false;
+        settings.samplerSobol = sobol;
+        return settings;
+    }
+
+    void check(Scene scene, scene::Tracer tracer, const PathtraceSettings& tested = byTree(),
+               const PathtraceSettings& known = byPower()) {
         if (tracer == scene::Tracer::Hardware && !device().info().rayTracing) return;
         scene::prepare(scene);
         const bool moves = !scene.rig.clips.empty();
@@ -141,22 +154,22 @@ class LightSelectionTest : public RenderTest {
         Moment moment;
         moment.camera = scene::cameraParams(scene.cameras.at(0), size.width, size.height);
         if (moves) moment.scene = scene::SceneAnimator(scene, data).frame(0.5, 0.5);
-        const Estimate tree = estimate(onDevice, moment, true), power = estimate(onDevice, moment, false);
-        double noiseOfTree = 0.0, noiseOfPower = 0.0, light = 0.0;
+        const Estimate a = estimate(onDevice, moment, tested, 1), b = estimate(onDevice, moment, known, 2);
+        double noise = 0.0, knownNoise = 0.0, light = 0.0;
         uint32_t apart = 0;
-        for (size_t i = 0; i < tree.mean.size(); ++i) {
-            const double variance = tree.variance[i] + power.variance[i];
-            apart +=
-                std::abs(zOf((tree.mean[i] - power.mean[i]) / std::sqrt(std::max(variance, 1e-20)))) > 3.0;
-            noiseOfTree += tree.variance[i];
-            noiseOfPower += power.variance[i];
-            light += tree.mean[i];
+        for (size_t i = 0; i < a.mean.size(); ++i) {
+            const double variance = a.variance[i] + b.variance[i];
+            apart += std::abs(zOf((a.mean[i] - b.mean[i]) / std::sqrt(std::max(variance, 1e-20)))) > 3.0;
+            noise += a.variance[i];
+            knownNoise += b.variance[i];
+            light += a.mean[i];
         }
         fmt::print(
-            "{}: {} of {} pixels are more than 3 standard errors apart; variance {:.3f} of that by power\n",
-            scene.name, apart, tree.mean.size(), noiseOfTree / noiseOfPower);
+            "{}: {} of {} pixels are more than 3 standard errors apart; variance {:.3f} of that compared "
+            "with\n",
+            scene.name, apart, a.mean.size(), noise / knownNoise);
         EXPECT_GT(light, 0.0);
-        EXPECT_LE(apart, tree.mean.size() / 200);
+        EXPECT_LE(apart, a.mean.size() / 200);
     }
 
   private:
@@ -166,16 +179,18 @@ class LightSelectionTest : public RenderTest {
         return t * (1.0 - 0.25 / freedom) / std::sqrt(1.0 + 0.5 * t * t / freedom);
     }
 
-    Estimate estimate(scene::GpuScene& scene, const Moment& moment, bool byTree) {
+    /// `which`: 1 or 2; they have different seeds.
+    Estimate estimate(scene::GpuScene& scene, const Moment& moment, const PathtraceSettings& pathtrace,
+                      uint32_t which) {
         FrameRenderer renderer(device(), scene, {}, UINT64_MAX);
         RenderSettings settings;
         settings.extent = size;
         settings.samplesPerLaunch = 4;
-        settings.pathtrace.lightTree = byTree;
+        settings.pathtrace = pathtrace;
         const size_t pixels = size_t{size.width} * size.height;
         Estimate result{std::vector<double>(pixels), std::vector<double>(pixels)};
         for (uint32_t batch = 0; batch < batches; ++batch) {
-            settings.seed = 2 * batch + (byTree ? 1 : 2);
+            settings.seed = 2 * batch + which;
             renderer.setSettings(settings);
             renderer.begin(moment);
             while (renderer.samplesInMean() < samplesPerBatch) renderer.launch();
@@ -211,6 +226,13 @@ TEST_F(LightSelectionTest, SkySunsAndLamps) {
 
 TEST_F(LightSelectionTest, MovingLights) {
     for (const scene::Tracer tracer : tracers) check(moving(), tracer);
+}
+
+TEST_F(LightSelectionTest, SobolPoints) {
+    for (const scene::Tracer tracer : tracers) {
+        check(everything(), tracer, byPower(true), byPower());
+        check(spots(), tracer, byPower(true), byPower());
+    }
 }
 
 }  // namespace

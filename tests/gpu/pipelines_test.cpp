@@ -225,16 +225,41 @@ TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
         if (pipeline.integrator == Integrator::Preview) continue;  // no random numbers after the first hit
         // No jitter, so that only random numbers after the first hit matter.
         RenderSettings settings = settingsFor(pipeline, 24, 16);
-        const auto picture = [&](bool tea) {
-            settings.pathtrace.samplerTea = tea;
+        const auto picture = [&](Sampler sampler) {
+            settings.pathtrace.samplerTea = sampler == Sampler::Tea;
+            settings.pathtrace.samplerSobol = sampler == Sampler::Sobol;
             FrameRenderer renderer(device(), gpuScene, settings, 1);
             renderer.render(still(scene, settings, 0));
             const RenderedLayers layers = renderer.download();
             return beautyOf(layers).pixels;
         };
-        EXPECT_NE(picture(true), picture(false)) << pipeline.title();
-        EXPECT_EQ(picture(true), picture(true)) << pipeline.title();
+        EXPECT_NE(picture(Sampler::Tea), picture(Sampler::Pcg)) << pipeline.title();
+        EXPECT_NE(picture(Sampler::Sobol), picture(Sampler::Pcg)) << pipeline.title();
+        EXPECT_EQ(picture(Sampler::Tea), picture(Sampler::Tea)) << pipeline.title();
+        EXPECT_EQ(picture(Sampler::Sobol), picture(Sampler::Sobol)) << pipeline.title();
     }
+}
+
+/// The points of a sample do not depend on the launches. Nothing else is random here: paths end before
+/// roulette.
+TEST_F(PipelinesTest, SobolPointsAreThoseOfTheSamplesWhateverTheLaunches) {
+    const Scene scene = prepared(scene::cornellScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    RenderSettings settings = settingsFor(parsePipeline("path"), 24, 16);
+    settings.jitter = Jitter::Pixel;
+    settings.pathtrace.maxDepth = 2;
+    const auto picture = [&](Sampler sampler, uint32_t perLaunch, uint64_t perFrame) {
+        settings.pathtrace.samplerSobol = sampler == Sampler::Sobol;
+        settings.samplesPerLaunch = perLaunch;
+        FrameRenderer renderer(device(), gpuScene, settings, perFrame);
+        for (uint64_t frame = 0; frame < 8 / perFrame; ++frame)
+            renderer.render(still(scene, settings, frame));
+        return renderer.download().beauty;
+    };
+    const std::vector<float> known = picture(Sampler::Sobol, 1, 8);
+    expectEqual(picture(Sampler::Sobol, 4, 8), known, 1e-4f);
+    expectEqual(picture(Sampler::Sobol, 1, 1), known, 1e-4f);  // eight frames
+    EXPECT_NE(picture(Sampler::Pcg, 4, 8), picture(Sampler::Pcg, 1, 8));
 }
 
 TEST_F(PipelinesTest, AccumulationGoesOnUntilAnythingChanges) {

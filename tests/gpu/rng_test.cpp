@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "rng_test.comp.h"
+#include "shaders/common/sampler.h"
 #include "tests/gpu/gpu_fixture.h"
 #include "tests/reference/rng_copy.h"
 #include "tests/reference/statistics.h"
@@ -20,7 +21,7 @@ class RngTest : public GpuTest {
   protected:
     std::vector<uint32_t> words(const Settings& settings, bool samplerTea) {
         const Job job{.shader = shaders::rng_test_comp,
-                      .constants = {{"SAMPLER_TEA", samplerTea}},
+                      .constants = {{"SAMPLER", samplerTea ? SAMPLER_TEA : SAMPLER_PCG}},
                       .params = gpu::paramsOf(settings),
                       .count = settings.count};
         return run<uint32_t>(job, size_t{settings.count} * (numbers + 2));

@@ -115,8 +115,11 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
                     "Maximum number of bounces (8); the same as --set pathtrace.max_depth")
         ->check(CLI::Range(0, 1024));
     command.add_option("--seed", o.seed, "Random seed; another seed gives other noise (0)");
-    command.add_option("--sampler", o.sampler, "Random number generator: pcg (default) or tea")
-        ->check(CLI::IsMember({"pcg", "tea"}));
+    command
+        .add_option("--sampler", o.sampler,
+                    "Random numbers: pcg (default, independent), sobol (spread evenly over samples and "
+                    "neighbouring pixels: less noise) or tea (a poor generator)")
+        ->check(CLI::IsMember({"pcg", "sobol", "tea"}));
     command
         .add_option("--jitter", o.jitter,
                     "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
@@ -174,7 +177,10 @@ RenderSettings settingsOf(const RenderOptions& o) {
     settings.layers = !o.layers.empty();
     applyPreset(settings, o.preset);
     if (!o.jitter.empty()) settings.jitter = parseJitter(o.jitter);
-    if (!o.sampler.empty()) settings.pathtrace.samplerTea = o.sampler == "tea";
+    if (!o.sampler.empty()) {
+        settings.pathtrace.samplerTea = o.sampler == "tea";
+        settings.pathtrace.samplerSobol = o.sampler == "sobol";
+    }
     if (o.maxDepth >= 0) settings.pathtrace.maxDepth = o.maxDepth;
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings;

@@ -67,6 +67,7 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
     gpu::ImageHandle open = gbuffer.position;
     for (const gpu::ImageHandle after : into) {
         params.rays = std::min(rays - params.firstRay, maxRaysPerDispatch);
+        params.firstPoint = launch.firstPoint * rays + params.firstRay;
         params.divisor = params.firstRay + params.rays == rays ? static_cast<float>(rays) : 1.0f;
         dispatchTraced(graph, scene, passName(params.firstRay, rays),
                        {shaders::ambient_occlusion_comp, shaders::ambient_occlusion_rgen},
@@ -75,7 +76,7 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
                         {"normal", gbuffer.normal},
                         {"before", open},
                         {"openness", after}},
-                       gpu::paramsOf(params), {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}}, extent);
+                       gpu::paramsOf(params), {{"SAMPLER", static_cast<uint32_t>(launch.sampler)}}, extent);
         params.firstRay += params.rays;
         open = after;
     }

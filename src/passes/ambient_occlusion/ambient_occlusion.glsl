@@ -37,7 +37,8 @@ void tracePixel(uvec2 pixel) {
     uint rng = tea(startStream(pixel.y * params.width + pixel.x, params.stream, params.seed), OWN_STREAMS + params.firstRay);
     float open = params.firstRay > 0u ? imageLoad(before, at).x : 0.0;
     for (uint i = 0u; i < params.rays; ++i) {
-        const vec3 direction = frame * sampleCosineHemisphere(random2(rng));
+        startSample(pixel, params.firstPoint + i, params.seed ^ OWN_STREAMS);
+        const vec3 direction = frame * sampleCosineHemisphere(stratified2(rng));
         if (isOpen(place, faceNormal, direction, rng)) open += 1.0;
     }
     imageStore(openness, at, vec4(vec3(place.w > 0.0 ? open / params.divisor : 1.0), 0.0));

@@ -19,11 +19,13 @@ struct AmbientOcclusionSettings {
 };
 const ParamTable<AmbientOcclusionSettings>& ambientOcclusionParams();
 
-/// Seed and stream of the G-buffer's launch. The numbers drawn differ from those of the G-buffer.
+/// Seed, stream and sample number of the G-buffer's launch. The numbers drawn differ from those of the
+/// G-buffer.
 struct AmbientOcclusionLaunch {
     uint32_t stream = 0;
     uint32_t seed = 0;
-    bool samplerTea = false;
+    Sampler sampler = Sampler::Pcg;
+    uint32_t firstPoint = 0;  ///< CameraLaunch::firstPoint
 };
 
 /// rgba32f. rgb: the share of rays that hit nothing, 0..1, as grey; 1 where the camera sees nothing. alpha:

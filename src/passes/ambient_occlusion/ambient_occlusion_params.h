@@ -15,10 +15,11 @@ struct AmbientOcclusionParams {
     uint height;
     uint stream;  // stream of random numbers
     uint seed;
-    uint firstRay;  // first ray of this dispatch; earlier ones are in `before`
-    uint rays;      // per pixel in this dispatch
-    float reach;    // length of a ray, world units
-    float divisor;  // divides the sum of unoccluded rays: number of rays in the last dispatch, else 1
+    uint firstPoint;  // number of the dispatch's first ray in sequences of points
+    uint firstRay;    // first ray of this dispatch; earlier ones are in `before`
+    uint rays;        // per pixel in this dispatch
+    float reach;      // length of a ray, world units
+    float divisor;    // divides the sum of unoccluded rays: number of rays in the last dispatch, else 1
 };
 
 struct AmbientOcclusionSignalParams {

@@ -50,7 +50,7 @@ void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer
                    gpu::paramsOf(params),
                    {{"LIGHT", settings.light ? 1u : 0u},
                     {"SHADOWS", settings.shadows ? 1u : 0u},
-                    {"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}},
+                    {"SAMPLER", static_cast<uint32_t>(launch.sampler)}},
                    launch.extent);
 }
 

@@ -106,6 +106,7 @@ Seen look(Ray ray, uint rng) {
 void tracePixel(uvec2 pixel) {
     const ivec2 at = ivec2(pixel);
     uint rng = startStream(pixel.y * params.view.width + pixel.x, params.view.stream, params.view.seed);
+    startSample(pixel, params.view.firstPoint, params.view.seed);
     const vec2 point = vec2(pixel) + subpixel(params.view, 0u, rng);
     Seen seen = look(cameraRay(params.view, point), rng);
     const bool rejected = !isFinite(seen.light + seen.emission);

@@ -38,7 +38,7 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
     const PathtraceParams params = makeParams(scene, settings, launch);
     dispatchTraced(
         graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
-        {{"SAMPLER_TEA", launch.samplerTea ? 1u : 0u}, {"LIGHT_TREE", settings.lightTree ? 1u : 0u}},
+        {{"SAMPLER", static_cast<uint32_t>(launch.sampler)}, {"LIGHT_TREE", settings.lightTree ? 1u : 0u}},
         launch.extent);
 }
 
@@ -66,6 +66,9 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         t.add("sampler_tea", &S::samplerTea,
               "Use the low 24 bits of a linear congruential generator instead of PCG, as many tutorials do; "
               "more correlated");
+        t.add("sampler_sobol", &S::samplerSobol,
+              "Spread random numbers evenly over a pixel's samples and its neighbours: Owen-scrambled Sobol' "
+              "points; less noise, and blue noise; sampler_tea wins");
         t.add("through_mirrors", &S::throughMirrors,
               "Write the layers of what a perfect mirror shows, which helps denoisers; off: the mirror's own "
               "layers");

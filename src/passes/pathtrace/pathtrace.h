@@ -17,9 +17,14 @@ struct PathtraceSettings {
     int rouletteDepth = 3;
     float fireflyClamp = 0.0f;
     bool samplerTea = false;
+    bool samplerSobol = false;
     bool throughMirrors = true;
     bool throughGlass = true;
     bool lightTree = false;
+    Sampler sampler() const {
+        if (samplerTea) return Sampler::Tea;
+        return samplerSobol ? Sampler::Sobol : Sampler::Pcg;
+    }
     bool operator==(const PathtraceSettings&) const = default;
 };
 const ParamTable<PathtraceSettings>& pathtraceParams();

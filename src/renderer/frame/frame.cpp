@@ -20,11 +20,12 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .previousCamera = input.previousCamera,
             .hasPrevious = input.hasPrevious,
             .firstSample = input.firstSample,
+            .firstPoint = input.firstPoint,
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
             .jitter = settings.jitter,
             .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0,
-            .samplerTea = settings.pathtrace.samplerTea};
+            .sampler = settings.pathtrace.sampler()};
 }
 
 /// Replaces the layers in `out` by running means.
@@ -86,7 +87,8 @@ FrameImages recordAmbientOcclusion(FrameGraph& graph, const scene::GpuScene& sce
     const GBufferImages seen = recordGBuffer(graph, scene, settings, input, false, out);
     const ImageHandle open = ambientOcclusion(
         graph, scene, settings.ambientOcclusion,
-        {static_cast<uint32_t>(input.stream), settings.seed, settings.pathtrace.samplerTea}, seen);
+        {static_cast<uint32_t>(input.stream), settings.seed, settings.pathtrace.sampler(), input.firstPoint},
+        seen);
     out.beauty =
         accumulate(graph, "ambient_occlusion", open, input.samplesBefore, input.samples, VarianceOf::Nothing);
     return out;
@@ -127,9 +129,9 @@ Launch occlusionLaunch(FrameGraph& graph, const scene::GpuScene& scene, const Re
         GBufferSettings used = settings.gbuffer;
         used.light = false;
         gbuffer(graph, scene, used, launch, before, seen);
-        const ImageHandle open =
-            ambientOcclusion(graph, scene, settings.ambientOcclusion,
-                             {launch.stream, settings.seed, settings.pathtrace.samplerTea}, seen, openness);
+        const ImageHandle open = ambientOcclusion(
+            graph, scene, settings.ambientOcclusion,
+            {launch.stream, settings.seed, launch.sampler, launch.firstPoint}, seen, openness);
         ambientOcclusionSignal(graph, open, into.depth,
                                {.diffuse = into.diffuse,
                                 .albedo = into.albedo,
@@ -176,6 +178,7 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
         launch.samples = std::min(input.launchSamples, input.samples - done);
         launch.stream = static_cast<uint32_t>(input.stream + number);
         launch.firstSample = input.firstSample + done;
+        launch.firstPoint = input.firstPoint + done;
         launch.samplesBefore = done;
         PathtraceLayers& mean = means[number % 2];
         PathtraceLayers& into = number == 0 ? mean : traced;

@@ -73,7 +73,8 @@ bool FrameRenderer::launch() {
     if (samplesLaunched_ >= samples_) return false;
     const uint32_t most = samplesPerLaunch(device_, settings_);
     const uint64_t launchesOfAFrame = 1 + (samples_ - 1) / most;
-    LaunchSamples taken{.stream = moment_.number * launchesOfAFrame + launches_};
+    LaunchSamples taken{.stream = moment_.number * launchesOfAFrame + launches_,
+                        .point = moment_.number * samples_ + samplesLaunched_};
     if (settings_.pipeline.accumulates()) {
         taken.first = samplesInMean_;
         taken.count = static_cast<uint32_t>(std::min<uint64_t>(most, samples_ - samplesLaunched_));
@@ -94,6 +95,7 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
     if (samplesInMean_ == 0 && settings_.pipeline.accumulates())
         firstPoint_ = settings_.jitter == Jitter::Frame ? moment_.number * samples_ : 0;
     input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(firstPoint_ + taken.first, UINT32_MAX));
+    input.firstPoint = static_cast<uint32_t>(taken.point);
     input.stream = taken.stream;
     input.samplesBefore = samplesInMean_;
     input.samples = taken.count;

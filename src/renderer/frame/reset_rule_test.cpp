@@ -46,6 +46,7 @@ TEST(ResetRule, ResetsOnEveryChange) {
         {"roulette", [](auto& s) { s.settings.pathtrace.rouletteDepth = 9; }},
         {"clamp", [](auto& s) { s.settings.pathtrace.fireflyClamp = 9.0f; }},
         {"sampler", [](auto& s) { s.settings.pathtrace.samplerTea = true; }},
+        {"points", [](auto& s) { s.settings.pathtrace.samplerSobol = true; }},
         {"scene", [](auto& s) { s.sceneVersion = 1; }},
     };
     for (const auto& [name, change] : changes) {

@@ -29,7 +29,9 @@ uint32_t BlockRenderer::render(uint32_t block, const std::function<bool(uint32_t
     uint32_t done = 0;
     while (done < wanted && proceed(done)) {
         const uint32_t count = std::min(plan_.launchSamples, wanted - done);
-        frames_.launch({.stream = stream++, .first = firstSample + done, .count = count});
+        const uint64_t first = firstSample + done;
+        frames_.launch(
+            {.stream = stream++, .first = first, .point = frame_ * plan_.samples + first, .count = count});
         done += count;
     }
     return done;

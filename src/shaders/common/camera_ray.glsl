@@ -20,7 +20,7 @@ vec2 halton(uint index) {
 /// Returns the position within the pixel. Draws two random numbers in every mode, so that later numbers are
 /// the same.
 vec2 subpixel(ViewParams view, uint sampleOfLaunch, inout uint rng) {
-    const vec2 u = random2(rng);
+    const vec2 u = stratified2(rng);
     const uint index = view.firstSample + sampleOfLaunch;
     if (view.jitter == JITTER_OFF || index == 0u) return vec2(0.5);
     return view.jitter == JITTER_PIXEL ? u : halton(index);

@@ -1,4 +1,5 @@
-// Random numbers: one stream per pixel and frame.
+// Random numbers: one stream per pixel and frame, and for most decisions of a path, with `sobol`, points that are
+// spread evenly over a pixel's samples and over neighbouring pixels (sobol.glsl).
 //
 // Seed: 16 rounds of the Tiny Encryption Algorithm; F. Zafar, M. Olano, A. Curtis, "GPU random numbers via the Tiny
 // Encryption Algorithm", HPG 2010. Streams: `tea` continues with the low 24 bits of Numerical Recipes' linear
@@ -8,7 +9,10 @@
 #ifndef LIMPID_RNG_GLSL
 #define LIMPID_RNG_GLSL
 
-layout(constant_id = 20) const bool SAMPLER_TEA = false;
+#include "shaders/common/sampler.h"
+#include "shaders/common/sobol.glsl"
+
+layout(constant_id = 20) const uint SAMPLER = SAMPLER_PCG;
 
 uint tea(uint v0, uint v1) {
     uint sum = 0u;
@@ -32,7 +36,7 @@ uint pcgOutput(uint state) {
 
 /// Returns a uniform number in [0, 1), a multiple of 2^-24.
 float random(inout uint state) {
-    if (SAMPLER_TEA) {
+    if (SAMPLER == SAMPLER_TEA) {
         state = 1664525u * state + 1013904223u;
         return float(state & 0x00ffffffu) / float(0x01000000);
     }
@@ -50,6 +54,41 @@ float randomOf(uint state, uint a, uint b) {
 vec2 random2(inout uint state) {
     const float x = random(state);
     return vec2(x, random(state));
+}
+
+SobolSample sobolSample;
+
+/// Must come before the first stratified() of each sample. `number`: of the pixel's sample, over all launches and
+/// frames.
+void startSample(uvec2 pixel, uint number, uint seed) {
+    if (SAMPLER == SAMPLER_SOBOL) sobolSample = startSobol(pixel, number, seed);
+}
+
+/// Like random(), for decisions on which a path's light depends much: with `sobol`, the numbers that a pixel's samples
+/// and its neighbours get from calls with the same place in the order of all calls are spread evenly. Each call of a
+/// sample is independent of all others.
+float stratified(inout uint state) {
+    const float independent = random(state);
+    return SAMPLER == SAMPLER_SOBOL ? nextSobol(sobolSample) : independent;
+}
+
+/// Like stratified(), in both dimensions together.
+vec2 stratified2(inout uint state) {
+    const vec2 independent = random2(state);
+    return SAMPLER == SAMPLER_SOBOL ? nextSobol2(sobolSample) : independent;
+}
+
+/// True if a choice and a point for what was chosen should share a number: the points for each of the choices are then
+/// spread evenly, too. For independent numbers that would only cost digits.
+bool sharesNumbers() {
+    return SAMPLER == SAMPLER_SOBOL;
+}
+
+/// Returns the place of u in [low, high), from 0 to 1: a number that is again uniform, once the interval has been
+/// chosen by u. The digits that u lacks are random.
+float placeWithin(float u, float low, float high, inout uint state) {
+    const float width = max(high - low, 1e-20);
+    return clamp((u - low + random(state) / float(0x01000000)) / width, 0.0, 1.0 - 1.0 / float(0x01000000));
 }
 
 #endif

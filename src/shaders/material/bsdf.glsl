@@ -351,26 +351,34 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
 
 /// Samples a direction; value.diffuse + value.specular over value.pdf is the throughput.
 BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
-    const vec2 u = random2(rng);
+    vec2 u = stratified2(rng);
     if (HAS_CLEARCOAT) {
-        if (random(rng) < b.clearcoat.probability) {
+        if (stratified(rng) < b.clearcoat.probability) {
             BsdfSample coat = sampleCoat(b, u);
             if (!coat.delta) coat.value = evaluateBsdf(b, coat.direction);
             return coat;
         }
     }
-    vec3 wi = sampleCosineHemisphere(u);
     uint lobe = 0u;
     float choice = 0.0;
     if (HAS_SPECULAR) {
-        choice = random(rng);
+        choice = sharesNumbers() ? u.x : random(rng);
         vec4 bounds = vec4(b.probability.xyz, 1.0 - b.belowProbability);
         bounds.y += bounds.x;
         bounds.z = bounds.w - b.probability.w;
         lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : choice < bounds.w ? 3u : 4u;
-        // Rescales the random number within its interval, to reuse it for the choice between reflection and
-        // refraction.
-        choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
+        if (sharesNumbers()) {
+            const float low = lobe == 0u ? 0.0 : bounds[lobe - 1u], high = lobe == 4u ? 1.0 : bounds[lobe];
+            u.x = placeWithin(choice, low, high, rng);
+            choice = HAS_TRANSMISSION ? stratified(rng) : 0.0;
+        } else {
+            // Rescales the random number within its interval, to reuse it for the choice between reflection and
+            // refraction.
+            choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
+        }
+    }
+    vec3 wi = sampleCosineHemisphere(u);
+    if (HAS_SPECULAR) {
         const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
         if (lobe != 0u && smoothLobe) return sampleSmooth(b, lobe, choice);
         if (lobe == 4u) wi.z = -wi.z;

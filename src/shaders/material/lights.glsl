@@ -161,7 +161,7 @@ struct PunctualChoice {
 PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
     const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
     const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
-    float u = random(rng), v = random(rng);
+    float u = stratified(rng), v = random(rng);
     PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf holds the weight for
                                                                                  // now
     float bestSource = 1.0, anySource = 1.0, sum = 0.0, reaching = 0.0;
@@ -240,19 +240,34 @@ LightSample sampleLightByPower(Receiver from, SceneParams scene, inout uint rng,
     PunctualChoice punctual = PunctualChoice(0, 0.0);
     if (HAS_PUNCTUAL_LIGHTS) punctual = choosePunctualLight(from, scene, rng);
     shares = lightShares(from, punctual.pdf > 0.0, scene);
-    const float choice = random(rng), decision = random(rng);
-    const vec2 u = random2(rng);
+    float choice = 0.0, decision = 0.0;
+    vec2 u = vec2(0.0);
+    if (sharesNumbers()) {
+        u = stratified2(rng);
+        choice = u.x;
+        decision = random(rng);
+    } else {
+        choice = random(rng);
+        decision = random(rng);
+        u = random2(rng);
+    }
     LightSample light = noLight();
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
-            light = environmentLight(vec2(choice / shares.environment, decision), u, scene);
+            const vec2 within = sharesNumbers() ? random2(rng) : u;  // a texel
+            light = environmentLight(vec2(choice / shares.environment, decision), within, scene);
             light.pdf *= shares.environment;
         }
     }
     const float rest = choice - shares.environment;
     if (HAS_TRIANGLE_LIGHTS) {
         if (rest >= 0.0 && (!HAS_PUNCTUAL_LIGHTS || rest < shares.triangles)) {
-            light = chooseTriangleLight(from, rest / max(shares.triangles, 1e-20), decision, u, scene);
+            const float place = rest / max(shares.triangles, 1e-20);
+            if (sharesNumbers()) {
+                const float count = float(scene.triangleLightCount), index = floor(place * count);
+                u.x = placeWithin(place, index / count, (index + 1.0) / count, rng);
+            }
+            light = chooseTriangleLight(from, place, decision, u, scene);
             light.pdf *= shares.triangles;
         }
     }
@@ -273,7 +288,7 @@ struct SunChoice {
 
 SunChoice chooseSun(Receiver from, SceneParams scene, inout uint rng) {
     SunChoice sun = SunChoice(0, 0.0, 0.0);
-    float u = random(rng), chosen = 0.0;
+    float u = stratified(rng), chosen = 0.0;
     for (uint i = 0u; i < scene.sunCount; ++i) {
         const int at = int(imageLoad(lightTree, int(scene.firstSun + i)).x * LIGHT_TEXELS);
         const float weight = usableLight(from, samplePunctualLight(at, from.position));
@@ -326,8 +341,8 @@ LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, 
     shares = LightShares(0.0, 0.0, from);
     if (HAS_ENVIRONMENT) shares.environment = both > 0.0 ? scene.environmentProbability : 1.0;
     shares.triangles = (1.0 - shares.environment) * ofTree;
-    const float choice = random(rng);
-    const vec2 u = random2(rng);
+    const float choice = stratified(rng);
+    const vec2 u = stratified2(rng);
     LightSample light = noLight();
     if (chosen.probability > 0.0) {
         light = sampleListedLight(chosen.light, from, u);
