@@ -90,6 +90,7 @@ TEST_F(VulkanFramesTest, PicturesInHalvesAreThoseInFloatsRounded) {
                                        LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
         limpid_denoiser_desc desc = {};
         desc.method = method;
+        desc.signals = method == LIMPID_METHOD_VISIBILITY ? 1 : 2;
         colorFormat_ = gpu::Format::RGBA32Float;
         const std::vector<float> floats = denoiseSequence(create(desc), SyntheticScene({}), 3);
         colorFormat_ = gpu::Format::RGBA16Float;
