@@ -52,7 +52,8 @@ double millisecondsOf(const std::function<void()>& work) {
 
 void run(const FirstFrameBench& o) {
     const denoise::Denoiser* method = denoise::findDenoiser(o.denoiser);
-    if (!method || method->network) throw UsageError("--denoiser: temporal, atrous or svgf");
+    if (!method || method->network || method->oneChannel)
+        throw UsageError("--denoiser: temporal, atrous or svgf");
     const denoise::HostFrame host = noisyWall(o.width, o.height);
     gpu::Device device(o.device.device);
     loadPipelines(device, pipelineFile(device));

@@ -108,17 +108,21 @@ LIMPID_API limpid_result limpid_device_load_pipeline_cache(limpid_device* device
 typedef struct limpid_denoiser limpid_denoiser;
 
 typedef enum limpid_method {
-    LIMPID_METHOD_SVGF = 0,     /* spatiotemporal variance-guided filtering: the best of them */
-    LIMPID_METHOD_ATROUS = 1,   /* temporal accumulation, then the edge-avoiding a-trous filter */
-    LIMPID_METHOD_TEMPORAL = 2, /* temporal accumulation alone: each pixel's mean follows its surface */
-    LIMPID_METHOD_BILATERAL = 3 /* a joint bilateral filter of one frame, without history: the simplest method */
+    LIMPID_METHOD_SVGF = 0,      /* spatiotemporal variance-guided filtering: the best of them */
+    LIMPID_METHOD_ATROUS = 1,    /* temporal accumulation, then the edge-avoiding a-trous filter */
+    LIMPID_METHOD_TEMPORAL = 2,  /* temporal accumulation alone: each pixel's mean follows its surface */
+    LIMPID_METHOD_BILATERAL = 3, /* a joint bilateral filter of one frame, without history: the simplest method */
+    /* For ambient occlusion or a shadow mask alone: one number from 0 to 1 for each pixel, the first component of
+     * LIMPID_INPUT_RADIANCE. It is COLOR as grey, limited to 0 to 1. Much cheaper than SVGF. For two masks, make two
+     * denoisers. */
+    LIMPID_METHOD_VISIBILITY = 4
 } limpid_method;
 
 /* The images of a frame, by content. docs/embedding.md lists which ones a method needs, and the effect of leaving one
  * out. */
 typedef enum limpid_input {
     LIMPID_INPUT_RADIANCE = 0,          /* rgb: light scattered towards the eye; with two signals diffuse light.
-                                           Required. */
+                                           Required. r alone: visibility, with LIMPID_METHOD_VISIBILITY. */
     LIMPID_INPUT_SPECULAR = 1,          /* rgb: specular light. Required with two signals. */
     LIMPID_INPUT_EMISSION = 2,          /* rgb: directly visible emitters and sky; not filtered */
     LIMPID_INPUT_ALBEDO = 3,            /* rgb: diffuse albedo including textures, 0 to 1 */
@@ -275,7 +279,7 @@ typedef struct limpid_host_image {
 
 typedef struct limpid_host_output {
     float* data;         /* NULL: not requested */
-    uint32_t components; /* 3 or 4 */
+    uint32_t components; /* 3 or 4; with LIMPID_METHOD_VISIBILITY also 1 */
     size_t pixel_stride, row_stride;
 } limpid_host_output;
 

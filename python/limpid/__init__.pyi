@@ -10,7 +10,7 @@ __all__: list[str]
 
 _Image = NDArray[np.float32]
 _Matrix = NDArray[np.float64]
-_Method = Literal["svgf", "atrous", "temporal", "bilateral"]
+_Method = Literal["svgf", "atrous", "temporal", "bilateral", "visibility"]
 _StillMethod = Literal["svgf", "atrous", "temporal", "bilateral", "kpcn"]
 _Output = Literal["color", "radiance", "specular"]
 _Path = str | PathLike[str]

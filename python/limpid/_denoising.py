@@ -109,8 +109,9 @@ class Denoiser:
 
     width, height: size of all images in pixels, 1 to 32768.
     method: "svgf" (spatiotemporal variance-guided filtering: the best), "atrous" (temporal accumulation, then the
-        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone), or "bilateral" (a joint bilateral
-        filter of one frame, without history: the simplest).
+        edge-avoiding a-trous filter), "temporal" (temporal accumulation alone), "bilateral" (a joint bilateral
+        filter of one frame, without history: the simplest), or "visibility" (for ambient occlusion or a shadow mask:
+        the first component of radiance, 0 to 1; the result is grey).
     device: a limpid.Device, or text that chooses one as limpid.Device does; None: the best one.
     signals: 1: radiance is all light that is to be filtered; 2: radiance is diffuse light, and specular light is given
         separately.
@@ -164,6 +165,8 @@ class Denoiser:
         motion_components = (3, 4) if motion_depth == "distance" else (2, 3, 4)
         self._components = dict(_COMPONENTS, normal=normal_components, previous_normal=normal_components,
                                 motion=motion_components, reflection_motion=motion_components)
+        if method == "visibility":
+            self._components["radiance"] = (1, 3, 4)
         self._camera = None  # of the previous frame
         self._handle = _denoise.Denoiser(self._device._handle, description)
         for name, value in (parameters or {}).items():
@@ -202,7 +205,8 @@ class Denoiser:
         arrays, and slices of them, are not copied if a pixel's components are adjacent in memory and no axis is
         reversed.
 
-        radiance: (h, w, 3), linear light scattered towards the eye; with two signals only the diffuse light.
+        radiance: (h, w, 3), linear light scattered towards the eye; with two signals only the diffuse light. With the
+            method "visibility" also (h, w): the mask.
         normal: (h, w, 3); (h, w, 2) if octahedral.
         depth: (h, w). Where nothing is hit: 0 or below, not finite, or at least far_depth.
         specular: (h, w, 3), specular light; required with two signals.

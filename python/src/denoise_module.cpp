@@ -232,7 +232,8 @@ void addTables(py::module_& m) {
              {{"svgf", LIMPID_METHOD_SVGF},
               {"atrous", LIMPID_METHOD_ATROUS},
               {"temporal", LIMPID_METHOD_TEMPORAL},
-              {"bilateral", LIMPID_METHOD_BILATERAL}});
+              {"bilateral", LIMPID_METHOD_BILATERAL},
+              {"visibility", LIMPID_METHOD_VISIBILITY}});
     addNames(m, "NORMAL_ENCODINGS",
              {{"signed", LIMPID_NORMAL_SIGNED},
               {"unorm", LIMPID_NORMAL_UNORM},

@@ -201,7 +201,7 @@ class ShapeTest(unittest.TestCase):
 
 class ParameterTest(unittest.TestCase):
     def test_every_parameter_has_its_default_and_can_be_set(self):
-        for method in ("svgf", "atrous", "temporal", "bilateral"):
+        for method in ("svgf", "atrous", "temporal", "bilateral", "visibility"):
             denoiser = limpid.Denoiser(8, 8, method, device=device())
             self.assertEqual(denoiser.parameters(), limpid.parameters(method))
             self.assertGreater(len(denoiser.parameters()), 3)
@@ -236,6 +236,17 @@ class DenoiseTest(unittest.TestCase):
         for method in ("svgf", "atrous", "temporal"):
             with self.subTest(method):
                 self.assertGreater(Sequence().run(limpid.Denoiser(WIDTH, HEIGHT, method, device=device())), 6.0)
+
+    def test_a_mask_comes_closer_to_the_truth(self):
+        random = np.random.default_rng(1)
+        depth, normal, _, _ = wall(0.0)
+        truth = np.where(np.arange(WIDTH) < WIDTH // 2, 0.7, 0.2) * np.ones((HEIGHT, 1))
+        denoiser = limpid.Denoiser(WIDTH, HEIGHT, "visibility", device=device())
+        for _ in range(FRAMES):
+            noisy = (random.uniform(size=truth.shape) < truth).astype(np.float32)
+            clean = denoiser.denoise(noisy, normal, depth, view=wall_view(0.0),
+                                     projection=limpid.perspective(FOV, WIDTH / HEIGHT))
+        self.assertLess(mse(clean[depth > 0, 0], truth[depth > 0]), 0.05 * mse(noisy[depth > 0], truth[depth > 0]))
 
     def test_previous_camera_is_remembered(self):
         sequence = Sequence()

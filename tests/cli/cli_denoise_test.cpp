@@ -158,6 +158,9 @@ TEST_F(CliDenoiseTest, WrongUsageIsRefusedWithTheChoices) {
     result = run("render builtin:cornell -o " + path("a.png") + " --integrator gbuffer --denoiser svgf");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("--integrator gbuffer takes no denoiser: it has no light signals"));
+    result = run("denoise a.exr -o " + path("b.exr") + " --denoiser visibility");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_THAT(result.output, HasSubstr("--denoiser visibility filters one channel"));
     result = run("bench quality --integrator preview --denoiser svgf");
     EXPECT_EQ(result.code, 2);
     EXPECT_THAT(result.output, HasSubstr("takes no denoiser"));

@@ -48,13 +48,16 @@ class DenoiserSuite : public DenoiseTest, public testing::WithParamInterface<std
     }
 };
 
+/// What filters light, and not only one channel (visibility_test.cpp).
+class ColorDenoiserSuite : public DenoiserSuite {};
+
 const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
 
 void expectFinite(const std::vector<float>& picture) {
     for (size_t i = 0; i < picture.size(); ++i) ASSERT_TRUE(std::isfinite(picture[i])) << i;
 }
 
-TEST_P(DenoiserSuite, AConstantImageStaysConstant) {
+TEST_P(ColorDenoiserSuite, AConstantImageStaysConstant) {
     HostFrame frame = frontalPlane(columns, rows);
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         for (size_t c = 0; c < 3; ++c) frame.diffuse[4 * p + c] = 0.25f * static_cast<float>(c + 1);
@@ -68,7 +71,7 @@ TEST_P(DenoiserSuite, AConstantImageStaysConstant) {
     }
 }
 
-TEST_P(DenoiserSuite, TexturesUnderConstantLightStaySharp) {
+TEST_P(ColorDenoiserSuite, TexturesUnderConstantLightStaySharp) {
     const SyntheticScene scene({.cameraMoves = true});
     for (int number = 0; number < frames; ++number) {
         HostFrame frame = scene.frame(number, columns, rows, 1);
@@ -179,7 +182,7 @@ TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
     const SyntheticScene scene(moving);
     const std::vector<float> plain = denoiseSequence(scene);
     for (const Preset& preset : presets()) {
-        if (!preset.isFor(parsePipeline("path", GetParam()))) continue;
+        if (!preset.isForDenoiser(GetParam())) continue;
         RenderSettings settings;
         applyPreset(settings, preset.name);
         const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);
@@ -191,7 +194,7 @@ TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
 /// PSNR gain in dB over the noisy frames, after 24 frames.
 constexpr double minGain = 8.0;
 
-TEST_P(DenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {
+TEST_P(ColorDenoiserSuite, ThePictureIsNearerToTheTruthThanTheInput) {
     for (const SyntheticOptions& options : {SyntheticOptions{}, moving}) {
         const SyntheticScene scene(options);
         const int count = 24;
@@ -216,10 +219,11 @@ TEST_P(DenoiserSuite, ImagesAndBuffersGiveTheSamePicture) {
         ASSERT_NEAR(buffers[i], images[i], 3e-3f * std::abs(images[i]) + 1e-6f) << i;
 }
 
-std::vector<std::string> names() {
+std::vector<std::string> names(bool colorsOnly) {
     std::vector<std::string> result;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        if (!denoiser.network) result.emplace_back(denoiser.name);  // kpcn_test.cpp
+        if (denoiser.network || (colorsOnly && denoiser.oneChannel)) continue;  // kpcn_test.cpp
+        result.emplace_back(denoiser.name);
     }
     return result;
 }
@@ -228,7 +232,8 @@ std::string nameOf(const testing::TestParamInfo<std::string>& info) {
     return info.param;
 }
 
-INSTANTIATE_TEST_SUITE_P(Denoisers, DenoiserSuite, testing::ValuesIn(names()), nameOf);
+INSTANTIATE_TEST_SUITE_P(Denoisers, DenoiserSuite, testing::ValuesIn(names(false)), nameOf);
+INSTANTIATE_TEST_SUITE_P(Denoisers, ColorDenoiserSuite, testing::ValuesIn(names(true)), nameOf);
 
 }  // namespace
 }  // namespace limpid::test

@@ -110,6 +110,32 @@ TEST_F(HostFramesTest, SvgfIsTheSameInsideAndOutside) {
     EXPECT_LT(rmsDifference(result, truth), 0.5 * rmsDifference(embeddable(scene, 5).diffuse, truth));
 }
 
+/// One float a pixel in and out, and no albedo.
+TEST_F(HostFramesTest, AMaskIsTheSameInsideAndOutside) {
+    create(LIMPID_METHOD_VISIBILITY, 1);
+    const SyntheticScene scene({.objectMoves = true});
+    std::vector<float> depths, ids, color, mask(size_t{width} * height), clean(mask.size()), inside;
+    for (int number = 0; number < 6; ++number) {
+        HostFrame frame = embeddable(scene, number);
+        std::fill(frame.emission.begin(), frame.emission.end(), 0.0f);
+        for (size_t p = 0; p < mask.size(); ++p)
+            mask[p] = frame.diffuse[4 * p] = std::min(0.5f * frame.diffuse[4 * p], 1.0f);
+        limpid_host_frame given = hostFrame(frame, depths, ids, color);
+        for (const limpid_input unread : {LIMPID_INPUT_SPECULAR, LIMPID_INPUT_EMISSION, LIMPID_INPUT_ALBEDO,
+                                          LIMPID_INPUT_ALBEDO_SPECULAR})
+            given.inputs[unread] = {};
+        given.inputs[LIMPID_INPUT_RADIANCE] = {mask.data(), 1, 0, 0};
+        given.outputs[LIMPID_OUTPUT_COLOR] = {clean.data(), 1, 0, 0};
+        ASSERT_EQ(limpid_denoise_host(denoiser_, &given), LIMPID_OK) << limpid_last_error();
+        filters_ = gpu::filterBacking(device());
+        inside = denoise(*denoise::findDenoiser("visibility"), frame);
+    }
+    std::vector<float> grey;
+    for (size_t p = 0; p < mask.size(); ++p) grey.push_back(inside[4 * p]);
+    EXPECT_LT(rmsDifference(clean, grey), 2e-3);  // see above
+    EXPECT_GT(rmsDifference(clean, mask), 0.05);
+}
+
 TEST_F(HostFramesTest, SignalsAddUpToThePicture) {
     create(LIMPID_METHOD_SVGF);
     const SyntheticScene scene({});
@@ -144,7 +170,8 @@ TEST_F(HostFramesTest, AResetForgetsThePast) {
 }
 
 TEST_F(HostFramesTest, EveryMethodRunsAndListsItsParameters) {
-    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL}) {
+    for (const limpid_method method :
+         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_VISIBILITY}) {
         create(method, 1);
         limpid_parameter p;
         uint32_t count = 0;
@@ -197,6 +224,9 @@ TEST_F(HostFramesTest, RefusesImpossibleDescriptions) {
     EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
     desc.width = desc.height = 8;
     desc.method = static_cast<limpid_method>(77);
+    EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
+    desc.method = LIMPID_METHOD_VISIBILITY;
+    desc.signals = 2;
     EXPECT_EQ(limpid_denoiser_create(device_, &desc, &denoiser_), LIMPID_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(denoiser_, nullptr);
     limpid_device_desc none = {sizeof none};

@@ -86,10 +86,11 @@ TEST_F(VulkanFramesTest, MakesAllPipelinesBeforehand) {
 }
 
 TEST_F(VulkanFramesTest, PicturesInHalvesAreThoseInFloatsRounded) {
-    for (const limpid_method method :
-         {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL, LIMPID_METHOD_BILATERAL}) {
+    for (const limpid_method method : {LIMPID_METHOD_SVGF, LIMPID_METHOD_ATROUS, LIMPID_METHOD_TEMPORAL,
+                                       LIMPID_METHOD_BILATERAL, LIMPID_METHOD_VISIBILITY}) {
         limpid_denoiser_desc desc = {};
         desc.method = method;
+        desc.signals = method == LIMPID_METHOD_VISIBILITY ? 1 : 2;
         colorFormat_ = gpu::Format::RGBA32Float;
         const std::vector<float> floats = denoiseSequence(create(desc), SyntheticScene({}), 3);
         colorFormat_ = gpu::Format::RGBA16Float;

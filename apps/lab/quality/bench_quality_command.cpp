@@ -280,7 +280,9 @@ void complete(QualityOptions& o, const CLI::App& command) {
     if (o.scenes.empty() && o.scenesFolder.empty() && !o.lab) o.scenes = {"builtin:cornell"};
     if (!o.methods.denoisers.empty()) return;
     for (const denoise::Denoiser& denoiser : denoise::denoisers()) {
-        const bool fits = o.preset.empty() || findPreset(o.preset).isForDenoiser(denoiser.name);
+        const Integrator integrator = o.integrator.empty() ? Integrator::Path : parseIntegrator(o.integrator);
+        const bool fits = o.preset.empty() ? canBeDenoised(integrator, denoiser)
+                                           : findPreset(o.preset).isForDenoiser(denoiser.name);
         if (fits && (!denoiser.network || o.samples >= minNetworkSamples))
             o.methods.denoisers.emplace_back(denoiser.name);
     }

@@ -174,8 +174,8 @@ json groupsByPipeline() {
     json result = json::object();
     for (const Integrator integrator : integrators()) {
         for (const std::string_view denoiser : denoiserNames()) {
-            if (denoiser != "none" && !canBeDenoised(integrator)) continue;
             const Pipeline pipeline{integrator, parseDenoiser(denoiser)};
+            if (pipeline.denoiser && !canBeDenoised(integrator, *pipeline.denoiser)) continue;
             const std::string name = std::string(limpid::nameOf(integrator)) + "+" + std::string(denoiser);
             result[name] = groupsOf(pipeline);
         }

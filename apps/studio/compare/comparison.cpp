@@ -53,6 +53,8 @@ RenderSettings comparisonSettings(const ComparisonChoice& choice, const RenderSe
         other.pipeline = {integrators()[index]};
     else
         other.pipeline.denoiser = &denoise::denoisers()[index - integrators().size()];
+    if (other.pipeline.denoiser)
+        other.pipeline.integrator = integratorFor(*other.pipeline.denoiser, other.pipeline.integrator);
     return other;
 }
 

@@ -39,6 +39,12 @@ TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
         EXPECT_EQ(chosen,
                   denoise::findDenoiser(names[i]) ? parsePipeline("ao", names[i]) : parsePipeline(names[i]));
     }
+    settings.pipeline = parsePipeline("path", "svgf");
+    for (size_t i = 1; i < names.size(); ++i) {
+        if (names[i] == "visibility")
+            EXPECT_EQ(comparisonSettings({.with = static_cast<int>(i)}, settings).pipeline,
+                      parsePipeline("ao", "visibility"));
+    }
     settings.pipeline = parsePipeline("preview");
     const int last = static_cast<int>(names.size()) - 3;
     EXPECT_EQ(comparisonSettings({.with = last}, settings).pipeline,

@@ -233,7 +233,8 @@ Entry integratorEntry() {
         [](State& s, size_t chosen) {
             Pipeline pipeline = s.render.pipeline;
             pipeline.integrator = integrators()[chosen];
-            if (!canBeDenoised(pipeline.integrator)) pipeline.denoiser = nullptr;
+            if (pipeline.denoiser && !canBeDenoised(pipeline.integrator, *pipeline.denoiser))
+                pipeline.denoiser = nullptr;
             if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });
@@ -251,8 +252,8 @@ Entry denoiserEntry() {
         [names](State& s, size_t chosen) {
             Pipeline pipeline = s.render.pipeline;
             pipeline.denoiser = parseDenoiser(names[chosen]);
-            if (pipeline.denoiser && !canBeDenoised(pipeline.integrator))
-                pipeline.integrator = Integrator::Path;
+            if (pipeline.denoiser)
+                pipeline.integrator = integratorFor(*pipeline.denoiser, pipeline.integrator);
             if (!s.isPreview()) s.pipelineBefore = s.render.pipeline;
             s.render.pipeline = pipeline;
         });

@@ -119,6 +119,14 @@ TEST(StateJson, WhatDoesNotFitChangesNothing) {
     EXPECT_EQ(toJson(state), before);
 }
 
+TEST(StateJson, ADenoiserOfOneChannelBringsAmbientOcclusion) {
+    State state;
+    studio::apply(state, {{"denoiser", "visibility"}});
+    EXPECT_EQ(state.render.pipeline, parsePipeline("ao", "visibility"));
+    studio::apply(state, {{"integrator", "path"}});
+    EXPECT_EQ(state.render.pipeline, parsePipeline("path"));
+}
+
 TEST(StateJson, PreviewRemembersThePipelineBefore) {
     State state;
     studio::apply(state, {{"integrator", "ao"}});

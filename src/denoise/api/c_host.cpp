@@ -63,7 +63,7 @@ extern "C" limpid_result limpid_denoise_host(limpid_denoiser* denoiser, const li
         for (size_t i = 0; i < std::size(made); ++i) {
             if (!wanted[i].data) continue;
             writePixels(wanted[i], d.graph.downloadFloat(*d.device, made[i]), d.desc.width, d.desc.height,
-                        names[i]);
+                        names[i], d.desc.method == LIMPID_METHOD_VISIBILITY ? 1 : 3);
         }
     });
 }

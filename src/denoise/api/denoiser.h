@@ -40,7 +40,8 @@ struct Denoiser {
                              const DenoiserNetworks&);
     /// The parameter groups that it uses.
     std::span<const std::string_view> groups;
-    bool network = false;  ///< needs one of DenoiserNetworks, and frames with variances of several samples
+    bool network = false;     ///< needs one of DenoiserNetworks, and frames with variances of several samples
+    bool oneChannel = false;  ///< Method::oneChannel
 };
 
 std::span<const Denoiser> denoisers();

@@ -8,8 +8,6 @@
 namespace limpid::denoise {
 namespace {
 
-constexpr uint32_t fewestOfOutputs = 3;
-
 /// Strides in bytes, with their defaults.
 struct Layout {
     size_t pixel, row;
@@ -43,8 +41,8 @@ std::vector<float> readPixels(const limpid_host_image& image, uint32_t width, ui
 }
 
 void writePixels(const limpid_host_output& image, const std::vector<float>& pixels, uint32_t width,
-                 uint32_t height, const char* name) {
-    checkOutput(image, name);
+                 uint32_t height, const char* name, uint32_t fewest) {
+    checkOutput(image, name, fewest);
     const Layout layout = layoutOf(image, width);
     auto* bytes = reinterpret_cast<std::byte*>(image.data);
     for (size_t y = 0; y < height; ++y)
@@ -53,8 +51,8 @@ void writePixels(const limpid_host_output& image, const std::vector<float>& pixe
                         image.components * sizeof(float));
 }
 
-void checkOutput(const limpid_host_output& image, const char* name) {
-    checkComponents(image.components, name, fewestOfOutputs);
+void checkOutput(const limpid_host_output& image, const char* name, uint32_t fewest) {
+    checkComponents(image.components, name, fewest);
 }
 
 }  // namespace limpid::denoise

@@ -13,11 +13,11 @@ namespace limpid::denoise {
 std::vector<float> readPixels(const limpid_host_image& image, uint32_t width, uint32_t height,
                               const char* name, uint32_t fewest = 1);
 
-/// Throws UsageError if the image has fewer than three components or more than four.
+/// Throws UsageError if the image has fewer than `fewest` components or more than four.
 void writePixels(const limpid_host_output& image, const std::vector<float>& pixels, uint32_t width,
-                 uint32_t height, const char* name);
+                 uint32_t height, const char* name, uint32_t fewest = 3);
 
 /// What writePixels() throws, before the pixels are computed.
-void checkOutput(const limpid_host_output& image, const char* name);
+void checkOutput(const limpid_host_output& image, const char* name, uint32_t fewest = 3);
 
 }  // namespace limpid::denoise

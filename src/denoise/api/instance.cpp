@@ -18,7 +18,8 @@ constexpr std::array methodNames{LIMPID_METHODS(LIMPID_NAME)};
 static_assert(methodNames[LIMPID_METHOD_SVGF] == "svgf" && methodNames[LIMPID_METHOD_ATROUS] == "atrous" &&
               methodNames[LIMPID_METHOD_TEMPORAL] == "temporal" &&
               methodNames[LIMPID_METHOD_BILATERAL] == "bilateral" &&
-              methodNames.size() == LIMPID_METHOD_BILATERAL + 1);
+              methodNames[LIMPID_METHOD_VISIBILITY] == "visibility" &&
+              methodNames.size() == LIMPID_METHOD_VISIBILITY + 1);
 
 /// Calls `visit(table, settings)` for each group that the method reads.
 template <typename Settings, typename Visit>
@@ -94,6 +95,8 @@ void check(const limpid_denoiser_desc& desc) {
     checkEnum("motion_depth", desc.motion_depth, LIMPID_MOTION_DISTANCE);
     checkEnum("clip_y", desc.clip_y, LIMPID_CLIP_Y_UP);
     if (desc.signals > 2) throw UsageError(formatText("signals: there are 1 or 2, not {}", desc.signals));
+    if (desc.signals == 2 && methods()[static_cast<size_t>(desc.method)].oneChannel)
+        throw UsageError("signals: visibility is one");
     if (desc.width == 0 || desc.height == 0 || desc.width > 32768 || desc.height > 32768)
         throw UsageError(
             formatText("images of {} x {} pixels: each side has 1 to 32768", desc.width, desc.height));
@@ -146,9 +149,11 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     used.svgf.separate = desc.signals == 2;
     const Method& method = methods()[static_cast<size_t>(desc.method)];
     const bool antialiases = used.taa.frames > 1.0f;
-    DenoiserInput input = ingest(
-        graph, taken, params,
-        {.twoSignals = desc.signals == 2, .layers = method.readsLayers || antialiases, .filters = filters});
+    DenoiserInput input = ingest(graph, taken, params,
+                                 {.twoSignals = desc.signals == 2,
+                                  .layers = method.readsLayers || antialiases,
+                                  .albedo = !method.oneChannel,
+                                  .filters = filters});
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {method.record(graph, input, used).beauty, {}, {}};

@@ -6,6 +6,7 @@
 //     inline constexpr std::string_view help = ...;   one sentence, for `limpid info`
 //     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
 //     inline constexpr bool readsLayers = ...;        record() reads normal or depth, not only the surfaces
+//     inline constexpr bool oneChannel = ...;         filters visibility, not light
 //     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 #pragma once
 

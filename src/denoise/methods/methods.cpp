@@ -3,7 +3,8 @@
 namespace limpid::denoise {
 
 std::span<const Method> methods() {
-#define LIMPID_ROW(method) Method{#method, method::help, method::groups, method::readsLayers, method::record},
+#define LIMPID_ROW(method) \
+    Method{#method, method::help, method::groups, method::readsLayers, method::oneChannel, method::record},
     static constexpr std::array all{LIMPID_METHODS(LIMPID_ROW)};
 #undef LIMPID_ROW
     return all;

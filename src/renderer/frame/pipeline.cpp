@@ -50,6 +50,15 @@ bool canBeDenoised(Integrator integrator) {
     return integrator != Integrator::GBuffer && integrator != Integrator::Preview;
 }
 
+bool canBeDenoised(Integrator integrator, const denoise::Denoiser& denoiser) {
+    return canBeDenoised(integrator) && (!denoiser.oneChannel || integrator == Integrator::AmbientOcclusion);
+}
+
+Integrator integratorFor(const denoise::Denoiser& denoiser, Integrator wanted) {
+    if (canBeDenoised(wanted, denoiser)) return wanted;
+    return denoiser.oneChannel ? Integrator::AmbientOcclusion : Integrator::Path;
+}
+
 Integrator parseIntegrator(std::string_view name) {
     std::string names;
     for (const Integrator integrator : integrators()) {
@@ -101,9 +110,8 @@ const std::vector<Pipeline>& pipelines() {
         std::vector<Pipeline> list;
         for (const Integrator integrator : integrators()) {
             list.push_back({integrator});
-            if (!canBeDenoised(integrator)) continue;
             for (const denoise::Denoiser& denoiser : denoise::denoisers())
-                list.push_back({integrator, &denoiser});
+                if (canBeDenoised(integrator, denoiser)) list.push_back({integrator, &denoiser});
         }
         return list;
     }();
@@ -112,7 +120,10 @@ const std::vector<Pipeline>& pipelines() {
 
 Pipeline parsePipeline(std::string_view integrator, std::string_view denoiser) {
     const Pipeline pipeline{parseIntegrator(integrator), parseDenoiser(denoiser)};
-    if (!pipeline.denoiser || canBeDenoised(pipeline.integrator)) return pipeline;
+    if (!pipeline.denoiser || canBeDenoised(pipeline.integrator, *pipeline.denoiser)) return pipeline;
+    if (canBeDenoised(pipeline.integrator))
+        throw UsageError("--denoiser " + std::string(denoiser) + " is not for --integrator " +
+                         std::string(integrator) + ": it filters one channel; use it with --integrator ao");
     const char* const why =
         pipeline.integrator == Integrator::Preview
             ? "it has no noise"

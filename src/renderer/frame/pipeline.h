@@ -24,6 +24,10 @@ std::string_view nameOf(Integrator integrator);
 std::string_view helpOf(Integrator integrator);
 /// True if the integrator writes all layers that denoisers read.
 bool canBeDenoised(Integrator integrator);
+/// True if this denoiser can be used with the integrator. That of one channel is for ambient occlusion alone.
+bool canBeDenoised(Integrator integrator, const denoise::Denoiser& denoiser);
+/// An integrator for which the denoiser can be used: `wanted`, if possible.
+Integrator integratorFor(const denoise::Denoiser& denoiser, Integrator wanted);
 /// Throws UsageError with the list of names if the name is unknown.
 Integrator parseIntegrator(std::string_view name);
 
@@ -64,7 +68,7 @@ struct Pipeline {
 
 /// Every integrator alone, and combined with each denoiser that supports it.
 const std::vector<Pipeline>& pipelines();
-/// Throws UsageError if there is no such integrator or denoiser, or if this integrator cannot be denoised.
+/// Throws UsageError if there is no such integrator or denoiser, or if they cannot be combined.
 Pipeline parsePipeline(std::string_view integrator, std::string_view denoiser = "none");
 
 }  // namespace limpid

@@ -213,9 +213,12 @@ Pipeline pipelineFor(std::string_view presetName, const PipelineChoice& asked, c
     std::string integrator = asked.integrator, denoiser = asked.denoiser;
     if (integrator.empty()) integrator = nameOf(offered.integrator);
     if (denoiser.empty()) denoiser = nameOf(offered.denoiser);
-    if (!preset && !canBeDenoised(parseIntegrator(integrator))) {
-        if (asked.denoiser.empty()) denoiser = nameOf(nullptr);
-        if (asked.integrator.empty() && parseDenoiser(denoiser)) integrator = nameOf(Integrator::Path);
+    const denoise::Denoiser* const wanted = parseDenoiser(denoiser);
+    if (!preset && wanted && !canBeDenoised(parseIntegrator(integrator), *wanted)) {
+        if (asked.denoiser.empty())
+            denoiser = nameOf(nullptr);
+        else if (asked.integrator.empty())
+            integrator = nameOf(integratorFor(*wanted, parseIntegrator(integrator)));
     }
     if (preset) {
         checkIsFor(*preset, "--integrator", nameOf(parseIntegrator(integrator)), preset->integrators);

@@ -101,6 +101,15 @@ TEST(Presets, AnIntegratorThatTakesNoDenoiserIsRefusedOnlyWhereBothAreAskedFor) 
     EXPECT_THAT(faultOf(none, {"preview", "svgf"}), HasSubstr("it has no noise"));
 }
 
+TEST(Presets, ADenoiserOfOneChannelIsForAmbientOcclusion) {
+    const std::string none;
+    EXPECT_EQ(pipelineFor(none, {"", "visibility"}, {}), parsePipeline("ao", "visibility"));
+    EXPECT_EQ(pipelineFor(none, {"path", ""}, parsePipeline("ao", "visibility")), parsePipeline("path"));
+    EXPECT_THAT(faultOf(none, {"path", "visibility"}),
+                HasSubstr("--denoiser visibility is not for --integrator path"));
+    EXPECT_THAT(faultOf(none, {"gbuffer", "visibility"}), HasSubstr("takes no denoiser"));
+}
+
 TEST(Presets, AreRefusedWhereTheyWouldBeIgnored) {
     EXPECT_THAT(faultOf("history-tracking-course", {"", "kpcn"}),
                 HasSubstr("is not for --denoiser kpcn, but for atrous temporal"));

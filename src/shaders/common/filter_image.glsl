@@ -1,7 +1,7 @@
 // Images that a filter reads many times: storage images, or texels in buffers (gpu::Backing) if the including
 // shader defines LIMPID_FILTER_BUFFERS. Declare them with READ_*, WRITE_* and UPDATE_* (both), access them
 // with LOAD_* and STORE_*. The including shader's `params` must have the picture's `width`. HALF4: four
-// halves. UINT2: two words.
+// halves. UINT1, UINT2: one and two words.
 #ifndef LIMPID_FILTER_IMAGE_GLSL
 #define LIMPID_FILTER_IMAGE_GLSL
 
@@ -41,6 +41,14 @@ uvec2 packHalf4(vec4 value) {
 #define LOAD_HALF4(name, at) unpackHalf4(LOAD_UINT2(name, at))
 #define LOAD_HALF4_ALPHA(name, at) unpackHalf2x16(LOAD_UINT2(name, at).y).y
 #define STORE_HALF4(name, at, value) STORE_UINT2(name, at, packHalf4(value))
+#define READ_UINT1(slot, name) \
+    layout(set = 0, binding = slot, scalar) readonly buffer name##Texels { uint texels[]; } name
+#define WRITE_UINT1(slot, name) \
+    layout(set = 0, binding = slot, scalar) writeonly buffer name##Texels { uint texels[]; } name
+#define UPDATE_UINT1(slot, name) \
+    layout(set = 0, binding = slot, scalar) buffer name##Texels { uint texels[]; } name
+#define LOAD_UINT1(name, at) name.texels[TEXEL_INDEX(at)]
+#define STORE_UINT1(name, at, value) name.texels[TEXEL_INDEX(at)] = value
 
 #else
 
@@ -54,6 +62,11 @@ uvec2 packHalf4(vec4 value) {
 #define LOAD_HALF4(name, at) imageLoad(name, at)
 #define LOAD_HALF4_ALPHA(name, at) imageLoad(name, at).a
 #define STORE_HALF4(name, at, value) imageStore(name, at, nearestHalf(value))
+#define READ_UINT1(slot, name) layout(set = 0, binding = slot, r32ui) uniform readonly uimage2D name
+#define WRITE_UINT1(slot, name) layout(set = 0, binding = slot, r32ui) uniform writeonly uimage2D name
+#define UPDATE_UINT1(slot, name) layout(set = 0, binding = slot, r32ui) uniform uimage2D name
+#define LOAD_UINT1(name, at) imageLoad(name, at).x
+#define STORE_UINT1(name, at, value) imageStore(name, at, uvec4(value, 0u, 0u, 0u))
 
 #endif
 #endif

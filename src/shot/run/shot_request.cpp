@@ -145,6 +145,9 @@ std::vector<std::pair<std::string, FramePattern>> filesOf(const ShotRequest& r, 
 
 void chooseMethod(const ShotRequest& r, ShotJob& job) {
     job.options.method = &chosenDenoiser(r);
+    if (job.options.method->oneChannel)
+        throw UsageError(fmt::format("--denoiser {} filters one channel, and files have colours",
+                                     job.options.method->name));
     job.options.settings = settingsOf(r);
     job.options.keepsAntialiasing =
         !r.preset.empty() || std::any_of(r.settings.begin(), r.settings.end(),

@@ -34,6 +34,16 @@ using gpu::ImageHandle;
 /// The shaders take powers of 2.
 constexpr float log2e = 1.44269504f;
 
+/// The variance of (fast mean - slow mean) after a long history of steady light, as a share of the
+/// variance of one frame's samples. 0 if the slow mean consists of one frame, because that variance is
+/// then unknown.
+float steadyShare(float slow, float fast) {
+    const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
+    const float common = fast * slow / (fast + slow - fast * slow);
+    if (slow >= 1.0f) return 0.0f;
+    return std::max((shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow)), 0.0f);
+}
+
 /// Light that is filtered separately: `light` plus `otherLight`, reflected by `albedo` plus `otherAlbedo`, if
 /// there are others.
 struct Signal {
@@ -129,19 +139,12 @@ class Svgf {
     /// The number of the level whose result is fed back; 0: no level's.
     int fedBack() const { return std::min(settings_.historyLevel, settings_.levels); }
 
-    /// The variance of (fast mean - slow mean) after a long history of steady light, as a share of the
-    /// variance of one frame's samples. 0 if the slow mean consists of one frame, because that variance is
-    /// then unknown.
-    float steadyShare() const {
-        const float slow = settings_.alphaMoments, fast = settings_.alphaFast;
-        const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
-        const float common = fast * slow / (fast + slow - fast * slow);
-        if (slow >= 1.0f) return 0.0f;
-        return std::max((shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow)), 0.0f);
-    }
-
     SvgfLagParams lagParams() const {
-        return {steadyShare(), settings_.antilag, settings_.antilagNoise, settings_.antilagPixel};
+        return svgfLagParams({.slow = settings_.alphaMoments,
+                              .fast = settings_.alphaFast,
+                              .antilag = settings_.antilag,
+                              .noise = settings_.antilagNoise,
+                              .pixel = settings_.antilagPixel});
     }
 
     SvgfReprojectParams reprojectParams(bool wasStable) const {
@@ -511,6 +514,10 @@ const ParamTable<SvgfSettings>& svgf::params() {
         return t;
     }();
     return table;
+}
+
+SvgfLagParams svgfLagParams(const SvgfLagSettings& settings) {
+    return {steadyShare(settings.slow, settings.fast), settings.antilag, settings.noise, settings.pixel};
 }
 
 ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {

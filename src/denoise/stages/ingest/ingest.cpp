@@ -138,6 +138,7 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
     input.albedo = images.albedo;
     input.albedoSpecular = images.albedoSpecular;
     input.roughness = images.roughness;
+    if (!needs.albedo) return input;
     const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {
         const ImageHandle white = whiteAlbedo(graph, params);

@@ -21,6 +21,7 @@ struct IngestImages {
 struct IngestNeeds {
     bool twoSignals = false;
     bool layers = false;  ///< normal and depth, besides the surfaces
+    bool albedo = true;
     gpu::Backing filters = gpu::Backing::Image;
 };
 

@@ -8,8 +8,5 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main() {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    const Between b = tilesAround(at);
-    const vec4 corners = vec4(tileAt(b.first), tileAt(b.first + ivec2(1, 0)), tileAt(b.first + ivec2(0, 1)),
-                              tileAt(b.first + 1));
-    shorten(at, lagBetween(corners, b.share));
+    shorten(at, lagAt(at));
 }

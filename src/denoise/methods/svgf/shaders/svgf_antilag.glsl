@@ -12,25 +12,7 @@ layout(set = 0, binding = 5, r32f) uniform readonly image2D tiles;
 layout(set = 0, binding = 6, rgba16f) uniform image2D moments;
 UPDATE_HALF4(7, color);
 
-/// The position of a pixel's centre between the centres of 2x2 tiles.
-struct Between {
-    ivec2 first;  // of 2x2 tiles
-    vec2 share;   // interpolation weights of the right and the lower tiles
-};
-
-Between tilesAround(ivec2 at) {
-    const vec2 tile = (vec2(at) + 0.5) / float(SVGF_TILE) - 0.5;
-    return Between(ivec2(floor(tile)), fract(tile));
-}
-
-float tileAt(ivec2 tile) {
-    return imageLoad(tiles, clamp(tile, ivec2(0), (ivec2(params.width, params.height) - 1) / SVGF_TILE)).x;
-}
-
-/// Interpolates the lags of 2x2 tiles, given row by row.
-float lagBetween(vec4 corners, vec2 share) {
-    return mix(mix(corners.x, corners.y, share.x), mix(corners.z, corners.w, share.x), share.y);
-}
+#include "denoise/methods/svgf/shaders/svgf_lag_between.glsl"
 
 void shorten(ivec2 at, float lag) {
     if (!(lag >= SVGF_MIN_LAG)) return;

@@ -1,5 +1,5 @@
 // Replaces the first level of the filter where the history is short: a mean over a wider neighbourhood, in which each
-// pixel weighs as much as it has frames. docs/denoising.md, SVGF, step 6.
+// pixel weighs as much as it has frames. docs/denoising.md, SVGF, step 6. With LIMPID_ONE_CHANNEL for visibility.
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
 
@@ -8,8 +8,32 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 READ_UINT2(1, surfaces);
 layout(set = 0, binding = 2, rgba16f) uniform readonly image2D moments;
+#ifdef LIMPID_ONE_CHANNEL
+#include "denoise/methods/visibility/shaders/visibility_texel.glsl"
+READ_UINT1(3, signal);
+WRITE_UINT1(4, filtered);
+#define NOTHING_THERE NOTHING_SEEN
+
+vec4 signalAt(ivec2 at) {
+    return unpackedSignal(LOAD_UINT1(signal, at)).xxxy;
+}
+
+void storeFiltered(ivec2 at, vec4 light) {
+    STORE_UINT1(filtered, at, packedSignal(light.ra));
+}
+#else
 READ_HALF4(3, signal);
 WRITE_HALF4(4, filtered);
+#define NOTHING_THERE SVGF_NOTHING_SEEN
+
+vec4 signalAt(ivec2 at) {
+    return LOAD_HALF4(signal, at);
+}
+
+void storeFiltered(ivec2 at, vec4 light) {
+    STORE_HALF4(filtered, at, light);
+}
+#endif
 
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
 
@@ -33,7 +57,7 @@ float tent(ivec2 from, int radius) {
 void addTap(inout Sum sum, SurfaceCentre centre, ivec2 at, ivec2 from, int radius) {
     const ivec2 there = at + from;
     const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
-    const vec4 light = LOAD_HALF4(signal, inside);
+    const vec4 light = signalAt(inside);
     if (inside != there || light.a < 0.0) return;
     const float surface = surfaceExponent(centre, surfaceAt(inside), perDepthOf(centre, from));
     const float likeness = from == ivec2(0) ? 1.0 : exp2(surface);
@@ -44,7 +68,7 @@ void addTap(inout Sum sum, SurfaceCentre centre, ivec2 at, ivec2 from, int radiu
 
 bool isYoung(ivec2 at) {
     return at.x < int(params.width) && at.y < int(params.height) && imageLoad(moments, at).w < SVGF_YOUNG &&
-           LOAD_HALF4_ALPHA(signal, at) >= 0.0;
+           signalAt(at).a != NOTHING_THERE;
 }
 
 /// The sum over every `step`-th row, from the number `first` on.
@@ -60,5 +84,5 @@ Sum rowsSum(ivec2 at, int first, int step) {
 
 void store(ivec2 at, Sum sum) {
     if (sum.light.a < SVGF_MIN_WEIGHTS) return;
-    STORE_HALF4(filtered, at, vec4(sum.light.rgb, sqrt(sum.squares)) / sum.light.a);
+    storeFiltered(at, vec4(sum.light.rgb, sqrt(sum.squares)) / sum.light.a);
 }
