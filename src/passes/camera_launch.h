@@ -14,6 +14,10 @@ enum class Jitter : uint32_t {
     Off = JITTER_OFF,      ///< the centre
 };
 
+/// Where ray `index` goes with Jitter::Frame: offset from the pixel's centre, pixels, y down. The same as
+/// subpixel() in shaders/common/camera_ray.glsl.
+vec2 framePoint(uint32_t index);
+
 /// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;

@@ -149,6 +149,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     DenoiserInput input = ingest(
         graph, taken, params,
         {.twoSignals = desc.signals == 2, .layers = method.readsLayers || antialiases, .filters = filters});
+    input.jitter = params.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {method.record(graph, input, used).beauty, {}, {}};

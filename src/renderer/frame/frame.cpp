@@ -201,12 +201,22 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     return means[0];
 }
 
+/// Returns the mean offset of the frame's rays from the pixels' centres, as far as all pixels have the same.
+vec2 meanJitter(const RenderSettings& settings, const FrameInput& input) {
+    if (settings.jitter != Jitter::Frame) return vec2(0.0f);
+    vec2 sum(0.0f);
+    for (uint32_t i = 0; i < input.samples; ++i) sum += framePoint(input.firstSample + i);
+    return sum / static_cast<float>(input.samples);
+}
+
 /// Records samples and a denoiser, which keeps its histories from frame to frame.
 FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, const RenderSettings& settings,
                            const FrameInput& input) {
     FrameImages out;
     static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
-    denoise::DenoiserInput frame{{out}, input.camera, input.samples, input.filters};
+    denoise::DenoiserInput frame{{out}, input.camera, input.samples};
+    frame.filters = input.filters;
+    frame.jitter = meanJitter(settings, input);
     frame.reasons = {.wanted = input.reasons, .cut = !input.hasPrevious};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =

@@ -74,12 +74,25 @@ vec4 texelAt(ivec2 at) {
 
 struct Neighbourhood {
     vec3 mean, deviation;
+    vec3 centre;    // the colour at the pixel's centre
     ivec2 nearest;  // the pixel nearest to the eye: an edge moves with the surface in front
 };
 
-/// `now` is the pixel's own colour. Sums of differences from it are accurate where the picture is flat.
+/// Weights of the three pixels around `t` in [-0.5, 0.5]: the parabola through them.
+vec3 parabolaWeights(float t) {
+    return vec3(0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0));
+}
+
+/// Luminance of a compressed colour.
+float encodedLuminance(vec3 v) {
+    return luminance(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z));
+}
+
+/// `now` is the pixel's own colour, where its ray went. Sums of differences from it are accurate where the picture is flat.
 Neighbourhood around(ivec2 at, vec3 now) {
-    vec3 sum = vec3(0.0), squares = vec3(0.0);
+    const vec3 wx = parabolaWeights(-params.jitter.x), wy = parabolaWeights(-params.jitter.y);
+    vec3 sum = vec3(0.0), squares = vec3(0.0), centre = vec3(0.0), least = vec3(0.0), most = vec3(0.0);
+    float brightest = encodedLuminance(now);
     float minDepth = 1e30;
     ivec2 nearest = at;
     for (int j = -1; j <= 1; ++j) {
@@ -88,6 +101,10 @@ Neighbourhood around(ivec2 at, vec3 now) {
             const vec3 v = texel.rgb - now;
             sum += v;
             squares += v * v;
+            centre += wx[i + 1] * wy[j + 1] * v;
+            least = min(least, v);
+            most = max(most, v);
+            brightest = max(brightest, encodedLuminance(texel.rgb));
             if (texel.a > 0.0 && texel.a < minDepth) {
                 minDepth = texel.a;
                 nearest = inside(at + ivec2(i, j));
@@ -95,7 +112,10 @@ Neighbourhood around(ivec2 at, vec3 now) {
         }
     }
     const vec3 mean = sum / 9.0;
-    return Neighbourhood(now + mean, sqrt(max(squares / 9.0 - mean * mean, vec3(0.0))), nearest);
+    // Without these limits the parabola would overshoot beside edges, and bright light would explode in decode().
+    centre = now + clamp(centre, least, most);
+    centre *= min(1.0, brightest / max(encodedLuminance(centre), 1e-20));
+    return Neighbourhood(now + mean, sqrt(max(squares / 9.0 - mean * mean, vec3(0.0))), centre, nearest);
 }
 
 /// Weights of the four pixels around `t` in [0, 1): the Catmull-Rom cubic.
@@ -133,7 +153,7 @@ void main() {
         reprojectionOf(LOAD_LAYER(motion, near.nearest), vec2(at), vec2(params.width, params.height));
     const vec4 past = was.onScreen ? pastAt(was.position) : vec4(0.0);
     const float frames = min(past.w + 1.0, params.frames);
-    const vec3 mean = decode(mix(clipped(past.rgb, near), now, 1.0 / frames));
+    const vec3 mean = decode(mix(clipped(past.rgb, near), near.centre, 1.0 / frames));
     STORE_HALF4(after, at, vec4(min(mean, MAX_HALF), frames));
     imageStore(smoothed, at, vec4(mean, 1.0));
 }

@@ -28,7 +28,7 @@ ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageH
     const gpu::History history = graph.history("taa", Format::RGBA16Float, extent, input.filters);
     const ImageHandle result = graph.transient("taa/beauty", Format::RGBA32Float, extent);
     const bool buffers = input.filters == gpu::Backing::Buffer;
-    const TaaParams params{extent.width, extent.height, settings.frames};
+    const TaaParams params{extent.width, extent.height, settings.frames, input.jitter};
     graph.dispatch({.pass = "taa",
                     .shader = buffers ? shaders::taa_buffers_comp : shaders::taa_comp,
                     .bindings = {{"beauty", beauty},
