@@ -12,9 +12,9 @@ float radicalInverse(uint32_t index, uint32_t base) {
 
 }  // namespace
 
-vec2 framePoint(uint32_t index) {
+vec2 framePoint(uint32_t index, float span) {
     if (index == 0) return vec2(0.0f);
-    return vec2(radicalInverse(index, 2), radicalInverse(index, 3)) - 0.5f;
+    return span * (vec2(radicalInverse(index, 2), radicalInverse(index, 3)) - 0.5f);
 }
 
 }  // namespace limpid
