@@ -11,6 +11,8 @@ namespace limpid::test {
 namespace {
 
 constexpr double deviations = 1.25, minDistance = 1e-6;
+/// Step 5: the second difference at edges, and the share of the frames elsewhere.
+constexpr double edge = 0.005, innerShare = 0.15;
 /// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
 /// For encoded values, which are below 1 in magnitude: several operations' rounding.
@@ -60,6 +62,7 @@ class Antialiaser {
     std::array<size_t, 9> block(size_t p) const;
     Around around(size_t p) const;
     dvec3 atCentre(size_t p) const;
+    double framesAveraged(size_t p, double frames, Decision& decision) const;
     std::optional<dvec3> motion(size_t p) const;
     size_t nearest(size_t p, Decision& decision) const;
     bool movesAlike(size_t p, size_t q) const;
@@ -68,7 +71,8 @@ class Antialiaser {
     double countAt(const dvec2& s) const;
     double countAt(const dvec2& s, Decision& decision) const;
     dvec3 pastAt(const dvec2& s) const;
-    void addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const;
+    void addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
+                   const dvec3& own) const;
 
     DoubleFrame frame_;
     int64_t width_, height_;
@@ -128,6 +132,24 @@ dvec3 Antialiaser::atCentre(size_t p) const {
     const dvec3 c = glm::clamp(sum, least, most);
     const double l = luminanceOf(c);
     return l > brightest ? c * (brightest / l) : c;
+}
+
+/// Step 5: N''.
+double Antialiaser::framesAveraged(size_t p, double frames, Decision& decision) const {
+    if (jitter_ == dvec2(0.0) || frames == 1.0) return frames;
+    const std::array<size_t, 9> pixels = block(p);
+    const auto distance = [&](size_t i) {
+        const double z = frame_.distance(pixels[i]);
+        return std::isfinite(z) ? std::max(z, 0.0) : 0.0;
+    };
+    bool isEdge = false;
+    for (size_t i = 0; i < 4; ++i) {
+        const double a = distance(i), b = distance(8 - i), c = distance(4);
+        const double largest = std::max({a, b, c});
+        if (largest == 0.0) continue;
+        isEdge |= decision.above(std::abs(a + b - 2.0 * c) / largest, edge, 1e-6);
+    }
+    return isEdge ? frames : 1.0 + innerShare * (frames - 1.0);
 }
 
 /// Motion with NaN or infinity counts as missing.
@@ -203,10 +225,11 @@ dvec3 Antialiaser::pastAt(const dvec2& s) const {
 }
 
 /// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.
-void Antialiaser::addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const {
+void Antialiaser::addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
+                            const dvec3& own) const {
     const auto meanWith = [&](const dvec2& at, double error) {
         const dvec3 h = clip(pastAt(at), around, error);
-        return taaDecode(h + (own - h) / pixel.frames);
+        return taaDecode(h + (own - h) / averaged);
     };
     dvec3 clipped(0.0);
     for (const double sign : {-1.0, 1.0}) {
@@ -236,10 +259,11 @@ TaaPixel Antialiaser::at(size_t p) const {
     pixel.frames = countAfter(count);
     const Around surroundings = around(p);
     const dvec3 h = count > 0.0 ? clip(pastAt(s), surroundings, 0.0) : own;
-    pixel.mean = taaDecode(h + (own - h) / pixel.frames);
+    const double averaged = framesAveraged(p, pixel.frames, decision);
+    pixel.mean = taaDecode(h + (own - h) / averaged);
     // c = e / (1 - l) has the derivatives 1 / (1 - l) = 1 + l by e and c (1 + l) by l.
     pixel.rounding = encodedRounding * (1.0 + luminance(pixel.mean)) * (1.0 + pixel.mean);
-    if (count > 0.0) addErrors(pixel, s, surroundings, own);
+    if (count > 0.0) addErrors(pixel, averaged, s, surroundings, own);
     pixel.doubtful = decision.doubtful();
     return pixel;
 }

@@ -183,6 +183,33 @@ TEST_F(TaaByHand, UndoingJitterDoesNotOvershoot) {
     for (const TaaPixel& pixel : pixels) EXPECT_LT(largest(pixel.mean), 3e4);
 }
 
+/// Edges take all frames, surfaces few of them; so do all pixels whose jitter is unknown.
+TEST_F(TaaByHand, JitteredSurfacesAverageFewFrames) {
+    // The beauty's pixels are alternately encoded as nearly 1 and 0, so nothing is clipped.
+    const std::vector<float> beauty =
+        pictureOf([](size_t x, size_t y) { return dvec3((x + y) % 2 == 0 ? 1000.0 : 0.0); });
+    past = pastOf(dvec3(1), 3);
+    const auto share = [&](const dvec2& jitter) {  // of this frame
+        const TaaPixel pixel = taa(frame, beauty, past, frames, jitter)[middle];
+        EXPECT_EQ(pixel.frames, 4.0);
+        return (taaEncode(pixel.mean).x - 0.5) / (1000.0 / 1001.0 - 0.5);
+    };
+    constexpr double least = 1e-9;  // hardly jittered: the colour stays
+    EXPECT_NEAR(share({0, 0}), 1.0 / 4, 1e-6);
+    EXPECT_NEAR(share({least, 0}), 1.0 / 1.45, 1e-6);
+    const auto setDistance = [&](size_t p, float z) { frame.depth[4 * p] = z; };
+    for (const size_t p : {middle - side - 1, middle - side, middle + 1, middle + side + 1}) {
+        const float before = frame.depth[4 * p];
+        setDistance(p, 1.004f * before);
+        EXPECT_NEAR(share({least, 0}), 1.0 / 1.45, 1e-6) << p;
+        setDistance(p, 1.006f * before);
+        EXPECT_NEAR(share({least, 0}), 1.0 / 4, 1e-6) << p;
+        setDistance(p, before);
+    }
+    frame.depth[4 * (middle - 1)] = frame.depth[4 * (middle - 1) + 1] = 0.0f;
+    EXPECT_NEAR(share({least, 0}), 1.0 / 4, 1e-6) << "next to the sky";
+}
+
 /// The number of frames at the target of the motion tells which pixel was taken as nearest.
 TEST_F(TaaByHand, MotionIsThatOfTheNearest) {
     past = pastOf(dvec3(1), 0);

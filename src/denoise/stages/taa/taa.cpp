@@ -12,9 +12,10 @@ using gpu::ImageHandle;
 const ParamTable<TaaSettings>& taaParams() {
     static const auto table = [] {
         ParamTable<TaaSettings> t("taa");
-        t.add("frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
-              "Frames that are averaged to smooth edges (with --jitter frame); more is smoother and softer, "
-              "1 is off")
+        t.add(
+             "frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
+             "Frames that are averaged to smooth edges (2 is best with --jitter frame); more is smoother and "
+             "softer, 1 is off")
             .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();
