@@ -22,6 +22,10 @@ enum class Sampler : uint32_t {
     Sobol = SAMPLER_SOBOL,
 };
 
+/// Where ray `index` goes with Jitter::Frame: offset from the pixel's centre, pixels, y down. `span`: see
+/// CameraLaunch. The same as subpixel() in shaders/common/camera_ray.glsl.
+vec2 framePoint(uint32_t index, float span);
+
 /// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;
@@ -34,6 +38,7 @@ struct CameraLaunch {
     uint32_t stream = 0;  ///< stream of random numbers; in a still, the launch's number
     uint32_t seed = 0;
     Jitter jitter = Jitter::Pixel;
+    float jitterSpan = 1.0f;     ///< part of the pixel that Jitter::Frame covers, around the centre
     uint64_t samplesBefore = 0;  ///< per pixel in the mean, before this launch
     Sampler sampler = Sampler::Pcg;
 };
@@ -50,6 +55,7 @@ inline ViewParams viewParams(const CameraLaunch& launch) {
     view.stream = launch.stream;
     view.seed = launch.seed;
     view.jitter = static_cast<uint32_t>(launch.jitter);
+    view.jitterSpan = launch.jitterSpan;
     view.samplesBefore = static_cast<float>(launch.samplesBefore);
     return view;
 }

@@ -21,6 +21,7 @@ struct Case {
     float light = 1.0f;    ///< factor of the scene's light
     bool hasNans = false;  ///< and infinities, in distance and motion
     gpu::Backing filters = gpu::Backing::Image;
+    bool jitters = false;  ///< each frame's rays go through another point of the pixels
 };
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
@@ -56,8 +57,9 @@ bool isStored(const dvec4& stored, const TaaPixel& expected) {
 class TaaPassTest : public DenoiseTest, public testing::WithParamInterface<Case> {
   protected:
     static HostFrame frameOf(int number);
-    void antialias(const HostFrame& frame, const std::vector<float>& beauty);
-    void compare(const HostFrame& frame, const std::vector<float>& beauty);
+    static vec2 jitterOf(int number);
+    void antialias(const HostFrame& frame, const std::vector<float>& beauty, vec2 jitter);
+    void compare(const HostFrame& frame, const std::vector<float>& beauty, vec2 jitter);
     gpu::ImageHandle stored() const;
 
     gpu::ImageHandle result_;
@@ -86,10 +88,17 @@ HostFrame TaaPassTest::frameOf(int number) {
     return frame;
 }
 
-void TaaPassTest::antialias(const HostFrame& frame, const std::vector<float>& beauty) {
+/// Reaches both ends of the pixel.
+vec2 TaaPassTest::jitterOf(int number) {
+    if (!GetParam().jitters) return vec2(0.0f);
+    return vec2(static_cast<float>(number % 3) - 1.0f, static_cast<float>(number % 5) / 2.0f - 1.0f) / 2.0f;
+}
+
+void TaaPassTest::antialias(const HostFrame& frame, const std::vector<float>& beauty, vec2 jitter) {
     graph_.beginFrame();
     denoise::DenoiserInput input = denoise::upload(graph_, frame);
     input.filters = GetParam().filters;
+    input.jitter = jitter;
     const gpu::ImageHandle picture =
         graph_.transient("picture", gpu::Format::RGBA32Float, {frame.width, frame.height});
     graph_.upload(picture, gpu::bytesOf(beauty));
@@ -104,8 +113,9 @@ gpu::ImageHandle TaaPassTest::stored() const {
     return images[0] == result_ ? images[1] : images[0];
 }
 
-void TaaPassTest::compare(const HostFrame& frame, const std::vector<float>& beauty) {
-    const std::vector<TaaPixel> expected = taa(frame, beauty, past_, double{GetParam().frames});
+void TaaPassTest::compare(const HostFrame& frame, const std::vector<float>& beauty, vec2 jitter) {
+    const std::vector<TaaPixel> expected =
+        taa(frame, beauty, past_, double{GetParam().frames}, dvec2(jitter));
     const std::vector<dvec4> result = download(result_);
     past_ = {frame.width, frame.height, download(stored())};
     ASSERT_EQ(result.size(), expected.size());
@@ -139,8 +149,8 @@ TEST_P(TaaPassTest, AgreesWithTheFormulasInDouble) {
         SCOPED_TRACE("frame " + std::to_string(number));
         const HostFrame frame = frameOf(number);
         const std::vector<float> beauty = beautyOf(frame);
-        antialias(frame, beauty);
-        compare(frame, beauty);
+        antialias(frame, beauty, jitterOf(number));
+        compare(frame, beauty, jitterOf(number));
         if (HasFatalFailure()) return;
         if (number == 0 || number == c.resizeAt) {
             EXPECT_EQ(restarted_, frame.pixelCount());
@@ -157,19 +167,21 @@ const SyntheticOptions moving{.cameraMoves = true, .objectMoves = true};
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, TaaPassTest,
-    testing::Values(Case{"Static", {}}, Case{"Camera", {.cameraMoves = true}},
-                    Case{"Object", {.objectMoves = true}}, Case{"Both", moving},
-                    Case{"Noiseless", {.cameraMoves = true, .objectMoves = true, .noise = false}},
-                    Case{"Orthographic", {.cameraMoves = true, .objectMoves = true, .orthographic = true}},
-                    Case{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}},
-                    Case{"FewFrames", moving, 2.5f}, Case{"Tiny", moving, 4.0f, 3, 2},
-                    Case{"Thin", {}, 4.0f, 1, 40}, Case{"Even", moving, 8.0f, 128, 64},
-                    Case{.name = "Resize", .options = moving, .resizeAt = 6},
-                    Case{.name = "Bright", .options = moving, .light = 1e4f},
-                    Case{.name = "Dark", .options = moving, .light = 1e-3f},
-                    Case{.name = "Nans", .options = moving, .hasNans = true},
-                    Case{.name = "Buffers", .options = moving, .filters = gpu::Backing::Buffer},
-                    Case{"TinyBuffers", moving, 4.0f, 3, 2, -1, 1.0f, false, gpu::Backing::Buffer}),
+    testing::Values(
+        Case{"Static", {}}, Case{"Camera", {.cameraMoves = true}}, Case{"Object", {.objectMoves = true}},
+        Case{"Both", moving}, Case{"Noiseless", {.cameraMoves = true, .objectMoves = true, .noise = false}},
+        Case{"Orthographic", {.cameraMoves = true, .objectMoves = true, .orthographic = true}},
+        Case{"LargeScale", {.cameraMoves = true, .objectMoves = true, .scale = 1024}},
+        Case{"FewFrames", moving, 2.5f}, Case{"Tiny", moving, 4.0f, 3, 2}, Case{"Thin", {}, 4.0f, 1, 40},
+        Case{"Even", moving, 8.0f, 128, 64}, Case{.name = "Resize", .options = moving, .resizeAt = 6},
+        Case{.name = "Bright", .options = moving, .light = 1e4f},
+        Case{.name = "Dark", .options = moving, .light = 1e-3f},
+        Case{.name = "Nans", .options = moving, .hasNans = true},
+        Case{.name = "Buffers", .options = moving, .filters = gpu::Backing::Buffer},
+        Case{.name = "Jittered", .options = moving, .jitters = true},
+        Case{.name = "JitteredBright", .options = moving, .light = 1e4f, .jitters = true},
+        Case{.name = "JitteredBuffers", .options = moving, .filters = gpu::Backing::Buffer, .jitters = true},
+        Case{"TinyBuffers", moving, 4.0f, 3, 2, -1, 1.0f, false, gpu::Backing::Buffer}),
     nameOf);
 
 /// Recording needs no device.

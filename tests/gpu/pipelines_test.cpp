@@ -217,6 +217,32 @@ TEST_F(PipelinesTest, EverySampleOfAFrameButTheFirstIsJittered) {
     }
 }
 
+/// A camera whose axis is turned by the offset looks through the jittered points without jitter.
+TEST_F(PipelinesTest, RaysOfAJitteredFrameGoThroughTheFramesPoint) {
+    const Scene scene = prepared(scene::cornellSpheresScene());
+    scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));
+    RenderSettings settings = settingsFor(parsePipeline("path", "temporal"), 24, 16);
+    settings.layers = true;
+    const auto depthOf = [&](Moment moment, Jitter jitter) {
+        settings.jitter = jitter;
+        FrameRenderer renderer(device(), gpuScene, settings, 1);
+        renderer.render(std::move(moment));
+        return renderer.download().depth;
+    };
+    EXPECT_EQ(framePoint(0, 0.5f), vec2(0.0f));
+    for (const uint32_t frame : {1u, 2u, 7u}) {
+        const Moment jittered = still(scene, settings, frame);
+        Moment turned = jittered;
+        const vec2 offset = framePoint(frame, 0.5f);
+        EXPECT_LE(std::max(std::abs(offset.x), std::abs(offset.y)), 0.25f);
+        turned.camera.forward +=
+            2.0f / 24.0f * offset.x * jittered.camera.right - 2.0f / 16.0f * offset.y * jittered.camera.up;
+        const std::vector<float> expected = depthOf(turned, Jitter::Off);
+        EXPECT_NE(depthOf(jittered, Jitter::Off), expected);
+        expectEqual(depthOf(jittered, Jitter::Frame), expected, 1e-3f);
+    }
+}
+
 TEST_F(PipelinesTest, EveryPipelineDrawsFromTheChosenGenerator) {
     const Scene scene = prepared(scene::cornellSpheresScene());
     scene::GpuScene gpuScene(device(), scene::buildSceneData(scene));

@@ -11,6 +11,8 @@ namespace limpid::test {
 namespace {
 
 constexpr double deviations = 1.25, minDistance = 1e-6;
+/// Step 5: the second difference at edges, and the share of the frames elsewhere.
+constexpr double edge = 0.005, innerShare = 0.15;
 /// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
 /// For encoded values, which are below 1 in magnitude: several operations' rounding.
@@ -26,7 +28,17 @@ std::array<double, 4> catmullRom(double t) {
             0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
 }
 
-/// Step 3. `error` is added to the allowed difference of the components.
+std::array<double, 3> parabola(double t) {
+    return {0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)};
+}
+
+/// l of the colour of which `encoded` are the axes.
+double luminanceOf(const dvec3& encoded) {
+    const auto [x, y, z] = std::array{encoded.x, encoded.y, encoded.z};
+    return luminance(dvec3(x + y - z, x + z, x - y - z));
+}
+
+/// Step 4. `error` is added to the allowed difference of the components.
 dvec3 clip(const dvec3& h, const Around& around, double error) {
     const dvec3 most = glm::max(deviations * around.deviation, dvec3(minDistance)) + error;
     const dvec3 e = glm::abs(h - around.mean) / most;
@@ -36,7 +48,7 @@ dvec3 clip(const dvec3& h, const Around& around, double error) {
 class Antialiaser {
   public:
     Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty, const TaaPast& past,
-                double frames);
+                double frames, const dvec2& jitter);
     Antialiaser(const Antialiaser&) = delete;
     Antialiaser& operator=(const Antialiaser&) = delete;
 
@@ -49,6 +61,8 @@ class Antialiaser {
     }
     std::array<size_t, 9> block(size_t p) const;
     Around around(size_t p) const;
+    dvec3 atCentre(size_t p) const;
+    double framesAveraged(size_t p, double frames, Decision& decision) const;
     std::optional<dvec3> motion(size_t p) const;
     size_t nearest(size_t p, Decision& decision) const;
     bool movesAlike(size_t p, size_t q) const;
@@ -57,19 +71,21 @@ class Antialiaser {
     double countAt(const dvec2& s) const;
     double countAt(const dvec2& s, Decision& decision) const;
     dvec3 pastAt(const dvec2& s) const;
-    void addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const;
+    void addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
+                   const dvec3& own) const;
 
     DoubleFrame frame_;
     int64_t width_, height_;
     double frames_;
+    dvec2 jitter_;
     std::vector<dvec3> encoded_;  ///< E(B)
     std::vector<dvec3> past_;     ///< E of the last frame's means; empty: no history
     std::vector<double> counts_;  ///< N of each pixel
 };
 
 Antialiaser::Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                         const TaaPast& past, double frames)
-    : frame_(frame), width_(frame.width), height_(frame.height), frames_(frames) {
+                         const TaaPast& past, double frames, const dvec2& jitter)
+    : frame_(frame), width_(frame.width), height_(frame.height), frames_(frames), jitter_(jitter) {
     for (size_t p = 0; p < frame.pixelCount(); ++p)
         encoded_.push_back(taaEncode({beauty[4 * p], beauty[4 * p + 1], beauty[4 * p + 2]}));
     if (past.width != frame.width || past.height != frame.height) return;
@@ -98,6 +114,42 @@ Around Antialiaser::around(size_t p) const {
     }
     result.deviation = glm::sqrt(variance);
     return result;
+}
+
+/// Step 2.
+dvec3 Antialiaser::atCentre(size_t p) const {
+    const std::array<double, 3> across = parabola(-jitter_.x), down = parabola(-jitter_.y);
+    const std::array<size_t, 9> pixels = block(p);
+    dvec3 sum(0.0), least = encoded_[p], most = encoded_[p];
+    double brightest = 0.0;
+    for (size_t i = 0; i < 9; ++i) {
+        const dvec3& e = encoded_[pixels[i]];
+        sum += across[i % 3] * down[i / 3] * e;
+        least = glm::min(least, e);
+        most = glm::max(most, e);
+        brightest = std::max(brightest, luminanceOf(e));
+    }
+    const dvec3 c = glm::clamp(sum, least, most);
+    const double l = luminanceOf(c);
+    return l > brightest ? c * (brightest / l) : c;
+}
+
+/// Step 5: N''.
+double Antialiaser::framesAveraged(size_t p, double frames, Decision& decision) const {
+    if (jitter_ == dvec2(0.0) || frames == 1.0) return frames;
+    const std::array<size_t, 9> pixels = block(p);
+    const auto distance = [&](size_t i) {
+        const double z = frame_.distance(pixels[i]);
+        return std::isfinite(z) ? std::max(z, 0.0) : 0.0;
+    };
+    bool isEdge = false;
+    for (size_t i = 0; i < 4; ++i) {
+        const double a = distance(i), b = distance(8 - i), c = distance(4);
+        const double largest = std::max({a, b, c});
+        if (largest == 0.0) continue;
+        isEdge |= decision.above(std::abs(a + b - 2.0 * c) / largest, edge, 1e-6);
+    }
+    return isEdge ? frames : 1.0 + innerShare * (frames - 1.0);
 }
 
 /// Motion with NaN or infinity counts as missing.
@@ -173,10 +225,11 @@ dvec3 Antialiaser::pastAt(const dvec2& s) const {
 }
 
 /// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.
-void Antialiaser::addErrors(TaaPixel& pixel, const dvec2& s, const Around& around, const dvec3& own) const {
+void Antialiaser::addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
+                            const dvec3& own) const {
     const auto meanWith = [&](const dvec2& at, double error) {
         const dvec3 h = clip(pastAt(at), around, error);
-        return taaDecode(h + (own - h) / pixel.frames);
+        return taaDecode(h + (own - h) / averaged);
     };
     dvec3 clipped(0.0);
     for (const double sign : {-1.0, 1.0}) {
@@ -196,7 +249,7 @@ void Antialiaser::addErrors(TaaPixel& pixel, const dvec2& s, const Around& aroun
 
 TaaPixel Antialiaser::at(size_t p) const {
     Decision decision;
-    const dvec3 own = encoded_[p];
+    const dvec3 own = atCentre(p);
     const std::optional<dvec3> m = past_.empty() ? std::nullopt : motion(nearest(p, decision));
     const dvec2 centre(static_cast<double>(static_cast<int64_t>(p) % width_) + 0.5,
                        static_cast<double>(static_cast<int64_t>(p) / width_) + 0.5);
@@ -206,10 +259,11 @@ TaaPixel Antialiaser::at(size_t p) const {
     pixel.frames = countAfter(count);
     const Around surroundings = around(p);
     const dvec3 h = count > 0.0 ? clip(pastAt(s), surroundings, 0.0) : own;
-    pixel.mean = taaDecode(h + (own - h) / pixel.frames);
+    const double averaged = framesAveraged(p, pixel.frames, decision);
+    pixel.mean = taaDecode(h + (own - h) / averaged);
     // c = e / (1 - l) has the derivatives 1 / (1 - l) = 1 + l by e and c (1 + l) by l.
     pixel.rounding = encodedRounding * (1.0 + luminance(pixel.mean)) * (1.0 + pixel.mean);
-    if (count > 0.0) addErrors(pixel, s, surroundings, own);
+    if (count > 0.0) addErrors(pixel, averaged, s, surroundings, own);
     pixel.doubtful = decision.doubtful();
     return pixel;
 }
@@ -228,8 +282,8 @@ dvec3 taaDecode(const dvec3& encoded) {
 }
 
 std::vector<TaaPixel> taa(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                          const TaaPast& past, double frames) {
-    const Antialiaser antialiaser(frame, beauty, past, frames);
+                          const TaaPast& past, double frames, const dvec2& jitter) {
+    const Antialiaser antialiaser(frame, beauty, past, frames, jitter);
     std::vector<TaaPixel> pixels;
     for (size_t p = 0; p < frame.pixelCount(); ++p) pixels.push_back(antialiaser.at(p));
     return pixels;

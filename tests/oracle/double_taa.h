@@ -31,8 +31,9 @@ struct TaaPixel {
 dvec3 taaEncode(const dvec3& color);
 dvec3 taaDecode(const dvec3& encoded);
 
-/// Computes one frame. `beauty`: four floats per pixel.
+/// Computes one frame. `beauty`: four floats per pixel. `jitter`: from the pixels' centres to the frame's
+/// rays.
 std::vector<TaaPixel> taa(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                          const TaaPast& past, double frames);
+                          const TaaPast& past, double frames, const dvec2& jitter = dvec2(0.0));
 
 }  // namespace limpid::test

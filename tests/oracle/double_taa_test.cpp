@@ -151,6 +151,65 @@ TEST_F(TaaByHand, TheCubicReproducesParabolas) {
     }
 }
 
+/// Rays went through points beside the centres; the parabola through three pixels finds the centres' values.
+TEST_F(TaaByHand, JitterIsUndone) {
+    const auto ramp = [](double x, double y) { return 0.3 + 0.02 * x + 0.01 * y + 0.002 * x * x; };
+    for (const dvec2& jitter : {dvec2(0), dvec2(0.5, -0.5), dvec2(-0.3, 0.2)}) {
+        const std::vector<float> beauty = pictureOf([&](size_t x, size_t y) {
+            const double at = static_cast<double>(x) + jitter.x, down = static_cast<double>(y) + jitter.y;
+            return taaDecode({ramp(at, down), 0, 0});
+        });
+        const TaaPixel pixel = taa(frame, beauty, past, frames, jitter)[middle];
+        EXPECT_NEAR(taaEncode(pixel.mean).x, ramp(4, 4), 1e-6);
+    }
+}
+
+/// Beside a bright pixel the parabola leads below 0 and above the pixel's own value.
+TEST_F(TaaByHand, UndoingJitterDoesNotOvershoot) {
+    const auto at = [&](double brightness, const dvec2& jitter, size_t p) {
+        const std::vector<float> beauty =
+            pictureOf([&](size_t x, size_t) { return dvec3(x >= 5 ? brightness : 0.25); });
+        return taa(frame, beauty, past, frames, jitter)[p].mean;
+    };
+    EXPECT_LT(glm::distance(at(50, {0.5, 0}, middle), dvec3(0.25)), 1e-6) << "dark, away from the light";
+    EXPECT_LT(glm::distance(at(50, {-0.5, 0}, middle + 1), dvec3(50)), 1e-4) << "bright, away from the dark";
+    EXPECT_GT(at(50, {-0.5, 0}, middle).x, 0.3) << "towards the light";
+    // Each axis alone is within its limits, but together they would be brighter than any pixel.
+    const std::vector<float> colors = pictureOf([](size_t x, size_t y) {
+        if (x == 5) return dvec3(0, 1e4, 0);
+        return y == 5 ? dvec3(1e4, 1e4, 1e4) : dvec3(0.1);
+    });
+    const std::vector<TaaPixel> pixels = taa(frame, colors, past, frames, {-0.5, -0.5});
+    for (const TaaPixel& pixel : pixels) EXPECT_LT(largest(pixel.mean), 3e4);
+}
+
+/// Edges take all frames, surfaces few of them; so do all pixels whose jitter is unknown.
+TEST_F(TaaByHand, JitteredSurfacesAverageFewFrames) {
+    // The beauty's pixels are alternately encoded as nearly 1 and 0, so nothing is clipped.
+    const std::vector<float> beauty =
+        pictureOf([](size_t x, size_t y) { return dvec3((x + y) % 2 == 0 ? 1000.0 : 0.0); });
+    past = pastOf(dvec3(1), 3);
+    const auto share = [&](const dvec2& jitter) {  // of this frame
+        const TaaPixel pixel = taa(frame, beauty, past, frames, jitter)[middle];
+        EXPECT_EQ(pixel.frames, 4.0);
+        return (taaEncode(pixel.mean).x - 0.5) / (1000.0 / 1001.0 - 0.5);
+    };
+    constexpr double least = 1e-9;  // hardly jittered: the colour stays
+    EXPECT_NEAR(share({0, 0}), 1.0 / 4, 1e-6);
+    EXPECT_NEAR(share({least, 0}), 1.0 / 1.45, 1e-6);
+    const auto setDistance = [&](size_t p, float z) { frame.depth[4 * p] = z; };
+    for (const size_t p : {middle - side - 1, middle - side, middle + 1, middle + side + 1}) {
+        const float before = frame.depth[4 * p];
+        setDistance(p, 1.004f * before);
+        EXPECT_NEAR(share({least, 0}), 1.0 / 1.45, 1e-6) << p;
+        setDistance(p, 1.006f * before);
+        EXPECT_NEAR(share({least, 0}), 1.0 / 4, 1e-6) << p;
+        setDistance(p, before);
+    }
+    frame.depth[4 * (middle - 1)] = frame.depth[4 * (middle - 1) + 1] = 0.0f;
+    EXPECT_NEAR(share({least, 0}), 1.0 / 4, 1e-6) << "next to the sky";
+}
+
 /// The number of frames at the target of the motion tells which pixel was taken as nearest.
 TEST_F(TaaByHand, MotionIsThatOfTheNearest) {
     past = pastOf(dvec3(1), 0);

@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Jitter parseJitter(const std::string& name) {
-    return name == "pixel" ? Jitter::Pixel : name == "frame" ? Jitter::Frame : Jitter::Off;
-}
-
 void checkClip(const RenderOptions& o) {
     if (FramePattern(o.output).numbered())
         throw UsageError("'" + o.output + "': a clip is one file, whose name holds no frame number");
@@ -143,6 +139,10 @@ void addMethodOptions(CLI::App& command, RenderOptions& o) {
 }
 
 }  // namespace
+
+Jitter parseJitter(const std::string& name) {
+    return name == "pixel" ? Jitter::Pixel : name == "frame" ? Jitter::Frame : Jitter::Off;
+}
 
 void addRenderOptions(CLI::App& command, RenderOptions& o) {
     addSceneOptions(command, o.scene);

@@ -35,6 +35,9 @@ struct RenderOptions {
 
 void addRenderOptions(CLI::App& command, RenderOptions& options);
 
+/// `name`: pixel, frame or off.
+Jitter parseJitter(const std::string& name);
+
 /// Throws UsageError or OutputError if the options contradict each other, or name what there is not.
 void checkRenderOptions(const RenderOptions& options);
 

@@ -14,6 +14,7 @@
 #include "cli/command_text.h"
 #include "cli/json_text.h"
 #include "cli/options/former_options.h"
+#include "cli/options/render_options.h"
 #include "image/io/png/png.h"
 #include "image/tonemap.h"
 #include "lab/bench.h"
@@ -38,8 +39,8 @@ struct QualityOptions {
     MethodChoice methods;
     std::string preset;
     std::vector<std::string> scenes, assignments;
-    std::string integrator, environment, cameraPath = "orbit", folder, report, scenesFolder, pathsFolder,
-                                         referenceFolder, weights;
+    std::string jitter, integrator, environment, cameraPath = "orbit", folder, report, scenesFolder,
+                                                 pathsFolder, referenceFolder, weights;
     uint32_t width = 640, height = 360, samples = 1, reportMegabytes = 64;
     std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
     std::optional<uint64_t> first, frames;     ///< likewise
@@ -55,6 +56,7 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
             pipelineFor(o.preset, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
     applyPreset(common, o.preset);
     common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // like the references
+    if (!o.jitter.empty()) common.jitter = parseJitter(o.jitter);
     for (const std::string& text : o.assignments) assign(common, text);
     return methodsOf(o.methods, common);
 }
@@ -167,9 +169,10 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
     const Sequence frames = loaded.frames();
     ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
     if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
+    RenderSettings exact = methods.front().settings;
+    exact.jitter = o.smoothEdges ? Jitter::Pixel : Jitter::Off;
     const std::vector<Reference> references =
-        makeReferences(device, *loaded.gpu, frames, methods.front().settings, sequence.frames,
-                       sequence.referenceSamples, files);
+        makeReferences(device, *loaded.gpu, frames, exact, sequence.frames, sequence.referenceSamples, files);
     return {sequence, loaded.scene.triangleCount(),
             measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples,
                            !o.report.empty())};
@@ -320,6 +323,12 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
     command.add_flag("--smooth-edges", o->smoothEdges,
                      "Jitter rays from frame to frame, and average references over pixels; default: all rays "
                      "go through pixel centres");
+    command
+        .add_option(
+            "--jitter", o->jitter,
+            "Ray position in the pixel, of the denoised frames: frame (one point per frame; default with "
+            "--smooth-edges), off (centre; default without) or pixel (random)")
+        ->check(CLI::IsMember({"frame", "off", "pixel"}));
     command.add_option("--reference-folder", o->referenceFolder,
                        "Folder that keeps references; existing ones are read instead of rendered");
     command.add_option("--width", o->width, "Picture width, pixels (640)")->check(CLI::Range(1, 65535));

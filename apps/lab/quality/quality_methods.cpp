@@ -71,7 +71,7 @@ RenderSettings withDenoiser(RenderSettings settings, const std::string& name) {
     return settings;
 }
 
-/// Keeps the jitter of the references.
+/// Keeps the jitter of the other methods.
 void applyPresetTo(RenderSettings& settings, const std::string& preset) {
     pipelineFor(
         preset,

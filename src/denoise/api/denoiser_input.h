@@ -26,14 +26,18 @@ struct ReasonsRequest {
 /// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
 /// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
 /// components. Filters that find specular, albedoSpecular, emission, previousNormal, reflectionMotion or ids
-/// empty do without. Rays go through the pixels' centres. NaN and infinity are allowed: such radiance is
-/// rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by +Z).
+/// empty do without. Rays go through the same point of all pixels. NaN and infinity are allowed: such
+/// radiance is rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by
+/// +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
     /// squared deviation over these samples: of the luminance, for normals the mean of the components, for
     /// depth its own. Only networks read it.
     uint32_t samples = 1;
+    /// From the pixels' centres to the point that this frame's rays go through, pixels, y down; the mean over
+    /// samples. 0 also where it is unknown.
+    vec2 jitter{0.0f};
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
     /// Made by the ingest pass, or empty. With them, methods whose `readsLayers` is false find normal, depth
     /// and ids empty.

@@ -154,6 +154,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                   .layers = method.readsLayers || antialiases,
                                   .albedo = !method.oneChannel,
                                   .filters = filters});
+    input.jitter = params.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {method.record(graph, input, used).beauty, {}, {}};

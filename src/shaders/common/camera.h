@@ -41,6 +41,7 @@ struct ViewParams {
     uint stream;       // of random numbers
     uint seed;
     uint jitter;          // JITTER_*
+    float jitterSpan;     // part of the pixel that JITTER_FRAME covers, around the centre
     float samplesBefore;  // of each pixel in the mean, before this launch
 };
 

@@ -23,7 +23,7 @@ vec2 subpixel(ViewParams view, uint sampleOfLaunch, inout uint rng) {
     const vec2 u = stratified2(rng);
     const uint index = view.firstSample + sampleOfLaunch;
     if (view.jitter == JITTER_OFF || index == 0u) return vec2(0.5);
-    return view.jitter == JITTER_PIXEL ? u : halton(index);
+    return view.jitter == JITTER_PIXEL ? u : 0.5 + view.jitterSpan * (halton(index) - 0.5);
 }
 
 Ray cameraRay(CameraParams camera, vec2 size, vec2 pixel) {

@@ -25,6 +25,12 @@ layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
 /// How far the past may differ from the mean of the 3x3 pixels, in their standard deviations.
 const float MAX_DEVIATIONS = 1.25;
 
+/// The second difference of distances above which a surface ends or bends, relative to the largest.
+const float EDGE_BEND = 0.005;
+/// The part of the past frames that counts away from edges, where there is nothing to smooth: each resampling of the
+/// past blurs, and it follows changes of light late.
+const float INNER_SHARE = 0.15;
+
 /// Luma and two chromas of a compressed colour: bright pixels weigh less, as they will on a screen.
 vec3 encode(vec3 c) {
     const vec3 shown = c / (1.0 + luminance(c));
@@ -74,20 +80,49 @@ vec4 texelAt(ivec2 at) {
 
 struct Neighbourhood {
     vec3 mean, deviation;
+    vec3 centre;    // the colour at the pixel's centre
+    bool isEdge;
     ivec2 nearest;  // the pixel nearest to the eye: an edge moves with the surface in front
 };
 
-/// `now` is the pixel's own colour. Sums of differences from it are accurate where the picture is flat.
+/// Weights of the three pixels around `t` in [-0.5, 0.5]: the parabola through them.
+vec3 parabolaWeights(float t) {
+    return vec3(0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0));
+}
+
+/// Luminance of a compressed colour.
+float encodedLuminance(vec3 v) {
+    return luminance(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z));
+}
+
+/// `distances`: of 3x3 pixels in reading order, 0 where nothing is seen.
+bool hasEdge(float distances[9]) {
+    bool found = false;
+    for (int k = 0; k < 4; ++k) {
+        const float a = distances[k], b = distances[8 - k], c = distances[4];
+        found = found || abs(a + b - 2.0 * c) > EDGE_BEND * max(max(a, b), c);
+    }
+    return found;
+}
+
+/// `now` is the pixel's own colour, where its ray went. Sums of differences from it are accurate where the picture is flat.
 Neighbourhood around(ivec2 at, vec3 now) {
-    vec3 sum = vec3(0.0), squares = vec3(0.0);
-    float minDepth = 1e30;
+    const vec3 wx = parabolaWeights(-params.jitter.x), wy = parabolaWeights(-params.jitter.y);
+    vec3 sum = vec3(0.0), squares = vec3(0.0), centre = vec3(0.0), least = vec3(0.0), most = vec3(0.0);
+    float brightest = encodedLuminance(now);
+    float minDepth = 1e30, distances[9];
     ivec2 nearest = at;
     for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
             const vec4 texel = texelAt(at + ivec2(i, j));
             const vec3 v = texel.rgb - now;
+            distances[3 * j + i + 4] = texel.a;
             sum += v;
             squares += v * v;
+            centre += wx[i + 1] * wy[j + 1] * v;
+            least = min(least, v);
+            most = max(most, v);
+            brightest = max(brightest, encodedLuminance(texel.rgb));
             if (texel.a > 0.0 && texel.a < minDepth) {
                 minDepth = texel.a;
                 nearest = inside(at + ivec2(i, j));
@@ -95,7 +130,11 @@ Neighbourhood around(ivec2 at, vec3 now) {
         }
     }
     const vec3 mean = sum / 9.0;
-    return Neighbourhood(now + mean, sqrt(max(squares / 9.0 - mean * mean, vec3(0.0))), nearest);
+    // Without these limits the parabola would overshoot beside edges, and bright light would explode in decode().
+    centre = now + clamp(centre, least, most);
+    centre *= min(1.0, brightest / max(encodedLuminance(centre), 1e-20));
+    const vec3 variance = max(squares / 9.0 - mean * mean, vec3(0.0));
+    return Neighbourhood(now + mean, sqrt(variance), centre, hasEdge(distances), nearest);
 }
 
 /// Weights of the four pixels around `t` in [0, 1): the Catmull-Rom cubic.
@@ -133,7 +172,9 @@ void main() {
         reprojectionOf(LOAD_LAYER(motion, near.nearest), vec2(at), vec2(params.width, params.height));
     const vec4 past = was.onScreen ? pastAt(was.position) : vec4(0.0);
     const float frames = min(past.w + 1.0, params.frames);
-    const vec3 mean = decode(mix(clipped(past.rgb, near), now, 1.0 / frames));
+    const bool isInner = params.jitter != vec2(0.0) && !near.isEdge;
+    const float averaged = isInner ? mix(1.0, frames, INNER_SHARE) : frames;
+    const vec3 mean = decode(mix(clipped(past.rgb, near), near.centre, 1.0 / averaged));
     STORE_HALF4(after, at, vec4(min(mean, MAX_HALF), frames));
     imageStore(smoothed, at, vec4(mean, 1.0));
 }

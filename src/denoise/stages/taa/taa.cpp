@@ -12,9 +12,10 @@ using gpu::ImageHandle;
 const ParamTable<TaaSettings>& taaParams() {
     static const auto table = [] {
         ParamTable<TaaSettings> t("taa");
-        t.add("frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
-              "Frames that are averaged to smooth edges (with --jitter frame); more is smoother and softer, "
-              "1 is off")
+        t.add(
+             "frames", &TaaSettings::frames, 1.0, 1000.0, "frames",
+             "Frames that are averaged to smooth edges (2 is best with --jitter frame); more is smoother and "
+             "softer, 1 is off")
             .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();
@@ -28,7 +29,7 @@ ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageH
     const gpu::History history = graph.history("taa", Format::RGBA16Float, extent, input.filters);
     const ImageHandle result = graph.transient("taa/beauty", Format::RGBA32Float, extent);
     const bool buffers = input.filters == gpu::Backing::Buffer;
-    const TaaParams params{extent.width, extent.height, settings.frames};
+    const TaaParams params{extent.width, extent.height, settings.frames, input.jitter};
     graph.dispatch({.pass = "taa",
                     .shader = buffers ? shaders::taa_buffers_comp : shaders::taa_comp,
                     .bindings = {{"beauty", beauty},

@@ -11,6 +11,7 @@ struct TaaParams {
     uint width;
     uint height;
     float frames;
+    vec2 jitter;  // from the pixels' centres, pixels
 };
 
 #ifdef __cplusplus
