@@ -178,11 +178,11 @@ TEST_P(DenoiserSuite, EveryParameterMatters) {
     }
 }
 
-TEST_P(DenoiserSuite, EveryPresetIsAnotherPicture) {
+TEST_P(ColorDenoiserSuite, EveryPresetIsAnotherPicture) {
     const SyntheticScene scene(moving);
     const std::vector<float> plain = denoiseSequence(scene);
     for (const Preset& preset : presets()) {
-        if (!preset.isForDenoiser(GetParam())) continue;
+        if (!preset.isFor(parsePipeline("path", GetParam()))) continue;
         RenderSettings settings;
         applyPreset(settings, preset.name);
         const std::vector<float> picture = denoiseSequence(scene, settings.denoisers);

@@ -260,8 +260,9 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     desc.signals = 2;
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &two), LIMPID_OK);
     // docs/embedding.md, "Memory"
-    EXPECT_EQ(one, uint64_t{640} * 360 * 92 + uint64_t{80} * 45 * 20);
-    EXPECT_EQ(two, uint64_t{640} * 360 * 148 + uint64_t{80} * 45 * 40);
+    const uint64_t pixels = uint64_t{640} * 360, tiles = uint64_t{80} * 45, largeTiles = uint64_t{40} * 23;
+    EXPECT_EQ(one, pixels * 92 + tiles * 20 + largeTiles * 4);
+    EXPECT_EQ(two, pixels * 148 + tiles * 40 + largeTiles * 8);
 }
 
 }  // namespace

@@ -41,9 +41,10 @@ TEST(Comparison, EveryIntegratorAndDenoiserCanBeChosen) {
     }
     settings.pipeline = parsePipeline("path", "svgf");
     for (size_t i = 1; i < names.size(); ++i) {
-        if (names[i] == "visibility")
+        if (names[i] == "visibility") {
             EXPECT_EQ(comparisonSettings({.with = static_cast<int>(i)}, settings).pipeline,
                       parsePipeline("ao", "visibility"));
+        }
     }
     settings.pipeline = parsePipeline("preview");
     const int last = static_cast<int>(names.size()) - 3;
