@@ -113,8 +113,8 @@ typedef enum limpid_method {
     LIMPID_METHOD_TEMPORAL = 2,  /* temporal accumulation alone: each pixel's mean follows its surface */
     LIMPID_METHOD_BILATERAL = 3, /* a joint bilateral filter of one frame, without history: the simplest method */
     /* For ambient occlusion or a shadow mask alone: one number from 0 to 1 for each pixel, the first component of
-     * LIMPID_INPUT_RADIANCE. It is COLOR as grey, limited to 0 to 1. Much cheaper than SVGF. For two masks, make two
-     * denoisers. */
+     * LIMPID_INPUT_RADIANCE. It is COLOR as grey, limited to 0 to 1. Better for them than SVGF, in less time and
+     * memory. For two masks, make two denoisers. */
     LIMPID_METHOD_VISIBILITY = 4
 } limpid_method;
 
