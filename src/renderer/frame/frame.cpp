@@ -14,14 +14,6 @@ namespace {
 using gpu::FrameGraph;
 using gpu::ImageHandle;
 
-/// Means of many rays cover the pixel. Few frames with one ray each differ less if it stays near the centre;
-/// the camera's own movement and interpolation cover the rest. Chosen on the laboratory's sequences
-/// (docs/denoising.md, "Temporal anti-aliasing").
-float jitterSpan(const RenderSettings& settings, const FrameInput& input) {
-    const bool temporal = settings.pipeline.denoiser && !settings.pipeline.usesNetwork();
-    return temporal && input.samples == 1 ? 0.5f : 1.0f;
-}
-
 CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& input) {
     return {.extent = settings.extent,
             .camera = input.camera,
@@ -32,7 +24,7 @@ CameraLaunch cameraLaunch(const RenderSettings& settings, const FrameInput& inpu
             .stream = static_cast<uint32_t>(input.stream),
             .seed = settings.seed,
             .jitter = settings.jitter,
-            .jitterSpan = jitterSpan(settings, input),
+            .jitterSpan = input.jitterSpan,
             .samplesBefore = settings.pipeline.accumulates() ? input.firstSample : 0,
             .sampler = settings.pathtrace.sampler()};
 }
@@ -216,9 +208,8 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
 /// Returns the mean offset of the frame's rays from the pixels' centres, as far as all pixels have the same.
 vec2 meanJitter(const RenderSettings& settings, const FrameInput& input) {
     if (settings.jitter != Jitter::Frame) return vec2(0.0f);
-    const float span = jitterSpan(settings, input);
     vec2 sum(0.0f);
-    for (uint32_t i = 0; i < input.samples; ++i) sum += framePoint(input.firstSample + i, span);
+    for (uint32_t i = 0; i < input.samples; ++i) sum += framePoint(input.firstSample + i, input.jitterSpan);
     return sum / static_cast<float>(input.samples);
 }
 

@@ -22,6 +22,7 @@ struct FrameInput {
     const scene::SceneFrame* moved = nullptr;    ///< what moved since the scene was last traced
     uint32_t firstSample = 0;                    ///< per pixel since the last reset, before this frame
     uint32_t firstPoint = 0;                     ///< CameraLaunch::firstPoint
+    float jitterSpan = 1.0f;                     ///< CameraLaunch::jitterSpan
     uint64_t stream = 0;                         ///< stream of random numbers; unique for each launch
     uint64_t samplesBefore = 0;                  ///< per pixel, in the running means
     uint32_t samples = 1;                        ///< per pixel, in this frame

@@ -74,7 +74,8 @@ bool FrameRenderer::launch() {
     const uint32_t most = samplesPerLaunch(device_, settings_);
     const uint64_t launchesOfAFrame = 1 + (samples_ - 1) / most;
     LaunchSamples taken{.stream = moment_.number * launchesOfAFrame + launches_,
-                        .point = moment_.number * samples_ + samplesLaunched_};
+                        .point = moment_.number * samples_ + samplesLaunched_,
+                        .alone = samples_ == 1 && samplesInMean_ == 0};
     if (settings_.pipeline.accumulates()) {
         taken.first = samplesInMean_;
         taken.count = static_cast<uint32_t>(std::min<uint64_t>(most, samples_ - samplesLaunched_));
@@ -96,6 +97,10 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
         firstPoint_ = settings_.jitter == Jitter::Frame ? moment_.number * samples_ : 0;
     input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(firstPoint_ + taken.first, UINT32_MAX));
     input.firstPoint = static_cast<uint32_t>(taken.point);
+    // Means of many rays cover the pixel. Frames with one ray each differ less if it stays near the centre;
+    // the camera's own movement and interpolation cover the rest (docs/denoising.md, "Temporal
+    // anti-aliasing").
+    input.jitterSpan = taken.alone ? 0.5f : 1.0f;
     input.stream = taken.stream;
     input.samplesBefore = samplesInMean_;
     input.samples = taken.count;

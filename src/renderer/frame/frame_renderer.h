@@ -29,6 +29,7 @@ struct LaunchSamples {
     uint64_t first = 0;   ///< number of the first one, since the last reset
     uint64_t point = 0;   ///< the same over all frames: CameraLaunch::firstPoint
     uint32_t count = 1;
+    bool alone = false;  ///< the frame has no others
 };
 
 class FrameRenderer {

@@ -30,8 +30,11 @@ uint32_t BlockRenderer::render(uint32_t block, const std::function<bool(uint32_t
     while (done < wanted && proceed(done)) {
         const uint32_t count = std::min(plan_.launchSamples, wanted - done);
         const uint64_t first = firstSample + done;
-        frames_.launch(
-            {.stream = stream++, .first = first, .point = frame_ * plan_.samples + first, .count = count});
+        frames_.launch({.stream = stream++,
+                        .first = first,
+                        .point = frame_ * plan_.samples + first,
+                        .count = count,
+                        .alone = plan_.samples == 1});
         done += count;
     }
     return done;
