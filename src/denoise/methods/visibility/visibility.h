@@ -37,8 +37,7 @@ DenoiserOutput filterVisibility(gpu::FrameGraph& graph, const DenoiserInput& inp
 namespace visibility {
 using Settings = VisibilitySettings;
 inline constexpr std::string_view help =
-    "one channel from 0 to 1, such as ambient occlusion or a shadow mask, at a fraction of the cost of "
-    "colour";
+    "one channel from 0 to 1, such as ambient occlusion or a shadow mask, in less time than colour";
 inline constexpr std::array<std::string_view, 2> groups{"visibility", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
