@@ -4,18 +4,17 @@
 #include <string>
 
 #include "denoise/methods/methods.h"
+#include "denoise/methods/svgf/svgf_lags.h"
 #include "denoise/methods/svgf/svgf_params.h"
 #include "denoise/stages/atrous/levels.h"
 #include "denoise/stages/compose/compose.h"
 #include "denoise/stages/surfaces/surfaces.h"
 #include "svgf_antilag.comp.h"
 #include "svgf_antilag_buffers.comp.h"
-#include "svgf_lags.comp.h"
 #include "svgf_level.comp.h"
 #include "svgf_level_buffers.comp.h"
 #include "svgf_reproject.comp.h"
 #include "svgf_reproject_buffers.comp.h"
-#include "svgf_tiles.comp.h"
 #include "svgf_variance.comp.h"
 #include "svgf_variance_buffers.comp.h"
 #include "svgf_young.comp.h"
@@ -33,16 +32,6 @@ using gpu::ImageHandle;
 
 /// The shaders take powers of 2.
 constexpr float log2e = 1.44269504f;
-
-/// The variance of (fast mean - slow mean) after a long history of steady light, as a share of the
-/// variance of one frame's samples. 0 if the slow mean consists of one frame, because that variance is
-/// then unknown.
-float steadyShare(float slow, float fast) {
-    const auto shrunk = [](float alpha) { return alpha / (2.0f - alpha); };
-    const float common = fast * slow / (fast + slow - fast * slow);
-    if (slow >= 1.0f) return 0.0f;
-    return std::max((shrunk(fast) + shrunk(slow) - 2.0f * common) / (1.0f - shrunk(slow)), 0.0f);
-}
 
 /// Light that is filtered separately: `light` plus `otherLight`, reflected by `albedo` plus `otherAlbedo`, if
 /// there are others.
@@ -83,8 +72,13 @@ class Svgf {
         std::vector<ImageHandle> filtered;
         for (const Signal& signal : all) accumulated.push_back(reproject(signal, surfaces));
         if (settings_.antilag > 0.0f) {
-            for (size_t i = 0; i < all.size() && !buffers_; ++i) sumTiles(all[i], accumulated[i]);
-            for (size_t i = 0; i < all.size(); ++i) recordLags(all[i], accumulated[i]);
+            const SvgfLagParams lag = lagParams();
+            for (size_t i = 0; i < all.size() && !buffers_; ++i)
+                recordTileSums(graph_, "svgf/tiles " + all[i].name, accumulated[i].moments,
+                               accumulated[i].tileSums, lag);
+            for (size_t i = 0; i < all.size(); ++i)
+                recordTileLags(graph_, "svgf/lags " + all[i].name, accumulated[i].tileSums,
+                               accumulated[i].tiles, lag, settings_.antilagAround);
             for (size_t i = 0; i < all.size(); ++i) shortenHistory(all[i], accumulated[i]);
         }
         for (size_t i = 0; i < all.size(); ++i) {
@@ -121,11 +115,6 @@ class Svgf {
                  .albedo = input_.albedoSpecular,
                  .specular = true,
                  .reflects = reflects}};
-    }
-
-    /// The number of tiles, `edge` pixels long and high, that cover the picture.
-    Extent tilesOf(uint32_t edge) const {
-        return {(extent_.width + edge - 1) / edge, (extent_.height + edge - 1) / edge};
     }
 
     const gpu::ShaderCode& choose(const gpu::ShaderCode& images, const gpu::ShaderCode& buffers) const {
@@ -194,7 +183,7 @@ class Svgf {
 
     Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
         const std::string name = "svgf/" + signal.name;
-        const Extent tileExtent = tilesOf(SVGF_TILE);
+        const Extent tileExtent = tilesOf(extent_, SVGF_TILE);
         const History feedback =
             graph_.history(name + " color", Format::RGBA16Float, extent_, input_.filters);
         const History moments = graph_.history(name + " moments", Format::RGBA16Float, extent_);
@@ -238,9 +227,9 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = extent_});
-        const ImageHandle youngTiles =
-            buffers_ ? graph_.transient(name + " young tiles", Format::R32Float, tilesOf(SVGF_YOUNG_TILE))
-                     : ImageHandle{};
+        const ImageHandle youngTiles = buffers_ ? graph_.transient(name + " young tiles", Format::R32Float,
+                                                                   tilesOf(extent_, SVGF_YOUNG_TILE))
+                                                : ImageHandle{};
         return {color,    moments.current, tileSums,   tiles,  youngTiles,
                 feedback, stable.current,  stablePast, moments};
     }
@@ -275,27 +264,6 @@ class Svgf {
                          .params = gpu::paramsOf(params),
                          .constants = constantsOf(signal),
                          .extent = extent_});
-    }
-
-    void sumTiles(const Signal& signal, const Accumulated& accumulated) {
-        const SvgfTileSumsParams params{extent_.width, extent_.height, lagParams()};
-        graph_.dispatch({.pass = "svgf/tiles " + signal.name,
-                         .shader = shaders::svgf_tiles_comp,
-                         .bindings = {{"moments", accumulated.moments}, {"tileSums", accumulated.tileSums}},
-                         .params = gpu::paramsOf(params),
-                         .constants = {},
-                         .extent = graph_.extent(accumulated.tiles)});
-    }
-
-    void recordLags(const Signal& signal, const Accumulated& accumulated) {
-        const Extent tiles = graph_.extent(accumulated.tiles);
-        const SvgfTilesParams params{tiles.width, tiles.height, lagParams()};
-        graph_.dispatch({.pass = "svgf/lags " + signal.name,
-                         .shader = shaders::svgf_lags_comp,
-                         .bindings = {{"tileSums", accumulated.tileSums}, {"tiles", accumulated.tiles}},
-                         .params = gpu::paramsOf(params),
-                         .constants = {{"AROUND", settings_.antilagAround ? 1u : 0u}},
-                         .extent = tiles});
     }
 
     SvgfFilterParams filterParams(int step) const {
@@ -514,10 +482,6 @@ const ParamTable<SvgfSettings>& svgf::params() {
         return t;
     }();
     return table;
-}
-
-SvgfLagParams svgfLagParams(const SvgfLagSettings& settings) {
-    return {steadyShare(settings.slow, settings.fast), settings.antilag, settings.noise, settings.pixel};
 }
 
 ImageHandle filterSvgf(FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "denoise/methods/method.h"
-#include "denoise/methods/svgf/svgf_params.h"
 
 namespace limpid::denoise {
 
@@ -62,14 +61,6 @@ struct SvgfImages {
 };
 SvgfImages filterSvgfSignals(gpu::FrameGraph& graph, const DenoiserInput& input,
                              const SvgfSettings& settings);
-
-/// How anti-lag interprets the moments of a signal, for methods that share its passes: docs/denoising.md,
-/// SVGF, step 4. `slow` and `fast` are the minimum weights of a new frame in the two means.
-struct SvgfLagSettings {
-    float slow, fast;
-    float antilag, noise, pixel;  ///< SvgfSettings::antilag and so on
-};
-SvgfLagParams svgfLagParams(const SvgfLagSettings& settings);
 
 /// The entry in the list of methods (methods.h).
 namespace svgf {

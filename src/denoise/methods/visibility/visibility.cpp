@@ -5,12 +5,10 @@
 #include <string>
 
 #include "denoise/methods/methods.h"
-#include "denoise/methods/svgf/svgf.h"
+#include "denoise/methods/svgf/svgf_lags.h"
 #include "denoise/methods/visibility/visibility_params.h"
 #include "denoise/stages/atrous/levels.h"
 #include "denoise/stages/surfaces/surfaces.h"
-#include "svgf_lags.comp.h"
-#include "svgf_tiles.comp.h"
 #include "svgf_young_buffers_one_channel.comp.h"
 #include "svgf_young_one_channel.comp.h"
 #include "visibility_accumulate.comp.h"
@@ -119,26 +117,12 @@ class Visibility {
                               .pixel = visibilityPixel});
     }
 
-    /// With SVGF's shaders for tiles, since the moments are stored like its.
     void shortenHistory(ImageHandle signal) {
-        const Extent edge{(extent_.width + SVGF_TILE - 1) / SVGF_TILE,
-                          (extent_.height + SVGF_TILE - 1) / SVGF_TILE};
+        const Extent edge = tilesOf(extent_, SVGF_TILE);
         const ImageHandle sums = graph_.transient("visibility/tile sums", Format::RGBA32Float, edge);
         const ImageHandle tiles = graph_.transient("visibility/tiles", Format::R32Float, edge);
-        const SvgfTileSumsParams sumsParams{extent_.width, extent_.height, lagParams()};
-        graph_.dispatch({.pass = "visibility/tiles",
-                         .shader = shaders::svgf_tiles_comp,
-                         .bindings = {{"moments", moments_.current}, {"tileSums", sums}},
-                         .params = gpu::paramsOf(sumsParams),
-                         .constants = {},
-                         .extent = edge});
-        const SvgfTilesParams tilesParams{edge.width, edge.height, lagParams()};
-        graph_.dispatch({.pass = "visibility/lags",
-                         .shader = shaders::svgf_lags_comp,
-                         .bindings = {{"tileSums", sums}, {"tiles", tiles}},
-                         .params = gpu::paramsOf(tilesParams),
-                         .constants = {{"AROUND", 1u}},
-                         .extent = edge});
+        recordTileSums(graph_, "visibility/tiles", moments_.current, sums, lagParams());
+        recordTileLags(graph_, "visibility/lags", sums, tiles, lagParams(), true);
         const VisibilityAntilagParams params{extent_.width, extent_.height, alphas()};
         graph_.dispatch(
             {.pass = "visibility/antilag",
