@@ -11,8 +11,9 @@ namespace limpid::test {
 namespace {
 
 constexpr double deviations = 1.25, minDistance = 1e-6;
-/// Step 5: the second difference at edges, and the share of the frames elsewhere.
-constexpr double edge = 0.005, innerShare = 0.15;
+/// Step 5: the bend of distances at edges, those of x at soft and at hard edges of light, the share of the
+/// frames away from edges, and the motion in pixels below which more frames count.
+constexpr double edge = 0.005, soft = 0.1, hard = 0.3, innerShare = 0.15, moving = 0.1;
 /// In pixels. Several times the error of s in float32, which is an ulp: 2^-16 below 256 pixels.
 constexpr double positionMargin = 1e-4;
 /// For encoded values, which are below 1 in magnitude: several operations' rounding.
@@ -45,10 +46,16 @@ dvec3 clip(const dvec3& h, const Around& around, double error) {
     return around.mean + (h - around.mean) / std::max({e.x, e.y, e.z, 1.0});
 }
 
+/// What step 5 takes from the 3x3 pixels.
+struct Edges {
+    bool isEdge = false;
+    double hardness = 0.0;  ///< w
+};
+
 class Antialiaser {
   public:
     Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty, const TaaPast& past,
-                double frames, const dvec2& jitter);
+                const TaaFrames& frames, const dvec2& jitter);
     Antialiaser(const Antialiaser&) = delete;
     Antialiaser& operator=(const Antialiaser&) = delete;
 
@@ -62,21 +69,25 @@ class Antialiaser {
     std::array<size_t, 9> block(size_t p) const;
     Around around(size_t p) const;
     dvec3 atCentre(size_t p) const;
-    double framesAveraged(size_t p, double frames, Decision& decision) const;
+    Edges edgesAt(size_t p, Decision& decision) const;
+    double stillness(const dvec2& motion, const Edges& edges) const;
+    double averaged(const Edges& edges, double count, double still) const;
     std::optional<dvec3> motion(size_t p) const;
     size_t nearest(size_t p, Decision& decision) const;
     bool movesAlike(size_t p, size_t q) const;
     bool inPicture(const dvec2& s, Decision& decision) const;
-    double countAfter(double count) const { return std::min(count + 1.0, frames_); }
+    double countAfter(double count, double still) const {
+        return std::min(count + 1.0, frames_.moving + still * (frames_.still - frames_.moving));
+    }
     double countAt(const dvec2& s) const;
-    double countAt(const dvec2& s, Decision& decision) const;
+    double countAt(const dvec2& s, double still, Decision& decision) const;
     dvec3 pastAt(const dvec2& s) const;
-    void addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
-                   const dvec3& own) const;
+    void addErrors(TaaPixel& pixel, const Edges& edges, double count, const dvec2& motion, const dvec2& s,
+                   const Around& around, const dvec3& own) const;
 
     DoubleFrame frame_;
     int64_t width_, height_;
-    double frames_;
+    TaaFrames frames_;
     dvec2 jitter_;
     std::vector<dvec3> encoded_;  ///< E(B)
     std::vector<dvec3> past_;     ///< E of the last frame's means; empty: no history
@@ -84,7 +95,7 @@ class Antialiaser {
 };
 
 Antialiaser::Antialiaser(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                         const TaaPast& past, double frames, const dvec2& jitter)
+                         const TaaPast& past, const TaaFrames& frames, const dvec2& jitter)
     : frame_(frame), width_(frame.width), height_(frame.height), frames_(frames), jitter_(jitter) {
     for (size_t p = 0; p < frame.pixelCount(); ++p)
         encoded_.push_back(taaEncode({beauty[4 * p], beauty[4 * p + 1], beauty[4 * p + 2]}));
@@ -134,22 +145,39 @@ dvec3 Antialiaser::atCentre(size_t p) const {
     return l > brightest ? c * (brightest / l) : c;
 }
 
-/// Step 5: N''.
-double Antialiaser::framesAveraged(size_t p, double frames, Decision& decision) const {
-    if (jitter_ == dvec2(0.0) || frames == 1.0) return frames;
-    const std::array<size_t, 9> pixels = block(p);
-    const auto distance = [&](size_t i) {
-        const double z = frame_.distance(pixels[i]);
-        return std::isfinite(z) ? std::max(z, 0.0) : 0.0;
-    };
-    bool isEdge = false;
+/// Step 5: the largest bend of four triples through the middle of `values`, in reading order.
+double bendOf(const std::array<double, 9>& values) {
+    double most = 0.0;
     for (size_t i = 0; i < 4; ++i) {
-        const double a = distance(i), b = distance(8 - i), c = distance(4);
-        const double largest = std::max({a, b, c});
-        if (largest == 0.0) continue;
-        isEdge |= decision.above(std::abs(a + b - 2.0 * c) / largest, edge, 1e-6);
+        const double largest = std::max({values[i], values[8 - i], values[4]});
+        if (largest > 0.0)
+            most = std::max(most, std::abs(values[i] + values[8 - i] - 2.0 * values[4]) / largest);
     }
-    return isEdge ? frames : 1.0 + innerShare * (frames - 1.0);
+    return most;
+}
+
+Edges Antialiaser::edgesAt(size_t p, Decision& decision) const {
+    const std::array<size_t, 9> pixels = block(p);
+    std::array<double, 9> distances{}, lumas{};
+    for (size_t i = 0; i < 9; ++i) {
+        const double z = frame_.distance(pixels[i]);
+        distances[i] = std::isfinite(z) ? std::max(z, 0.0) : 0.0;
+        lumas[i] = encoded_[pixels[i]].x;
+    }
+    if (jitter_ == dvec2(0.0) || past_.empty()) return {true, 0.0};
+    return {decision.above(bendOf(distances), edge, 1e-6),
+            std::clamp((bendOf(lumas) - soft) / (hard - soft), 0.0, 1.0)};
+}
+
+/// Step 5: r.
+double Antialiaser::stillness(const dvec2& motion, const Edges& edges) const {
+    return edges.hardness * std::max(1.0 - glm::length(motion) / moving, 0.0);
+}
+
+/// Step 5: N''.
+double Antialiaser::averaged(const Edges& edges, double count, double still) const {
+    const double share = edges.isEdge ? 1.0 : innerShare + (1.0 - innerShare) * still;
+    return 1.0 + share * (countAfter(count, still) - 1.0);
 }
 
 /// Motion with NaN or infinity counts as missing.
@@ -197,11 +225,11 @@ double Antialiaser::countAt(const dvec2& s) const {
     return counts_[clamped(static_cast<int64_t>(pixel.x), static_cast<int64_t>(pixel.y))];
 }
 
-double Antialiaser::countAt(const dvec2& s, Decision& decision) const {
+double Antialiaser::countAt(const dvec2& s, double still, Decision& decision) const {
     const double count = countAt(s);
     for (const double x : {-positionMargin, positionMargin}) {
         for (const double y : {-positionMargin, positionMargin}) {
-            if (countAfter(countAt(s + dvec2(x, y))) == countAfter(count)) continue;
+            if (countAfter(countAt(s + dvec2(x, y)), still) == countAfter(count, still)) continue;
             for (int axis = 0; axis < 2; ++axis) decision.near(s[axis], std::round(s[axis]), positionMargin);
         }
     }
@@ -225,22 +253,22 @@ dvec3 Antialiaser::pastAt(const dvec2& s) const {
 }
 
 /// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.
-void Antialiaser::addErrors(TaaPixel& pixel, double averaged, const dvec2& s, const Around& around,
-                            const dvec3& own) const {
-    const auto meanWith = [&](const dvec2& at, double error) {
-        const dvec3 h = clip(pastAt(at), around, error);
-        return taaDecode(h + (own - h) / averaged);
+void Antialiaser::addErrors(TaaPixel& pixel, const Edges& edges, double count, const dvec2& motion,
+                            const dvec2& s, const Around& around, const dvec3& own) const {
+    const auto meanWith = [&](const dvec2& off, double error) {
+        const dvec3 h = clip(pastAt(s + off), around, error);
+        return taaDecode(h + (own - h) / averaged(edges, count, stillness(motion + off, edges)));
     };
     dvec3 clipped(0.0);
     for (const double sign : {-1.0, 1.0}) {
-        clipped = glm::max(clipped, glm::abs(meanWith(s, sign * clipRounding) - pixel.mean));
+        clipped = glm::max(clipped, glm::abs(meanWith(dvec2(0.0), sign * clipRounding) - pixel.mean));
     }
     pixel.rounding += clipped;
     for (int axis = 0; axis < 2; ++axis) {
         dvec3 most(0.0);
         for (const double sign : {-1.0, 1.0}) {
-            dvec2 off = s;
-            off[axis] += sign * positionMargin;
+            dvec2 off(0.0);
+            off[axis] = sign * positionMargin;
             most = glm::max(most, glm::abs(meanWith(off, 0.0) - pixel.mean) / positionMargin);
         }
         pixel.slope += most;
@@ -254,16 +282,17 @@ TaaPixel Antialiaser::at(size_t p) const {
     const dvec2 centre(static_cast<double>(static_cast<int64_t>(p) % width_) + 0.5,
                        static_cast<double>(static_cast<int64_t>(p) / width_) + 0.5);
     const dvec2 s = m ? centre + dvec2(*m) : centre;
-    const double count = m && inPicture(s, decision) ? countAt(s, decision) : 0.0;
+    const Edges edges = edgesAt(p, decision);
+    const double still = m ? stillness(dvec2(*m), edges) : 0.0;
+    const double count = m && inPicture(s, decision) ? countAt(s, still, decision) : 0.0;
     TaaPixel pixel;
-    pixel.frames = countAfter(count);
+    pixel.frames = countAfter(count, still);
     const Around surroundings = around(p);
     const dvec3 h = count > 0.0 ? clip(pastAt(s), surroundings, 0.0) : own;
-    const double averaged = framesAveraged(p, pixel.frames, decision);
-    pixel.mean = taaDecode(h + (own - h) / averaged);
+    pixel.mean = taaDecode(h + (own - h) / averaged(edges, count, still));
     // c = e / (1 - l) has the derivatives 1 / (1 - l) = 1 + l by e and c (1 + l) by l.
     pixel.rounding = encodedRounding * (1.0 + luminance(pixel.mean)) * (1.0 + pixel.mean);
-    if (count > 0.0) addErrors(pixel, averaged, s, surroundings, own);
+    if (count > 0.0) addErrors(pixel, edges, count, dvec2(*m), s, surroundings, own);
     pixel.doubtful = decision.doubtful();
     return pixel;
 }
@@ -282,7 +311,7 @@ dvec3 taaDecode(const dvec3& encoded) {
 }
 
 std::vector<TaaPixel> taa(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                          const TaaPast& past, double frames, const dvec2& jitter) {
+                          const TaaPast& past, const TaaFrames& frames, const dvec2& jitter) {
     const Antialiaser antialiaser(frame, beauty, past, frames, jitter);
     std::vector<TaaPixel> pixels;
     for (size_t p = 0; p < frame.pixelCount(); ++p) pixels.push_back(antialiaser.at(p));

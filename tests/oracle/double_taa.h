@@ -27,6 +27,11 @@ struct TaaPixel {
     dvec3 rounding{0.0};
 };
 
+/// How many frames are averaged at most where something moves, and where nothing does.
+struct TaaFrames {
+    double moving, still;
+};
+
 /// E, the colour transform of docs/denoising.md, "Temporal anti-aliasing", and its inverse.
 dvec3 taaEncode(const dvec3& color);
 dvec3 taaDecode(const dvec3& encoded);
@@ -34,6 +39,6 @@ dvec3 taaDecode(const dvec3& encoded);
 /// Computes one frame. `beauty`: four floats per pixel. `jitter`: from the pixels' centres to the frame's
 /// rays.
 std::vector<TaaPixel> taa(const denoise::HostFrame& frame, const std::vector<float>& beauty,
-                          const TaaPast& past, double frames, const dvec2& jitter = dvec2(0.0));
+                          const TaaPast& past, const TaaFrames& frames, const dvec2& jitter = dvec2(0.0));
 
 }  // namespace limpid::test

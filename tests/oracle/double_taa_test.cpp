@@ -45,18 +45,18 @@ class TaaByHand : public testing::Test {
     }
     /// Computes the next frame.
     std::vector<TaaPixel> advance(const std::vector<float>& beauty) {
-        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, frames);
+        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, {frames, stillFrames});
         past = {side, side, {}};
         for (const TaaPixel& pixel : pixels) past.mean.emplace_back(pixel.mean, pixel.frames);
         return pixels;
     }
     TaaPixel inTheMiddle(const std::vector<float>& beauty) const {
-        return taa(frame, beauty, past, frames)[middle];
+        return taa(frame, beauty, past, {frames, stillFrames})[middle];
     }
 
     HostFrame frame = frontalPlane(side, side);
     TaaPast past;
-    double frames = 100.0;
+    double frames = 100.0, stillFrames = 100.0;
 };
 
 TEST_F(TaaByHand, EncodingAndItsInverse) {
@@ -84,7 +84,7 @@ TEST_F(TaaByHand, AConstantPictureStaysConstant) {
 TEST_F(TaaByHand, TheFirstFrameIsTheBeauty) {
     const std::vector<float> beauty = pictureOf([](size_t x, size_t y) { return dvec3(x, y * y, 0.5); });
     const auto expectBeauty = [&] {
-        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, frames);
+        const std::vector<TaaPixel> pixels = taa(frame, beauty, past, {frames, stillFrames});
         for (size_t p = 0; p < pixels.size(); ++p) {
             const dvec3 is(beauty[4 * p], beauty[4 * p + 1], beauty[4 * p + 2]);
             ASSERT_LT(glm::distance(pixels[p].mean, is), 1e-10) << p;
@@ -159,7 +159,7 @@ TEST_F(TaaByHand, JitterIsUndone) {
             const double at = static_cast<double>(x) + jitter.x, down = static_cast<double>(y) + jitter.y;
             return taaDecode({ramp(at, down), 0, 0});
         });
-        const TaaPixel pixel = taa(frame, beauty, past, frames, jitter)[middle];
+        const TaaPixel pixel = taa(frame, beauty, past, {frames, stillFrames}, jitter)[middle];
         EXPECT_NEAR(taaEncode(pixel.mean).x, ramp(4, 4), 1e-6);
     }
 }
@@ -169,7 +169,7 @@ TEST_F(TaaByHand, UndoingJitterDoesNotOvershoot) {
     const auto at = [&](double brightness, const dvec2& jitter, size_t p) {
         const std::vector<float> beauty =
             pictureOf([&](size_t x, size_t) { return dvec3(x >= 5 ? brightness : 0.25); });
-        return taa(frame, beauty, past, frames, jitter)[p].mean;
+        return taa(frame, beauty, past, {frames, stillFrames}, jitter)[p].mean;
     };
     EXPECT_LT(glm::distance(at(50, {0.5, 0}, middle), dvec3(0.25)), 1e-6) << "dark, away from the light";
     EXPECT_LT(glm::distance(at(50, {-0.5, 0}, middle + 1), dvec3(50)), 1e-4) << "bright, away from the dark";
@@ -179,7 +179,7 @@ TEST_F(TaaByHand, UndoingJitterDoesNotOvershoot) {
         if (x == 5) return dvec3(0, 1e4, 0);
         return y == 5 ? dvec3(1e4, 1e4, 1e4) : dvec3(0.1);
     });
-    const std::vector<TaaPixel> pixels = taa(frame, colors, past, frames, {-0.5, -0.5});
+    const std::vector<TaaPixel> pixels = taa(frame, colors, past, {frames, stillFrames}, {-0.5, -0.5});
     for (const TaaPixel& pixel : pixels) EXPECT_LT(largest(pixel.mean), 3e4);
 }
 
@@ -189,8 +189,9 @@ TEST_F(TaaByHand, JitteredSurfacesAverageFewFrames) {
     const std::vector<float> beauty =
         pictureOf([](size_t x, size_t y) { return dvec3((x + y) % 2 == 0 ? 1000.0 : 0.0); });
     past = pastOf(dvec3(1), 3);
+    moveAll({0, 1});
     const auto share = [&](const dvec2& jitter) {  // of this frame
-        const TaaPixel pixel = taa(frame, beauty, past, frames, jitter)[middle];
+        const TaaPixel pixel = taa(frame, beauty, past, {frames, stillFrames}, jitter)[middle];
         EXPECT_EQ(pixel.frames, 4.0);
         return (taaEncode(pixel.mean).x - 0.5) / (1000.0 / 1001.0 - 0.5);
     };
@@ -208,6 +209,37 @@ TEST_F(TaaByHand, JitteredSurfacesAverageFewFrames) {
     }
     frame.depth[4 * (middle - 1)] = frame.depth[4 * (middle - 1) + 1] = 0.0f;
     EXPECT_NEAR(share({least, 0}), 1.0 / 4, 1e-6) << "next to the sky";
+}
+
+/// Where nothing moves, the limit is another one, and hard edges of light count like those of surfaces.
+TEST_F(TaaByHand, WhatRestsAveragesMoreFrames) {
+    frames = 2.0;
+    stillFrames = 16.0;
+    past = pastOf(dvec3(1), 12);
+    // A line of another luma x. Beside it the picture bends as much.
+    const auto lineOf = [](double luma) {
+        return pictureOf([&](size_t x, size_t) { return taaDecode({x == 4 ? luma : 0.5, 0, 0}); });
+    };
+    const auto frameCount = [&](const dvec2& jitter, double motion) {
+        moveAll({0, motion});
+        return taa(frame, lineOf(0.8), past, {frames, stillFrames}, jitter)[middle].frames;
+    };
+    constexpr double least = 1e-9;  // hardly jittered: the colour stays
+    EXPECT_EQ(frameCount({0, 0}, 0.0), 2.0);
+    EXPECT_EQ(frameCount({least, 0}, 0.0), 13.0);
+    EXPECT_NEAR(frameCount({least, 0}, 0.05), 9.0, 1e-5);
+    EXPECT_EQ(frameCount({least, 0}, 0.2), 2.0);
+    moveAll({0, 0});
+    const auto averaged = [&](double luma) {
+        past = pastOf(taaDecode({0.5, 0, 0}), 2);
+        const TaaPixel pixel = taa(frame, lineOf(luma), past, {frames, stillFrames}, {least, 0})[middle];
+        return (luma - 0.5) / (taaEncode(pixel.mean).x - 0.5);
+    };
+    EXPECT_NEAR(averaged(0.8), 3.0, 1e-5);
+    EXPECT_NEAR(averaged(0.51), 1.15, 1e-5) << "soft";
+    EXPECT_NEAR(averaged(0.6), 3.0, 1e-5) << "a bend of one third";
+    const double between = (0.1 / 0.55 - 0.1) / 0.2;
+    EXPECT_NEAR(averaged(0.55), 1.0 + (0.15 + 0.85 * between) * std::min(2.0, 1.0 + between * 14.0), 1e-5);
 }
 
 /// The number of frames at the target of the motion tells which pixel was taken as nearest.
@@ -291,7 +323,7 @@ TEST(DoubleTaa, SlopeAndDoubtCoverErrorsOfPosition) {
     TaaPast past;
     for (int number = 0; number < 5; ++number) {
         const std::vector<TaaPixel> pixels =
-            taa(scene.frame(number, width, height, 1), beautyOf(number), past, 4.0);
+            taa(scene.frame(number, width, height, 1), beautyOf(number), past, {4.0, 4.0});
         past = {width, height, {}};
         for (const TaaPixel& pixel : pixels) past.mean.emplace_back(pixel.mean, pixel.frames);
     }
@@ -301,7 +333,8 @@ TEST(DoubleTaa, SlopeAndDoubtCoverErrorsOfPosition) {
         off.motion[4 * p] += 5e-5f;
         off.motion[4 * p + 1] -= 5e-5f;
     }
-    const std::vector<TaaPixel> a = taa(frame, beautyOf(5), past, 4.0), b = taa(off, beautyOf(5), past, 4.0);
+    const std::vector<TaaPixel> a = taa(frame, beautyOf(5), past, {4.0, 4.0}),
+                                b = taa(off, beautyOf(5), past, {4.0, 4.0});
     size_t doubtful = 0, outside = 0, restarted = 0;
     for (size_t p = 0; p < frame.pixelCount(); ++p) {
         doubtful += a[p].doubtful;

@@ -38,6 +38,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// From the pixels' centres to the point that this frame's rays go through, pixels, y down; the mean over
     /// samples. 0 also where it is unknown.
     vec2 jitter{0.0f};
+    /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
+    bool jitterChanges = false;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
     /// Made by the ingest pass, or empty. With them, methods whose `readsLayers` is false find normal, depth
     /// and ids empty.

@@ -148,7 +148,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
     FilterSettings used = settings;
     used.svgf.separate = desc.signals == 2;
     const Method& method = methods()[static_cast<size_t>(desc.method)];
-    const bool antialiases = used.taa.frames > 1.0f;
+    const bool antialiases = framesToAverage(used.taa, false) > 1.0f;
     DenoiserInput input = ingest(graph, taken, params,
                                  {.twoSignals = desc.signals == 2,
                                   .layers = method.readsLayers || antialiases,

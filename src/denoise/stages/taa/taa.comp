@@ -25,11 +25,17 @@ layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D smoothed;
 /// How far the past may differ from the mean of the 3x3 pixels, in their standard deviations.
 const float MAX_DEVIATIONS = 1.25;
 
-/// The second difference of distances above which a surface ends or bends, relative to the largest.
+/// The bend() of distances above which a surface ends or bends.
 const float EDGE_BEND = 0.005;
+/// The bend() of lumas below which light has no edge, and above which it has a hard one: an object's, a lamp's in its
+/// ceiling, a texture's. Noise and shadows are softer, and averaged shadows would follow their light late.
+const float SOFT_BEND = 0.1;
+const float HARD_BEND = 0.3;
 /// The part of the past frames that counts away from edges, where there is nothing to smooth: each resampling of the
 /// past blurs, and it follows changes of light late.
 const float INNER_SHARE = 0.15;
+/// Pixels a frame. A pixel that moves less averages more frames, since the past is hardly resampled there.
+const float MOVING = 0.1;
 
 /// Luma and two chromas of a compressed colour: bright pixels weigh less, as they will on a screen.
 vec3 encode(vec3 c) {
@@ -82,6 +88,7 @@ struct Neighbourhood {
     vec3 mean, deviation;
     vec3 centre;    // the colour at the pixel's centre
     bool isEdge;
+    float hardness;  // of the edges of light: 0 to 1
     ivec2 nearest;  // the pixel nearest to the eye: an edge moves with the surface in front
 };
 
@@ -95,14 +102,15 @@ float encodedLuminance(vec3 v) {
     return luminance(vec3(v.x + v.y - v.z, v.x + v.z, v.x - v.y - v.z));
 }
 
-/// `distances`: of 3x3 pixels in reading order, 0 where nothing is seen.
-bool hasEdge(float distances[9]) {
-    bool found = false;
+/// Returns the largest second difference across the middle of 3x3 values in reading order, relative to the largest of
+/// its three values. These are not negative.
+float bend(float values[9]) {
+    float most = 0.0;
     for (int k = 0; k < 4; ++k) {
-        const float a = distances[k], b = distances[8 - k], c = distances[4];
-        found = found || abs(a + b - 2.0 * c) > EDGE_BEND * max(max(a, b), c);
+        const float a = values[k], b = values[8 - k], c = values[4];
+        most = max(most, abs(a + b - 2.0 * c) / max(max(max(a, b), c), 1e-20));
     }
-    return found;
+    return most;
 }
 
 /// `now` is the pixel's own colour, where its ray went. Sums of differences from it are accurate where the picture is flat.
@@ -110,13 +118,14 @@ Neighbourhood around(ivec2 at, vec3 now) {
     const vec3 wx = parabolaWeights(-params.jitter.x), wy = parabolaWeights(-params.jitter.y);
     vec3 sum = vec3(0.0), squares = vec3(0.0), centre = vec3(0.0), least = vec3(0.0), most = vec3(0.0);
     float brightest = encodedLuminance(now);
-    float minDepth = 1e30, distances[9];
+    float minDepth = 1e30, distances[9], lumas[9];
     ivec2 nearest = at;
     for (int j = -1; j <= 1; ++j) {
         for (int i = -1; i <= 1; ++i) {
             const vec4 texel = texelAt(at + ivec2(i, j));
             const vec3 v = texel.rgb - now;
-            distances[3 * j + i + 4] = texel.a;
+            distances[3 * j + i + 4] = texel.a;  // 0 where nothing is seen
+            lumas[3 * j + i + 4] = texel.x;
             sum += v;
             squares += v * v;
             centre += wx[i + 1] * wy[j + 1] * v;
@@ -134,7 +143,8 @@ Neighbourhood around(ivec2 at, vec3 now) {
     centre = now + clamp(centre, least, most);
     centre *= min(1.0, brightest / max(encodedLuminance(centre), 1e-20));
     const vec3 variance = max(squares / 9.0 - mean * mean, vec3(0.0));
-    return Neighbourhood(now + mean, sqrt(variance), centre, hasEdge(distances), nearest);
+    return Neighbourhood(now + mean, sqrt(variance), centre, bend(distances) > EDGE_BEND,
+                         clamp((bend(lumas) - SOFT_BEND) / (HARD_BEND - SOFT_BEND), 0.0, 1.0), nearest);
 }
 
 /// Weights of the four pixels around `t` in [0, 1): the Catmull-Rom cubic.
@@ -171,9 +181,12 @@ void main() {
     const Reprojection was =
         reprojectionOf(LOAD_LAYER(motion, near.nearest), vec2(at), vec2(params.width, params.height));
     const vec4 past = was.onScreen ? pastAt(was.position) : vec4(0.0);
-    const float frames = min(past.w + 1.0, params.frames);
-    const bool isInner = params.jitter != vec2(0.0) && !near.isEdge;
-    const float averaged = isInner ? mix(1.0, frames, INNER_SHARE) : frames;
+    const bool isJittered = params.jitter != vec2(0.0);
+    const float stillness = isJittered ? max(1.0 - distance(was.position, vec2(at)) / MOVING, 0.0) : 0.0;
+    const float more = stillness * near.hardness;
+    const float frames = min(past.w + 1.0, mix(params.frames, params.stillFrames, more));
+    const float share = isJittered && !near.isEdge ? mix(INNER_SHARE, 1.0, more) : 1.0;
+    const float averaged = mix(1.0, frames, share);
     const vec3 mean = decode(mix(clipped(past.rgb, near), near.centre, 1.0 / averaged));
     STORE_HALF4(after, at, vec4(min(mean, MAX_HALF), frames));
     imageStore(smoothed, at, vec4(mean, 1.0));

@@ -12,13 +12,18 @@ namespace limpid::denoise {
 
 /// User settings; taaParams() gives ranges and descriptions.
 struct TaaSettings {
-    float frames = 1.0f;
+    float frames = 0.0f;  ///< 0: as in framesToAverage()
+    float stillFrames = 8.0f;
     bool operator==(const TaaSettings&) const = default;
 };
 const ParamTable<TaaSettings>& taaParams();
 
-/// Anti-aliases `beauty` (rgba32f, not negative); returns it unchanged if settings.frames is 1. The pass and
-/// its history are called "taa".
+/// Returns settings.frames, or for 0 the default: 2 if DenoiserInput::jitterChanges is set, otherwise 1,
+/// which is off.
+float framesToAverage(const TaaSettings& settings, bool jitterChanges);
+
+/// Anti-aliases `beauty` (rgba32f, not negative); returns it unchanged if that is off. The pass and its
+/// history are called "taa".
 gpu::ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, gpu::ImageHandle beauty,
                            const TaaSettings& settings);
 

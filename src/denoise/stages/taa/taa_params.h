@@ -11,7 +11,8 @@ struct TaaParams {
     uint width;
     uint height;
     float frames;
-    vec2 jitter;  // from the pixels' centres, pixels
+    float stillFrames;  // `frames` or more
+    vec2 jitter;        // from the pixels' centres, pixels
 };
 
 #ifdef __cplusplus
