@@ -67,7 +67,7 @@ std::map<std::string, PassCost> measure(gpu::Device& device, const DenoiseBench&
     RenderSettings settings;
     settings.extent = {o.width, o.height};
     settings.pipeline = pipelineOf(o);
-    settings.jitter = Jitter::Off;
+    settings.jitter = defaultJitter(settings.pipeline);
     applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     settings.networks = loadNetworks(device, settings.pipeline.denoiser, o.weights, settings.denoisers);

@@ -44,7 +44,7 @@ struct QualityOptions {
     uint32_t width = 640, height = 360, samples = 1, reportMegabytes = 64;
     std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
     std::optional<uint64_t> first, frames;     ///< likewise
-    bool lab = false, quick = false, json = false, smoothEdges = false;
+    bool lab = false, quick = false, json = false, aliased = false;
 };
 
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
@@ -55,10 +55,12 @@ std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
         common.pipeline.integrator =
             pipelineFor(o.preset, {.integrator = o.integrator, .denoiser = denoiser}, {}).integrator;
     applyPreset(common, o.preset);
-    common.jitter = o.smoothEdges ? Jitter::Frame : Jitter::Off;  // like the references
-    if (!o.jitter.empty()) common.jitter = parseJitter(o.jitter);
     for (const std::string& text : o.assignments) assign(common, text);
-    return methodsOf(o.methods, common);
+    MethodChoice choice = o.methods;
+    if (!o.preset.empty()) choice.jitter = common.jitter;
+    if (o.aliased) choice.jitter = Jitter::Off;  // like the references
+    if (!o.jitter.empty()) choice.jitter = parseJitter(o.jitter);
+    return methodsOf(choice, common);
 }
 
 /// Returns the sequences of --scene and --scenes-folder, then those of the lab.
@@ -170,7 +172,7 @@ MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
     ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
     if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
     RenderSettings exact = methods.front().settings;
-    exact.jitter = o.smoothEdges ? Jitter::Pixel : Jitter::Off;
+    exact.jitter = o.aliased ? Jitter::Off : Jitter::Pixel;
     const std::vector<Reference> references =
         makeReferences(device, *loaded.gpu, frames, exact, sequence.frames, sequence.referenceSamples, files);
     return {sequence, loaded.scene.triangleCount(),
@@ -320,14 +322,14 @@ void addSequenceOptions(CLI::App& command, const std::shared_ptr<QualityOptions>
             "--reference-spp", o->referenceSamples,
             "Samples per pixel of the references; more is more accurate and slower (4096; --lab has its own)")
         ->check(CLI::Range(2, 1 << 24));
-    command.add_flag("--smooth-edges", o->smoothEdges,
-                     "Jitter rays from frame to frame, and average references over pixels; default: all rays "
-                     "go through pixel centres");
+    command.add_flag("--aliased", o->aliased,
+                     "All rays go through pixel centres, those of references, too; default: references are "
+                     "means over the pixels, which is what smooth edges are");
     command
         .add_option(
             "--jitter", o->jitter,
-            "Ray position in the pixel, of the denoised frames: frame (one point per frame; default with "
-            "--smooth-edges), off (centre; default without) or pixel (random)")
+            "Ray position in the pixel, of the denoised frames: frame (one point per frame), off (centre) or "
+            "pixel (random); default: as 'limpid render' has it with the denoiser or the preset")
         ->check(CLI::IsMember({"frame", "off", "pixel"}));
     command.add_option("--reference-folder", o->referenceFolder,
                        "Folder that keeps references; existing ones are read instead of rendered");

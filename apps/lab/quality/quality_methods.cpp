@@ -65,33 +65,32 @@ const std::string& denoiserOf(const std::vector<std::string>& words,
     return denoisers.back();
 }
 
-RenderSettings withDenoiser(RenderSettings settings, const std::string& name) {
+RenderSettings withDenoiser(RenderSettings settings, const std::string& name, const MethodChoice& choice) {
     settings.pipeline = parsePipeline(nameOf(settings.pipeline.integrator), name);
     if (!settings.pipeline.denoiser) throw UsageError("--denoiser none: it is scored anyway, as 'noisy'");
+    settings.jitter = choice.jitter.value_or(defaultJitter(settings.pipeline));
     return settings;
 }
 
-/// Keeps the jitter of the other methods.
 void applyPresetTo(RenderSettings& settings, const std::string& preset) {
     pipelineFor(
         preset,
         {std::string(nameOf(settings.pipeline.integrator)), std::string(nameOf(settings.pipeline.denoiser))},
         {});
-    const Jitter jitter = settings.jitter;
     applyPreset(settings, preset);
-    settings.jitter = jitter;
 }
 
-QualityMethod variantOf(const std::string& variant, const std::vector<std::string>& denoisers,
+QualityMethod variantOf(const std::string& variant, const MethodChoice& choice,
                         const RenderSettings& common) {
     const std::vector<std::string> words = wordsOf(variant);
-    QualityMethod method{variant, withDenoiser(common, denoiserOf(words, denoisers))};
+    QualityMethod method{variant, withDenoiser(common, denoiserOf(words, choice.denoisers), choice)};
     for (const std::string& word : words) {
         if (word.starts_with(presetWord))
             applyPresetTo(method.settings, word.substr(presetWord.size()));
         else
             assign(method.settings, word);
     }
+    method.settings.jitter = choice.jitter.value_or(method.settings.jitter);
     return method;
 }
 
@@ -100,11 +99,11 @@ QualityMethod variantOf(const std::string& variant, const std::vector<std::strin
 std::vector<QualityMethod> methodsOf(const MethodChoice& choice, RenderSettings common) {
     std::vector<QualityMethod> methods;
     for (const std::string& denoiser : choice.denoisers)
-        methods.push_back({denoiser, withDenoiser(common, denoiser)});
-    for (const std::string& variant : choice.variants)
-        methods.push_back(variantOf(variant, choice.denoisers, common));
+        methods.push_back({denoiser, withDenoiser(common, denoiser, choice)});
+    for (const std::string& variant : choice.variants) methods.push_back(variantOf(variant, choice, common));
     if (!choice.steps) return methods;
-    for (const char* step : svgfSteps) methods.push_back(variantOf(step, {"svgf"}, common));
+    for (const char* step : svgfSteps)
+        methods.push_back(variantOf(step, {.denoisers = {"svgf"}, .jitter = choice.jitter}, common));
     return methods;
 }
 

@@ -1,6 +1,7 @@
 // Which methods `limpid bench quality` compares.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct MethodChoice {
     /// Parameters by commas, group.name=value, or preset=name: the last denoiser that a group is named after,
     /// or that has the preset, once more with these; the last of all if there is none.
     std::vector<std::string> variants;
+    /// Where the rays of all frames go through their pixels; empty: as each pipeline or preset needs it.
+    std::optional<Jitter> jitter;
     bool steps = false;  ///< SVGF as others have it, without each of its steps, and with former defaults
 };
 
