@@ -26,6 +26,13 @@ enum class Sampler : uint32_t {
 /// CameraLaunch. The same as subpixel() in shaders/common/camera_ray.glsl.
 vec2 framePoint(uint32_t index, float span);
 
+/// The span for frames with this many rays a pixel. Means of many cover the pixel. Frames with one ray each
+/// differ less if it stays near the centre; the camera's own movement and interpolation cover the rest
+/// (docs/denoising.md, "Temporal anti-aliasing").
+constexpr float jitterSpanOf(uint64_t raysOfAFrame) {
+    return raysOfAFrame == 1 ? 0.5f : 1.0f;
+}
+
 /// One launch of primary rays.
 struct CameraLaunch {
     gpu::Extent extent;

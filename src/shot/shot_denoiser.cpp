@@ -249,7 +249,7 @@ std::vector<CleanPicture> ShotDenoiser::denoise(LoadedFrame& frame, bool continu
         if (direction_ == Direction::Backwards)
             goBackwards(host, picture, continues, own, frame.maps[i].searchesMotion);
         CleanPicture& result = results.emplace_back(clean(
-            picture.graph, host, own ? 1.0f : edgeFrames(frame.layers[i], *options_.method), continues));
+            picture.graph, host, own ? 0.0f : edgeFrames(frame.layers[i], *options_.method), continues));
         result.report = picture.converter.report();
         if (!own && direction_ == Direction::Forwards && !frame.layers[i].groups.empty())
             cleanGroups(picture, frame, i, host, continues, result);

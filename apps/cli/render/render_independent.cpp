@@ -73,9 +73,11 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
         if (writesSums(o)) {
             writeAccumulation(file(frame), render.header(), sums);
         } else {
-            writeFrame(job, frame, formatOf(render.header()), sums.means(),
-                       metadataOf(render.header(), frame, sums.samples(),
-                                  cameraText(job.sequence.camera(frame, job.settings.extent))));
+            auto metadata = metadataOf(render.header(), frame, sums.samples(),
+                                       cameraText(job.sequence.camera(frame, job.settings.extent)));
+            if (const auto jitter = jitterOf(job.settings, frame, header.plan.samples))
+                metadata[jitterAttribute] = jitterText(*jitter);
+            writeFrame(job, frame, formatOf(render.header()), sums.means(), metadata);
         }
         if (o.dump.empty()) return;
         if (!frames.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");

@@ -15,15 +15,21 @@ using Clock = std::chrono::steady_clock;
 
 std::map<std::string, std::string> metadataOf(const RenderJob& job, uint64_t frame, uint64_t samples) {
     const CameraParams camera = job.sequence.camera(frame, job.settings.extent);
-    return {{"limpid.version", LIMPID_VERSION},
-            {"limpid.scene", std::filesystem::path(job.options.scene.source.scene).filename().string()},
-            {"limpid.integrator", std::string(nameOf(job.settings.pipeline.integrator))},
-            {"limpid.denoiser", std::string(nameOf(job.settings.pipeline.denoiser))},
-            {"limpid.samples", std::to_string(samples)},
-            {"limpid.seed", std::to_string(job.settings.seed)},
-            {"limpid.device", job.device.info().name},
-            {"limpid.driver", job.device.info().driver},
-            {cameraAttribute, cameraText(camera)}};
+    std::map<std::string, std::string> metadata{
+        {"limpid.version", LIMPID_VERSION},
+        {"limpid.scene", std::filesystem::path(job.options.scene.source.scene).filename().string()},
+        {"limpid.integrator", std::string(nameOf(job.settings.pipeline.integrator))},
+        {"limpid.denoiser", std::string(nameOf(job.settings.pipeline.denoiser))},
+        {"limpid.samples", std::to_string(samples)},
+        {"limpid.seed", std::to_string(job.settings.seed)},
+        {"limpid.device", job.device.info().name},
+        {"limpid.driver", job.device.info().driver},
+        {cameraAttribute, cameraText(camera)}};
+    // A mean over frames has no jitter of its own.
+    const bool mean = job.settings.pipeline.accumulates();
+    if (const auto jitter = mean ? std::nullopt : jitterOf(job.settings, frame, samples))
+        metadata[jitterAttribute] = jitterText(*jitter);
+    return metadata;
 }
 
 }  // namespace

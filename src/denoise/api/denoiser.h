@@ -42,6 +42,7 @@ struct Denoiser {
     std::span<const std::string_view> groups;
     bool network = false;     ///< needs one of DenoiserNetworks, and frames with variances of several samples
     bool oneChannel = false;  ///< Method::oneChannel
+    bool keepsHistory = false;  ///< Method::keepsHistory
 };
 
 std::span<const Denoiser> denoisers();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/layers/layer_set.h"
@@ -17,6 +18,8 @@ struct HostFrame : LayerSet<std::vector<float>, std::vector<uint32_t>> {
     uint32_t width = 0, height = 0;
     CameraParams camera{};
     uint32_t samples = 1;  ///< per pixel
+    /// DenoiserInput::jitter, if it changes from frame to frame; empty if not, and if that is unknown.
+    std::optional<vec2> jitter;
 
     size_t pixelCount() const { return size_t{width} * height; }
 };

@@ -56,4 +56,16 @@ std::optional<CameraParams> parseCameraText(std::string_view description) {
     return complete ? std::optional(camera) : std::nullopt;
 }
 
+std::string jitterText(vec2 jitter) {
+    return fmt::format("{} {}", jitter.x, jitter.y);
+}
+
+std::optional<vec2> parseJitterText(std::string_view description) {
+    vec2 jitter(0.0f);
+    Words words(description);
+    const bool complete = words.take(jitter.x) && words.take(jitter.y) && words.empty();
+    if (!complete || std::abs(jitter.x) > 0.5f || std::abs(jitter.y) > 0.5f) return std::nullopt;
+    return jitter;
+}
+
 }  // namespace limpid

@@ -1,4 +1,5 @@
-// The camera as lossless text, for the attribute "limpid.camera" of EXR files, which denoisers need.
+// Camera and jitter as lossless text, for the attributes "limpid.camera" and "limpid.jitter" of EXR files,
+// which denoisers read.
 #pragma once
 
 #include <optional>
@@ -17,5 +18,14 @@ std::string cameraText(const CameraParams& camera);
 
 /// Returns nothing if the text does not have that form, or a number in it is not finite.
 std::optional<CameraParams> parseCameraText(std::string_view text);
+
+/// Where Jitter::Frame moved the rays of the frame; files of other frames lack it.
+inline constexpr const char* jitterAttribute = "limpid.jitter";
+
+/// "x y", from the pixels' centres, pixels, y down.
+std::string jitterText(vec2 jitter);
+
+/// Returns nothing if the text does not have that form, or a number is not within half a pixel.
+std::optional<vec2> parseJitterText(std::string_view text);
 
 }  // namespace limpid

@@ -205,12 +205,11 @@ PathtraceLayers traceSamples(FrameGraph& graph, const scene::GpuScene& scene, co
     return means[0];
 }
 
-/// Returns the mean offset of the frame's rays from the pixels' centres, as far as all pixels have the same.
-vec2 meanJitter(const RenderSettings& settings, const FrameInput& input) {
-    if (settings.jitter != Jitter::Frame) return vec2(0.0f);
+/// Returns the mean offset of rays from the pixels' centres, with Jitter::Frame.
+vec2 meanPoint(uint32_t first, uint32_t count, float span) {
     vec2 sum(0.0f);
-    for (uint32_t i = 0; i < input.samples; ++i) sum += framePoint(input.firstSample + i, input.jitterSpan);
-    return sum / static_cast<float>(input.samples);
+    for (uint32_t i = 0; i < count; ++i) sum += framePoint(first + i, span);
+    return sum / static_cast<float>(count);
 }
 
 /// Records samples and a denoiser, which keeps its histories from frame to frame.
@@ -220,7 +219,8 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
     static_cast<PathtraceLayers&>(out) = traceSamples(graph, scene, settings, input);
     denoise::DenoiserInput frame{{out}, input.camera, input.samples};
     frame.filters = input.filters;
-    frame.jitter = meanJitter(settings, input);
+    frame.jitterChanges = settings.jitter == Jitter::Frame;
+    if (frame.jitterChanges) frame.jitter = meanPoint(input.firstSample, input.samples, input.jitterSpan);
     frame.reasons = {.wanted = input.reasons, .cut = !input.hasPrevious};
     out.firstDenoisingPass = graph.passes().size();
     const denoise::DenoiserOutput denoised =
@@ -232,6 +232,12 @@ FrameImages recordDenoised(FrameGraph& graph, const scene::GpuScene& scene, cons
 }
 
 }  // namespace
+
+std::optional<vec2> jitterOf(const RenderSettings& settings, uint64_t number, uint64_t samples) {
+    if (settings.jitter != Jitter::Frame) return std::nullopt;
+    const auto first = static_cast<uint32_t>(std::min<uint64_t>(number * samples, UINT32_MAX));
+    return meanPoint(first, static_cast<uint32_t>(samples), jitterSpanOf(samples));
+}
 
 FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
                         const FrameInput& input) {

@@ -52,6 +52,10 @@ struct FrameImages : PathtraceLayers {
     std::optional<size_t> firstDenoisingPass;
 };
 
+/// With Jitter::Frame, the mean offset from the pixels' centres of the rays of frame `number`, if each frame
+/// has `samples`; pixels, y down.
+std::optional<vec2> jitterOf(const RenderSettings& settings, uint64_t number, uint64_t samples);
+
 /// Records one frame of settings.pipeline.
 FrameImages recordFrame(gpu::FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
                         const FrameInput& input);

@@ -97,10 +97,7 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
         firstPoint_ = settings_.jitter == Jitter::Frame ? moment_.number * samples_ : 0;
     input.firstSample = static_cast<uint32_t>(std::min<uint64_t>(firstPoint_ + taken.first, UINT32_MAX));
     input.firstPoint = static_cast<uint32_t>(taken.point);
-    // Means of many rays cover the pixel. Frames with one ray each differ less if it stays near the centre;
-    // the camera's own movement and interpolation cover the rest (docs/denoising.md, "Temporal
-    // anti-aliasing").
-    input.jitterSpan = taken.alone ? 0.5f : 1.0f;
+    input.jitterSpan = jitterSpanOf(taken.alone ? 1 : 2);
     input.stream = taken.stream;
     input.samplesBefore = samplesInMean_;
     input.samples = taken.count;

@@ -68,6 +68,17 @@ CameraParams cameraOf(const LayeredImage& file, const std::filesystem::path& nam
     return *camera;
 }
 
+/// Returns nothing if the file has none.
+std::optional<vec2> jitterOf(const LayeredImage& file, const std::filesystem::path& name) {
+    const auto text = file.metadata.find(jitterAttribute);
+    if (text == file.metadata.end()) return std::nullopt;
+    const std::optional<vec2> jitter = parseJitterText(text->second);
+    if (!jitter)
+        throw InputError(name,
+                         std::string("'") + jitterAttribute + "' is no point of a pixel: " + text->second);
+    return jitter;
+}
+
 /// Returns the file's number of samples, or the number that networks were trained on if the file has none.
 uint32_t samplesOf(const LayeredImage& file) {
     constexpr uint32_t unknown = 32;
@@ -148,6 +159,7 @@ denoise::HostFrame frameOf(const LayeredImage& file, const std::filesystem::path
     frame.height = file.height;
     frame.camera = cameraOf(file, name);
     frame.samples = samplesOf(file);
+    frame.jitter = jitterOf(file, name);
     const auto makePixels = [&](const LayerInfo& layer, auto& texels) {
         texels.resize((layer.stored == Stored::Uint ? 2 : 4) * frame.pixelCount());
     };

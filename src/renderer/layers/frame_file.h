@@ -20,8 +20,8 @@ using ChannelReader = std::function<void(const std::string& channel, std::span<f
 /// InputError if the camera or layers that denoising needs (base/layers/layer_table.h: Need) are missing, and
 /// lists them all. Missing layers that are advised for a sequence are added to `lacking`: without `id`,
 /// everything counts as one object; without `prevNormal`, nothing rotates. The number of samples is the
-/// attribute "limpid.samples", or 32 without it. With a `reader`, the file's channels have names and no
-/// values, and it reads them, which saves a copy of all in floats.
+/// attribute "limpid.samples", or 32 without it; the jitter is "limpid.jitter". With a `reader`, the file's
+/// channels have names and no values, and it reads them, which saves a copy of all in floats.
 denoise::HostFrame frameOf(const image::LayeredImage& file, const std::filesystem::path& name, bool sequence,
                            std::vector<const LayerInfo*>& lacking, const ChannelReader& reader = {});
 

@@ -85,6 +85,20 @@ TEST(FrameFile, EveryLayerComesBack) {
     EXPECT_TRUE(lacking.empty());
 }
 
+TEST(FrameFile, TheJitterIsAnAttribute) {
+    LayeredImage file = fileOf(twoPixels());
+    std::vector<const LayerInfo*> lacking;
+    EXPECT_EQ(frameOf(file, "x.exr", false, lacking).jitter, std::nullopt);
+    const vec2 jitter(0.1f, -0.5f);
+    file.metadata[jitterAttribute] = jitterText(jitter);
+    EXPECT_EQ(frameOf(file, "x.exr", false, lacking).jitter, jitter);
+    for (const char* text : {"", "0.1", "0.1 0.2 0.3", "0.6 0", "nan 0", "0,1 0"}) {
+        file.metadata[jitterAttribute] = text;
+        EXPECT_EQ(faultOf(file, false),
+                  std::string("x.exr: 'limpid.jitter' is no point of a pixel: ") + text);
+    }
+}
+
 TEST(FrameFile, AReaderMayHaveTheValues) {
     const RenderedLayers layers = twoPixels();
     const LayeredImage full = fileOf(layers);
