@@ -119,7 +119,7 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--jitter", o.jitter,
                     "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
-                    "default: pixel, but off with denoisers that keep a history")
+                    "default: pixel, with denoisers that keep a history frame, with bilateral off")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
 }
 

@@ -7,6 +7,7 @@
 //     inline constexpr std::array groups{...};        parameter groups that record() reads, std::string_view
 //     inline constexpr bool readsLayers = ...;        record() reads normal or depth, not only the surfaces
 //     inline constexpr bool oneChannel = ...;         filters visibility, not light
+//     inline constexpr bool keepsHistory = ...;       accumulates light over frames, along the motion
 //     DenoiserOutput record(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 #pragma once
 

@@ -3,8 +3,14 @@
 namespace limpid::denoise {
 
 std::span<const Method> methods() {
-#define LIMPID_ROW(method) \
-    Method{#method, method::help, method::groups, method::readsLayers, method::oneChannel, method::record},
+#define LIMPID_ROW(method)       \
+    Method{#method,              \
+           method::help,         \
+           method::groups,       \
+           method::readsLayers,  \
+           method::oneChannel,   \
+           method::keepsHistory, \
+           method::record},
     static constexpr std::array all{LIMPID_METHODS(LIMPID_ROW)};
 #undef LIMPID_ROW
     return all;

@@ -22,8 +22,9 @@ struct FilterSettings {
 struct Method {
     std::string_view name, help;
     std::span<const std::string_view> groups;
-    bool readsLayers;  ///< normal or depth, not only the surfaces
-    bool oneChannel;   ///< filters visibility, the first component of diffuse and emission; not light
+    bool readsLayers;   ///< normal or depth, not only the surfaces
+    bool oneChannel;    ///< filters visibility, the first component of diffuse and emission; not light
+    bool keepsHistory;  ///< accumulates light over frames, along the motion
     /// Records one frame.
     DenoiserOutput (*record)(gpu::FrameGraph&, const DenoiserInput&, const FilterSettings&);
 };

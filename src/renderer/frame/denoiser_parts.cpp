@@ -46,6 +46,9 @@ RenderSettings withParts(const RenderSettings& settings, const DenoiserParts& pa
         if (parts.on[part]) continue;
         for (const std::string_view assignment : switchesOf(settings.pipeline.denoiser, part))
             assign(result, assignment);
+        // Frames that are not averaged would shake.
+        if (denoiserParts[part].name == "temporal" && result.jitter == Jitter::Frame)
+            result.jitter = Jitter::Off;
     }
     return result;
 }

@@ -13,12 +13,13 @@
 
 namespace limpid {
 
-/// Means of many samples need jitter to cover the pixel. Histories follow one point of it: with jitter per
-/// pixel, pixels at silhouettes would see another surface in each frame. A network keeps no history, and its
-/// guides are means.
+/// Means of many samples need jitter to cover the pixel, and so do a network's guides. Histories follow one
+/// point: with jitter per pixel, pixels at silhouettes would see another surface in each frame. With one
+/// point for all pixels, their last step averages frames to smooth edges (TaaSettings). A filter of single
+/// frames does not, and frames that are jittered would only shake.
 inline Jitter defaultJitter(const Pipeline& pipeline) {
-    const bool means = pipeline.accumulates() || pipeline.usesNetwork();
-    return means ? Jitter::Pixel : Jitter::Off;
+    if (pipeline.accumulates() || pipeline.usesNetwork()) return Jitter::Pixel;
+    return pipeline.denoiser->keepsHistory ? Jitter::Frame : Jitter::Off;
 }
 
 /// The value for --jitter.

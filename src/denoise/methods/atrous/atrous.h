@@ -40,6 +40,7 @@ inline constexpr std::array<std::string_view, 3> groups{"temporal", "atrous", "t
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = true;
 inline constexpr bool oneChannel = false;
+inline constexpr bool keepsHistory = true;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace atrous
 

@@ -35,6 +35,7 @@ inline constexpr std::array<std::string_view, 2> groups{"bilateral", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = true;
 inline constexpr bool oneChannel = false;
+inline constexpr bool keepsHistory = false;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace bilateral
 

@@ -62,6 +62,7 @@ inline constexpr std::array<std::string_view, 2> groups{"temporal", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
 inline constexpr bool oneChannel = false;
+inline constexpr bool keepsHistory = true;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace temporal
 

@@ -42,6 +42,7 @@ inline constexpr std::array<std::string_view, 2> groups{"visibility", "taa"};
 const ParamTable<Settings>& params();
 inline constexpr bool readsLayers = false;
 inline constexpr bool oneChannel = true;
+inline constexpr bool keepsHistory = true;
 DenoiserOutput record(gpu::FrameGraph& graph, const DenoiserInput& input, const FilterSettings& settings);
 }  // namespace visibility
 
