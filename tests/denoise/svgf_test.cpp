@@ -39,6 +39,7 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .lobeTest = double{s.lobeTest},
             .phiRoughness = double{s.phiRoughness},
             .blurLevels = s.blurLevels,
+            .meanLevels = s.meanLevels,
             .boost = s.boost,
             .wide = s.wide,
             .position = s.position};
@@ -459,6 +460,8 @@ INSTANTIATE_TEST_SUITE_P(
                  .options = moving,
                  .settings = {.stabilisationNoise = 9.0f, .levels = 1},
                  .mixesFrom = 3},
+            Case{"OwnLuminance", moving, {.levels = 3, .meanLevels = 0}},
+            Case{"MeanLuminances", moving, {.levels = 3, .wide = true, .meanLevels = 2}},
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
             Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},

@@ -27,7 +27,7 @@ struct DoubleSvgfParams {
     double stabilisationAlpha = 0.5, stabilisationNoise = 1.0;
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     double lobeTest = 0.0, phiRoughness = 0.0;
-    int blurLevels = 1;
+    int blurLevels = 1, meanLevels = 0;
     bool boost = true, wide = true, position = false;
 };
 

@@ -414,6 +414,20 @@ TEST_F(SvgfRow, Color) {
     expectWeight(std::exp(-0.2126 / (0.5 * std::sqrt(g) + 0.001 + 1e-6)));
 }
 
+TEST_F(SvgfRow, TheMeanLuminanceOfLikePixels) {
+    params.phiColor = 0.5;
+    params.blurLevels = 0;
+    params.meanLevels = 1;
+    const double tolerance = 0.5 * 0.3 + 0.001 + 1e-6;
+    const double first = std::exp(-0.2126 / tolerance), mean = 1.0 + 0.2126 * first / (1.0 + first);
+    expectWeight(std::exp(-(1.2126 - mean) / tolerance));
+    surfaces.distance[2] = 2.003;
+    const double surface = std::exp(-1.5), like = first * surface;
+    expectWeight(surface * std::exp(-(0.2126 - 0.2126 * like / (1.0 + like)) / tolerance));
+    params.meanLevels = 0;
+    expectWeight(surface * first);
+}
+
 TEST_F(SvgfRow, NarrowKernel) {
     params.wide = false;
     const dvec4 result = svgfLevel(frame, SvgfSignal::Diffuse, surfaces, color, 0, params)[1];

@@ -101,14 +101,12 @@ class Level {
         if (!neighbours_.sees(p)) return color_[p];
         const double l = luminances_[p];
         const double own = tolerance(l, std::sqrt(guide(p)));
+        const double compared = level_ < params_.meanLevels ? meanLuminance(p, own) : l;
         dvec3 sum(0.0);
         double variance = 0.0, weights = 0.0;
         neighbours_.around(p, step_, 2, [&](size_t q, int i, int j) {
             double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)];
-            if (p != q) {
-                w *= neighbours_.weight(p, q, static_cast<double>(step_) * dvec2(i, j)) *
-                     std::exp(-std::abs(l - luminances_[q]) / own);
-            }
+            if (p != q) w *= likeness(p, q, dvec2(i, j), compared, own);
             sum += w * dvec3(color_[q]);
             variance += w * w * color_[q].w * color_[q].w;
             weights += w;
@@ -117,6 +115,23 @@ class Level {
     }
 
   private:
+    /// Returns the weight of q = p + step (i, j) by its surface, and by its difference from `luminance`.
+    double likeness(size_t p, size_t q, const dvec2& taps, double luminance, double own) const {
+        return neighbours_.weight(p, q, static_cast<double>(step_) * taps) *
+               std::exp(-std::abs(luminance - luminances_[q]) / own);
+    }
+
+    /// Returns lambda, the mean luminance of the taps that are like p.
+    double meanLuminance(size_t p, double own) const {
+        double sum = 0.0, weights = 0.0;
+        neighbours_.around(p, step_, params_.wide ? 2 : 1, [&](size_t q, int i, int j) {
+            const double w = likeness(p, q, dvec2(i, j), luminances_[p], own);
+            sum += w * luminances_[q];
+            weights += w;
+        });
+        return sum / weights;
+    }
+
     double tolerance(double luminance, double deviation) const {
         return params_.phiColor * deviation + 0.001 * std::abs(luminance) + 1e-6;
     }

@@ -86,6 +86,7 @@ Preset svgfOfCis565() {
                             "svgf.phi_depth=0.35",
                             "svgf.boost=off",
                             "svgf.blur_levels=10",
+                            "svgf.mean_levels=0",
                             "svgf.position=on",
                             "taa.frames=1",
                             "pathtrace.through_mirrors=off",
@@ -128,12 +129,26 @@ Preset svgfOfThePaper() {
             .integrators = lightIntegrators,
             .denoisers = {"svgf"},
             .jitter = Jitter::Off,
-            .assignments = {
-                "svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on", "svgf.alpha_moments=0.2",
-                "svgf.antilag=0", "svgf.fireflies=0", "svgf.young_radius=0", "svgf.stabilisation_alpha=1",
-                "svgf.levels=5", "svgf.history_level=1", "svgf.phi_normal=128", "svgf.phi_depth=1",
-                "svgf.boost=off", "svgf.blur_levels=10", "svgf.lobe_test=0", "svgf.phi_roughness=0",
-                "taa.frames=1", "pathtrace.through_mirrors=off", "pathtrace.through_glass=off"}};
+            .assignments = {"svgf.alpha=0.2",
+                            "svgf.reflections=off",
+                            "svgf.wide=on",
+                            "svgf.alpha_moments=0.2",
+                            "svgf.antilag=0",
+                            "svgf.fireflies=0",
+                            "svgf.young_radius=0",
+                            "svgf.stabilisation_alpha=1",
+                            "svgf.levels=5",
+                            "svgf.history_level=1",
+                            "svgf.phi_normal=128",
+                            "svgf.phi_depth=1",
+                            "svgf.boost=off",
+                            "svgf.blur_levels=10",
+                            "svgf.mean_levels=0",
+                            "svgf.lobe_test=0",
+                            "svgf.phi_roughness=0",
+                            "taa.frames=1",
+                            "pathtrace.through_mirrors=off",
+                            "pathtrace.through_glass=off"}};
 }
 
 std::string listed(const std::vector<std::string>& words) {

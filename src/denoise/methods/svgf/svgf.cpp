@@ -320,6 +320,7 @@ class Svgf {
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
         constants.push_back({"STABILISE", mixed ? 1u : 0u});
         constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
+        constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -474,6 +475,9 @@ const ParamTable<SvgfSettings>& svgf::params() {
         t.add("blur_levels", &S::blurLevels, 0, 10, "levels",
               "Number of first passes that use a variance averaged over 3x3 pixels; more is steadier and "
               "slower");
+        t.add("mean_levels", &S::meanLevels, 0, 10, "levels",
+              "Number of first passes that compare each neighbour's luminance with a mean around the pixel "
+              "instead of the pixel's own; more leaves less of a fine weave on noisy walls and is slower");
         t.add("boost", &S::boost,
               "Let the expected noise fall with the length of the history (by 2 / sqrt(frames)); off: use "
               "the noise of one frame");

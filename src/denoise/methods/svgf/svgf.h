@@ -37,6 +37,7 @@ struct SvgfSettings {
     float phiDepth = 3.0f;
     float phiRoughness = 0.1f;
     int blurLevels = 1;
+    int meanLevels = 1;
     bool boost = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;

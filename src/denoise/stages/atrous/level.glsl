@@ -9,6 +9,10 @@
 //   - bool isFiltered(Centre): false if the pixel keeps its own light
 //   - void addTo(inout Centre, Tap, ivec2 from): `from` is the tap's offset in steps
 //   - void store(ivec2 at, Centre): `at` may lie outside of the picture
+// A shader that defines LIMPID_LEVEL_LOOKS_FIRST may visit all taps twice, and declares:
+//   - const bool LOOKS: true: visit all taps with lookAt() first, then all with addTo()
+//   - void lookAt(inout Centre, Tap, ivec2 from)
+//   - void looked(inout Centre): after the last lookAt()
 #ifndef LIMPID_ATROUS_LEVEL_GLSL
 #define LIMPID_ATROUS_LEVEL_GLSL
 
@@ -31,25 +35,43 @@ bool isTapOf(ivec2 from) {
     return abs(from.x) <= REACH && abs(from.y) <= REACH && from != ivec2(0);
 }
 
+#ifndef LIMPID_LEVEL_LOOKS_FIRST
+const bool LOOKS = false;
+void lookAt(inout Centre centre, Tap tap, ivec2 from) {}
+void looked(inout Centre centre) {}
+#endif
+
+Centre centres[BLOCK_PIXELS];
+
+/// A second visit loads the taps again: they are cached, and take too many registers to be kept.
+void visitTaps(ivec2 first, bool looking) {
+    [[unroll]] for (int j = -2; j < BLOCK.y + 2; ++j) {
+        [[unroll]] for (int i = -2; i < BLOCK.x + 2; ++i) {
+            if (i < -REACH || i >= BLOCK.x + REACH || j < -REACH || j >= BLOCK.y + REACH) continue;
+            const Tap tap = loadTap(first + params.step * ivec2(i, j));
+            [[unroll]] for (int number = 0; number < BLOCK_PIXELS; ++number) {
+                const ivec2 from = ivec2(i, j) - inBlock(number);
+                if (!isTapOf(from)) continue;
+                if (looking)
+                    lookAt(centres[number], tap, from);
+                else
+                    addTo(centres[number], tap, from);
+            }
+        }
+    }
+}
+
 void filterBlock(ivec2 first) {
-    Centre centres[BLOCK_PIXELS];
     bool any = false;
     [[unroll]] for (int number = 0; number < BLOCK_PIXELS; ++number) {
         centres[number] = begin(first + params.step * inBlock(number), number);
         any = any || isFiltered(centres[number]);
     }
-    if (any) {
-        [[unroll]] for (int j = -2; j < BLOCK.y + 2; ++j) {
-            [[unroll]] for (int i = -2; i < BLOCK.x + 2; ++i) {
-                if (i < -REACH || i >= BLOCK.x + REACH || j < -REACH || j >= BLOCK.y + REACH) continue;
-                const Tap tap = loadTap(first + params.step * ivec2(i, j));
-                [[unroll]] for (int number = 0; number < BLOCK_PIXELS; ++number) {
-                    const ivec2 from = ivec2(i, j) - inBlock(number);
-                    if (isTapOf(from)) addTo(centres[number], tap, from);
-                }
-            }
-        }
+    if (any && LOOKS) {
+        visitTaps(first, true);
+        [[unroll]] for (int number = 0; number < BLOCK_PIXELS; ++number) looked(centres[number]);
     }
+    if (any) visitTaps(first, false);
     [[unroll]] for (int number = 0; number < BLOCK_PIXELS; ++number)
         store(first + params.step * inBlock(number), centres[number]);
 }

@@ -10,6 +10,7 @@ layout(constant_id = 3) const bool BLUR_VARIANCE = true;
 layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
 layout(constant_id = 5) const bool STABILISE = false;  // the result is a mean with the stabilised light
 layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1: pixels of a block are neighbours
+layout(constant_id = 8) const bool LOOKS = false;  // compare with the mean luminance of like taps, not with the own one
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -53,6 +54,7 @@ struct Centre {
     SurfaceCentre surface;
     float perDepth[PAIRS + 1];  // by pair
     float luminance, luminanceScale;
+    vec2 differences;  // sum of weighted differences from the luminance, and of the weights; only if LOOKS
     vec4 sum;       // of weighted light, and of the weights
     float squares;  // sum of squared weighted deviations
     bool seen;
@@ -122,6 +124,7 @@ Centre begin(ivec2 at, int number) {
     centre.seen = tap.counts;
     centre.luminance = tap.luminance;
     centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, number, tap.light.a));
+    centre.differences = vec2(0.0, 1.0);
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
@@ -130,10 +133,23 @@ Centre begin(ivec2 at, int number) {
     return centre;
 }
 
-void addTo(inout Centre centre, Tap tap, ivec2 from) {
+/// How far a tap shows the same as the centre: 0 to 1.
+float likeness(Centre centre, Tap tap, ivec2 from) {
     const float exponent = surfaceExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]) -
                            abs(centre.luminance - tap.luminance) * centre.luminanceScale;
-    const float weight = tap.counts ? kernel(from) * exp2(exponent) : 0.0;
+    return tap.counts ? exp2(exponent) : 0.0;
+}
+
+void lookAt(inout Centre centre, Tap tap, ivec2 from) {
+    centre.differences += likeness(centre, tap, from) * vec2(tap.luminance - centre.luminance, 1.0);
+}
+
+void looked(inout Centre centre) {
+    centre.luminance += centre.differences.x / centre.differences.y;
+}
+
+void addTo(inout Centre centre, Tap tap, ivec2 from) {
+    const float weight = kernel(from) * likeness(centre, tap, from);
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
     const float deviation = weight * tap.light.a;
     centre.squares += deviation * deviation;
@@ -157,6 +173,7 @@ bool isFiltered(Centre centre) {
     return centre.seen;
 }
 
+#define LIMPID_LEVEL_LOOKS_FIRST
 #include "denoise/stages/atrous/level.glsl"
 
 void main() {
