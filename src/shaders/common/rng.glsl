@@ -84,11 +84,11 @@ bool sharesNumbers() {
     return SAMPLER == SAMPLER_SOBOL;
 }
 
-/// Returns the place of u in [low, high), from 0 to 1: a number that is again uniform, once the interval has been
-/// chosen by u. The digits that u lacks are random.
-float placeWithin(float u, float low, float high, inout uint state) {
-    const float width = max(high - low, 1e-20);
-    return clamp((u - low + random(state) / float(0x01000000)) / width, 0.0, 1.0 - 1.0 / float(0x01000000));
+/// Returns the place of a number in the interval that it has chosen, from 0 to 1, which is again uniform. `place`: its
+/// distance from the beginning, divided by the interval's width; `scale`: the inverse of that width. The digits that
+/// the number lacks are random.
+float placeWithin(float place, float scale, inout uint state) {
+    return clamp(place + random(state) * (scale / float(0x01000000)), 0.0, 1.0 - 1.0 / float(0x01000000));
 }
 
 #endif
