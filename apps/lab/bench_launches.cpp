@@ -78,7 +78,7 @@ std::vector<Row> measure(gpu::Device& device, const LaunchesBench& o) {
     std::vector<Row> rows;
     for (uint32_t n = 1; n <= o.samples; n *= 2) {
         wanted.samplesPerLaunch = n;
-        if (samplesPerLaunch(device, wanted) != n) break;  // CPUs have a limit
+        if (samplesPerLaunch(device, wanted) != n) break;  // CPUs and Sobol' points have limits
         std::vector<double> times;
         image::Image picture;
         for (uint32_t i = 0; i < o.repeats; ++i) {

@@ -58,7 +58,6 @@ inline ViewParams viewParams(const CameraLaunch& launch) {
     view.width = launch.extent.width;
     view.height = launch.extent.height;
     view.firstSample = launch.firstSample;
-    view.firstPoint = launch.firstPoint;
     view.stream = launch.stream;
     view.seed = launch.seed;
     view.jitter = static_cast<uint32_t>(launch.jitter);

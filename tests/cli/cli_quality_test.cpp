@@ -53,6 +53,10 @@ TEST_F(CliQualityTest, KeptReferencesGiveTheSameNumbersAndDamagedOnesAreRefused)
     for (json* run : {&first, &second}) dropTimes(*run);
     EXPECT_EQ(first, second);
     EXPECT_GT(first["scenes"][0]["methods"][1]["denoising_bytes_per_pixel"].get<double>(), 4.0);
+    json spread = numbers(kept + " --set pathtrace.sampler_tea=on");
+    EXPECT_EQ(filesIn("kept").size(), 3u) << "the same for frames of every sampler";
+    dropTimes(spread);
+    EXPECT_NE(first["scenes"], spread["scenes"]);
 
     fs::copy_file(files[1], files[0], fs::copy_options::overwrite_existing);
     expect(options(kept), 3, files[0].filename().string() + ": is no reference of this frame");

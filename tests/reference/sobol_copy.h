@@ -52,6 +52,14 @@ inline uint32_t owenScrambled(uint32_t x, uint32_t key) {
     return reversedBits(permutedUpwards(reversedBits(x), key));
 }
 
+/// The same with a simpler permutation: one step of a linear congruential generator, and one round of Laine
+/// and Karras's.
+inline uint32_t lightlyScrambled(uint32_t x, uint32_t factor, uint32_t key) {
+    uint32_t permuted = reversedBits(x) * factor + key;
+    permuted ^= permuted * 0x05526c56u;
+    return reversedBits(permuted);
+}
+
 class SobolCopy {
   public:
     SobolCopy(uint32_t x, uint32_t y, uint32_t number, uint32_t seed)
@@ -68,7 +76,7 @@ class SobolCopy {
 
   private:
     struct Draw {
-        uint32_t number, pixel, key;
+        uint32_t number, pixel, key, factor;
     };
 
     static uint32_t hash(uint32_t x) {
@@ -93,14 +101,19 @@ class SobolCopy {
     Draw nextDraw() {
         const uint32_t key = hash(key_ + draw_++);
         const uint32_t split = (key >> 16) * 3u >> 16;
-        return {owenScrambled(number_, key), owenScrambled(place(split), key * 0x9e3779b1u), key};
+        const uint32_t factor = hash(key ^ 0x68e31da4u) | 1u;
+        return {owenScrambled(number_, key), lightlyScrambled(place(split), factor, key * 0x9e3779b1u), key,
+                factor};
     }
 
+    /// The pixel's index and its point have 16 digits.
     static uint32_t value(const Draw& draw, int dimension) {
         const std::array<uint32_t, 2> keys =
             dimension == 0 ? std::array{0x85ebca77u, 0xc2b2ae3du} : std::array{0x27d4eb2fu, 0x165667b1u};
         return owenScrambled(sobolPoint(draw.number, dimension), draw.key * keys[0]) ^
-               owenScrambled(sobolPoint(draw.pixel, dimension), draw.key * keys[1]);
+               (lightlyScrambled(sobolPoint(draw.pixel & 0xffffu, dimension), draw.factor,
+                                 draw.key * keys[1]) &
+                0xffff0000u);
     }
 
     static float toFloat(uint32_t x) { return static_cast<float>(x >> 8) / 16777216.0f; }

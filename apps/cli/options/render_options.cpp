@@ -104,7 +104,8 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
         ->check(CLI::Range(1, 1 << 24));
     command
         .add_option("--samples-per-launch", o.samplesPerLaunch,
-                    "Samples per pixel in one launch (1); more is a little faster; at most 4 on a CPU")
+                    "Samples per pixel in one launch (1); more is a little faster; at most 4 on a CPU, "
+                    "16 with Sobol' points")
         ->check(CLI::Range(1, 4096));
     command
         .add_option("--max-depth", o.maxDepth,

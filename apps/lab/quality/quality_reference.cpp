@@ -21,6 +21,13 @@ namespace fs = std::filesystem;
 using image::Image;
 using image::LayeredImage;
 
+/// References always have independent random numbers. So frames of every sampler are compared with the same
+/// ones, and share no points with them.
+PathtraceSettings withoutSampler(PathtraceSettings settings) {
+    settings.samplerTea = settings.samplerSobol = false;
+    return settings;
+}
+
 /// Returns references as they are stored in a file, so that they do not depend on whether they were rendered
 /// or read.
 class ReferenceRenderer {
@@ -51,6 +58,7 @@ class ReferenceRenderer {
     /// `seed` must be different from that of the tested frames.
     static RenderSettings settingsOf(RenderSettings settings, uint32_t seed) {
         settings.seed = seed;
+        settings.pathtrace = withoutSampler(settings.pathtrace);
         settings.pipeline.denoiser = nullptr;
         settings.samplesPerLaunch = 64;
         settings.layers = true;
@@ -85,7 +93,7 @@ uint64_t identityOf(const ReferenceFiles& files, const Sequence& sequence, const
     const auto addParameters = [&](const auto& table, const auto& values) {
         for (size_t i = 0; i < table.infos().size(); ++i) hash.add(toString(table.get(values, i)) + "\n");
     };
-    addParameters(pathtraceParams(), settings.pathsTraced());
+    addParameters(pathtraceParams(), withoutSampler(settings.pathsTraced()));
     if (settings.pipeline.integrator == Integrator::AmbientOcclusion) {
         hash.add("ambient occlusion\n");
         addParameters(ambientOcclusionParams(), settings.ambientOcclusion);

@@ -7,6 +7,7 @@
 #include "ambient_occlusion.rgen.h"
 #include "ambient_occlusion_signal.comp.h"
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
+#include "passes/sobol_points.h"
 #include "passes/traced_dispatch.h"
 
 namespace limpid {
@@ -67,7 +68,9 @@ gpu::ImageHandle ambientOcclusion(gpu::FrameGraph& graph, const scene::GpuScene&
     gpu::ImageHandle open = gbuffer.position;
     for (const gpu::ImageHandle after : into) {
         params.rays = std::min(rays - params.firstRay, maxRaysPerDispatch);
-        params.firstPoint = launch.firstPoint * rays + params.firstRay;
+        params.points = sobolTable(
+            launch.sampler, launch.seed ^ OCCLUSION_STREAMS,
+            {.first = launch.firstPoint * rays + params.firstRay, .count = params.rays, .draws = 1});
         params.divisor = params.firstRay + params.rays == rays ? static_cast<float>(rays) : 1.0f;
         dispatchTraced(graph, scene, passName(params.firstRay, rays),
                        {shaders::ambient_occlusion_comp, shaders::ambient_occlusion_rgen},

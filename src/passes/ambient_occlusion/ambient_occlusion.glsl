@@ -2,21 +2,20 @@
 // Zhukov, A. Iones, G. Kronin, "An ambient light illumination model", 1998, but with every obstacle counting
 // fully. With unlimited length it equals a white surface's reflection of a white sky. Used by every tracer.
 #include "passes/ambient_occlusion/ambient_occlusion_params.h"
-#include "shaders/trace/trace.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     AmbientOcclusionParams params;
 };
+
+#define SOBOL_TABLE params.points
+#include "shaders/trace/trace.glsl"
+
 layout(set = 0, binding = 21, rgba32f) uniform readonly image2D position;  // a: magnitude, 0 at a miss
 layout(set = 0, binding = 22, rgba32f) uniform readonly image2D geometricNormal;
 layout(set = 0, binding = 23, rgba32f) uniform readonly image2D normal;
 layout(set = 0, binding = 24, rgba32f) uniform readonly image2D before;  // result of earlier dispatches, if
                                                                          // there are any
 layout(set = 0, binding = 25, rgba32f) uniform writeonly image2D openness;
-
-/// Keeps the random numbers separate from those of passes that trace primary rays, which use startStream()
-/// directly.
-const uint OWN_STREAMS = 0x0cc1u;
 
 /// A direction around the shading normal that points into the surface counts as occluded: no light arrives
 /// from there.
@@ -34,10 +33,11 @@ void tracePixel(uvec2 pixel) {
     const vec4 place = imageLoad(position, at);
     const vec3 faceNormal = imageLoad(geometricNormal, at).xyz;
     const mat3 frame = frameAround(imageLoad(normal, at).xyz);
-    uint rng = tea(startStream(pixel.y * params.width + pixel.x, params.stream, params.seed), OWN_STREAMS + params.firstRay);
+    uint rng = startStream(pixel.y * params.width + pixel.x, params.stream, params.seed);
+    rng = tea(rng, OCCLUSION_STREAMS + params.firstRay);
     float open = params.firstRay > 0u ? imageLoad(before, at).x : 0.0;
     for (uint i = 0u; i < params.rays; ++i) {
-        startSample(pixel, params.firstPoint + i, params.seed ^ OWN_STREAMS);
+        startSample(pixel, i);
         const vec3 direction = frame * sampleCosineHemisphere(stratified2(rng));
         if (isOpen(place, faceNormal, direction, rng)) open += 1.0;
     }

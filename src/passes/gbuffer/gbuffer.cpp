@@ -3,6 +3,7 @@
 #include "gbuffer.comp.h"
 #include "gbuffer.rgen.h"
 #include "passes/gbuffer/gbuffer_params.h"
+#include "passes/sobol_points.h"
 #include "passes/traced_dispatch.h"
 
 namespace limpid {
@@ -45,7 +46,8 @@ void gbuffer(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer
                                        {"geometricNormal", into.geometricNormal}};
     for (const LayerInfo& layer : frameLayers)
         if (layer.ofFirstHit) bindings.push_back({layer.member, into[layer]});
-    const GBufferParams params{scene.params(), viewParams(launch)};
+    const GBufferParams params{sobolTable(launch.sampler, launch.seed, {.first = launch.firstPoint}),
+                               scene.params(), viewParams(launch)};
     dispatchTraced(graph, scene, "gbuffer", {shaders::gbuffer_comp, shaders::gbuffer_rgen}, bindings,
                    gpu::paramsOf(params),
                    {{"LIGHT", settings.light ? 1u : 0u},

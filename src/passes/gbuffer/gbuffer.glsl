@@ -3,6 +3,12 @@
 // Rays, random numbers and surfaces are the same as in the path tracer's first sample, so that the layers are
 // equal.
 #include "passes/gbuffer/gbuffer_params.h"
+
+layout(set = 0, binding = 20, scalar) uniform Params {
+    GBufferParams params;
+};
+
+#define SOBOL_TABLE params.points
 #include "shaders/common/first_hit.glsl"
 #include "shaders/material/lights.glsl"
 #include "shaders/material/medium.glsl"
@@ -10,9 +16,6 @@
 layout(constant_id = 21) const bool LIGHT = true;    // false: the layer `light` is black
 layout(constant_id = 22) const bool SHADOWS = true;  // false: lights shine through everything
 
-layout(set = 0, binding = 20, scalar) uniform Params {
-    GBufferParams params;
-};
 layout(set = 0, binding = 21, rgba32f) uniform writeonly image2D light;
 layout(set = 0, binding = 22, rgba32f) uniform writeonly image2D emission;
 layout(set = 0, binding = 23, rgba32f) uniform writeonly image2D albedo;
@@ -106,7 +109,7 @@ Seen look(Ray ray, uint rng) {
 void tracePixel(uvec2 pixel) {
     const ivec2 at = ivec2(pixel);
     uint rng = startStream(pixel.y * params.view.width + pixel.x, params.view.stream, params.view.seed);
-    startSample(pixel, params.view.firstPoint, params.view.seed);
+    startSample(pixel, 0u);
     const vec2 point = vec2(pixel) + subpixel(params.view, 0u, rng);
     Seen seen = look(cameraRay(params.view, point), rng);
     const bool rejected = !isFinite(seen.light + seen.emission);

@@ -3,11 +3,13 @@
 #define LIMPID_PATHTRACE_PATH_GLSL
 
 #include "passes/pathtrace/pathtrace_params.h"
-#include "shaders/material/lights.glsl"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     PathtraceParams params;
 };
+
+#define SOBOL_TABLE params.points
+#include "shaders/material/lights.glsl"
 
 struct PathRadiance {
     vec3 emission;           // seen directly

@@ -1,6 +1,7 @@
 #include "passes/pathtrace/pathtrace.h"
 
 #include "passes/camera_launch.h"
+#include "passes/sobol_points.h"
 #include "passes/traced_dispatch.h"
 #include "pathtrace.comp.h"
 #include "pathtrace.rgen.h"
@@ -20,6 +21,8 @@ using gpu::ImageHandle;
 PathtraceParams makeParams(const scene::GpuScene& scene, const PathtraceSettings& settings,
                            const PathtraceLaunch& launch) {
     PathtraceParams params{};
+    params.points =
+        sobolTable(launch.sampler, launch.seed, {.first = launch.firstPoint, .count = launch.samples});
     params.scene = scene.params();
     params.view = viewParams(launch);
     params.samples = launch.samples;

@@ -65,7 +65,7 @@ void tracePixel(uvec2 pixel) {
     float roughnessSum = 0.0;
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
-        startSample(pixel, params.view.firstPoint + i, params.view.seed);
+        startSample(pixel, i);
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
         PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
         if (!isFinite(path.emission + path.diffuse + path.specular)) {

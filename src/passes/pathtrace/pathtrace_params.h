@@ -4,6 +4,7 @@
 
 #include "shaders/common/camera.h"
 #include "shaders/common/scene_layout.h"
+#include "shaders/common/sobol_table.h"
 
 #ifdef __cplusplus
 namespace limpid {
@@ -11,6 +12,7 @@ using layout::SceneParams;
 #endif
 
 struct PathtraceParams {
+    SobolTable points;
     SceneParams scene;
     ViewParams view;
     uint samples;  // per pixel in this launch

@@ -13,7 +13,7 @@ void tracePixel(uvec2 pixel) {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < params.samples; ++i) {
         FirstHit first;
-        startSample(pixel, params.view.firstPoint + i, params.view.seed);
+        startSample(pixel, i);
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
         const PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
         const vec3 radiance = path.diffuse;

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "passes/sobol_points.h"
+
 namespace limpid {
 namespace {
 
@@ -24,8 +26,9 @@ constexpr uint32_t maxSamplesPerCpuLaunch = 4;
 
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings) {
     if (settings.pipeline.takesOneSampleALaunch()) return 1;
-    return device.isCpu() ? std::min(settings.samplesPerLaunch, maxSamplesPerCpuLaunch)
-                          : settings.samplesPerLaunch;
+    uint32_t samples = settings.samplesPerLaunch;
+    if (settings.pathtrace.sampler() == Sampler::Sobol) samples = std::min(samples, maxSobolSamplesPerLaunch);
+    return device.isCpu() ? std::min(samples, maxSamplesPerCpuLaunch) : samples;
 }
 
 FrameRenderer::FrameRenderer(gpu::Device& device, scene::GpuScene& scene, const RenderSettings& settings,

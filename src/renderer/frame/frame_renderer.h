@@ -20,7 +20,8 @@
 
 namespace limpid {
 
-/// The effective settings.samplesPerLaunch: CPUs have a limit, and some integrators take one sample only.
+/// The effective settings.samplesPerLaunch: CPUs and Sobol' points have limits, and some integrators take one
+/// sample only.
 uint32_t samplesPerLaunch(const gpu::Device& device, const RenderSettings& settings);
 
 /// The samples per pixel that one launch takes.

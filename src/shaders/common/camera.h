@@ -37,7 +37,6 @@ struct ViewParams {
     uint width;
     uint height;
     uint firstSample;  // samples per pixel since the last reset, before this launch
-    uint firstPoint;   // number of the launch's first sample in sequences of points (rng.glsl)
     uint stream;       // of random numbers
     uint seed;
     uint jitter;          // JITTER_*

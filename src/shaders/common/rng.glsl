@@ -10,7 +10,9 @@
 #define LIMPID_RNG_GLSL
 
 #include "shaders/common/sampler.h"
+#ifdef SOBOL_TABLE
 #include "shaders/common/sobol.glsl"
+#endif
 
 layout(constant_id = 20) const uint SAMPLER = SAMPLER_PCG;
 
@@ -56,26 +58,32 @@ vec2 random2(inout uint state) {
     return vec2(x, random(state));
 }
 
+#ifdef SOBOL_TABLE
 SobolSample sobolSample;
 
-/// Must come before the first stratified() of each sample. `number`: of the pixel's sample, over all launches and
-/// frames.
-void startSample(uvec2 pixel, uint number, uint seed) {
-    if (SAMPLER == SAMPLER_SOBOL) sobolSample = startSobol(pixel, number, seed);
+/// Must come before the first stratified() of each sample. `index`: of the pixel's sample in this launch.
+void startSample(uvec2 pixel, uint index) {
+    if (SAMPLER == SAMPLER_SOBOL) sobolSample = startSobol(pixel, index);
 }
+#endif
 
 /// Like random(), for decisions on which a path's light depends much: with `sobol`, the numbers that a pixel's samples
 /// and its neighbours get from calls with the same place in the order of all calls are spread evenly. Each call of a
-/// sample is independent of all others.
+/// sample is independent of all others. Only shaders that define SOBOL_TABLE know `sobol`, and calls beyond the table
+/// give independent numbers.
 float stratified(inout uint state) {
-    const float independent = random(state);
-    return SAMPLER == SAMPLER_SOBOL ? nextSobol(sobolSample) : independent;
+#ifdef SOBOL_TABLE
+    if (SAMPLER == SAMPLER_SOBOL && hasDraw(sobolSample)) return nextSobol(sobolSample);
+#endif
+    return random(state);
 }
 
 /// Like stratified(), in both dimensions together.
 vec2 stratified2(inout uint state) {
-    const vec2 independent = random2(state);
-    return SAMPLER == SAMPLER_SOBOL ? nextSobol2(sobolSample) : independent;
+#ifdef SOBOL_TABLE
+    if (SAMPLER == SAMPLER_SOBOL && hasDraw(sobolSample)) return nextSobol2(sobolSample);
+#endif
+    return random2(state);
 }
 
 /// True if a choice and a point for what was chosen should share a number: the points for each of the choices are then
@@ -84,11 +92,11 @@ bool sharesNumbers() {
     return SAMPLER == SAMPLER_SOBOL;
 }
 
-/// Returns the place of u in [low, high), from 0 to 1: a number that is again uniform, once the interval has been
-/// chosen by u. The digits that u lacks are random.
-float placeWithin(float u, float low, float high, inout uint state) {
-    const float width = max(high - low, 1e-20);
-    return clamp((u - low + random(state) / float(0x01000000)) / width, 0.0, 1.0 - 1.0 / float(0x01000000));
+/// Returns the place of a number in the interval that it has chosen, from 0 to 1, which is again uniform. `place`: its
+/// distance from the beginning, divided by the interval's width; `scale`: the inverse of that width. The digits that
+/// the number lacks are random.
+float placeWithin(float place, float scale, inout uint state) {
+    return clamp(place + random(state) * (scale / float(0x01000000)), 0.0, 1.0 - 1.0 / float(0x01000000));
 }
 
 #endif

@@ -368,8 +368,11 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
         bounds.z = bounds.w - b.probability.w;
         lobe = choice < bounds.x ? 0u : choice < bounds.y ? 1u : choice < bounds.z ? 2u : choice < bounds.w ? 3u : 4u;
         if (sharesNumbers()) {
-            const float low = lobe == 0u ? 0.0 : bounds[lobe - 1u], high = lobe == 4u ? 1.0 : bounds[lobe];
-            u.x = placeWithin(choice, low, high, rng);
+            float low = 0.0, high = bounds.x;
+            if (lobe > 0u) low = lobe == 1u ? bounds.x : lobe == 2u ? bounds.y : lobe == 3u ? bounds.z : bounds.w;
+            if (lobe > 0u) high = lobe == 1u ? bounds.y : lobe == 2u ? bounds.z : lobe == 3u ? bounds.w : 1.0;
+            const float scale = 1.0 / max(high - low, 1e-20);
+            u.x = placeWithin((choice - low) * scale, scale, rng);
             choice = HAS_TRANSMISSION ? stratified(rng) : 0.0;
         } else {
             // Rescales the random number within its interval, to reuse it for the choice between reflection and

@@ -264,8 +264,8 @@ LightSample sampleLightByPower(Receiver from, SceneParams scene, inout uint rng,
         if (rest >= 0.0 && (!HAS_PUNCTUAL_LIGHTS || rest < shares.triangles)) {
             const float place = rest / max(shares.triangles, 1e-20);
             if (sharesNumbers()) {
-                const float count = float(scene.triangleLightCount), index = floor(place * count);
-                u.x = placeWithin(place, index / count, (index + 1.0) / count, rng);
+                const float count = float(scene.triangleLightCount);
+                u.x = placeWithin(fract(place * count), count, rng);
             }
             light = chooseTriangleLight(from, place, decision, u, scene);
             light.pdf *= shares.triangles;
