@@ -114,7 +114,7 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
     command.add_option("--seed", o.seed, "Random seed; another seed gives other noise (0)");
     command
         .add_option("--sampler", o.sampler,
-                    "Random numbers: pcg (default, independent), sobol (spread evenly over samples and "
+                    "Random numbers: pcg (independent), sobol (default, spread evenly over samples and "
                     "neighbouring pixels: less noise) or tea (a poor generator)")
         ->check(CLI::IsMember({"pcg", "sobol", "tea"}));
     command

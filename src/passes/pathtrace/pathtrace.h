@@ -17,7 +17,7 @@ struct PathtraceSettings {
     int rouletteDepth = 3;
     float fireflyClamp = 0.0f;
     bool samplerTea = false;
-    bool samplerSobol = false;
+    bool samplerSobol = true;
     bool throughMirrors = true;
     bool throughGlass = true;
     bool lightTree = false;

@@ -46,7 +46,7 @@ TEST(ResetRule, ResetsOnEveryChange) {
         {"roulette", [](auto& s) { s.settings.pathtrace.rouletteDepth = 9; }},
         {"clamp", [](auto& s) { s.settings.pathtrace.fireflyClamp = 9.0f; }},
         {"sampler", [](auto& s) { s.settings.pathtrace.samplerTea = true; }},
-        {"points", [](auto& s) { s.settings.pathtrace.samplerSobol = true; }},
+        {"points", [](auto& s) { s.settings.pathtrace.samplerSobol = false; }},
         {"scene", [](auto& s) { s.sceneVersion = 1; }},
     };
     for (const auto& [name, change] : changes) {
