@@ -43,7 +43,8 @@ Preset historyTrackingCourse() {
                         "atrous.color_factor=0",
                         "taa.frames=1",
                         "pathtrace.through_mirrors=off",
-                        "pathtrace.through_glass=off"}};
+                        "pathtrace.through_glass=off",
+                        "pathtrace.sampler_sobol=off"}};
 }
 
 Preset ambientOcclusionTutorial() {
@@ -55,7 +56,7 @@ Preset ambientOcclusionTutorial() {
             .integrators = {"ao"},
             .denoisers = {"none", "temporal", "atrous", "svgf", "kpcn"},
             .jitter = Jitter::Off,
-            .assignments = {"ao.rays=1", "ao.radius=0.05"}};
+            .assignments = {"ao.rays=1", "ao.radius=0.05", "pathtrace.sampler_sobol=off"}};
 }
 
 Preset svgfOfCis565() {
@@ -90,7 +91,8 @@ Preset svgfOfCis565() {
                             "svgf.position=on",
                             "taa.frames=1",
                             "pathtrace.through_mirrors=off",
-                            "pathtrace.through_glass=off"}};
+                            "pathtrace.through_glass=off",
+                            "pathtrace.sampler_sobol=off"}};
 }
 
 Preset kpcnOfCis565() {
@@ -104,7 +106,7 @@ Preset kpcnOfCis565() {
         .denoisers = {"kpcn"},
         .jitter = Jitter::Pixel,
         .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off",
-                        "pathtrace.through_glass=off"}};
+                        "pathtrace.through_glass=off", "pathtrace.sampler_sobol=off"}};
 }
 
 Preset jitterCameraTutorial() {
@@ -118,7 +120,7 @@ Preset jitterCameraTutorial() {
             .denoisers = {"none"},
             .jitter = Jitter::Pixel,
             .progressive = true,
-            .assignments = {"pathtrace.sampler_tea=on"}};
+            .assignments = {"pathtrace.sampler_tea=on", "pathtrace.sampler_sobol=off"}};
 }
 
 Preset svgfOfThePaper() {
@@ -148,7 +150,8 @@ Preset svgfOfThePaper() {
                             "svgf.phi_roughness=0",
                             "taa.frames=1",
                             "pathtrace.through_mirrors=off",
-                            "pathtrace.through_glass=off"}};
+                            "pathtrace.through_glass=off",
+                            "pathtrace.sampler_sobol=off"}};
 }
 
 std::string listed(const std::vector<std::string>& words) {

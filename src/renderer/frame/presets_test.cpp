@@ -26,6 +26,7 @@ TEST(Presets, SayAllThatTheyNeedAndOnlyWhatThereIs) {
         RenderSettings settings;
         EXPECT_NO_THROW(applyPreset(settings, preset.name));
         EXPECT_EQ(settings.jitter, preset.jitter);
+        EXPECT_NE(settings.pathtrace.sampler(), Sampler::Sobol) << preset.name;
         EXPECT_NE(assignmentsOf(settings), std::vector<std::string>()) << preset.name;
         // Histories follow the first hit.
         if (const denoise::Denoiser* denoiser = preset.pipeline().denoiser) {
