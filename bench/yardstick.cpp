@@ -115,7 +115,8 @@ class OurSide {
         RenderSettings settings;
         settings.extent = {o.width, o.height};
         settings.pathtrace.maxDepth = static_cast<int>(o.maxDepth);
-        settings.pathtrace.lightTree = false;  // the Embree tracer chooses lights by power
+        settings.pathtrace.lightTree = false;     // the Embree tracer chooses lights by power
+        settings.pathtrace.samplerSobol = false;  // and draws independent numbers
         return settings;
     }
 

@@ -76,6 +76,7 @@ class YardstickTest : public RenderTest {
         result.seed = seed;
         result.pathtrace.maxDepth = 4;
         result.pathtrace.lightTree = false;
+        result.pathtrace.samplerSobol = false;
         return result;
     }
 

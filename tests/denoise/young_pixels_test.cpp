@@ -19,6 +19,7 @@ class YoungPixelsTest : public SequenceTest {
     static RenderSettings settings(float fireflies, int youngRadius) {
         RenderSettings result = centred(extent.width, extent.height, 8);
         result.pipeline = parsePipeline("path", "svgf");
+        result.pathtrace.samplerSobol = false;  // independent numbers have more fireflies
         result.denoisers.svgf.fireflies = fireflies;
         result.denoisers.svgf.youngRadius = youngRadius;
         // The mean luminance removes some of the grain, too: grain is compared with that of neither.
