@@ -64,6 +64,7 @@ void addExample(gpu::Device& device, scene::GpuScene& scene, const scene::Camera
     render.extent = settings.extent;
     render.seed = settings.seed;
     render.jitter = settings.jitter;
+    render.pathtrace.samplerSobol = false;  // so that the sets of the shipped weights can be made again
     render.layers = true;
     FrameRenderer noisy(device, scene, render, settings.samples.back());
     noisy.begin({.camera = view});
