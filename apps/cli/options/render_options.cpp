@@ -120,7 +120,7 @@ void addSamplingOptions(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--jitter", o.jitter,
                     "Ray position in the pixel: pixel (random), frame (one point per frame) or off (centre); "
-                    "default: pixel, with denoisers that keep a history frame, with bilateral off")
+                    "default: frame with denoisers that keep a history, off with bilateral, else pixel")
         ->check(CLI::IsMember({"pixel", "frame", "off"}));
 }
 

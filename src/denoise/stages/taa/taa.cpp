@@ -21,8 +21,7 @@ const ParamTable<TaaSettings>& taaParams() {
             .slider(0, 16);
         t.add("still_frames", &TaaSettings::stillFrames, 1.0, 1000.0, "frames",
               "Frames that are averaged where nothing moves, if the rays are jittered from frame to frame; "
-              "more "
-              "is smoother and calmer")
+              "more is smoother and calmer")
             .slider(1, 64, SliderScale::Logarithmic);
         return t;
     }();
