@@ -281,9 +281,9 @@ TaaPixel Antialiaser::at(size_t p) const {
     const std::optional<dvec3> m = past_.empty() ? std::nullopt : motion(nearest(p, decision));
     const dvec2 centre(static_cast<double>(static_cast<int64_t>(p) % width_) + 0.5,
                        static_cast<double>(static_cast<int64_t>(p) / width_) + 0.5);
-    const dvec2 s = m ? centre + dvec2(*m) : centre;
+    const dvec2 moved = m ? dvec2(*m) : dvec2(0.0), s = centre + moved;
     const Edges edges = edgesAt(p, decision);
-    const double still = m ? stillness(dvec2(*m), edges) : 0.0;
+    const double still = m ? stillness(moved, edges) : 0.0;
     const double count = m && inPicture(s, decision) ? countAt(s, still, decision) : 0.0;
     TaaPixel pixel;
     pixel.frames = countAfter(count, still);
@@ -292,7 +292,7 @@ TaaPixel Antialiaser::at(size_t p) const {
     pixel.mean = taaDecode(h + (own - h) / averaged(edges, count, still));
     // c = e / (1 - l) has the derivatives 1 / (1 - l) = 1 + l by e and c (1 + l) by l.
     pixel.rounding = encodedRounding * (1.0 + luminance(pixel.mean)) * (1.0 + pixel.mean);
-    if (count > 0.0) addErrors(pixel, edges, count, dvec2(*m), s, surroundings, own);
+    if (count > 0.0) addErrors(pixel, edges, count, moved, s, surroundings, own);
     pixel.doubtful = decision.doubtful();
     return pixel;
 }
