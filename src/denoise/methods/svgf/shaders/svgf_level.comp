@@ -55,6 +55,7 @@ struct Centre {
     float perDepth[PAIRS + 1];  // by pair
     float luminance, luminanceScale;
     vec2 differences;  // sum of weighted differences from the luminance, and of the weights; only if LOOKS
+    float exponents[9];  // of the surface's weights of the 3x3 taps; only if KEEPS_EXPONENTS
     vec4 sum;       // of weighted light, and of the weights
     float squares;  // sum of squared weighted deviations
     bool seen;
@@ -133,15 +134,27 @@ Centre begin(ivec2 at, int number) {
     return centre;
 }
 
+/// The second visit of a tap then needs its light alone. Those of 5x5 taps would take too many registers.
+const bool KEEPS_EXPONENTS = LOOKS && !WIDE;
+
+float exponentOf(Centre centre, Tap tap, ivec2 from) {
+    return surfaceExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]);
+}
+
+int numberOfTap(ivec2 from) {
+    return 3 * from.y + from.x + 4;
+}
+
 /// How far a tap shows the same as the centre: 0 to 1.
-float likeness(Centre centre, Tap tap, ivec2 from) {
-    const float exponent = surfaceExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]) -
-                           abs(centre.luminance - tap.luminance) * centre.luminanceScale;
-    return tap.counts ? exp2(exponent) : 0.0;
+float likeness(Centre centre, Tap tap, float exponent) {
+    const float difference = abs(centre.luminance - tap.luminance) * centre.luminanceScale;
+    return tap.counts ? exp2(exponent - difference) : 0.0;
 }
 
 void lookAt(inout Centre centre, Tap tap, ivec2 from) {
-    centre.differences += likeness(centre, tap, from) * vec2(tap.luminance - centre.luminance, 1.0);
+    const float exponent = exponentOf(centre, tap, from);
+    if (KEEPS_EXPONENTS) centre.exponents[numberOfTap(from)] = exponent;
+    centre.differences += likeness(centre, tap, exponent) * vec2(tap.luminance - centre.luminance, 1.0);
 }
 
 void looked(inout Centre centre) {
@@ -149,7 +162,9 @@ void looked(inout Centre centre) {
 }
 
 void addTo(inout Centre centre, Tap tap, ivec2 from) {
-    const float weight = kernel(from) * likeness(centre, tap, from);
+    const float exponent =
+        KEEPS_EXPONENTS ? centre.exponents[numberOfTap(from)] : exponentOf(centre, tap, from);
+    const float weight = kernel(from) * likeness(centre, tap, exponent);
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
     const float deviation = weight * tap.light.a;
     centre.squares += deviation * deviation;
