@@ -10,6 +10,14 @@ namespace {
 
 const std::vector<std::string> lightIntegrators{"path", "direct", "ao"};
 
+/// Adds what no source of a denoiser has: layers of what mirrors and glass show, and Sobol' points.
+std::vector<std::string> asInSources(std::vector<std::string> own) {
+    for (const char* assignment :
+         {"pathtrace.through_mirrors=off", "pathtrace.through_glass=off", "pathtrace.sampler_sobol=off"})
+        own.emplace_back(assignment);
+    return own;
+}
+
 Preset historyTrackingCourse() {
     return {
         .name = "history-tracking-course",
@@ -22,29 +30,16 @@ Preset historyTrackingCourse() {
         .integrators = lightIntegrators,
         .denoisers = {"atrous", "temporal"},
         .jitter = Jitter::Off,
-        .assignments = {"temporal.normal=0.95",
-                        "temporal.depth=0.15",
-                        "temporal.relative=off",
-                        "temporal.search=off",
-                        "temporal.demodulate=off",
-                        "temporal.max_history=0",
-                        "temporal.grey_restart=on",
-                        "temporal.grey=0.5",
-                        "temporal.grey_misses=on",
-                        "temporal.identity=off",
-                        "atrous.temporal=on",
-                        "atrous.levels=5",
-                        "atrous.normal_factor=0.003",
-                        "atrous.depth_factor=0.007",
-                        "atrous.sample_target=0",
-                        "atrous.plane=off",
-                        "atrous.demodulate=on",
-                        "atrous.min_albedo=0.1",
-                        "atrous.color_factor=0",
-                        "taa.frames=1",
-                        "pathtrace.through_mirrors=off",
-                        "pathtrace.through_glass=off",
-                        "pathtrace.sampler_sobol=off"}};
+        .assignments = asInSources({"temporal.normal=0.95",       "temporal.depth=0.15",
+                                    "temporal.relative=off",      "temporal.search=off",
+                                    "temporal.demodulate=off",    "temporal.max_history=0",
+                                    "temporal.grey_restart=on",   "temporal.grey=0.5",
+                                    "temporal.grey_misses=on",    "temporal.identity=off",
+                                    "atrous.temporal=on",         "atrous.levels=5",
+                                    "atrous.normal_factor=0.003", "atrous.depth_factor=0.007",
+                                    "atrous.sample_target=0",     "atrous.plane=off",
+                                    "atrous.demodulate=on",       "atrous.min_albedo=0.1",
+                                    "atrous.color_factor=0",      "taa.frames=1"})};
 }
 
 Preset ambientOcclusionTutorial() {
@@ -68,31 +63,28 @@ Preset svgfOfCis565() {
             .integrators = lightIntegrators,
             .denoisers = {"svgf"},
             .jitter = Jitter::Off,
-            .assignments = {"svgf.separate=off",
-                            "svgf.demodulate=off",
-                            "svgf.alpha=0.2",
-                            "svgf.alpha_moments=0.2",
-                            "svgf.normal_test=0.995",
-                            "svgf.depth_test=0.1",
-                            "svgf.relative=off",
-                            "svgf.antilag=0",
-                            "svgf.fireflies=0",
-                            "svgf.young_radius=0",
-                            "svgf.stabilisation_alpha=1",
-                            "svgf.levels=5",
-                            "svgf.history_level=1",
-                            "svgf.wide=on",
-                            "svgf.phi_color=0.7",
-                            "svgf.phi_normal=0.2",
-                            "svgf.phi_depth=0.35",
-                            "svgf.boost=off",
-                            "svgf.blur_levels=10",
-                            "svgf.mean_levels=0",
-                            "svgf.position=on",
-                            "taa.frames=1",
-                            "pathtrace.through_mirrors=off",
-                            "pathtrace.through_glass=off",
-                            "pathtrace.sampler_sobol=off"}};
+            .assignments = asInSources({"svgf.separate=off",
+                                        "svgf.demodulate=off",
+                                        "svgf.alpha=0.2",
+                                        "svgf.alpha_moments=0.2",
+                                        "svgf.normal_test=0.995",
+                                        "svgf.depth_test=0.1",
+                                        "svgf.relative=off",
+                                        "svgf.antilag=0",
+                                        "svgf.fireflies=0",
+                                        "svgf.young_radius=0",
+                                        "svgf.stabilisation_alpha=1",
+                                        "svgf.levels=5",
+                                        "svgf.history_level=1",
+                                        "svgf.wide=on",
+                                        "svgf.phi_color=0.7",
+                                        "svgf.phi_normal=0.2",
+                                        "svgf.phi_depth=0.35",
+                                        "svgf.boost=off",
+                                        "svgf.blur_levels=10",
+                                        "svgf.mean_levels=0",
+                                        "svgf.position=on",
+                                        "taa.frames=1"})};
 }
 
 Preset kpcnOfCis565() {
@@ -105,8 +97,7 @@ Preset kpcnOfCis565() {
         .integrators = lightIntegrators,
         .denoisers = {"kpcn"},
         .jitter = Jitter::Pixel,
-        .assignments = {"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0", "pathtrace.through_mirrors=off",
-                        "pathtrace.through_glass=off", "pathtrace.sampler_sobol=off"}};
+        .assignments = asInSources({"kpcn.cis565=on", "kpcn.levels=0", "kpcn.errors=0"})};
 }
 
 Preset jitterCameraTutorial() {
@@ -131,27 +122,12 @@ Preset svgfOfThePaper() {
             .integrators = lightIntegrators,
             .denoisers = {"svgf"},
             .jitter = Jitter::Off,
-            .assignments = {"svgf.alpha=0.2",
-                            "svgf.reflections=off",
-                            "svgf.wide=on",
-                            "svgf.alpha_moments=0.2",
-                            "svgf.antilag=0",
-                            "svgf.fireflies=0",
-                            "svgf.young_radius=0",
-                            "svgf.stabilisation_alpha=1",
-                            "svgf.levels=5",
-                            "svgf.history_level=1",
-                            "svgf.phi_normal=128",
-                            "svgf.phi_depth=1",
-                            "svgf.boost=off",
-                            "svgf.blur_levels=10",
-                            "svgf.mean_levels=0",
-                            "svgf.lobe_test=0",
-                            "svgf.phi_roughness=0",
-                            "taa.frames=1",
-                            "pathtrace.through_mirrors=off",
-                            "pathtrace.through_glass=off",
-                            "pathtrace.sampler_sobol=off"}};
+            .assignments = asInSources({"svgf.alpha=0.2", "svgf.reflections=off", "svgf.wide=on",
+                                        "svgf.alpha_moments=0.2", "svgf.antilag=0", "svgf.fireflies=0",
+                                        "svgf.young_radius=0", "svgf.stabilisation_alpha=1", "svgf.levels=5",
+                                        "svgf.history_level=1", "svgf.phi_normal=128", "svgf.phi_depth=1",
+                                        "svgf.boost=off", "svgf.blur_levels=10", "svgf.mean_levels=0",
+                                        "svgf.lobe_test=0", "svgf.phi_roughness=0", "taa.frames=1"})};
 }
 
 std::string listed(const std::vector<std::string>& words) {
