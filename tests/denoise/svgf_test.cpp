@@ -40,6 +40,7 @@ DoubleSvgfParams inDouble(const SvgfSettings& s) {
             .phiRoughness = double{s.phiRoughness},
             .blurLevels = s.blurLevels,
             .meanLevels = s.meanLevels,
+            .dampOutliers = s.dampOutliers,
             .boost = s.boost,
             .wide = s.wide,
             .position = s.position};
@@ -462,6 +463,7 @@ INSTANTIATE_TEST_SUITE_P(
                  .mixesFrom = 3},
             Case{"OwnLuminance", moving, {.levels = 3, .meanLevels = 0}},
             Case{"MeanLuminances", moving, {.levels = 3, .wide = true, .meanLevels = 2}},
+            Case{"OutliersKept", moving, {.levels = 3, .dampOutliers = false}},
             Case{"NoBoost", moving, {.levels = 2, .boost = false}},
             Case{.name = "Lag", .options = moving, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},
             Case{.name = "StaticLag", .options = {}, .settings = {.levels = 2}, .frames = 10, .jumpAt = 6},

@@ -22,8 +22,11 @@ class YoungPixelsTest : public SequenceTest {
         result.pathtrace.samplerSobol = false;  // independent numbers have more fireflies
         result.denoisers.svgf.fireflies = fireflies;
         result.denoisers.svgf.youngRadius = youngRadius;
-        // The mean luminance removes some of the grain, too: grain is compared with that of neither.
-        if (youngRadius == 0) result.denoisers.svgf.meanLevels = 0;
+        // These remove some of the grain, too: it is compared with that of neither.
+        if (youngRadius == 0) {
+            result.denoisers.svgf.meanLevels = 0;
+            result.denoisers.svgf.dampOutliers = false;
+        }
         return result;
     }
 

@@ -28,6 +28,7 @@ struct DoubleSvgfParams {
     double phiColor = 4.0, phiNormal = 128.0, phiDepth = 1.0;
     double lobeTest = 0.0, phiRoughness = 0.0;
     int blurLevels = 1, meanLevels = 0;
+    bool dampOutliers = false;
     bool boost = true, wide = true, position = false;
 };
 

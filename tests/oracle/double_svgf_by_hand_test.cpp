@@ -428,6 +428,29 @@ TEST_F(SvgfRow, TheMeanLuminanceOfLikePixels) {
     expectWeight(surface * first);
 }
 
+TEST_F(SvgfRow, OutliersCountLess) {
+    params.dampOutliers = true;
+    params.wide = false;
+    const HostFrame row = frontalPlane(5, 1);
+    const SvgfSurfaces plane{std::vector(5, dvec3(0, 0, 1)), std::vector(5, 2.0), std::vector(5, 1.0),
+                             std::vector(5, 1.0)};
+    std::vector<dvec4> light(5, {1, 1, 1, 0.3});
+    light[2] = {5, 5, 5, 1.2};
+    const auto middle = [&](uint32_t level) {
+        return svgfLevel(row, SvgfSignal::Diffuse, plane, light, level, params)[2];
+    };
+    EXPECT_NEAR(middle(0).x, (4.0 * 5 + 2.0 * 1 + 2.0 * 1) / 8.0, 1e-6) << "not in the first level";
+    // The second level's two taps weigh 2 / 16 each, the middle 4 / 16 at most.
+    const double share = std::sqrt((0.25 * 0.09 + 0.001 * 1.44) / 0.251) / 1.2;
+    const double centre = 0.25 * share, sum = centre + 0.25;
+    EXPECT_NEAR(middle(1).x, (centre * 5 + 0.25 * 1) / sum, 1e-6);
+    EXPECT_NEAR(middle(1).w, std::sqrt(std::pow(centre * 1.2, 2) + 2 * std::pow(0.125 * 0.3, 2)) / sum, 1e-6);
+    light[2].w = 0.2;
+    EXPECT_NEAR(middle(1).x, (4.0 * 5 + 2.0 * 1 + 2.0 * 1) / 8.0, 1e-6) << "less noisy than its neighbours";
+    light[2].w = 0.0;
+    EXPECT_NEAR(middle(1).x, 5.0, 1e-6) << "without noise it resembles nothing else";
+}
+
 TEST_F(SvgfRow, NarrowKernel) {
     params.wide = false;
     const dvec4 result = svgfLevel(frame, SvgfSignal::Diffuse, surfaces, color, 0, params)[1];

@@ -103,14 +103,20 @@ class Level {
         const double own = tolerance(l, std::sqrt(guide(p)));
         const double compared = level_ < params_.meanLevels ? meanLuminance(p, own) : l;
         dvec3 sum(0.0);
-        double variance = 0.0, weights = 0.0;
+        double variance = 0.0, weights = 0.0, squares = 0.0;
         neighbours_.around(p, step_, 2, [&](size_t q, int i, int j) {
-            double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)];
-            if (p != q) w *= likeness(p, q, dvec2(i, j), compared, own);
+            if (p == q) return;
+            const double w = spline[static_cast<size_t>(i + 2)] * spline[static_cast<size_t>(j + 2)] *
+                             likeness(p, q, dvec2(i, j), compared, own);
             sum += w * dvec3(color_[q]);
             variance += w * w * color_[q].w * color_[q].w;
+            squares += w * color_[q].w * color_[q].w;
             weights += w;
         });
+        const double w = spline[2] * spline[2] * ownShare(p, squares, weights);
+        sum += w * dvec3(color_[p]);
+        variance += w * w * color_[p].w * color_[p].w;
+        weights += w;
         return {sum / weights, std::sqrt(variance) / weights};
     }
 
@@ -130,6 +136,15 @@ class Level {
             weights += w;
         });
         return sum / weights;
+    }
+
+    /// Returns the share of its weight that p keeps. The sums are over the other pixels, of weighted squared
+    /// deviations and of weights.
+    double ownShare(size_t p, double squares, double weights) const {
+        const double square = color_[p].w * color_[p].w;
+        if (!params_.dampOutliers || level_ == 0 || square == 0.0) return 1.0;
+        const double ofTaps = (squares + leastWeights * square) / (weights + leastWeights);
+        return std::min(std::sqrt(ofTaps / square), 1.0);
     }
 
     double tolerance(double luminance, double deviation) const {

@@ -321,6 +321,8 @@ class Svgf {
         constants.push_back({"STABILISE", mixed ? 1u : 0u});
         constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
         constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
+        // Not in the first level: its deviations are those of single pixels, and say too little.
+        constants.push_back({"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
                          .bindings = {{"surfaces", surfaces.surfaces.current},
@@ -478,6 +480,10 @@ const ParamTable<SvgfSettings>& svgf::params() {
         t.add("mean_levels", &S::meanLevels, 0, 10, "levels",
               "Number of first passes that compare each neighbour's luminance with a mean around the pixel "
               "instead of the pixel's own; more leaves less of a fine weave on noisy walls and is slower");
+        t.add(
+            "damp_outliers", &S::dampOutliers,
+            "From the second pass on, let a pixel that is noisier than its neighbours count less in its own "
+            "mean; leaves no dots where fireflies were");
         t.add("boost", &S::boost,
               "Let the expected noise fall with the length of the history (by 2 / sqrt(frames)); off: use "
               "the noise of one frame");

@@ -38,6 +38,7 @@ struct SvgfSettings {
     float phiRoughness = 0.1f;
     int blurLevels = 1;
     int meanLevels = 1;
+    bool dampOutliers = true;
     bool boost = true;
     bool position = false;
     bool operator==(const SvgfSettings&) const = default;

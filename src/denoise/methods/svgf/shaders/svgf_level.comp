@@ -11,6 +11,7 @@ layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
 layout(constant_id = 5) const bool STABILISE = false;  // the result is a mean with the stabilised light
 layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1: pixels of a block are neighbours
 layout(constant_id = 8) const bool LOOKS = false;  // compare with the mean luminance of like taps, not with the own one
+layout(constant_id = 9) const bool DAMP_OUTLIERS = false;  // a pixel noisier than its taps counts less in its own mean
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
@@ -58,6 +59,7 @@ struct Centre {
     float exponents[9];  // of the surface's weights of the 3x3 taps; only if KEEPS_EXPONENTS
     vec4 sum;       // of weighted light, and of the weights
     float squares;  // sum of squared weighted deviations
+    float squaresOfTaps;  // sum of weighted squared deviations, without the pixel's own; only if DAMP_OUTLIERS
     bool seen;
     vec4 stablePast;
 };
@@ -129,6 +131,7 @@ Centre begin(ivec2 at, int number) {
     const float weight = kernel(ivec2(0));
     centre.sum = weight * vec4(tap.light.rgb, 1.0);
     centre.squares = weight * weight * tap.light.a * tap.light.a;
+    centre.squaresOfTaps = 0.0;
     // Loaded before the taps, so that its latency is hidden behind theirs.
     centre.stablePast = STABILISE ? LOAD_HALF4(stablePast, nearestInside(at)) : vec4(0.0);
     return centre;
@@ -168,6 +171,18 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
     centre.sum += weight * vec4(tap.light.rgb, 1.0);
     const float deviation = weight * tap.light.a;
     centre.squares += deviation * deviation;
+    if (DAMP_OUTLIERS) centre.squaresOfTaps += deviation * tap.light.a;
+}
+
+/// Takes back a part of the pixel's own weight where the taps that it resembles are less noisy. `own`: its light and
+/// deviation. A pixel that has just seen a firefly takes in all its neighbours, but they do not take it in. Without
+/// this it would stay a dot, a quarter as bright after each level.
+void dampOutlier(inout Centre centre, vec4 own) {
+    const float weight = kernel(ivec2(0)), square = own.a * own.a;
+    const float ofTaps = (centre.squaresOfTaps + SVGF_MIN_WEIGHTS * square) / (centre.sum.a - weight + SVGF_MIN_WEIGHTS);
+    const float share = square > 0.0 ? min(sqrt(ofTaps / square), 1.0) : 1.0;
+    centre.sum -= (1.0 - share) * weight * vec4(own.rgb, 1.0);
+    centre.squares = max(centre.squares - (1.0 - share * share) * weight * weight * square, 0.0);
 }
 
 /// Stabilised light: a mean over frames, as far as the noise that the filter left explains their difference.
@@ -179,9 +194,11 @@ vec3 mixedWithPast(vec4 now, vec4 past) {
 
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
+    const vec4 own = DAMP_OUTLIERS || !centre.seen ? LOAD_HALF4(signal, at) : vec4(0.0);
+    if (DAMP_OUTLIERS) dampOutlier(centre, own);
     vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
     if (STABILISE) result.rgb = mixedWithPast(result, centre.stablePast);
-    STORE_HALF4(filtered, at, centre.seen ? result : LOAD_HALF4(signal, at));
+    STORE_HALF4(filtered, at, centre.seen ? result : own);
 }
 
 bool isFiltered(Centre centre) {
