@@ -150,7 +150,10 @@ struct Camera {
     float verticalFov = 0.8f;  ///< radians, perspective
     float halfHeight = 1.0f;   ///< world units, orthographic
     float aspect = 0.0f;       ///< the author's width / height; 0: that of the picture
-    int node = none;           ///< of the rig
+    /// Of a thin lens, world units; 0: a pinhole. Perspective only.
+    float lensDiameter = 0.0f;
+    float focusDistance = 0.0f;  ///< from the camera along its view to the plane in focus; 0: unknown
+    int node = none;             ///< of the rig
 };
 
 struct Scene {

@@ -30,6 +30,17 @@ vec3 sampleCosineHemisphere(vec2 u) {
     return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
 }
 
+/// Samples the unit disc uniformly: P. Shirley, K. Chiu, "A low distortion map between disk and square", JGT 1997.
+/// Neighbours in the square stay neighbours, so evenly spread points stay evenly spread.
+vec2 sampleDisc(vec2 u) {
+    const vec2 q = 2.0 * u - 1.0;
+    const bool wide = abs(q.x) > abs(q.y);
+    const float r = wide ? q.x : q.y;
+    const float ratio = r != 0.0 ? (wide ? q.y : q.x) / r : 0.0;
+    const float phi = 0.25 * PI * (wide ? ratio : 2.0 - ratio);
+    return r * vec2(cos(phi), sin(phi));
+}
+
 /// Samples uniform barycentrics (of vertices 1 and 2).
 vec2 sampleTriangle(vec2 u) {
     const float s = sqrt(u.x);
