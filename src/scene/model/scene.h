@@ -84,8 +84,15 @@ struct Material {
                              ///< emission
     float clearcoatRoughness = 0.0f;  ///< perceptual
     float clearcoatNormalScale = 1.0f;
-    vec3 emission{0.0f};        ///< radiance, including its strength
-    bool staysEmitter = false;  ///< its triangles remain lights even while it emits nothing
+    float anisotropy = 0.0f;              ///< strength: how much rougher one direction is
+    float anisotropyRotation = 0.0f;      ///< of that direction from the tangent, radians, counter-clockwise
+    vec3 sheenColor{0.0f};                ///< of light that fibres scatter, over all but the coat
+    float sheenRoughness = 0.0f;          ///< perceptual
+    float diffuseTransmission = 0.0f;     ///< share of the diffuse light that goes to the other side
+    vec3 diffuseTransmissionColor{1.0f};  ///< its colour, instead of baseColor
+    float dispersion = 0.0f;              ///< 20 / Abbe number of a refracting body
+    vec3 emission{0.0f};                  ///< radiance, including its strength
+    bool staysEmitter = false;            ///< its triangles remain lights even while it emits nothing
     float normalScale = 1.0f;
     float occlusionStrength =
         1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
@@ -97,6 +104,10 @@ struct Material {
         transmissionTexture;
     TextureRef specularTexture;       ///< alpha: factor of `specular`
     TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
+    TextureRef
+        anisotropyTexture;  ///< RG: direction in tangent space, from -1 to 1; B: factor of `anisotropy`
+    TextureRef sheenColorTexture, sheenRoughnessTexture;                             ///< RGB, A
+    TextureRef diffuseTransmissionTexture, diffuseTransmissionColorTexture;          ///< A, RGB
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 

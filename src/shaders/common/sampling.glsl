@@ -23,6 +23,16 @@ mat3 frameAround(vec3 n) {
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
+/// Returns an orthonormal frame around a unit vector whose first axis is as near to `direction` as possible; any frame
+/// if it is along the vector, or 0.
+mat3 frameAlong(vec3 n, vec3 direction) {
+    const vec3 t = direction - n * dot(n, direction);
+    const float length2 = dot(t, t);
+    if (length2 < 1e-12) return frameAround(n);
+    const vec3 unit = t * inversesqrt(length2);
+    return mat3(unit, cross(n, unit), n);
+}
+
 /// Samples a direction with probability density cos(theta) / pi about +Z.
 vec3 sampleCosineHemisphere(vec2 u) {
     const float r = sqrt(u.x);
