@@ -57,6 +57,46 @@ double sheenAlbedo(double cosine, double roughness) {
     return sum * 2.0 * pi64 / (steps * steps);
 }
 
+/// What a film makes of the light that its surface reflects.
+struct Film {
+    dvec3 reflectance;
+    double omitted;  ///< bound of what a sum over reflections in the film lacks that ends after two
+};
+
+/// The reflectance below a thin film, by Airy's formula (M. Born, E. Wolf, "Principles of Optics",
+/// section 7.6) for Schlick's reflectances, integrated over wave numbers with the colour matching functions
+/// of Belcour and Barla. The constant part is white, as in KHR_materials_iridescence.
+Film filmReflectance(double cosine, double ior, double nanometres, double f0) {
+    const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (ior * ior));
+    const double base = (1.0 + std::sqrt(f0)) / (1.0 - std::sqrt(f0));
+    const auto amplitude = [](double in, double out, double c) {
+        const double r = schlick(std::pow((out - in) / (out + in), 2.0), 1.0, c);
+        return out > in ? -std::sqrt(r) : std::sqrt(r);
+    };
+    const double a = amplitude(1.0, ior, cosine), b = amplitude(ior, base, inside);
+    const double mean = a * a + std::pow(1.0 - a * a, 2.0) * b * b / (1.0 - a * a * b * b);
+    const double path = 2.0 * ior * nanometres * 1e-9 * inside;
+    dvec3 xyz(0.0);
+    constexpr int waves = 3000;
+    constexpr double step = 1000.0;  // per metre
+    for (int i = 0; i < waves; ++i) {
+        const double wave = 0.5e6 + i * step;
+        const auto gauss = [wave](double value, double position, double variance) {
+            return value / std::sqrt(2.0) * std::exp(-std::pow(wave - position, 2.0) / (4.0 * variance));
+        };
+        const double c = std::cos(2.0 * pi64 * path * wave);
+        const double r = (a * a + b * b + 2.0 * a * b * c) / (1.0 + a * a * b * b + 2.0 * a * b * c);
+        const dvec3 eye(gauss(5.4856e-13, 1.6810e6, 4.3278e9) + gauss(9.7470e-14, 2.2399e6, 4.5282e9),
+                        gauss(4.4201e-13, 1.7953e6, 9.3046e9), gauss(5.2481e-13, 2.2084e6, 6.6121e9));
+        xyz += eye * ((r - mean) * step / 1.0685e-7);
+    }
+    const dvec3 rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
+                    -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
+                    0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z);
+    const double order = std::abs(a * b), first = std::abs(mean - 1.0);
+    return {glm::clamp(rgb + mean, 0.0, 1.0), 2.5 * first * std::pow(order, 3.0) / (1.0 - order)};
+}
+
 class BsdfExtensionsTest : public BsdfTest {
   protected:
     static std::vector<vec3> someDirections(int count = 400) {
@@ -74,16 +114,29 @@ class BsdfExtensionsTest : public BsdfTest {
             p.sheenRoughness = roughness;
             return p;
         };
-        return {{"brushed metal", {.metallic = 1.0f, .roughness = 0.2f, .anisotropy = 0.8f}},
-                {"brushed plastic", {.roughness = 0.1f, .anisotropy = 1.0f}},
-                {"brushed rough plastic", {.roughness = 0.5f, .anisotropy = 0.5f}},
-                {"brushed pane", {.roughness = 0.3f, .transmission = 1.0f, .anisotropy = 0.6f}},
-                {"brushed glass", {.roughness = 0.3f, .transmission = 1.0f, .thin = 0, .anisotropy = 0.6f}},
-                {"sharp sheen on white", sheen({.specular = 0.0f}, 0.07f)},
-                {"sheen on plastic", sheen({.roughness = 0.4f}, 0.3f)},
-                {"rough sheen on metal", sheen({.metallic = 1.0f, .roughness = 0.4f}, 1.0f)},
-                {"translucent plastic", {.roughness = 0.4f, .diffuseTransmission = 0.6f}},
-                {"translucent", {.specular = 0.0f, .diffuseTransmission = 1.0f}}};
+        return {
+            {"brushed metal", {.metallic = 1.0f, .roughness = 0.2f, .anisotropy = 0.8f}},
+            {"brushed plastic", {.roughness = 0.1f, .anisotropy = 1.0f}},
+            {"brushed rough plastic", {.roughness = 0.5f, .anisotropy = 0.5f}},
+            {"brushed pane", {.roughness = 0.3f, .transmission = 1.0f, .anisotropy = 0.6f}},
+            {"brushed glass", {.roughness = 0.3f, .transmission = 1.0f, .thin = 0, .anisotropy = 0.6f}},
+            {"sharp sheen on white", sheen({.specular = 0.0f}, 0.07f)},
+            {"sheen on plastic", sheen({.roughness = 0.4f}, 0.3f)},
+            {"rough sheen on metal", sheen({.metallic = 1.0f, .roughness = 0.4f}, 1.0f)},
+            {"film on plastic", {.roughness = 0.3f, .iridescence = 1.0f}},
+            {"film on dense plastic",
+             {.roughness = 0.1f, .ior = 2.2f, .iridescence = 1.0f, .iridescenceThickness = 250.0f}},
+            {"strong film on smooth plastic",
+             {.roughness = 0.1f, .iridescence = 1.0f, .iridescenceIor = 2.4f, .iridescenceThickness = 60.0f}},
+            {"strong film on rough plastic",
+             {.roughness = 0.8f,
+              .iridescence = 1.0f,
+              .iridescenceIor = 2.0f,
+              .iridescenceThickness = 600.0f}},
+            {"film on metal", {.metallic = 1.0f, .roughness = 0.6f, .iridescence = 1.0f}},
+            {"film on a pane", {.roughness = 0.2f, .transmission = 1.0f, .iridescence = 1.0f}},
+            {"translucent plastic", {.roughness = 0.4f, .diffuseTransmission = 0.6f}},
+            {"translucent", {.specular = 0.0f, .diffuseTransmission = 1.0f}}};
     }
 
     /// f without its cosine, of light from wi to wo. The surface is seen from wo's side.
@@ -175,6 +228,54 @@ TEST_F(BsdfExtensionsTest, DiffuseTransmission) {
             EXPECT_NEAR(values[i].diffuse[k], albedo * std::abs(double{directions[i].z}) / pi64, 1e-6);
             EXPECT_EQ(values[i].specular[k], 0.0f);
         }
+    }
+}
+
+TEST_F(BsdfExtensionsTest, AFilmInterferes) {
+    double worst = 0.0;
+    for (const float nanometres : {120.0f, 300.0f, 700.0f}) {
+        for (const float metallic : {0.0f, 1.0f}) {
+            BsdfParams params{.baseColor = vec3(metallic * 0.7f), .metallic = metallic, .roughness = 0.3f};
+            params.anisotropy = 0.5f;  // so that the metal has no multiple scattering
+            params.anisotropyDirection = {std::cos(turn), std::sin(turn), 0.0f};
+            params.iridescence = 1.0f;
+            params.iridescenceIor = 1.7f;
+            params.iridescenceThickness = nanometres;
+            params.toViewer = viewerAt(0.7f);
+            const dvec3 wo(params.toViewer);
+            const std::vector<vec3> directions = someDirections(100);
+            const std::vector<EvaluatedDirection> values = evaluate(params, directions);
+            for (size_t i = 0; i < directions.size(); ++i) {
+                const dvec3 wi(directions[i]);
+                if (wi.z < 0.0) continue;
+                const double cosine = glm::dot(wo, glm::normalize(wo + wi));
+                const Film film =
+                    filmReflectance(cosine, 1.7, double{nanometres}, metallic > 0.0f ? double{0.7f} : 0.04);
+                const double lobe = brushedMetal(wo, wi, double{0.3f}, 0.5, 1.0);
+                for (int k = 0; k < 3; ++k) {
+                    const double error = std::abs(values[i].specular[k] / lobe - film.reflectance[k]);
+                    worst = std::max(worst, error);
+                    ASSERT_LT(error, film.omitted + 2e-3)
+                        << describe({"film", params}) << " direction " << i << " channel " << k;
+                }
+            }
+        }
+    }
+    fmt::print("film: reflectance within {:.2g}\n", worst);
+}
+
+/// A film of no thickness is none.
+TEST_F(BsdfExtensionsTest, AFilmFadesAway) {
+    BsdfParams params{.baseColor = {0.6f, 0.5f, 0.4f}, .metallic = 0.4f, .roughness = 0.4f};
+    params.toViewer = viewerAt(0.6f);
+    const std::vector<vec3> directions = someDirections(100);
+    const std::vector<EvaluatedDirection> plain = evaluate(params, directions);
+    params.iridescence = 1.0f;
+    params.iridescenceThickness = 0.0f;
+    const std::vector<EvaluatedDirection> filmed = evaluate(params, directions);
+    for (size_t i = 0; i < directions.size(); ++i) {
+        EXPECT_NEAR(filmed[i].specular.r, plain[i].specular.r, 1e-4f * plain[i].specular.r + 1e-6f) << i;
+        EXPECT_NEAR(filmed[i].diffuse.r, plain[i].diffuse.r, 1e-4f * plain[i].diffuse.r + 1e-6f) << i;
     }
 }
 

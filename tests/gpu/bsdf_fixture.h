@@ -31,9 +31,11 @@ struct BsdfParams {
     float sheenRoughness = 0.5f;
     vec3 diffuseTransmissionColor{1.0f};
     float diffuseTransmission = 0.0f;
+    float iridescence = 0.0f, iridescenceIor = 1.3f, iridescenceThickness = 400.0f;
 
     bool isExtended() const {
-        return anisotropy > 0.0f || sheenColor != vec3(0.0f) || diffuseTransmission > 0.0f;
+        return anisotropy > 0.0f || sheenColor != vec3(0.0f) || diffuseTransmission > 0.0f ||
+               iridescence > 0.0f;
     }
 };
 
@@ -64,12 +66,12 @@ inline std::string describe(const NamedMaterial& m) {
     const BsdfParams& p = m.params;
     return fmt::format(
         "{}: baseColor {} {} {} metallic {} roughness {} specular {} ior {} transmission {} thin {} front {} "
-        "clear coat {} of roughness {} anisotropy {} sheen {} of roughness {} diffuse transmission {} cosine "
+        "clear coat {} of roughness {} anisotropy {} sheen {} of roughness {} diffuse transmission {} film "
         "{} "
-        "seed {}",
+        "of {} nm cosine {} seed {}",
         m.name, p.baseColor.r, p.baseColor.g, p.baseColor.b, p.metallic, p.roughness, p.specular, p.ior,
         p.transmission, p.thin, p.front, p.clearcoat, p.clearcoatRoughness, p.anisotropy, p.sheenColor.r,
-        p.sheenRoughness, p.diffuseTransmission, p.toViewer.z, p.seed);
+        p.sheenRoughness, p.diffuseTransmission, p.iridescence, p.iridescenceThickness, p.toViewer.z, p.seed);
 }
 
 class BsdfTest : public GpuTest {
@@ -90,6 +92,7 @@ class BsdfTest : public GpuTest {
         scene.materials[0].clearcoat = 1.0f;
         coated_ = std::make_unique<scene::GpuScene>(device(), scene::buildSceneData(scene));
         scene.materials[0].anisotropy = scene.materials[0].diffuseTransmission = 0.5f;
+        scene.materials[0].iridescence = 0.5f;
         scene.materials[0].sheenColor = vec3(1.0f);
         extended_ = std::make_unique<scene::GpuScene>(device(), scene::buildSceneData(scene));
     }

@@ -61,6 +61,12 @@ BsdfParams translucent(BsdfParams base, float share) {
     return base;
 }
 
+BsdfParams filmed(BsdfParams base, float nanometres) {
+    base.iridescence = 0.9f;
+    base.iridescenceThickness = nanometres;
+    return base;
+}
+
 std::vector<NamedMaterial> materials() {
     return {{"Lambertian", {.baseColor = vec3(0.6f), .specular = 0.0f}},
             {"plastic, sharp", plastic(0.05f)},
@@ -96,6 +102,9 @@ std::vector<NamedMaterial> materials() {
             {"sheen on glass, coated", coated(fibrous(glass(0.4f, 1.5f, true), 0.8f), 0.3f, 0.6f)},
             {"translucent plastic", translucent(plastic(0.4f), 0.5f)},
             {"translucent smooth plastic", translucent(plastic(0.0f), 1.0f)},
+            {"film on plastic", filmed(plastic(0.3f, 1.9f), 350.0f)},
+            {"film on metal", filmed(metal(0.6f), 520.0f)},
+            {"film on a pane", filmed(pane(0.3f), 300.0f)},
             {"translucent mixture with sheen", fibrous(translucent(mixture(0.4f, false, true), 0.7f), 0.5f)}};
 }
 

@@ -170,5 +170,35 @@ TEST_F(PathtraceExtensionsTest, SheenFollowsTextures) {
     EXPECT_GT(plain.beauty(20).b, 1.2f * plain.beauty(20).g);
 }
 
+/// Green of the texture goes from the least to the greatest thickness of the film; red is a share of the
+/// effect.
+TEST_F(PathtraceExtensionsTest, FilmFollowsTextures) {
+    scene::Scene scene = floorScene(vec3(0.9f, 0.8f, 0.7f));
+    scene::Material& floor = scene.materials[0];
+    floor.metallic = 1.0f;
+    floor.roughness = 0.3f;
+    scene.environment = {.width = 4, .height = 2, .radiance = std::vector<vec3>(8, vec3(1.0f))};
+    scene.cameras = {scene::lookAt({0, 3, 4}, {0, 0, 0}, {0, 1, 0}, 0.2f)};
+    RenderSettings settings = centred(8, 8, 1);
+    settings.samplesPerLaunch = 4;
+    const Rendered bare = render(scene, settings, 64);
+    floor.iridescence = 0.6f;
+    floor.iridescenceIor = 1.8f;
+    floor.iridescenceThicknessMax = 200.0f + 0.4f * 500.0f;
+    const Rendered plain = render(scene, settings, 64);
+    scene.textures.push_back({.name = "film", .width = 1, .height = 1, .rgba = {153, 102, 255, 7}});
+    floor.iridescence = 1.0f;
+    floor.iridescenceThicknessMin = 200.0f;
+    floor.iridescenceThicknessMax = 700.0f;
+    floor.iridescenceTexture.texture = floor.iridescenceThicknessTexture.texture = 0;
+    scene.meshes[0].uv0.assign(scene.meshes[0].positions.size(), vec2(0.5f));
+    const Rendered textured = render(scene, settings, 64);
+    for (size_t i = 0; i < plain.pixelCount(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(textured.beauty(i)[c] / plain.beauty(i)[c], 1.0f, 0.01f) << i << " channel " << c;
+    }
+    EXPECT_GT(glm::length(plain.beauty(20) - bare.beauty(20)), 0.05f) << "the film changes the colour";
+}
+
 }  // namespace
 }  // namespace limpid::test

@@ -116,6 +116,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_SHEEN", features_.sheen},
             {"HAS_DIFFUSE_TRANSMISSION", features_.diffuseTransmission},
             {"HAS_DISPERSION", features_.dispersion},
+            {"HAS_IRIDESCENCE", features_.iridescence},
             {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

@@ -128,7 +128,9 @@ class MaterialPacker {
         features.sheen |= m.sheenColor != vec3(0.0f);
         features.diffuseTransmission |= m.diffuseTransmission > 0.0f;
         features.dispersion |= m.dispersion > 0.0f && m.transmission > 0.0f && !m.thin;
-        features.specular |= features.anisotropy || features.sheen || features.diffuseTransmission;
+        features.iridescence |= m.iridescence > 0.0f;
+        features.specular |=
+            features.iridescence || features.anisotropy || features.sheen || features.diffuseTransmission;
     }
 
     void packExtensions(const Material& m) {
@@ -142,6 +144,10 @@ class MaterialPacker {
         const uint32_t share = packRef(m.diffuseTransmissionTexture);
         out.emplace_back(sheen, sheenRough, share, packRef(m.diffuseTransmissionColorTexture));
         out.push_back(bits(m.diffuseTransmissionColor, on * m.diffuseTransmission));
+        out.emplace_back(bits(on * m.iridescence), bits(m.iridescenceIor), bits(m.iridescenceThicknessMin),
+                         bits(m.iridescenceThicknessMax));
+        const uint32_t film = packRef(m.iridescenceTexture);
+        out.emplace_back(film, packRef(m.iridescenceThicknessTexture), layout::NONE, layout::NONE);
     }
 
     const Scene& scene_;

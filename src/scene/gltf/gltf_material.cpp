@@ -128,6 +128,21 @@ void readDiffuseTransmission(Document& document, const Object& source, TextureLi
         textures.add(*diffuse, "diffuseTransmissionColorTexture", true);
 }
 
+void readIridescence(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
+    const auto film = source.extension("KHR_materials_iridescence");
+    if (!film) return;
+    material.iridescence = factor(document, *film, "iridescenceFactor", 0.0f);
+    if (material.iridescence == 0.0f) return;
+    constexpr float thickest = 1e9f;
+    material.iridescenceIor = std::max(factor(document, *film, "iridescenceIor", 1.3f, 1e3f), 1.0f);
+    material.iridescenceThicknessMin =
+        factor(document, *film, "iridescenceThicknessMinimum", 100.0f, thickest);
+    material.iridescenceThicknessMax =
+        factor(document, *film, "iridescenceThicknessMaximum", 400.0f, thickest);
+    material.iridescenceTexture = textures.add(*film, "iridescenceTexture", false);
+    material.iridescenceThicknessTexture = textures.add(*film, "iridescenceThicknessTexture", false);
+}
+
 void readTransmission(Document& document, const Object& source, TextureLibrary& textures,
                       Material& material) {
     if (const auto transmission = source.extension("KHR_materials_transmission")) {
@@ -180,6 +195,7 @@ Material readMaterial(Document& document, const Object& source, TextureLibrary& 
     if (const auto dispersion = source.extension("KHR_materials_dispersion"))
         material.dispersion = factor(document, *dispersion, "dispersion", 0.0f, 1e3f);
     readAnisotropy(document, source, textures, material);
+    readIridescence(document, source, textures, material);
     readSheen(document, source, textures, material);
     readDiffuseTransmission(document, source, textures, material);
     readClearcoat(document, source, textures, material);

@@ -25,7 +25,8 @@ class MaterialExtensionsTest : public FolderTest {
                                                    "KHR_materials_anisotropy",
                                                    "KHR_materials_dispersion",
                                                    "KHR_materials_diffuse_transmission",
-                                                   "KHR_materials_sheen"};
+                                                   "KHR_materials_sheen",
+                                                   "KHR_materials_iridescence"};
     }
 
     Material load(const std::string& extensions) {
@@ -83,6 +84,18 @@ TEST_F(MaterialExtensionsTest, Sheen) {
     EXPECT_EQ(m.sheenRoughness, 0.4f);
     ASSERT_TRUE(m.sheenColorTexture && m.sheenRoughnessTexture);
     EXPECT_TRUE(texture(m.sheenColorTexture).srgb);
+}
+
+TEST_F(MaterialExtensionsTest, Iridescence) {
+    const Material m = load(R"({"KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 1.8,
+        "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 900, "iridescenceTexture": {"index": 0},
+        "iridescenceThicknessTexture": {"index": 0}}})");
+    EXPECT_EQ(m.iridescence, 0.5f);
+    EXPECT_EQ(m.iridescenceIor, 1.8f);
+    EXPECT_EQ(m.iridescenceThicknessMin, 200.0f);
+    EXPECT_EQ(m.iridescenceThicknessMax, 900.0f);
+    ASSERT_TRUE(m.iridescenceTexture && m.iridescenceThicknessTexture);
+    EXPECT_FALSE(texture(m.iridescenceTexture).srgb);
 }
 
 TEST_F(MaterialExtensionsTest, DiffuseTransmissionAndDispersion) {

@@ -91,8 +91,11 @@ struct Material {
     float diffuseTransmission = 0.0f;     ///< share of the diffuse light that goes to the other side
     vec3 diffuseTransmissionColor{1.0f};  ///< its colour, instead of baseColor
     float dispersion = 0.0f;              ///< 20 / Abbe number of a refracting body
-    vec3 emission{0.0f};                  ///< radiance, including its strength
-    bool staysEmitter = false;            ///< its triangles remain lights even while it emits nothing
+    float iridescence = 0.0f;             ///< weight of a thin film over metal and dielectric
+    float iridescenceIor = 1.3f;          ///< of the film
+    float iridescenceThicknessMin = 100.0f, iridescenceThicknessMax = 400.0f;  ///< of the film, nanometres
+    vec3 emission{0.0f};        ///< radiance, including its strength
+    bool staysEmitter = false;  ///< its triangles remain lights even while it emits nothing
     float normalScale = 1.0f;
     float occlusionStrength =
         1.0f;  ///< kept for completeness: a path tracer computes occlusion and ignores it
@@ -106,8 +109,9 @@ struct Material {
     TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
     TextureRef
         anisotropyTexture;  ///< RG: direction in tangent space, from -1 to 1; B: factor of `anisotropy`
-    TextureRef sheenColorTexture, sheenRoughnessTexture;                             ///< RGB, A
-    TextureRef diffuseTransmissionTexture, diffuseTransmissionColorTexture;          ///< A, RGB
+    TextureRef sheenColorTexture, sheenRoughnessTexture;                     ///< RGB, A
+    TextureRef diffuseTransmissionTexture, diffuseTransmissionColorTexture;  ///< A, RGB
+    TextureRef iridescenceTexture, iridescenceThicknessTexture;  ///< R; G: from minimum to maximum
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 

@@ -64,8 +64,9 @@ LIMPID_CONST uint NODE_BOUNDS_TEXELS = 2u;
 // roughness); reference of its normal | clear coat | its roughness | its normal scale; absorption |
 // dispersion; anisotropy | cos, sin of its rotation | reference of its texture; sheen colour | its roughness;
 // references (sheen colour, its roughness, diffuse transmission, its colour); diffuse transmission's colour |
-// its share.
-LIMPID_CONST uint MATERIAL_TEXELS = 13u;
+// its share; iridescence | the film's ior | its least | its greatest thickness; references (iridescence,
+// thickness, none, none).
+LIMPID_CONST uint MATERIAL_TEXELS = 15u;
 LIMPID_CONST uint MATERIAL_MASK = 1u;
 LIMPID_CONST uint MATERIAL_BLEND = 2u;
 LIMPID_CONST uint MATERIAL_DOUBLE_SIDED = 4u;

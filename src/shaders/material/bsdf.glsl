@@ -3,7 +3,7 @@
 //
 //   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
-// With diffuse transmission, plastic's base sends a share of its light to the other side of the surface. With
+// With iridescence, metal and plastic lie below a film (thin_film.glsl). With diffuse transmission, plastic's base sends a share of its light to the other side of the surface. With
 // anisotropy, all facets have two roughnesses, and multiple scattering is left out (docs/gltf.md).
 //
 // metal: GGX reflection plus multiple scattering between the facets (multipleReflection). plastic: GGX
@@ -23,6 +23,7 @@
 #include "shaders/material/material.glsl"
 #include "shaders/material/microfacet.glsl"
 #include "shaders/material/sheen.glsl"
+#include "shaders/material/thin_film.glsl"
 
 struct Bsdf {
     mat3 frame;
@@ -51,6 +52,10 @@ struct Bsdf {
     vec2 glassDiffuse;  // diffuse-like part of multiple scattering at the boundary: reflected and transmitted
     vec4 probability;   // of sampling the diffuse, reflecting, thin transmitting and refracting lobe
     float belowProbability;  // of sampling the diffuse-like transmission
+    ThinFilm film;         // over metal and plastic
+    vec3 plasticF0;        // of the dielectric without its specular factor
+    vec3 filmedF0;         // mean reflectance of the metal's facets
+    float plainMetal, plastic;  // weights of the metal and of the dielectric below the film
     Sheen sheen;
     Clearcoat clearcoat;
 };
@@ -87,7 +92,10 @@ vec3 multipleTint(Bsdf b, float cosine) {
     const vec2 grazing = 1.0 - vec2(b.wo.z, cosine);
     const float e = min(0.48 + x * (0.89 - 0.66 * x) + (0.2 - 0.095 * x) * (grazing.x + grazing.y), 1.0);
     const float s = 0.014 + 0.08 * x + (0.069 + x * (1.125 * x - 0.105)) * dot(grazing, grazing);
-    const vec3 f = mix(b.metalF0, vec3(1.0), s);
+    vec3 f = mix(b.metalF0, vec3(1.0), s);
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) f = mix(b.filmedF0, vec3(1.0), s);
+    }
     return f * f * e / (1.0 - f * (1.0 - e));
 }
 
@@ -112,6 +120,54 @@ void makeAnisotropic(inout Bsdf b, Surface s) {
     b.metal = 0.0;
 }
 
+/// Returns a facet's reflectance below the film: of Schlick's terms f0, which is multiplied by f90, and f90.
+vec3 filmedReflectance(Bsdf b, float cosine, vec3 f0, float f90) {
+    const vec3 plain = mix(f0, vec3(1.0), schlickWeight(cosine));
+    return f90 * mix(plain, thinFilmReflectance(b.film, cosine, f0), b.film.weight);
+}
+
+/// Returns the reflectance of the reflecting lobe's facets.
+vec3 reflectanceAt(Bsdf b, float cosine) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) {
+            return b.plainMetal * filmedReflectance(b, cosine, b.metalF0, 1.0) +
+                   b.plastic * filmedReflectance(b, cosine, b.plasticF0, b.coatF90);
+        }
+    }
+    return mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+}
+
+/// The cosine of facets that stands for all that are seen: where Schlick's term has its mean over the lobe. `albedo`: of
+/// ggxAlbedo or ggxAverage.
+float meanCosine(vec2 albedo) {
+    return 1.0 - pow(clamp(albedo.y / max(albedo.x + albedo.y, 1e-6), 0.0, 1.0), 0.2);
+}
+
+/// Returns the coat's reflection of uniform light in its strongest channel, of the two terms of the albedo.
+float coatAlbedo(Bsdf b, vec2 albedo) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) {
+            const vec3 r = filmedReflectance(b, meanCosine(albedo), b.plasticF0, b.coatF90);
+            return (albedo.x + albedo.y) * max(r.r, max(r.g, r.b));
+        }
+    }
+    return b.coatF0 * albedo.x + b.coatF90 * albedo.y;
+}
+
+/// Returns its mean over all directions. A film's mean is less certain: it is taken so low that nothing gains energy.
+float coatAverageOf(Bsdf b) {
+    const float average = coatAlbedo(b, b.average.xy);
+    return HAS_IRIDESCENCE && b.film.weight > 0.0 ? 0.9 * average : average;
+}
+
+/// Returns the same as coatAlbedo() for the whole reflecting lobe, in colour.
+vec3 reflectedAlbedo(Bsdf b) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) return (b.albedo.x + b.albedo.y) * reflectanceAt(b, meanCosine(b.albedo.xy));
+    }
+    return b.f0 * b.albedo.x + b.f90 * b.albedo.y;
+}
+
 Bsdf makeBsdf(Surface s, vec3 toViewer) {
     Bsdf b = lambertianBsdf(s, toViewer);
     if (!HAS_SPECULAR) return b;
@@ -127,13 +183,21 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.eta = s.front ? s.ior : 1.0 / s.ior;
     const float root = (s.ior - 1.0) / (s.ior + 1.0);
     // KHR_materials_specular: the base gets what the coat's strongest channel transmits.
-    const vec3 coatF0 = min(root * root * s.specularColor, vec3(1.0)) * s.specular;
+    b.plasticF0 = min(root * root * s.specularColor, vec3(1.0));
+    const vec3 coatF0 = b.plasticF0 * s.specular;
     b.coatF0 = max(coatF0.r, max(coatF0.g, coatF0.b));
     b.coatF90 = s.specular;
     b.f0 = metal * s.baseColor + (dielectric - refracting) * coatF0;
     b.f90 = metal + (dielectric - refracting) * b.coatF90;
     b.albedo = ggxAlbedo(b.wo.z, tableRoughness(b, b.wo));
-    b.coatLoss = b.coatF0 * b.albedo.x + b.coatF90 * b.albedo.y;
+    b.metalF0 = s.baseColor;
+    if (HAS_IRIDESCENCE) {
+        const float weight = s.unlit ? 0.0 : s.iridescence * smoothstep(0.0, 0.03, s.iridescenceThickness);
+        b.film = ThinFilm(weight, s.iridescenceIor, s.iridescenceThickness);
+        b.plainMetal = metal;
+        b.plastic = dielectric - refracting;
+    }
+    b.coatLoss = coatAlbedo(b, b.albedo.xy);
     b.diffuse = s.baseColor * (dielectric * (1.0 - transmission));
     b.diffuseBelow = vec3(0.0);
     if (HAS_DIFFUSE_TRANSMISSION) {
@@ -154,13 +218,13 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
             b.glassDiffuse = entry.zw;
         }
     }
-    b.metalF0 = s.baseColor;
     b.average = ggxAverage(tableRoughness(b, vec3(1.0, 0.0, 0.0)));
+    if (HAS_IRIDESCENCE) b.filmedF0 = filmedReflectance(b, meanCosine(b.average.xy), b.metalF0, 1.0);
     b.multiple = b.metal * multipleTint(b, 2.0 / 3.0);
     const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
     const vec2 spread = b.glassDiffuse * b.glassWeight;
     const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
-                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y + missing * (1.0 - b.average.z),
+                              luminance(reflectedAlbedo(b)) + missing * (1.0 - b.average.z),
                               luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
     float below = spread.y;
     if (HAS_DIFFUSE_TRANSMISSION) below += luminance(b.diffuseBelow) * (1.0 - b.coatLoss);
@@ -246,8 +310,7 @@ float reflectionChance(Bsdf b, float reflectance) {
 void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 albedo = ggxAlbedo(wi.z, tableRoughness(b, wi));
     const float cosinePdf = wi.z / PI;
-    const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
-    const float coatAverage = b.coatF0 * b.average.x + b.coatF90 * b.average.y;
+    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
     value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
     value.specular += multipleTint(b, wi.z) * (b.metal * multipleReflection(b, albedo) * wi.z);
     value.pdf += b.probability.x * cosinePdf;
@@ -256,9 +319,12 @@ void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const float cosine = dot(b.wo, m);
     const float pdf = reflectionPdf(b, m);
     const float lambdaOut = lambdaOf(b, b.wo), lambdaIn = lambdaOf(b, wi);
-    const vec3 fresnel = mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+    const vec3 fresnel = reflectanceAt(b, cosine);
     const float masking = (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn);
-    const vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) metal = filmedReflectance(b, cosine, b.metalF0, 1.0);
+    }
     value.specular += (fresnel + metal * metal * (b.metal * b.albedo.z * albedo.z)) * (masking * pdf);
     value.pdf += b.probability.y * pdf;
     if (HAS_ROUGH_GLASS) {
@@ -311,8 +377,7 @@ void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
 void addDiffuseTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 albedo = ggxAlbedo(-wi.z, tableRoughness(b, wi));
     const float cosinePdf = -wi.z / PI;
-    const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
-    const float coatAverage = b.coatF0 * b.average.x + b.coatF90 * b.average.y;
+    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
     value.diffuse += b.diffuseBelow * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
     value.pdf += b.belowProbability * cosinePdf;
 }
@@ -366,7 +431,7 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
     vec3 wi = reflected;
     if (lobe == 1u) {
-        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) / b.probability.y;
+        result.value.specular = reflectanceAt(b, b.wo.z) / b.probability.y;
     } else if (lobe == 2u) {
         wi = -b.wo;
         result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
@@ -393,7 +458,7 @@ BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
         result.value.specular *= pane ? b.probability.z : b.probability.w * (1.0 - reflectance);
     } else {
         result = sampleSmooth(b, 3u, -1.0);
-        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) + b.glassWeight * reflectance;
+        result.value.specular = reflectanceAt(b, b.wo.z) + b.glassWeight * reflectance;
     }
     result.valid = result.valid && result.value.specular != vec3(0.0);
     return result;
@@ -491,7 +556,7 @@ vec3 specularAlbedo(Bsdf b) {
     if (!HAS_SPECULAR) return vec3(0.0);
     const float missing = 1.0 - b.albedo.x - b.albedo.y;
     const float reflectance = fresnelDielectric(b.wo.z, b.eta);
-    vec3 base = b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
+    vec3 base = reflectedAlbedo(b) + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
                       b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
     if (HAS_SHEEN) base = base * (1.0 - b.sheen.albedo) + b.sheen.color * min(b.sheen.outside, 1.0);
     return HAS_CLEARCOAT ? base * (1.0 - b.clearcoat.albedo) + b.clearcoat.albedo : base;

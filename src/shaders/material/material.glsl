@@ -28,6 +28,8 @@ struct Surface {
     float diffuseTransmission;  // share of the diffuse light
     vec3 diffuseTransmissionColor;
     float dispersion;           // 20 / Abbe number
+    float iridescence, iridescenceIor;
+    float iridescenceThickness;  // of the film, nanometres
     vec3 absorption;       // of the body that begins at this surface, per unit of length; 0 if there is none
     bool culled;    // the back of a single-sided material without transmission
     vec3 emission;  // radiance towards the viewer
@@ -292,9 +294,18 @@ void applyDiffuseTransmissionTextures(inout Surface s, int material, VertexData 
     s.diffuseTransmissionColor *= materialTexture(refs.w, data, footprint).rgb;
 }
 
+/// The film's thickness is between two values if a texture says where, else the greater.
+void applyIridescenceTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec2 refs = imageLoad(materials, material + 14).xy;
+    s.iridescence *= materialTexture(refs.x, data, footprint).r;
+    const float least = uintBitsToFloat(imageLoad(materials, material + 13).z);
+    s.iridescenceThickness = mix(least, s.iridescenceThickness, materialTexture(refs.y, data, footprint).g);
+}
+
 /// Reads the factors of the extensions that few scenes have.
 void loadExtensions(inout Surface s, int material) {
     s.anisotropy = s.sheenRoughness = s.diffuseTransmission = s.dispersion = 0.0;
+    s.iridescence = s.iridescenceIor = s.iridescenceThickness = 0.0;
     s.anisotropyDirection = s.sheenColor = s.diffuseTransmissionColor = vec3(0.0);
     if (HAS_ANISOTROPY) s.anisotropy = uintBitsToFloat(imageLoad(materials, material + 9).x);
     if (HAS_SHEEN) {
@@ -306,6 +317,12 @@ void loadExtensions(inout Surface s, int material) {
         const vec4 diffuse = uintBitsToFloat(imageLoad(materials, material + 12));
         s.diffuseTransmissionColor = diffuse.rgb;
         s.diffuseTransmission = diffuse.w;
+    }
+    if (HAS_IRIDESCENCE) {
+        const vec4 film = uintBitsToFloat(imageLoad(materials, material + 13));
+        s.iridescence = film.x;
+        s.iridescenceIor = film.y;
+        s.iridescenceThickness = film.w;
     }
     if (HAS_DISPERSION) s.dispersion = uintBitsToFloat(imageLoad(materials, material + 8).w);
 }
@@ -408,6 +425,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             if (HAS_TRANSMISSION) {
                 s.transmission *= materialTexture(imageLoad(materials, material + 5).x, data, footprint).r;
             }
+            if (HAS_IRIDESCENCE) applyIridescenceTextures(s, material, data, footprint);
             if (HAS_SHEEN) applySheenTextures(s, material, data, footprint);
             if (HAS_DIFFUSE_TRANSMISSION) applyDiffuseTransmissionTextures(s, material, data, footprint);
         }

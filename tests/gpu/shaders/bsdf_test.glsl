@@ -24,6 +24,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
     float sheenRoughness;
     vec3 diffuseTransmissionColor;
     float diffuseTransmission;
+    float iridescence, iridescenceIor, iridescenceThickness;
 } params;
 
 Bsdf testBsdf() {
@@ -49,5 +50,8 @@ Bsdf testBsdf() {
     s.sheenRoughness = params.sheenRoughness;
     s.diffuseTransmission = params.diffuseTransmission;
     s.diffuseTransmissionColor = params.diffuseTransmissionColor;
+    s.iridescence = params.iridescence;
+    s.iridescenceIor = params.iridescenceIor;
+    s.iridescenceThickness = params.iridescenceThickness;
     return makeBsdf(s, params.toViewer);
 }
