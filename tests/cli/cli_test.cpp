@@ -121,6 +121,32 @@ constexpr const char* sceneWithCameras = R"({"asset": {"version": "2.0"}, "scene
     {"name": "shrink", "samplers": [{"input": 1, "output": 2}],
      "channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}]}]})";
 
+TEST_F(CliTest, ALensNeedsADistanceAndRaysOfItsOwn) {
+    const std::string render =
+        "render builtin:cornell -o " + path("a.exr") + " --width 16 --height 8 --spp 2 ";
+    put("scene.gltf", sceneWithCameras);
+    const float floats[17] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0.5f};
+    put("scene.bin", std::string(reinterpret_cast<const char*>(floats), sizeof floats));
+    const std::string own =
+        "render " + path("scene.gltf") + " -o " + path("a.exr") + " --width 16 --height 8 --spp 2 ";
+    expect(own + "--f-stop 2.8", 2, "needs --focus-distance");
+    expect(own + "--camera top --f-stop 2.8 --focus-distance 1", 2, "is orthographic");
+    EXPECT_EQ(run(own + "--f-stop 2.8 --focus-distance 2").code, 0);
+    expect(render + "--f-stop 2.8 --lens-diameter 0.1 --focus-distance 3", 2, "say the same");
+    expect(render + "--focus-distance 3", 2, "goes with --f-stop");
+    expect(render + "--sensor-height 30", 2, "goes with --f-stop");
+    expect(render + "--eye 0,1,3 --target 0,1,0 --fov 40 --focal-length 35", 2, "say the same");
+    for (const char* method :
+         {"--integrator ao", "--integrator gbuffer", "--denoiser svgf", "--denoiser temporal"})
+        expect(render + "--f-stop 2.8 --focus-distance 3 " + method, 2, "a lens is ");
+    put("path.json",
+        R"({"keys": [{"time": 0, "eye": [0, 1, 3], "target": [0, 1, 0], "lens_diameter": 0.1}]})");
+    expect(render + "--denoiser svgf --camera-path " + path("path.json"), 2, "a lens is ");
+    EXPECT_EQ(run(render + "--denoiser svgf --lens-diameter 0 --camera-path " + path("path.json")).code, 0);
+    EXPECT_EQ(run(render + "--f-stop 2.8 --focus-distance 3").code, 0);
+    EXPECT_EQ(run(render + "--f-stop 1.4 --focal-length 35 --eye 0,1,3 --target 0,1,0").code, 0);
+}
+
 TEST_F(CliTest, InfoListsWhatASceneHoldsAndWhatItListsCanBeChosen) {
     put("scene.gltf", sceneWithCameras);
     const float floats[17] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0.5f, 0.5f, 0.5f};

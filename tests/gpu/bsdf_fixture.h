@@ -25,6 +25,18 @@ struct BsdfParams {
     vec3 clearcoatNormal{0, 0, 1};
     uint32_t thin = 1, front = 1;
     uint32_t count = 0, perThread = 8, seed = 1;
+    float anisotropy = 0.0f;
+    vec3 anisotropyDirection{1, 0, 0};
+    vec3 sheenColor{0.0f};
+    float sheenRoughness = 0.5f;
+    vec3 diffuseTransmissionColor{1.0f};
+    float diffuseTransmission = 0.0f;
+    float iridescence = 0.0f, iridescenceIor = 1.3f, iridescenceThickness = 400.0f;
+
+    bool isExtended() const {
+        return anisotropy > 0.0f || sheenColor != vec3(0.0f) || diffuseTransmission > 0.0f ||
+               iridescence > 0.0f;
+    }
 };
 
 struct NamedMaterial {
@@ -54,9 +66,12 @@ inline std::string describe(const NamedMaterial& m) {
     const BsdfParams& p = m.params;
     return fmt::format(
         "{}: baseColor {} {} {} metallic {} roughness {} specular {} ior {} transmission {} thin {} front {} "
-        "clear coat {} of roughness {} cosine {} seed {}",
+        "clear coat {} of roughness {} anisotropy {} sheen {} of roughness {} diffuse transmission {} film "
+        "{} "
+        "of {} nm cosine {} seed {}",
         m.name, p.baseColor.r, p.baseColor.g, p.baseColor.b, p.metallic, p.roughness, p.specular, p.ior,
-        p.transmission, p.thin, p.front, p.clearcoat, p.clearcoatRoughness, p.toViewer.z, p.seed);
+        p.transmission, p.thin, p.front, p.clearcoat, p.clearcoatRoughness, p.anisotropy, p.sheenColor.r,
+        p.sheenRoughness, p.diffuseTransmission, p.iridescence, p.iridescenceThickness, p.toViewer.z, p.seed);
 }
 
 class BsdfTest : public GpuTest {
@@ -76,6 +91,10 @@ class BsdfTest : public GpuTest {
         plain_ = std::make_unique<scene::GpuScene>(device(), data_);
         scene.materials[0].clearcoat = 1.0f;
         coated_ = std::make_unique<scene::GpuScene>(device(), scene::buildSceneData(scene));
+        scene.materials[0].anisotropy = scene.materials[0].diffuseTransmission = 0.5f;
+        scene.materials[0].iridescence = 0.5f;
+        scene.materials[0].sheenColor = vec3(1.0f);
+        extended_ = std::make_unique<scene::GpuScene>(device(), scene::buildSceneData(scene));
     }
 
     std::vector<SampledDirection> sample(BsdfParams params, uint32_t count) {
@@ -112,13 +131,14 @@ class BsdfTest : public GpuTest {
     const scene::SceneData& data() const { return data_; }
 
   private:
-    /// Without a coat, uses a scene without coats: that runs a different shader variant.
+    /// Uses a scene without what the material lacks: that runs a different shader variant.
     const scene::GpuScene* sceneFor(const BsdfParams& params) const {
+        if (params.isExtended()) return extended_.get();
         return params.clearcoat > 0.0f ? coated_.get() : plain_.get();
     }
 
     scene::SceneData data_;
-    std::unique_ptr<scene::GpuScene> plain_, coated_;
+    std::unique_ptr<scene::GpuScene> plain_, coated_, extended_;
 };
 
 }  // namespace limpid::test

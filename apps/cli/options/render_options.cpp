@@ -147,6 +147,7 @@ Jitter parseJitter(const std::string& name) {
 
 void addRenderOptions(CLI::App& command, RenderOptions& o) {
     addSceneOptions(command, o.scene);
+    addLensOptions(command, o.lens);
     addOutputOptions(command, o);
     addSamplingOptions(command, o);
     addMethodOptions(command, o);
@@ -229,6 +230,9 @@ void checkRenderOptions(const RenderOptions& o) {
     if (o.preview && (!hasIndependentFrames(pipeline) || o.progressive || FramePattern(o.output).numbered() ||
                       isClip(FramePattern(o.output).format(0)) || writesSums(o)))
         throw UsageError("--preview is for stills by --integrator path or direct and --denoiser none");
+    checkLens(o.lens, pipeline);
+    if (o.scene.fov > 0.0f && o.lens.focalLength > 0.0f)
+        throw UsageError("--fov and --focal-length say the same: give one of them");
     checkLongRender(o.longRender);
     checkOutput(o);
     checkCheckpointIsNoOutput(o);

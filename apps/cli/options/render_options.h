@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/options/device_options.h"
+#include "cli/options/lens_options.h"
 #include "cli/options/long_render_options.h"
 #include "cli/options/pipeline_options.h"
 #include "cli/options/scene_options.h"
@@ -16,6 +17,7 @@ namespace limpid::cli {
 
 struct RenderOptions {
     SceneChoice scene;
+    scene::Lens lens;
     SequenceChoice sequence;
     DeviceChoice device;
     LongRenderChoice longRender;

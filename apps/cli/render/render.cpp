@@ -87,6 +87,7 @@ void render(const RenderOptions& o) {
     const scene::Camera camera = chosenCamera(scene, o.scene);
     const std::optional<scene::CameraPath> path = chosenPath(o.sequence, scene, camera);
     summary.frames = frameCount(o.sequence, output, scene, path);
+    checkLensOf(scene::withLens(path ? path->widest() : camera, o.lens), o.lens, settings.pipeline);
     if (summary.frames == 1 && output.numbered() && chosenShard(o.longRender.shard).count > 1)
         throw UsageError("--shard: the sequence has one frame only, which is a still: name a .sums file");
     summary.timings.loadSeconds = since(started);
@@ -99,7 +100,7 @@ void render(const RenderOptions& o) {
     settings.networks = loadNetworks(*device, settings.pipeline.denoiser, o.weights, settings.denoisers);
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
-    const Sequence sequence(scene, data, camera, path, o.sequence.timing);
+    const Sequence sequence(scene, data, camera, path, o.sequence.timing, o.lens);
     const uint64_t content = sceneHash(scene, data);
     data = {};  // now on the device, like the textures
     scene.textures.clear();

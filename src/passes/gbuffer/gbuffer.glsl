@@ -10,7 +10,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 #define SOBOL_TABLE params.points
 #include "shaders/common/first_hit.glsl"
-#include "shaders/material/lights.glsl"
+#include "shaders/material/receiver.glsl"
 #include "shaders/material/medium.glsl"
 
 layout(constant_id = 21) const bool LIGHT = true;    // false: the layer `light` is black
@@ -45,7 +45,7 @@ struct Seen {
 /// show no light.
 vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
     LightShares shares;
-    const LightSample drawn = sampleLight(receiverAt(surface), params.scene, rng, shares);
+    const LightSample drawn = sampleLight(litAt(surface), params.scene, rng, shares);
     const BsdfValue value = evaluateBsdf(bsdf, drawn.direction);
     vec3 scattered = drawn.radiance * (value.diffuse + value.specular) / max(drawn.pdf, 1e-30);
     if (HAS_VOLUME) {

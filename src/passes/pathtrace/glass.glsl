@@ -16,8 +16,21 @@ struct Branch {
     bool delta;
     LightShares shares;
     uint depth, passages;
+    uint channel;
     float weight;  // sum of the weights of all lobes; 0: none
 };
+
+/// KHR_materials_dispersion: from the first glass on whose index depends on the wavelength, a path carries one colour
+/// channel, chosen at random. The indices of red, green and blue are the extension's.
+void disperse(inout Path path, inout Surface surface, inout uint rng) {
+    if (surface.dispersion <= 0.0 || surface.thin || surface.transmission <= 0.0) return;
+    if (path.channel == ALL_CHANNELS) {
+        path.channel = min(uint(3.0 * random(rng)), 2u);
+        path.throughput *= 3.0 * vec3(equal(uvec3(path.channel), uvec3(0u, 1u, 2u)));
+    }
+    const float halfSpread = (surface.ior - 1.0) * 0.025 * surface.dispersion;
+    surface.ior = max(surface.ior + (float(path.channel) - 1.0) * halfSpread, 1.0);
+}
 
 const uint MAX_SEEN_THROUGH = 8u;  // surfaces of glass
 
@@ -49,6 +62,7 @@ void offer(inout Branch branch, Path path, Surface surface, Bsdf bsdf, BsdfSampl
     branch.coneWidth = path.coneWidth;
     branch.bsdfPdf = lobe.value.pdf;
     branch.delta = lobe.delta;
+    branch.channel = path.channel;
     branch.shares = path.shares;
 }
 
@@ -87,6 +101,7 @@ void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.delta = branch.delta;
     path.shares = branch.shares;
     path.second = true;
+    path.channel = branch.channel;
     path.coneWidth = branch.coneWidth;
     path.medium = branch.medium;
     path.passages = branch.passages;

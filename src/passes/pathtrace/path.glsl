@@ -9,7 +9,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 };
 
 #define SOBOL_TABLE params.points
-#include "shaders/material/lights.glsl"
+#include "shaders/material/receiver.glsl"
 
 struct PathRadiance {
     vec3 emission;           // seen directly
@@ -32,6 +32,9 @@ struct Path {
     uint passages;  // through glass so far, at most params.maxTransmissionDepth
     bool mirrored;  // the vertex before the primary one is a mirror
     bool second;    // what glass does not send where the layers look
+    uint channel;   // of the colour that it carries, once it has met glass with dispersion; else ALL_CHANNELS
 };
+
+const uint ALL_CHANNELS = 3u;
 
 #endif

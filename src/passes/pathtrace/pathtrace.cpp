@@ -39,10 +39,11 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
               const PathtraceSettings& settings, const PathtraceLaunch& launch,
               const std::vector<Binding>& images) {
     const PathtraceParams params = makeParams(scene, settings, launch);
-    dispatchTraced(
-        graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
-        {{"SAMPLER", static_cast<uint32_t>(launch.sampler)}, {"LIGHT_TREE", settings.lightTree ? 1u : 0u}},
-        launch.extent);
+    dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
+                   {{"SAMPLER", static_cast<uint32_t>(launch.sampler)},
+                    {"LIGHT_TREE", settings.lightTree ? 1u : 0u},
+                    {"HAS_LENS", launch.camera.lensRadius > 0.0f ? 1u : 0u}},
+                   launch.extent);
 }
 
 }  // namespace

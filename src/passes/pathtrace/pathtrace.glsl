@@ -40,7 +40,7 @@ void addEnvironment(inout Path path, uint depth) {
 
 /// Light from glass that the layers see through is specular.
 void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThrough, uint depth, inout uint rng) {
-    const LightSample light = sampleLight(receiverAt(surface), params.scene, rng, path.shares);
+    const LightSample light = sampleLight(litAt(surface), params.scene, rng, path.shares);
     const BsdfValue value = evaluateBsdf(bsdf, light.direction);
     const float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, value.pdf);
     vec3 incident = clampFirefly(path.throughput * light.radiance * (weight / max(light.pdf, 1e-30)), depth);
@@ -117,9 +117,10 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
     path.coneWidth += spread * hit.t;
     const vec3 toViewer = -path.ray.direction;
     const RayCone rayCone = RayCone(path.coneWidth, !path.delta, params.view.jitter == JITTER_OFF);
-    const Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
+    Surface surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, toViewer, rayCone);
     // Nothing is absorbed on the way to the sky, since a ray that never leaves a body was not in one.
     if (HAS_VOLUME) path.throughput *= exp(-hit.t * mediumBefore(path.medium, surface));
+    if (HAS_DISPERSION) disperse(path, surface, rng);
     const Bsdf bsdf = makeBsdf(surface, toViewer);
     if (depth <= path.primary) sight.traveled += hit.t;
     if (depth == 0u && passesBack(surface, culled, path.ray.origin)) return true;
@@ -141,7 +142,7 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, noLightShares(), true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, ALL_CHANNELS);
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);

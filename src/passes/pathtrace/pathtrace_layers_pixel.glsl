@@ -67,7 +67,7 @@ void tracePixel(uvec2 pixel) {
         FirstHit first;
         startSample(pixel, i);
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
-        PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
+        PathRadiance path = tracePath(lensRay(params.view, point, rng), i, rng, rays, first);
         if (!isFinite(path.emission + path.diffuse + path.specular)) {
             path = PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0));
             ++rejected;

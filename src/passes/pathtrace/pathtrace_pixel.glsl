@@ -15,7 +15,7 @@ void tracePixel(uvec2 pixel) {
         FirstHit first;
         startSample(pixel, i);
         const vec2 point = vec2(pixel) + subpixel(params.view, i, rng);
-        const PathRadiance path = tracePath(cameraRay(params.view, point), i, rng, rays, first);
+        const PathRadiance path = tracePath(lensRay(params.view, point, rng), i, rng, rays, first);
         const vec3 radiance = path.diffuse;
         if (isFinite(radiance)) {
             sum.rgb += radiance;

@@ -4,7 +4,8 @@ namespace limpid {
 
 bool sameCamera(const CameraParams& a, const CameraParams& b) {
     return a.origin == b.origin && a.orthographic == b.orthographic && a.forward == b.forward &&
-           a.spread == b.spread && a.right == b.right && a.up == b.up;
+           a.spread == b.spread && a.right == b.right && a.up == b.up && a.lensRadius == b.lensRadius &&
+           a.focusDistance == b.focusDistance;
 }
 
 bool mustReset(const AccumulationState& before, const AccumulationState& now) {

@@ -29,6 +29,7 @@ TEST(ResetRule, ResetsOnEveryChange) {
         return scene::cameraParams(scene::lookAt(eye, {0, 0, 0}, {0, 1, 0}, fov), 320, 180);
     };
     const std::vector<std::pair<const char*, std::function<void(AccumulationState&)>>> changes{
+        {"a lens", [](AccumulationState& s) { s.camera.lensRadius = 0.01f; }},
         {"camera moved",
          [&](auto& s) {
              s.camera = camera({1, 2, 3.0001f}, 0.8f);

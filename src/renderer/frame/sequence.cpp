@@ -1,18 +1,17 @@
 #include "renderer/frame/sequence.h"
 
-#include "scene/model/camera.h"
-
 namespace limpid {
 
 Sequence::Sequence(const scene::Scene& scene, const scene::SceneData& data, scene::Camera camera,
-                   std::optional<scene::CameraPath> path, const SequenceTiming& timing)
-    : scene_(scene), camera_(std::move(camera)), path_(std::move(path)), timing_(timing) {
+                   std::optional<scene::CameraPath> path, const SequenceTiming& timing,
+                   const scene::Lens& lens)
+    : scene_(scene), camera_(std::move(camera)), path_(std::move(path)), timing_(timing), lens_(lens) {
     if (scene.clip != scene::none) animator_.emplace(scene, data);
 }
 
 CameraParams Sequence::cameraAt(double time, gpu::Extent extent) const {
     const scene::Camera camera = path_ ? path_->at(time) : scene::cameraAt(scene_, camera_, time);
-    return scene::cameraParams(camera, extent.width, extent.height);
+    return scene::cameraParams(scene::withLens(camera, lens_), extent.width, extent.height);
 }
 
 Moment Sequence::moment(uint64_t frame, gpu::Extent extent) const {

@@ -7,6 +7,7 @@
 #include "gpu/graph/frame_graph.h"
 #include "renderer/frame/moment.h"
 #include "scene/framing/camera_path.h"
+#include "scene/model/camera.h"
 #include "scene/motion/scene_animator.h"
 
 namespace limpid {
@@ -22,9 +23,10 @@ struct SequenceTiming {
 class Sequence {
   public:
     /// `data` was built from `scene`, which must outlive this. `camera` is a camera of the scene or a free
-    /// one; `path` replaces it.
+    /// one; `path` replaces it. Either gets `lens`.
     Sequence(const scene::Scene& scene, const scene::SceneData& data, scene::Camera camera,
-             std::optional<scene::CameraPath> path, const SequenceTiming& timing);
+             std::optional<scene::CameraPath> path, const SequenceTiming& timing,
+             const scene::Lens& lens = {});
 
     /// The state for a picture of this size. Motion is invalid in frame 0 and at cuts of the camera path.
     Moment moment(uint64_t frame, gpu::Extent extent) const;
@@ -41,6 +43,7 @@ class Sequence {
     scene::Camera camera_;
     std::optional<scene::CameraPath> path_;
     SequenceTiming timing_;
+    scene::Lens lens_;
 };
 
 }  // namespace limpid

@@ -112,6 +112,11 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_ROUGH_GLASS", features_.roughGlass},
             {"HAS_LIGHT_TREE", features_.lightTree},
             {"HAS_SUNS", features_.suns},
+            {"HAS_ANISOTROPY", features_.anisotropy},
+            {"HAS_SHEEN", features_.sheen},
+            {"HAS_DIFFUSE_TRANSMISSION", features_.diffuseTransmission},
+            {"HAS_DISPERSION", features_.dispersion},
+            {"HAS_IRIDESCENCE", features_.iridescence},
             {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

@@ -28,6 +28,8 @@ void setEnvironmentParams(const Environment& env, layout::SceneParams& params);
 /// Fills the table with the directional albedo of GGX reflection, and how metals distribute multiple
 /// scattering.
 void fillGgxTable(std::vector<vec4>& table);
+/// Appends the albedo of the sheen's lobe to the table that fillGgxTable() has filled.
+void fillSheenTable(std::vector<vec4>& table);
 /// Fills the table with the multiple scattering of a rough dielectric boundary: reflection and transmission.
 void fillDielectricTable(std::vector<vec4>& table);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/error.h"
@@ -90,12 +91,14 @@ class MaterialPacker {
         const float clearcoat = m.unlit ? 0.0f : m.clearcoat;
         const bool lambertian =
             m.metallic == 0.0f && m.specular == 0.0f && m.transmission == 0.0f && clearcoat == 0.0f;
+        packFeaturesOfExtensions(m);
         features.specular |= !lambertian && !m.unlit;
         features.transmission |= m.transmission > 0.0f && !m.unlit;
-        features.roughGlass |=
-            m.transmission > 0.0f && !m.unlit && !m.thin && m.roughness >= layout::SMOOTH_ROUGHNESS;
+        features.roughGlass |= m.transmission > 0.0f && !m.unlit && !m.thin &&
+                               (m.roughness >= layout::SMOOTH_ROUGHNESS || m.anisotropy > 0.0f);
         features.clearcoat |= clearcoat > 0.0f;
-        features.volume |= m.transmission > 0.0f && !m.thin && m.absorption != vec3(0.0f);
+        features.volume |=
+            (m.transmission > 0.0f || m.diffuseTransmission > 0.0f) && !m.thin && m.absorption != vec3(0.0f);
         features.specularTextures |= m.specularTexture || m.specularColorTexture;
         features.alpha |= m.alphaMode != AlphaMode::Opaque;
         auto& out = data_.materials;
@@ -113,7 +116,38 @@ class MaterialPacker {
         out.emplace_back(specular, color, coat, coatRough);
         out.emplace_back(packRef(m.clearcoatNormalTexture), bits(clearcoat), bits(m.clearcoatRoughness),
                          bits(m.clearcoatNormalScale));
-        out.push_back(bits(m.absorption, 0u));
+        out.push_back(bits(m.absorption, m.dispersion));
+        packExtensions(m);
+    }
+
+    /// The shaders for sheen and diffuse transmission build on those for materials that are not Lambertian.
+    void packFeaturesOfExtensions(const Material& m) {
+        if (m.unlit) return;
+        SceneFeatures& features = data_.features;
+        features.anisotropy |= m.anisotropy > 0.0f;
+        features.sheen |= m.sheenColor != vec3(0.0f);
+        features.diffuseTransmission |= m.diffuseTransmission > 0.0f;
+        features.dispersion |= m.dispersion > 0.0f && m.transmission > 0.0f && !m.thin;
+        features.iridescence |= m.iridescence > 0.0f;
+        features.specular |=
+            features.iridescence || features.anisotropy || features.sheen || features.diffuseTransmission;
+    }
+
+    void packExtensions(const Material& m) {
+        auto& out = data_.materials;
+        const float on = m.unlit ? 0.0f : 1.0f;
+        const uint32_t anisotropy = packRef(m.anisotropyTexture);
+        out.emplace_back(bits(on * m.anisotropy), bits(std::cos(m.anisotropyRotation)),
+                         bits(std::sin(m.anisotropyRotation)), anisotropy);
+        out.push_back(bits(on * m.sheenColor, m.sheenRoughness));
+        const uint32_t sheen = packRef(m.sheenColorTexture), sheenRough = packRef(m.sheenRoughnessTexture);
+        const uint32_t share = packRef(m.diffuseTransmissionTexture);
+        out.emplace_back(sheen, sheenRough, share, packRef(m.diffuseTransmissionColorTexture));
+        out.push_back(bits(m.diffuseTransmissionColor, on * m.diffuseTransmission));
+        out.emplace_back(bits(on * m.iridescence), bits(m.iridescenceIor), bits(m.iridescenceThicknessMin),
+                         bits(m.iridescenceThicknessMax));
+        const uint32_t film = packRef(m.iridescenceTexture);
+        out.emplace_back(film, packRef(m.iridescenceThicknessTexture), layout::NONE, layout::NONE);
     }
 
     const Scene& scene_;

@@ -48,6 +48,7 @@ SceneData buildSceneData(const Scene& scene, const Progress& progress) {
     progress.at(0.9);
     packLights(scene, data);
     if (data.features.specular) fillGgxTable(data.ggxTable);
+    if (data.features.sheen) fillSheenTable(data.ggxTable);
     if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);
     return data;
 }

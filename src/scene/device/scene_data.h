@@ -19,7 +19,8 @@ struct SceneFeatures {
     bool twoLevel = false, vertexData = false, textures = false, alpha = false, specular = false,
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
          mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
-         roughGlass = false, lightTree = false, suns = false;
+         roughGlass = false, lightTree = false, suns = false, anisotropy = false, sheen = false,
+         diffuseTransmission = false, dispersion = false, iridescence = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

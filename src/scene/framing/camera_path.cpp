@@ -18,12 +18,12 @@
 namespace limpid::scene {
 namespace {
 
-/// All values of a key: eye, target, up, field of view.
-using KeyValues = std::array<float, 10>;
+/// All values of a key: eye, target, up, field of view, lens.
+using KeyValues = std::array<float, 12>;
 
 KeyValues valuesOf(const CameraKey& k) {
-    return {k.eye.x,    k.eye.y, k.eye.z, k.target.x, k.target.y,
-            k.target.z, k.up.x,  k.up.y,  k.up.z,     k.verticalFov};
+    return {k.eye.x, k.eye.y, k.eye.z, k.target.x,    k.target.y,     k.target.z,
+            k.up.x,  k.up.y,  k.up.z,  k.verticalFov, k.lensDiameter, k.focusDistance};
 }
 
 /// Returns the derivative of a value by time at key i, from its neighbours in the same shot.
@@ -102,7 +102,8 @@ void requireKnownKeys(const gltf::Object& source, std::initializer_list<std::str
 }
 
 CameraKey readKey(const gltf::Object& source) {
-    requireKnownKeys(source, {"time", "eye", "target", "up", "fov", "cut"});
+    requireKnownKeys(source,
+                     {"time", "eye", "target", "up", "fov", "lens_diameter", "focus_distance", "cut"});
     CameraKey key;
     for (const char* needed : {"time", "eye", "target"}) {
         if (!source.has(needed)) source.fail(fmt::format("has no {}", needed));
@@ -114,6 +115,12 @@ CameraKey readKey(const gltf::Object& source) {
     const float degrees = source.number("fov", 45.0f);
     if (!(degrees > 0.0f && degrees < 180.0f)) source.fail("fov", "is not between 0 and 180 degrees");
     key.verticalFov = glm::radians(degrees);
+    key.lensDiameter = source.number("lens_diameter", 0.0f);
+    if (!(key.lensDiameter >= 0.0f && key.lensDiameter <= 1e9f))
+        source.fail("lens_diameter", "is not from 0 to 1e9");
+    key.focusDistance = source.number("focus_distance", 0.0f);
+    if (source.has("focus_distance") && !(key.focusDistance > 0.0f && key.focusDistance <= 1e18f))
+        source.fail("focus_distance", "is not above 0, or above 1e18");
     key.cut = source.boolean("cut", false);
     requireUsable(source, key);
     return key;
@@ -124,7 +131,10 @@ CameraKey readKey(const gltf::Object& source) {
 CameraPath::CameraPath(std::string name, std::vector<CameraKey> keys)
     : name_(std::move(name)), keys_(std::move(keys)) {
     if (keys_.empty()) throw Error("a camera path needs a key");
-    for (CameraKey& key : keys_) key.up = glm::normalize(key.up);
+    for (CameraKey& key : keys_) {
+        key.up = glm::normalize(key.up);
+        if (key.focusDistance == 0.0f) key.focusDistance = glm::distance(key.eye, key.target);
+    }
 }
 
 Camera CameraPath::at(double time) const {
@@ -136,7 +146,15 @@ Camera CameraPath::at(double time) const {
     if (next > 0 && next < keys_.size() && !keys_[next].cut) v = interpolate(keys_, i, time);
     Camera camera = lookAt({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, v[9]);
     camera.name = name_;
+    // A curve may swing below its keys.
+    camera.lensDiameter = std::max(v[10], 0.0f);
+    camera.focusDistance = std::max(v[11], 0.1f * keys_[i].focusDistance);
     return camera;
+}
+
+Camera CameraPath::widest() const {
+    const auto key = std::ranges::max_element(keys_, {}, &CameraKey::lensDiameter);
+    return at(key->time);
 }
 
 bool CameraPath::cutBetween(double before, double now) const {

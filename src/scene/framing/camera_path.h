@@ -15,8 +15,10 @@ namespace limpid::scene {
 struct CameraKey {
     double time = 0.0;  ///< seconds
     vec3 eye{0.0f}, target{0.0f, 0.0f, -1.0f}, up{0.0f, 1.0f, 0.0f};
-    float verticalFov = 0.8f;  ///< radians
-    bool cut = false;          ///< a new shot begins here: no interpolation across it, and motion is invalid
+    float verticalFov = 0.8f;    ///< radians
+    float lensDiameter = 0.0f;   ///< world units; 0: a pinhole
+    float focusDistance = 0.0f;  ///< world units; 0: that of the target
+    bool cut = false;  ///< a new shot begins here: no interpolation across it, and motion is invalid
 };
 
 class CameraPath {
@@ -28,6 +30,8 @@ class CameraPath {
     /// one shot, all values follow cubic Hermite curves with finite-difference tangents, which are smooth,
     /// and exact for motion at constant speed.
     Camera at(double time) const;
+    /// Returns the camera of the key with the widest lens.
+    Camera widest() const;
     /// True if a new shot began after `before`, up to and including `now`.
     bool cutBetween(double before, double now) const;
     double duration() const { return keys_.back().time; }  ///< seconds
@@ -38,8 +42,8 @@ class CameraPath {
 };
 
 /// Reads a path. Throws InputError if it is not JSON, has an unknown name, a key without time, eye or target,
-/// times that do not increase, an eye equal to its target, an up vector parallel to the view, or a field of
-/// view not between 0 and 180 degrees.
+/// times that do not increase, an eye equal to its target, an up vector parallel to the view, a field of view
+/// not between 0 and 180 degrees, or a lens of negative size or without a distance.
 CameraPath loadCameraPath(const std::filesystem::path& file);
 
 /// "orbit": once around the camera's target in 10 s; "dolly": towards it and back in 4 s; "shake": a

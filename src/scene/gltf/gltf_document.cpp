@@ -21,11 +21,21 @@ namespace {
 constexpr size_t maxWarnings = 16;
 
 /// Supported extensions, except the compressions, which depend on the build.
-constexpr std::array supportedExtensions = {
-    "KHR_lights_punctual",  "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",    "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_unlit",  "KHR_materials_volume",    "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array supportedExtensions = {"KHR_materials_anisotropy",
+                                            "KHR_materials_diffuse_transmission",
+                                            "KHR_materials_dispersion",
+                                            "KHR_materials_sheen",
+                                            "KHR_lights_punctual",
+                                            "KHR_materials_clearcoat",
+                                            "KHR_materials_emissive_strength",
+                                            "KHR_materials_ior",
+                                            "KHR_materials_iridescence",
+                                            "KHR_materials_specular",
+                                            "KHR_materials_transmission",
+                                            "KHR_materials_unlit",
+                                            "KHR_materials_volume",
+                                            "KHR_mesh_quantization",
+                                            "KHR_texture_transform"};
 /// Metadata that does not affect pictures, so it is ignored without a warning.
 constexpr std::array harmlessExtensions = {"KHR_xmp", "KHR_xmp_json_ld"};
 

@@ -88,6 +88,61 @@ void readClearcoat(Document& document, const Object& source, TextureLibrary& tex
     material.clearcoatNormalScale = clearcoat->object("clearcoatNormalTexture")->number("scale", 1.0f);
 }
 
+/// Reads a colour whose channels have the range 0 to 1.
+vec3 colorFactor(Document& document, const Object& owner, const char* key, const vec3& absent) {
+    const vec3 value = owner.vector(key, absent);
+    const vec3 clamped = glm::clamp(value, 0.0f, 1.0f);
+    if (clamped != value) document.warn(owner.place() + "." + key + " is out of range and clamped");
+    return clamped;
+}
+
+void readAnisotropy(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
+    const auto anisotropy = source.extension("KHR_materials_anisotropy");
+    if (!anisotropy) return;
+    material.anisotropy = factor(document, *anisotropy, "anisotropyStrength", 0.0f);
+    if (material.anisotropy == 0.0f) return;
+    material.anisotropyRotation = anisotropy->number("anisotropyRotation", 0.0f);
+    material.anisotropyTexture = textures.add(*anisotropy, "anisotropyTexture", false);
+}
+
+void readSheen(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
+    const auto sheen = source.extension("KHR_materials_sheen");
+    if (!sheen) return;
+    material.sheenColor = colorFactor(document, *sheen, "sheenColorFactor", vec3(0.0f));
+    if (material.sheenColor == vec3(0.0f)) return;
+    material.sheenRoughness = factor(document, *sheen, "sheenRoughnessFactor", 0.0f);
+    material.sheenColorTexture = textures.add(*sheen, "sheenColorTexture", true);
+    material.sheenRoughnessTexture = textures.add(*sheen, "sheenRoughnessTexture", false);
+}
+
+void readDiffuseTransmission(Document& document, const Object& source, TextureLibrary& textures,
+                             Material& material) {
+    const auto diffuse = source.extension("KHR_materials_diffuse_transmission");
+    if (!diffuse) return;
+    material.diffuseTransmission = factor(document, *diffuse, "diffuseTransmissionFactor", 0.0f);
+    if (material.diffuseTransmission == 0.0f) return;
+    material.diffuseTransmissionTexture = textures.add(*diffuse, "diffuseTransmissionTexture", false);
+    material.diffuseTransmissionColor =
+        colorFactor(document, *diffuse, "diffuseTransmissionColorFactor", vec3(1.0f));
+    material.diffuseTransmissionColorTexture =
+        textures.add(*diffuse, "diffuseTransmissionColorTexture", true);
+}
+
+void readIridescence(Document& document, const Object& source, TextureLibrary& textures, Material& material) {
+    const auto film = source.extension("KHR_materials_iridescence");
+    if (!film) return;
+    material.iridescence = factor(document, *film, "iridescenceFactor", 0.0f);
+    if (material.iridescence == 0.0f) return;
+    constexpr float thickest = 1e9f;
+    material.iridescenceIor = std::max(factor(document, *film, "iridescenceIor", 1.3f, 1e3f), 1.0f);
+    material.iridescenceThicknessMin =
+        factor(document, *film, "iridescenceThicknessMinimum", 100.0f, thickest);
+    material.iridescenceThicknessMax =
+        factor(document, *film, "iridescenceThicknessMaximum", 400.0f, thickest);
+    material.iridescenceTexture = textures.add(*film, "iridescenceTexture", false);
+    material.iridescenceThicknessTexture = textures.add(*film, "iridescenceThicknessTexture", false);
+}
+
 void readTransmission(Document& document, const Object& source, TextureLibrary& textures,
                       Material& material) {
     if (const auto transmission = source.extension("KHR_materials_transmission")) {
@@ -137,6 +192,12 @@ Material readMaterial(Document& document, const Object& source, TextureLibrary& 
     readSpecular(document, source, textures, material);
     readTransmission(document, source, textures, material);
     readVolume(document, source, material);
+    if (const auto dispersion = source.extension("KHR_materials_dispersion"))
+        material.dispersion = factor(document, *dispersion, "dispersion", 0.0f, 1e3f);
+    readAnisotropy(document, source, textures, material);
+    readIridescence(document, source, textures, material);
+    readSheen(document, source, textures, material);
+    readDiffuseTransmission(document, source, textures, material);
     readClearcoat(document, source, textures, material);
     material.doubleSided = source.boolean("doubleSided", false);
     material.unlit = source.extension("KHR_materials_unlit").has_value();

@@ -1,8 +1,9 @@
 // Converts glTF materials to scene::Material.
 //
 // Specification: glTF 2.0, section 3.9 (materials),
-// https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#materials; KHR_materials_clearcoat,
-// _emissive_strength, _ior, _specular, _transmission, _unlit, _volume,
+// https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html#materials; KHR_materials_anisotropy,
+// _clearcoat, _diffuse_transmission, _dispersion, _emissive_strength, _ior, _iridescence, _sheen, _specular,
+// _transmission, _unlit, _volume,
 // https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos
 #pragma once
 

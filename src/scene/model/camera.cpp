@@ -17,6 +17,8 @@ CameraParams cameraParams(const Camera& camera, uint32_t width, uint32_t height)
     params.right = halfWidth * glm::normalize(vec3(camera.toWorld[0]));
     params.up = halfHeight * glm::normalize(vec3(camera.toWorld[1]));
     params.spread = 2.0f * halfHeight / static_cast<float>(height);
+    params.lensRadius = 0.5f * camera.lensDiameter;
+    params.focusDistance = camera.lensDiameter > 0.0f ? camera.focusDistance : 0.0f;
     return params;
 }
 
@@ -24,6 +26,20 @@ Camera lookAt(const vec3& eye, const vec3& target, const vec3& up, float vertica
     Camera camera;
     camera.toWorld = glm::inverse(glm::lookAt(eye, target, up));
     camera.verticalFov = verticalFov;
+    camera.focusDistance = glm::distance(eye, target);
+    return camera;
+}
+
+Camera withLens(Camera camera, const Lens& lens) {
+    constexpr float millimetre = 1e-3f;
+    if (lens.focalLength > 0.0f)
+        camera.verticalFov = 2.0f * std::atan(lens.sensorHeight / (2.0f * lens.focalLength));
+    if (lens.focusDistance > 0.0f) camera.focusDistance = lens.focusDistance;
+    if (lens.diameter >= 0.0f) camera.lensDiameter = lens.diameter;
+    if (lens.fStop > 0.0f) {
+        const float focalLength = lens.sensorHeight / (2.0f * std::tan(0.5f * camera.verticalFov));
+        camera.lensDiameter = millimetre * focalLength / lens.fStop;
+    }
     return camera;
 }
 

@@ -41,7 +41,10 @@ void forEachMaterialUse(const Scene& scene, const Use& use) {
 void addTangents(Scene& scene) {
     std::vector<int> uvSet(scene.meshes.size(), none);
     forEachMaterialUse(scene, [&](size_t mesh, const Material& material) {
-        for (const TextureRef& ref : {material.clearcoatNormalTexture, material.normalTexture}) {
+        // Anisotropy has a direction, with or without a texture.
+        if (material.anisotropy > 0.0f && uvSet[mesh] == none) uvSet[mesh] = 0;
+        for (const TextureRef& ref :
+             {material.anisotropyTexture, material.clearcoatNormalTexture, material.normalTexture}) {
             if (ref) uvSet[mesh] = ref.uvSet;
         }
     });

@@ -84,6 +84,16 @@ struct Material {
                              ///< emission
     float clearcoatRoughness = 0.0f;  ///< perceptual
     float clearcoatNormalScale = 1.0f;
+    float anisotropy = 0.0f;              ///< strength: how much rougher one direction is
+    float anisotropyRotation = 0.0f;      ///< of that direction from the tangent, radians, counter-clockwise
+    vec3 sheenColor{0.0f};                ///< of light that fibres scatter, over all but the coat
+    float sheenRoughness = 0.0f;          ///< perceptual
+    float diffuseTransmission = 0.0f;     ///< share of the diffuse light that goes to the other side
+    vec3 diffuseTransmissionColor{1.0f};  ///< its colour, instead of baseColor
+    float dispersion = 0.0f;              ///< 20 / Abbe number of a refracting body
+    float iridescence = 0.0f;             ///< weight of a thin film over metal and dielectric
+    float iridescenceIor = 1.3f;          ///< of the film
+    float iridescenceThicknessMin = 100.0f, iridescenceThicknessMax = 400.0f;  ///< of the film, nanometres
     vec3 emission{0.0f};        ///< radiance, including its strength
     bool staysEmitter = false;  ///< its triangles remain lights even while it emits nothing
     float normalScale = 1.0f;
@@ -97,6 +107,11 @@ struct Material {
         transmissionTexture;
     TextureRef specularTexture;       ///< alpha: factor of `specular`
     TextureRef specularColorTexture;  ///< RGB: factor of `specularColor`
+    TextureRef
+        anisotropyTexture;  ///< RG: direction in tangent space, from -1 to 1; B: factor of `anisotropy`
+    TextureRef sheenColorTexture, sheenRoughnessTexture;                     ///< RGB, A
+    TextureRef diffuseTransmissionTexture, diffuseTransmissionColorTexture;  ///< A, RGB
+    TextureRef iridescenceTexture, iridescenceThicknessTexture;  ///< R; G: from minimum to maximum
     TextureRef clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture;  ///< R, G, RGB
 };
 
@@ -150,7 +165,10 @@ struct Camera {
     float verticalFov = 0.8f;  ///< radians, perspective
     float halfHeight = 1.0f;   ///< world units, orthographic
     float aspect = 0.0f;       ///< the author's width / height; 0: that of the picture
-    int node = none;           ///< of the rig
+    /// Of a thin lens, world units; 0: a pinhole. Perspective only.
+    float lensDiameter = 0.0f;
+    float focusDistance = 0.0f;  ///< from the camera along its view to the plane in focus; 0: unknown
+    int node = none;             ///< of the rig
 };
 
 struct Scene {

@@ -74,15 +74,29 @@ Fault checkMesh(const Mesh& mesh) {
     return {};
 }
 
+bool isUnitColor(const vec3& color) {
+    return glm::all(glm::greaterThanEqual(color, vec3(0.0f))) &&
+           glm::all(glm::lessThanEqual(color, vec3(1.0f)));
+}
+
 Fault checkMaterial(const Material& m, size_t textures) {
     const auto unit = [](float v) { return v >= 0.0f && v <= 1.0f; };
     if (!isFinite(m.baseColor) || !isRadiance(vec3(m.baseColor)) || !unit(m.baseColor.a))
         return "has a bad base colour";
     if (!unit(m.metallic) || !unit(m.roughness) || !unit(m.specular) || !unit(m.transmission) ||
-        !unit(m.clearcoat) || !unit(m.clearcoatRoughness)) {
+        !unit(m.clearcoat) || !unit(m.clearcoatRoughness) || !unit(m.anisotropy) || !unit(m.sheenRoughness) ||
+        !unit(m.diffuseTransmission) || !unit(m.iridescence)) {
         return "has a factor that is not between 0 and 1";
     }
     if (!(m.ior >= 1.0f && std::isfinite(m.ior))) return "has an index of refraction below 1";
+    if (!isUnitColor(m.sheenColor) || !isUnitColor(m.diffuseTransmissionColor))
+        return "has a colour that is not between 0 and 1";
+    if (!(m.dispersion >= 0.0f && std::isfinite(m.dispersion)) || !std::isfinite(m.anisotropyRotation))
+        return "has a dispersion below 0, or an anisotropy that is not finite";
+    const auto isThickness = [](float v) { return v >= 0.0f && v <= 1e9f; };
+    if (!(m.iridescenceIor >= 1.0f && std::isfinite(m.iridescenceIor)) ||
+        !isThickness(m.iridescenceThicknessMin) || !isThickness(m.iridescenceThicknessMax))
+        return "has a film with a bad index of refraction or thickness";
     if (!isRadiance(m.absorption)) return "has an absorption that is negative or not finite";
     if (!isRadiance(m.emission)) return "has an emission that is negative or not finite";
     if (!std::isfinite(m.normalScale) || !std::isfinite(m.clearcoatNormalScale) ||
@@ -91,7 +105,9 @@ Fault checkMaterial(const Material& m, size_t textures) {
     for (const TextureRef* ref :
          {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.occlusionTexture,
           &m.emissionTexture, &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture,
-          &m.clearcoatTexture, &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture}) {
+          &m.clearcoatTexture, &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture, &m.anisotropyTexture,
+          &m.iridescenceTexture, &m.iridescenceThicknessTexture, &m.sheenColorTexture,
+          &m.sheenRoughnessTexture, &m.diffuseTransmissionTexture, &m.diffuseTransmissionColorTexture}) {
         if (!*ref) continue;
         if (!inRange(ref->texture, textures)) return "uses a texture that does not exist";
         if (ref->uvSet != 0 && ref->uvSet != 1) return "uses a texture coordinate set that does not exist";

@@ -288,6 +288,21 @@ TEST_F(CameraPathFile, FollowsItsKeys) {
     EXPECT_FALSE(path.cutBetween(0.0, 2.9));
 }
 
+TEST_F(CameraPathFile, HasALens) {
+    put(folder / "path.json", R"({"keys": [
+        {"time": 0, "eye": [0, 0, 5], "target": [0, 0, 0], "lens_diameter": 0.02},
+        {"time": 1, "eye": [0, 0, 5], "target": [0, 0, 0], "lens_diameter": 0.04, "focus_distance": 3},
+        {"time": 1.1, "eye": [0, 0, 5], "target": [0, 0, 0]}]})");
+    const CameraPath path = loadCameraPath(folder / "path.json");
+    EXPECT_EQ(path.at(0.0).lensDiameter, 0.02f);
+    EXPECT_EQ(path.at(0.0).focusDistance, 5.0f);
+    EXPECT_EQ(path.at(1.0).focusDistance, 3.0f);
+    EXPECT_GT(path.at(0.5).lensDiameter, 0.02f);
+    EXPECT_EQ(path.widest().lensDiameter, 0.04f);
+    for (int i = 0; i <= 110; ++i) EXPECT_GE(path.at(0.01 * i).lensDiameter, 0.0f);
+    EXPECT_EQ(path.at(2.0).lensDiameter, 0.0f);
+}
+
 TEST_F(CameraPathFile, RefusesWhatIsNoPath) {
     refused("no", "JSON");
     refused("{}", "has no \"keys\"");
@@ -303,6 +318,9 @@ TEST_F(CameraPathFile, RefusesWhatIsNoPath) {
         refused(
             std::string(R"({"keys": [{"time": 0, "eye": [0,0,1], "target": [0,0,0], "fov": )") + fov + "}]}",
             "not between 0 and 180");
+    for (const char* lens : {R"("lens_diameter": -1)", R"("focus_distance": 0)"})
+        refused(std::string(R"({"keys": [{"time": 0, "eye": [0,0,1], "target": [0,0,0], )") + lens + "}]}",
+                " is not ");
     refused(R"({"keys": [{"time": 1, "eye": [0,0,1], "target": [0,0,0]},
                          {"time": 1, "eye": [0,0,2], "target": [0,0,0]}]})",
             "is not later");

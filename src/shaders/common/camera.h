@@ -20,6 +20,8 @@ struct CameraParams {
     float spread;  // growth of a pixel's width with distance; for an orthographic camera: the width itself
     vec3 right;
     vec3 up;
+    float lensRadius;     // of a thin lens around origin, world units; 0: a pinhole
+    float focusDistance;  // from origin along forward to the plane in focus; only with a lens
 };
 
 // Where a primary ray goes through its pixel. The first sample since the last reset always goes through the

@@ -5,6 +5,7 @@
 
 #include "shaders/common/camera.h"
 #include "shaders/common/rng.glsl"
+#include "shaders/common/sampling.glsl"
 #include "shaders/trace/trace.glsl"
 
 /// Returns point `index` of the Halton sequence in bases 2 and 3, in [0, 1)^2.
@@ -35,6 +36,22 @@ Ray cameraRay(CameraParams camera, vec2 size, vec2 pixel) {
 
 Ray cameraRay(ViewParams view, vec2 pixel) {
     return cameraRay(view.camera, vec2(view.width, view.height), pixel);
+}
+
+layout(constant_id = 25) const bool HAS_LENS = false;  // the camera has a thin lens, not a pinhole
+
+/// Like cameraRay(), but through a random point of the lens, uniform by area: all rays of one point of the picture meet
+/// where the ray through the lens's centre meets the plane in focus (M. Potmesil, I. Chakravarty, "A lens and aperture
+/// camera model for synthetic image generation", SIGGRAPH 1981; R. L. Cook et al., "Distributed ray tracing", SIGGRAPH
+/// 1984). Draws two random numbers if there is a lens.
+Ray lensRay(ViewParams view, vec2 pixel, inout uint rng) {
+    if (!HAS_LENS) return cameraRay(view, pixel);
+    const CameraParams camera = view.camera;
+    const vec2 p = vec2(2.0, -2.0) * pixel / vec2(view.width, view.height) + vec2(-1.0, 1.0);
+    const vec2 lens = camera.lensRadius * sampleDisc(stratified2(rng));
+    const vec3 shift = lens.x * normalize(camera.right) + lens.y * normalize(camera.up);
+    const vec3 inFocus = camera.focusDistance * (camera.forward + p.x * camera.right + p.y * camera.up);
+    return Ray(camera.origin + shift, normalize(inFocus - shift), INFINITE_DISTANCE);
 }
 
 /// The ray cone for texture filtering: the width at the eye, and its growth with distance (T. Akenine-Moeller

@@ -29,7 +29,9 @@ FirstHit noHit(vec3 direction) {
 }
 
 FirstHit firstHitOf(Surface surface, Bsdf bsdf, float depth, PreviousPoint previous) {
-    return FirstHit(true, surface.position, surface.normal, surface.unlit ? vec3(0.0) : surface.baseColor,
+    vec3 albedo = surface.unlit ? vec3(0.0) : surface.baseColor;
+    if (HAS_DIFFUSE_TRANSMISSION) albedo = mix(albedo, surface.diffuseTransmissionColor, surface.diffuseTransmission);
+    return FirstHit(true, surface.position, surface.normal, albedo,
                     specularAlbedo(bsdf), depth, uvec2(surface.instance, surface.material), previous, vec4(0.0),
                     surface.roughness, vec2(0.0));
 }

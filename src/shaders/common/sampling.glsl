@@ -23,11 +23,32 @@ mat3 frameAround(vec3 n) {
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
+/// Returns an orthonormal frame around a unit vector whose first axis is as near to `direction` as possible; any frame
+/// if it is along the vector, or 0.
+mat3 frameAlong(vec3 n, vec3 direction) {
+    const vec3 t = direction - n * dot(n, direction);
+    const float length2 = dot(t, t);
+    if (length2 < 1e-12) return frameAround(n);
+    const vec3 unit = t * inversesqrt(length2);
+    return mat3(unit, cross(n, unit), n);
+}
+
 /// Samples a direction with probability density cos(theta) / pi about +Z.
 vec3 sampleCosineHemisphere(vec2 u) {
     const float r = sqrt(u.x);
     const float phi = 2.0 * PI * u.y;
     return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+}
+
+/// Samples the unit disc uniformly: P. Shirley, K. Chiu, "A low distortion map between disk and square", JGT 1997.
+/// Neighbours in the square stay neighbours, so evenly spread points stay evenly spread.
+vec2 sampleDisc(vec2 u) {
+    const vec2 q = 2.0 * u - 1.0;
+    const bool wide = abs(q.x) > abs(q.y);
+    const float r = wide ? q.x : q.y;
+    const float ratio = r != 0.0 ? (wide ? q.y : q.x) / r : 0.0;
+    const float phi = 0.25 * PI * (wide ? ratio : 2.0 - ratio);
+    return r * vec2(cos(phi), sin(phi));
 }
 
 /// Samples uniform barycentrics (of vertices 1 and 2).

@@ -24,6 +24,11 @@ layout(constant_id = 14) const bool HAS_CLEARCOAT = true;
 layout(constant_id = 15) const bool HAS_VOLUME = true;        // bodies that absorb light
 layout(constant_id = 16) const bool HAS_SPECULAR_TEXTURES = true;
 layout(constant_id = 18) const bool HAS_ROUGH_GLASS = true;   // rough boundaries that refract
+layout(constant_id = 26) const bool HAS_ANISOTROPY = true;
+layout(constant_id = 27) const bool HAS_SHEEN = true;
+layout(constant_id = 28) const bool HAS_DIFFUSE_TRANSMISSION = true;
+layout(constant_id = 29) const bool HAS_DISPERSION = true;
+layout(constant_id = 30) const bool HAS_IRIDESCENCE = true;
 layout(constant_id = 19) const bool HAS_LIGHT_TREE = false;    // several lights that are not directional
 layout(constant_id = 23) const bool HAS_SUNS = true;          // directional lights
 // A setting of the pass, not of the scene: choose lights by the tree, else by power.

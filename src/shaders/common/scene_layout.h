@@ -61,8 +61,12 @@ LIMPID_CONST uint NODE_BOUNDS_TEXELS = 2u;
 // materials: baseColor rgb | flags; emission | roughness; metallic | specular | ior | transmission;
 // alpha | cutoff | normal scale | 0; texture references (base, metallic-roughness, normal, emission);
 // reference of transmission | specular colour; references (specular, specular colour, clear coat, its
-// roughness); reference of its normal | clear coat | its roughness | its normal scale; absorption | 0.
-LIMPID_CONST uint MATERIAL_TEXELS = 9u;
+// roughness); reference of its normal | clear coat | its roughness | its normal scale; absorption |
+// dispersion; anisotropy | cos, sin of its rotation | reference of its texture; sheen colour | its roughness;
+// references (sheen colour, its roughness, diffuse transmission, its colour); diffuse transmission's colour |
+// its share; iridescence | the film's ior | its least | its greatest thickness; references (iridescence,
+// thickness, none, none).
+LIMPID_CONST uint MATERIAL_TEXELS = 15u;
 LIMPID_CONST uint MATERIAL_MASK = 1u;
 LIMPID_CONST uint MATERIAL_BLEND = 2u;
 LIMPID_CONST uint MATERIAL_DOUBLE_SIDED = 4u;
@@ -120,6 +124,10 @@ LIMPID_CONST uint LIGHT_LINK_INDEX = 0x0FFFFFFFu;
 // B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted
 // averages of A and B, and the share of multiple scattering with a diffuse distribution.
 LIMPID_CONST uint GGX_TABLE_SIZE = 32u;
+// In scenes with sheen, SHEEN_TABLE_SIZE^2 texels follow: x is the albedo of the sheen's lobe, row =
+// roughness, column = square root of the cosine (scene/device/tables/sheen_table.cpp).
+LIMPID_CONST uint SHEEN_TABLE_SIZE = 32u;
+LIMPID_CONST float MIN_SHEEN_ROUGHNESS = 0.07;  // a narrower lobe would reflect grazing light only
 // dielectricTable: multiple scattering at a rough refracting surface, [eta][roughness][cosine], two texels
 // each: gain of the reflecting and of the transmitting lobe, albedo of the diffuse-like reflection and
 // transmission | these two albedos again, their cosine-weighted averages over the row. The first

@@ -1,6 +1,10 @@
-// The material's BSDF: glTF 2.0 metallic-roughness with transmission, below a clear coat (clearcoat.glsl).
+// The material's BSDF: glTF 2.0 metallic-roughness with transmission, below sheen (sheen.glsl), below a clear coat
+// (clearcoat.glsl).
 //
 //   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
+//
+// With iridescence, metal and plastic lie below a film (thin_film.glsl). With diffuse transmission, plastic's base sends a share of its light to the other side of the surface. With
+// anisotropy, all facets have two roughnesses, and multiple scattering is left out (docs/gltf.md).
 //
 // metal: GGX reflection plus multiple scattering between the facets (multipleReflection). plastic: GGX
 // reflection over a diffuse base that gets exactly the energy that the coat transmits, in and out. glass:
@@ -18,12 +22,15 @@
 #include "shaders/material/clearcoat.glsl"
 #include "shaders/material/material.glsl"
 #include "shaders/material/microfacet.glsl"
+#include "shaders/material/sheen.glsl"
+#include "shaders/material/thin_film.glsl"
 
 struct Bsdf {
     mat3 frame;
     vec3 wo;
     vec3 geometricNormal;  // world space, on the viewer's side
     vec3 diffuse;          // albedo of the base below the coat
+    vec3 diffuseBelow;     // the same for light that the base transmits
     vec3 f0;               // Schlick's terms of the reflecting lobe
     float f90;
     float coatF0, coatF90;  // of the dielectric coat alone
@@ -35,6 +42,8 @@ struct Bsdf {
     float glassWeight;     // of the refracting boundary
     float roughGlass;      // same, but 0 if its lobes are perfectly smooth
     float alpha, roughness, eta;
+    vec2 alphas;       // of the frame's x and y, with anisotropy
+    float anisotropy;  // its strength
     bool smoothSurface;
     vec4 albedo;     // ggxAlbedo at wo
     vec3 average;    // ggxAverage
@@ -43,6 +52,11 @@ struct Bsdf {
     vec2 glassDiffuse;  // diffuse-like part of multiple scattering at the boundary: reflected and transmitted
     vec4 probability;   // of sampling the diffuse, reflecting, thin transmitting and refracting lobe
     float belowProbability;  // of sampling the diffuse-like transmission
+    ThinFilm film;         // over metal and plastic
+    vec3 plasticF0;        // of the dielectric without its specular factor
+    vec3 filmedF0;         // mean reflectance of the metal's facets
+    float plainMetal, plastic;  // weights of the metal and of the dielectric below the film
+    Sheen sheen;
     Clearcoat clearcoat;
 };
 
@@ -61,6 +75,9 @@ struct BsdfSample {
 Bsdf lambertianBsdf(Surface s, vec3 toViewer) {
     Bsdf b;
     b.frame = frameAround(s.normal);
+    if (HAS_ANISOTROPY) {
+        if (s.anisotropy > 0.0) b.frame = frameAlong(s.normal, s.anisotropyDirection);
+    }
     b.wo = toViewer * b.frame;
     b.geometricNormal = s.geometricNormal;
     b.diffuse = s.unlit ? vec3(0.0) : s.baseColor;
@@ -75,8 +92,80 @@ vec3 multipleTint(Bsdf b, float cosine) {
     const vec2 grazing = 1.0 - vec2(b.wo.z, cosine);
     const float e = min(0.48 + x * (0.89 - 0.66 * x) + (0.2 - 0.095 * x) * (grazing.x + grazing.y), 1.0);
     const float s = 0.014 + 0.08 * x + (0.069 + x * (1.125 * x - 0.105)) * dot(grazing, grazing);
-    const vec3 f = mix(b.metalF0, vec3(1.0), s);
+    vec3 f = mix(b.metalF0, vec3(1.0), s);
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) f = mix(b.filmedF0, vec3(1.0), s);
+    }
     return f * f * e / (1.0 - f * (1.0 - e));
+}
+
+/// Returns the roughness whose albedos in the tables stand for those of anisotropic facets seen from w: by the facets'
+/// slopes towards w, less a share that makes them reflect no less than they do (fitted; within 0.3 % for a dielectric).
+float tableRoughness(Bsdf b, vec3 w) {
+    if (!HAS_ANISOTROPY) return b.roughness;
+    const float sine2 = dot(w.xy, w.xy);
+    const float along = sine2 > 1e-8 ? length(b.alphas * w.xy) * inversesqrt(sine2) : b.alphas.y;
+    return b.anisotropy > 0.0 ? sqrt(along * (1.0 - 0.5 * b.anisotropy)) : b.roughness;
+}
+
+/// KHR_materials_anisotropy: one axis is rougher. Light that several facets of such a metal or glass scatter is lost.
+void makeAnisotropic(inout Bsdf b, Surface s) {
+    b.alphas = vec2(b.alpha);
+    b.anisotropy = s.anisotropy;
+    if (s.anisotropy <= 0.0) return;
+    const float least = SMOOTH_ROUGHNESS * SMOOTH_ROUGHNESS;
+    const float along = mix(b.alpha, 1.0, s.anisotropy * s.anisotropy);
+    b.smoothSurface = along < least;
+    b.alphas = max(vec2(along, b.alpha), vec2(least));
+    b.metal = 0.0;
+}
+
+/// Returns a facet's reflectance below the film: of Schlick's terms f0, which is multiplied by f90, and f90.
+vec3 filmedReflectance(Bsdf b, float cosine, vec3 f0, float f90) {
+    const vec3 plain = mix(f0, vec3(1.0), schlickWeight(cosine));
+    return f90 * mix(plain, thinFilmReflectance(b.film, cosine, f0), b.film.weight);
+}
+
+/// Returns the reflectance of the reflecting lobe's facets.
+vec3 reflectanceAt(Bsdf b, float cosine) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) {
+            return b.plainMetal * filmedReflectance(b, cosine, b.metalF0, 1.0) +
+                   b.plastic * filmedReflectance(b, cosine, b.plasticF0, b.coatF90);
+        }
+    }
+    return mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+}
+
+/// The cosine of facets that stands for all that are seen: where Schlick's term has its mean over the lobe. `albedo`: of
+/// ggxAlbedo or ggxAverage.
+float meanCosine(vec2 albedo) {
+    return 1.0 - pow(clamp(albedo.y / max(albedo.x + albedo.y, 1e-6), 0.0, 1.0), 0.2);
+}
+
+/// Returns the coat's reflection of uniform light in its strongest channel, of the two terms of the albedo.
+float coatAlbedo(Bsdf b, vec2 albedo) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) {
+            const vec3 r = filmedReflectance(b, meanCosine(albedo), b.plasticF0, b.coatF90);
+            return (albedo.x + albedo.y) * max(r.r, max(r.g, r.b));
+        }
+    }
+    return b.coatF0 * albedo.x + b.coatF90 * albedo.y;
+}
+
+/// Returns its mean over all directions. A film's mean is less certain: it is taken so low that nothing gains energy.
+float coatAverageOf(Bsdf b) {
+    const float average = coatAlbedo(b, b.average.xy);
+    return HAS_IRIDESCENCE && b.film.weight > 0.0 ? 0.9 * average : average;
+}
+
+/// Returns the same as coatAlbedo() for the whole reflecting lobe, in colour.
+vec3 reflectedAlbedo(Bsdf b) {
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) return (b.albedo.x + b.albedo.y) * reflectanceAt(b, meanCosine(b.albedo.xy));
+    }
+    return b.f0 * b.albedo.x + b.f90 * b.albedo.y;
 }
 
 Bsdf makeBsdf(Surface s, vec3 toViewer) {
@@ -89,17 +178,32 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.roughness = s.roughness;
     b.alpha = max(s.roughness * s.roughness, 1e-4);
     b.smoothSurface = s.roughness < SMOOTH_ROUGHNESS;
+    b.metal = metal;
+    if (HAS_ANISOTROPY) makeAnisotropic(b, s);
     b.eta = s.front ? s.ior : 1.0 / s.ior;
     const float root = (s.ior - 1.0) / (s.ior + 1.0);
     // KHR_materials_specular: the base gets what the coat's strongest channel transmits.
-    const vec3 coatF0 = min(root * root * s.specularColor, vec3(1.0)) * s.specular;
+    b.plasticF0 = min(root * root * s.specularColor, vec3(1.0));
+    const vec3 coatF0 = b.plasticF0 * s.specular;
     b.coatF0 = max(coatF0.r, max(coatF0.g, coatF0.b));
     b.coatF90 = s.specular;
     b.f0 = metal * s.baseColor + (dielectric - refracting) * coatF0;
     b.f90 = metal + (dielectric - refracting) * b.coatF90;
-    b.albedo = ggxAlbedo(b.wo.z, b.roughness);
-    b.coatLoss = b.coatF0 * b.albedo.x + b.coatF90 * b.albedo.y;
+    b.albedo = ggxAlbedo(b.wo.z, tableRoughness(b, b.wo));
+    b.metalF0 = s.baseColor;
+    if (HAS_IRIDESCENCE) {
+        const float weight = s.unlit ? 0.0 : s.iridescence * smoothstep(0.0, 0.03, s.iridescenceThickness);
+        b.film = ThinFilm(weight, s.iridescenceIor, s.iridescenceThickness);
+        b.plainMetal = metal;
+        b.plastic = dielectric - refracting;
+    }
+    b.coatLoss = coatAlbedo(b, b.albedo.xy);
     b.diffuse = s.baseColor * (dielectric * (1.0 - transmission));
+    b.diffuseBelow = vec3(0.0);
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        b.diffuseBelow = s.diffuseTransmissionColor * (dielectric * (1.0 - transmission) * s.diffuseTransmission);
+        b.diffuse *= 1.0 - s.diffuseTransmission;
+    }
     b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
     b.glassWeight = refracting;
     b.glass = s.baseColor;
@@ -108,26 +212,39 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.glassDiffuse = vec2(0.0);
     if (HAS_ROUGH_GLASS) {
         b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
-        if (b.roughGlass > 0.0) {
+        if (b.roughGlass > 0.0 && !(HAS_ANISOTROPY && s.anisotropy > 0.0)) {
             const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
             b.glassGain = entry.xy;
             b.glassDiffuse = entry.zw;
         }
     }
-    b.metal = metal;
-    b.metalF0 = s.baseColor;
-    b.average = ggxAverage(b.roughness);
-    b.multiple = metal * multipleTint(b, 2.0 / 3.0);
+    b.average = ggxAverage(tableRoughness(b, vec3(1.0, 0.0, 0.0)));
+    if (HAS_IRIDESCENCE) b.filmedF0 = filmedReflectance(b, meanCosine(b.average.xy), b.metalF0, 1.0);
+    b.multiple = b.metal * multipleTint(b, 2.0 / 3.0);
     const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
     const vec2 spread = b.glassDiffuse * b.glassWeight;
     const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
-                              luminance(b.f0) * b.albedo.x + b.f90 * b.albedo.y + missing * (1.0 - b.average.z),
+                              luminance(reflectedAlbedo(b)) + missing * (1.0 - b.average.z),
                               luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
-    const float sum = dot(weights, vec4(1.0)) + spread.y;
+    float below = spread.y;
+    if (HAS_DIFFUSE_TRANSMISSION) below += luminance(b.diffuseBelow) * (1.0 - b.coatLoss);
+    float sum = dot(weights, vec4(1.0)) + below;
     b.probability = weights / max(sum, 1e-20);
-    b.belowProbability = spread.y / max(sum, 1e-20);
+    b.belowProbability = below / max(sum, 1e-20);
+    if (HAS_SHEEN) {
+        b.sheen = makeSheen(s, b.wo.z, sum);
+        sum = mix(sum, 1.0, b.sheen.albedo);
+    }
     if (HAS_CLEARCOAT) b.clearcoat = makeClearcoat(s, toViewer, sum);
     return b;
+}
+
+bool hasSheen(Bsdf b) {
+    return HAS_SHEEN && b.sheen.color != vec3(0.0);
+}
+
+bool transmitsDiffusely(Bsdf b) {
+    return HAS_DIFFUSE_TRANSMISSION && b.diffuseBelow != vec3(0.0);
 }
 
 /// True if all light is reflected in a single direction.
@@ -136,6 +253,7 @@ bool isPerfectMirror(Bsdf b) {
     if (HAS_CLEARCOAT) {
         if (b.clearcoat.weight > 0.0) return false;
     }
+    if (hasSheen(b) || transmitsDiffusely(b)) return false;
     return b.smoothSurface && b.diffuse == vec3(0.0) && b.through == vec3(0.0) && b.glassWeight == 0.0 && b.f90 > 0.0;
 }
 
@@ -152,6 +270,7 @@ bool isClearGlass(Bsdf b) {
     if (HAS_CLEARCOAT) {
         if (b.clearcoat.weight > 0.0) return false;
     }
+    if (hasSheen(b) || transmitsDiffusely(b)) return false;
     const bool smoothLobes = b.roughGlass == 0.0 && (b.smoothSurface || b.glassWeight == 1.0);
     return isTransmitting(b) && smoothLobes && b.probability.x <= CLEAR_GLASS_DIFFUSE;
 }
@@ -161,9 +280,17 @@ bool sidesAgree(Bsdf b, vec3 wi) {
     return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;
 }
 
+float distributionOf(Bsdf b, vec3 m) {
+    return HAS_ANISOTROPY ? ggxDistribution(m, b.alphas) : ggxDistribution(m, b.alpha);
+}
+
+float lambdaOf(Bsdf b, vec3 w) {
+    return HAS_ANISOTROPY ? ggxLambda(w, b.alphas) : ggxLambda(w.z, b.alpha);
+}
+
 /// Returns the density of the half vector m seen from wo, converted to a density of the reflected direction.
 float reflectionPdf(Bsdf b, vec3 m) {
-    return ggxDistribution(m, b.alpha) / (4.0 * b.wo.z * (1.0 + ggxLambda(b.wo.z, b.alpha)));
+    return distributionOf(b, m) / (4.0 * b.wo.z * (1.0 + lambdaOf(b, b.wo)));
 }
 
 /// Returns the diffuse-like part of a metal's multiple scattering: f for white metal. The product of missing
@@ -181,10 +308,9 @@ float reflectionChance(Bsdf b, float reflectance) {
 }
 
 void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
-    const vec4 albedo = ggxAlbedo(wi.z, b.roughness);
+    const vec4 albedo = ggxAlbedo(wi.z, tableRoughness(b, wi));
     const float cosinePdf = wi.z / PI;
-    const float coatLoss = b.coatF0 * albedo.x + b.coatF90 * albedo.y;
-    const float coatAverage = b.coatF0 * b.average.x + b.coatF90 * b.average.y;
+    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
     value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
     value.specular += multipleTint(b, wi.z) * (b.metal * multipleReflection(b, albedo) * wi.z);
     value.pdf += b.probability.x * cosinePdf;
@@ -192,10 +318,13 @@ void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec3 m = normalize(b.wo + wi);
     const float cosine = dot(b.wo, m);
     const float pdf = reflectionPdf(b, m);
-    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(wi.z, b.alpha);
-    const vec3 fresnel = mix(b.f0, vec3(b.f90), schlickWeight(cosine));
+    const float lambdaOut = lambdaOf(b, b.wo), lambdaIn = lambdaOf(b, wi);
+    const vec3 fresnel = reflectanceAt(b, cosine);
     const float masking = (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn);
-    const vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    vec3 metal = mix(b.metalF0, vec3(1.0), schlickWeight(cosine));
+    if (HAS_IRIDESCENCE) {
+        if (b.film.weight > 0.0) metal = filmedReflectance(b, cosine, b.metalF0, 1.0);
+    }
     value.specular += (fresnel + metal * metal * (b.metal * b.albedo.z * albedo.z)) * (masking * pdf);
     value.pdf += b.probability.y * pdf;
     if (HAS_ROUGH_GLASS) {
@@ -212,7 +341,7 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec3 mirrored = vec3(wi.xy, -wi.z);
     const vec3 paneHalf = normalize(b.wo + mirrored);
     const float panePdf = reflectionPdf(b, paneHalf);
-    const float lambdaOut = ggxLambda(b.wo.z, b.alpha), lambdaIn = ggxLambda(mirrored.z, b.alpha);
+    const float lambdaOut = lambdaOf(b, b.wo), lambdaIn = lambdaOf(b, mirrored);
     const float single = b.albedo.x + b.albedo.y;
     value.specular += b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
     value.pdf += b.probability.z * panePdf;
@@ -225,7 +354,7 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     if (cosOut <= 0.0 || cosIn >= 0.0 || b.roughGlass <= 0.0) return;
     const float reflectance = fresnelDielectric(cosOut, b.eta);
     const float root = cosOut + b.eta * cosIn;
-    const float pdf = ggxDistribution(m, b.alpha) * cosOut / (b.wo.z * (1.0 + lambdaOut)) *
+    const float pdf = distributionOf(b, m) * cosOut / (b.wo.z * (1.0 + lambdaOut)) *
                       (b.eta * b.eta * -cosIn / max(root * root, 1e-20));
     const float masking = transmittedMasking(lambdaOut, lambdaIn);
     value.specular += b.glass * (b.roughGlass * (1.0 - reflectance) * pdf * (masking + b.glassGain.y));
@@ -241,7 +370,16 @@ void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 entry = dielectricEntry(abs(wi.z), b.roughness, above ? b.eta : 1.0 / b.eta, 1);
     const vec2 lobes = b.glassDiffuse * entry.xy / max(entry.zw, vec2(1e-6));
     value.specular += (above ? vec3(lobes.x) : b.glass * lobes.y) * (b.roughGlass * cosinePdf);
-    value.pdf += above ? 0.0 : b.belowProbability * cosinePdf;
+    if (!HAS_DIFFUSE_TRANSMISSION) value.pdf += above ? 0.0 : b.belowProbability * cosinePdf;
+}
+
+/// Adds the light that the base transmits: like plastic's diffuse light, through a coat on either side.
+void addDiffuseTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
+    const vec4 albedo = ggxAlbedo(-wi.z, tableRoughness(b, wi));
+    const float cosinePdf = -wi.z / PI;
+    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
+    value.diffuse += b.diffuseBelow * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
+    value.pdf += b.belowProbability * cosinePdf;
 }
 
 /// Returns f cos and the density with which sampleBsdf draws wi (local), without perfectly smooth lobes.
@@ -259,6 +397,9 @@ BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
     if (HAS_ROUGH_GLASS) {
         if (b.roughGlass > 0.0) addDielectricMultiple(b, wi, value);
     }
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        if (wi.z < 0.0) addDiffuseTransmission(b, wi, value);
+    }
     return value;
 }
 
@@ -266,6 +407,15 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
     const vec3 wi = direction * b.frame;
     BsdfValue value = evaluateLocal(b, wi);
     if (!sidesAgree(b, wi)) value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    if (HAS_SHEEN) {
+        const vec3 sheen = evaluateSheen(b.sheen, b.wo, wi);
+        value.diffuse *= sheen.y;
+        value.specular *= sheen.y;
+        if (sidesAgree(b, wi)) {
+            value.specular += b.sheen.color * sheen.x;
+            value.pdf = mix(value.pdf, sheen.z, b.sheen.probability);
+        }
+    }
     if (HAS_CLEARCOAT) {
         const vec2 coat = evaluateClearcoat(b.clearcoat, b.geometricNormal, direction);
         value.diffuse *= 1.0 - b.clearcoat.albedo;
@@ -281,7 +431,7 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
     vec3 wi = reflected;
     if (lobe == 1u) {
-        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) / b.probability.y;
+        result.value.specular = reflectanceAt(b, b.wo.z) / b.probability.y;
     } else if (lobe == 2u) {
         wi = -b.wo;
         result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
@@ -292,6 +442,7 @@ BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
         wi = transmits ? -vec3(b.wo.xy, cosine) / b.eta : reflected;
         result.value.specular = (transmits ? b.glass : vec3(1.0)) * (b.glassWeight / b.probability.w);
     }
+    if (HAS_SHEEN) result.value.specular *= evaluateSheen(b.sheen, b.wo, wi).y / (1.0 - b.sheen.probability);
     if (HAS_CLEARCOAT) result.value.specular *= (1.0 - b.clearcoat.albedo) / (1.0 - b.clearcoat.probability);
     result.direction = b.frame * wi;
     result.valid = sidesAgree(b, wi);
@@ -307,7 +458,7 @@ BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
         result.value.specular *= pane ? b.probability.z : b.probability.w * (1.0 - reflectance);
     } else {
         result = sampleSmooth(b, 3u, -1.0);
-        result.value.specular = mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z)) + b.glassWeight * reflectance;
+        result.value.specular = reflectanceAt(b, b.wo.z) + b.glassWeight * reflectance;
     }
     result.valid = result.valid && result.value.specular != vec3(0.0);
     return result;
@@ -336,7 +487,7 @@ BsdfSample sampleCoat(Bsdf b, vec2 u) {
 
 /// Samples a local direction from the chosen lobe; z = 0 if there is none.
 vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
-    const vec3 m = sampleVisibleNormal(b.wo, b.alpha, u);
+    const vec3 m = HAS_ANISOTROPY ? sampleVisibleNormal(b.wo, b.alphas, u) : sampleVisibleNormal(b.wo, b.alpha, u);
     const float cosine = dot(b.wo, m);
     const vec3 reflected = 2.0 * cosine * m - b.wo;
     if (lobe == 1u) return reflected.z > 0.0 ? reflected : vec3(0.0);
@@ -357,6 +508,13 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
             BsdfSample coat = sampleCoat(b, u);
             if (!coat.delta) coat.value = evaluateBsdf(b, coat.direction);
             return coat;
+        }
+    }
+    if (HAS_SHEEN) {
+        if (stratified(rng) < b.sheen.probability) {
+            const vec3 wi = sampleSheen(u);
+            const vec3 direction = b.frame * wi;
+            return BsdfSample(direction, evaluateBsdf(b, direction), false, wi.z > 0.0 && sidesAgree(b, wi));
         }
     }
     uint lobe = 0u;
@@ -383,12 +541,13 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
     vec3 wi = sampleCosineHemisphere(u);
     if (HAS_SPECULAR) {
         const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
-        if (lobe != 0u && smoothLobe) return sampleSmooth(b, lobe, choice);
+        const bool diffuse = lobe == 0u || (HAS_DIFFUSE_TRANSMISSION && lobe == 4u);
+        if (!diffuse && smoothLobe) return sampleSmooth(b, lobe, choice);
         if (lobe == 4u) wi.z = -wi.z;
         else if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
     }
     const vec3 direction = b.frame * wi;
-    const BsdfValue value = HAS_CLEARCOAT ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);
+    const BsdfValue value = HAS_CLEARCOAT || HAS_SHEEN ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);
     return BsdfSample(direction, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
 }
 
@@ -397,8 +556,9 @@ vec3 specularAlbedo(Bsdf b) {
     if (!HAS_SPECULAR) return vec3(0.0);
     const float missing = 1.0 - b.albedo.x - b.albedo.y;
     const float reflectance = fresnelDielectric(b.wo.z, b.eta);
-    const vec3 base = b.f0 * b.albedo.x + b.f90 * b.albedo.y + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
+    vec3 base = reflectedAlbedo(b) + b.multiple * missing + b.through * (1.0 - b.coatLoss) +
                       b.glassWeight * mix(b.glass, vec3(1.0), reflectance);
+    if (HAS_SHEEN) base = base * (1.0 - b.sheen.albedo) + b.sheen.color * min(b.sheen.outside, 1.0);
     return HAS_CLEARCOAT ? base * (1.0 - b.clearcoat.albedo) + b.clearcoat.albedo : base;
 }
 

@@ -21,15 +21,29 @@ struct Surface {
     bool thin, unlit;
     float clearcoat, clearcoatRoughness;
     vec3 clearcoatNormal;  // unit, on the viewer's side
+    float anisotropy;           // strength
+    vec3 anisotropyDirection;   // along which it is rougher, unit; 0: unknown
+    vec3 sheenColor;
+    float sheenRoughness;
+    float diffuseTransmission;  // share of the diffuse light
+    vec3 diffuseTransmissionColor;
+    float dispersion;           // 20 / Abbe number
+    float iridescence, iridescenceIor;
+    float iridescenceThickness;  // of the film, nanometres
     vec3 absorption;       // of the body that begins at this surface, per unit of length; 0 if there is none
     bool culled;    // the back of a single-sided material without transmission
     vec3 emission;  // radiance towards the viewer
     float area;     // of the triangle
 };
 
+/// True if light passes through the surface, as glass does or diffusely.
+bool transmitsLight(Surface s) {
+    return s.transmission > 0.0 || (HAS_DIFFUSE_TRANSMISSION && s.diffuseTransmission > 0.0);
+}
+
 /// True if another medium begins behind the surface: a transmitting body, not a thin wall.
 bool isBoundary(Surface s) {
-    return !s.thin && s.transmission > 0.0;
+    return !s.thin && transmitsLight(s);
 }
 
 /// Returns the origin of a ray that leaves the surface in `direction`.
@@ -247,6 +261,72 @@ void applyClearcoatTextures(inout Surface s, int material, VertexData data, Foot
     s.clearcoatRoughness *= materialTexture(refs.w, data, footprint).g;
 }
 
+/// Sets the direction of the greater roughness: the mesh's tangent, turned by the texture and the material's rotation.
+void applyAnisotropy(inout Surface s, int material, VertexData data, Footprint footprint, vec3 normal, vec4 tangent) {
+    const uvec4 record = imageLoad(materials, material + 9);
+    vec2 direction = uintBitsToFloat(record.yz);
+    if (HAS_TEXTURES) {
+        if (record.w != NONE) {
+            const vec3 texel = materialTexture(record.w, data, footprint).rgb;
+            const vec2 axis = texel.rg * 2.0 - 1.0;
+            const float axis2 = dot(axis, axis);
+            const vec2 unit = axis2 > 1e-8 ? axis * inversesqrt(axis2) : vec2(1.0, 0.0);
+            direction = vec2(direction.x * unit.x - direction.y * unit.y, direction.y * unit.x + direction.x * unit.y);
+            s.anisotropy *= texel.b;
+        }
+    }
+    const vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
+    const float length2 = dot(t, t);
+    if (length2 < 1e-12) return;
+    const vec3 unit = t * inversesqrt(length2);
+    s.anisotropyDirection = direction.x * unit + direction.y * tangent.w * cross(normal, unit);
+}
+
+void applySheenTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec4 refs = imageLoad(materials, material + 11);
+    s.sheenColor *= materialTexture(refs.x, data, footprint).rgb;
+    s.sheenRoughness *= materialTexture(refs.y, data, footprint).a;
+}
+
+void applyDiffuseTransmissionTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec4 refs = imageLoad(materials, material + 11);
+    s.diffuseTransmission *= materialTexture(refs.z, data, footprint).a;
+    s.diffuseTransmissionColor *= materialTexture(refs.w, data, footprint).rgb;
+}
+
+/// The film's thickness is between two values if a texture says where, else the greater.
+void applyIridescenceTextures(inout Surface s, int material, VertexData data, Footprint footprint) {
+    const uvec2 refs = imageLoad(materials, material + 14).xy;
+    s.iridescence *= materialTexture(refs.x, data, footprint).r;
+    const float least = uintBitsToFloat(imageLoad(materials, material + 13).z);
+    s.iridescenceThickness = mix(least, s.iridescenceThickness, materialTexture(refs.y, data, footprint).g);
+}
+
+/// Reads the factors of the extensions that few scenes have.
+void loadExtensions(inout Surface s, int material) {
+    s.anisotropy = s.sheenRoughness = s.diffuseTransmission = s.dispersion = 0.0;
+    s.iridescence = s.iridescenceIor = s.iridescenceThickness = 0.0;
+    s.anisotropyDirection = s.sheenColor = s.diffuseTransmissionColor = vec3(0.0);
+    if (HAS_ANISOTROPY) s.anisotropy = uintBitsToFloat(imageLoad(materials, material + 9).x);
+    if (HAS_SHEEN) {
+        const vec4 sheen = uintBitsToFloat(imageLoad(materials, material + 10));
+        s.sheenColor = sheen.rgb;
+        s.sheenRoughness = sheen.w;
+    }
+    if (HAS_DIFFUSE_TRANSMISSION) {
+        const vec4 diffuse = uintBitsToFloat(imageLoad(materials, material + 12));
+        s.diffuseTransmissionColor = diffuse.rgb;
+        s.diffuseTransmission = diffuse.w;
+    }
+    if (HAS_IRIDESCENCE) {
+        const vec4 film = uintBitsToFloat(imageLoad(materials, material + 13));
+        s.iridescence = film.x;
+        s.iridescenceIor = film.y;
+        s.iridescenceThickness = film.w;
+    }
+    if (HAS_DISPERSION) s.dispersion = uintBitsToFloat(imageLoad(materials, material + 8).w);
+}
+
 /// The coat has its own normal map or none; the base's does not affect it.
 vec3 clearcoatNormal(int material, VertexData data, Footprint footprint, vec3 normal, vec4 tangent) {
     const uvec4 coat = imageLoad(materials, material + 7);
@@ -304,6 +384,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     s.clearcoat = coat.x;
     s.clearcoatRoughness = coat.y;
     float coatOverEmission = coat.x;
+    loadExtensions(s, material);
     s.clearcoatNormal = s.geometricNormal;
     if (HAS_VERTEX_DATA) {
         const VertexData data = loadVertexData(shading.xyz, barycentrics);
@@ -344,6 +425,15 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
             if (HAS_TRANSMISSION) {
                 s.transmission *= materialTexture(imageLoad(materials, material + 5).x, data, footprint).r;
             }
+            if (HAS_IRIDESCENCE) applyIridescenceTextures(s, material, data, footprint);
+            if (HAS_SHEEN) applySheenTextures(s, material, data, footprint);
+            if (HAS_DIFFUSE_TRANSMISSION) applyDiffuseTransmissionTextures(s, material, data, footprint);
+        }
+        if (HAS_ANISOTROPY) {
+            const float handedness = data.tangent.w * (instanced && mirrored ? -1.0 : 1.0);
+            const Footprint footprint = footprintOn(v1 - v0, v2 - v0, perpendicular / max(doubleArea, 1e-37),
+                                                    max(doubleArea, 1e-37), toViewer, cone);
+            applyAnisotropy(s, material, data, footprint, normal, vec4(tangent, handedness));
         }
         s.normal = facingNormal(s.front ? normal : -normal, s.geometricNormal, toViewer);
         if (HAS_CLEARCOAT) {
@@ -353,7 +443,7 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     const bool visible = s.front || (m0.w & MATERIAL_DOUBLE_SIDED) != 0u;
     s.emission = s.unlit ? s.baseColor : visible ? s.emission : vec3(0.0);
     if (HAS_CLEARCOAT) s.emission *= emissionThroughClearcoat(coatOverEmission, dot(s.geometricNormal, toViewer));
-    s.culled = !visible && s.transmission == 0.0;
+    s.culled = !visible && !transmitsLight(s);
     s.absorption = vec3(0.0);
     if (HAS_VOLUME) {
         if (isBoundary(s)) s.absorption = uintBitsToFloat(imageLoad(materials, material + 8).xyz);

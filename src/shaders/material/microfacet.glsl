@@ -18,6 +18,20 @@ float ggxLambda(float cosine, float alpha) {
     return 0.5 * (sqrt(1.0 + alpha * alpha * (1.0 - min(c2, 1.0)) / c2) - 1.0);
 }
 
+// The same with a roughness for each axis: E. Heitz, "Understanding the masking-shadowing function in microfacet-based
+// BRDFs", JCGT 2014, section 5.3.
+
+float ggxDistribution(vec3 m, vec2 alpha) {
+    const vec3 v = vec3(alpha.y * m.x, alpha.x * m.y, alpha.x * alpha.y * m.z);
+    const float a2 = alpha.x * alpha.y, d = dot(v, v) / a2;
+    return a2 / (PI * d * d);
+}
+
+float ggxLambda(vec3 w, vec2 alpha) {
+    const vec2 stretched = alpha * w.xy;
+    return 0.5 * (sqrt(1.0 + dot(stretched, stretched) / max(w.z * w.z, 1e-12)) - 1.0);
+}
+
 /// Stirling's series for log Gamma(x), x >= 2, without its constant and linear terms.
 float stirling(float x) {
     return (x - 0.5) * log(x) + (1.0 / 12.0 - 1.0 / (360.0 * x * x)) / x;
@@ -30,7 +44,8 @@ float transmittedMasking(float lambdaOut, float lambdaIn) {
            (1.0 + lambdaIn);
 }
 
-vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u) {
+/// alpha: of both axes.
+vec3 sampleVisibleNormal(vec3 wo, vec2 alpha, vec2 u) {
     const vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
     const float length2 = dot(v.xy, v.xy);
     const vec3 t1 = length2 > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(length2) : vec3(1.0, 0.0, 0.0);
@@ -40,6 +55,10 @@ vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u) {
     const float p2 = mix(sqrt(max(0.0, 1.0 - p1 * p1)), r * sin(phi), s);
     const vec3 n = p1 * t1 + p2 * t2 + sqrt(max(0.0, 1.0 - p1 * p1 - p2 * p2)) * v;
     return normalize(vec3(alpha * n.xy, max(0.0, n.z)));
+}
+
+vec3 sampleVisibleNormal(vec3 wo, float alpha, vec2 u) {
+    return sampleVisibleNormal(wo, vec2(alpha), u);
 }
 
 float schlickWeight(float cosine) {

@@ -18,6 +18,13 @@ layout(set = 0, binding = 20, scalar) uniform Params {
     vec3 clearcoatNormal;
     uint thin, front;
     uint count, perThread, seed;
+    float anisotropy;
+    vec3 anisotropyDirection;
+    vec3 sheenColor;
+    float sheenRoughness;
+    vec3 diffuseTransmissionColor;
+    float diffuseTransmission;
+    float iridescence, iridescenceIor, iridescenceThickness;
 } params;
 
 Bsdf testBsdf() {
@@ -37,5 +44,14 @@ Bsdf testBsdf() {
     s.clearcoat = params.clearcoat;
     s.clearcoatRoughness = params.clearcoatRoughness;
     s.clearcoatNormal = params.clearcoatNormal;
+    s.anisotropy = params.anisotropy;
+    s.anisotropyDirection = params.anisotropyDirection;
+    s.sheenColor = params.sheenColor;
+    s.sheenRoughness = params.sheenRoughness;
+    s.diffuseTransmission = params.diffuseTransmission;
+    s.diffuseTransmissionColor = params.diffuseTransmissionColor;
+    s.iridescence = params.iridescence;
+    s.iridescenceIor = params.iridescenceIor;
+    s.iridescenceThickness = params.iridescenceThickness;
     return makeBsdf(s, params.toViewer);
 }
