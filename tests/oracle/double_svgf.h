@@ -42,9 +42,9 @@ struct SvgfSurfaces {
     std::vector<double> roughness;  ///< 1 if it is unknown
 };
 SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame);
-/// Decodes what a device stored: two words per pixel (normal and roughness, bits of z as
-/// a float) and one (id).
-SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids);
+/// Decodes what a device stored, two words per pixel: normal and roughness, then z (6 bits of exponent and 13 of
+/// mantissa) and the id (13 bits).
+SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words);
 
 /// The history of one signal. Images of another size than the frame's (empty before the first frame) count as
 /// no hit everywhere.

@@ -220,11 +220,14 @@ SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame) {
     return surfaces;
 }
 
-SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids) {
-    SvgfSurfaces surfaces{.id = {ids.begin(), ids.end()}};
+SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words) {
+    SvgfSurfaces surfaces;
     for (size_t i = 0; i + 1 < words.size(); i += 2) {
         surfaces.normal.push_back(decodeOctahedral(words[i], 12));
-        surfaces.distance.push_back(double{std::bit_cast<float>(words[i + 1])});
+        const uint32_t place = words[i + 1], exponent = place >> 26, mantissa = place >> 13 & 0x1FFFu;
+        surfaces.distance.push_back(
+            exponent > 0 ? std::ldexp(1.0 + mantissa / 8192.0, static_cast<int>(exponent) - 32) : 0.0);
+        surfaces.id.push_back(place & 0x1FFFu);
         surfaces.roughness.push_back((words[i] >> 24) / 255.0);
     }
     return surfaces;

@@ -8,13 +8,6 @@
 
 namespace limpid::denoise {
 
-/// What the surfaces stage makes of a frame's layers. Histories of the graph; `previous` holds the previous
-/// frame's surfaces.
-struct Surfaces {
-    gpu::History surfaces;   ///< two words: surface_texel.glsl
-    gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
-};
-
 /// For debugging: whether methods with histories also tell why they kept or rejected those of each pixel, in
 /// DenoiserOutput::reasons.
 struct ReasonsRequest {
@@ -41,9 +34,9 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
-    /// Made by the ingest pass, or empty. With them, methods whose `readsLayers` is false find normal, depth
-    /// and ids empty.
-    Surfaces surfaces;
+    /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them, methods
+    /// whose `readsLayers` is false find normal, depth and ids empty.
+    gpu::History surfaces;
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;

@@ -66,7 +66,7 @@ class Svgf {
     /// Records each pass for all signals before the next pass. Passes of one kind do not wait for each other,
     /// so the device fills up with the second while the first one ends.
     SvgfImages record(bool signalsToo) {
-        const Surfaces surfaces = recordSurfaces(graph_, input_);
+        const History surfaces = recordSurfaces(graph_, input_);
         const std::vector<Signal> all = signals();
         std::vector<Accumulated> accumulated;
         std::vector<ImageHandle> filtered;
@@ -181,7 +181,7 @@ class Svgf {
                 {"BOOST", settings_.boost ? 1u : 0u}};
     }
 
-    Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
+    Accumulated reproject(const Signal& signal, const History& surfaces) {
         const std::string name = "svgf/" + signal.name;
         const Extent tileExtent = tilesOf(extent_, SVGF_TILE);
         const History feedback =
@@ -202,10 +202,8 @@ class Svgf {
             {"motion", input_.motion},
             {"reflectionMotion", signal.reflects ? input_.reflectionMotion : input_.motion},
             {"previousNormal", input_.previousNormal ? input_.previousNormal : input_.motion},
-            {"surfaces", surfaces.surfaces.current},
-            {"instances", surfaces.instances.current},
-            {"surfacesBefore", surfaces.surfaces.previous},
-            {"instancesBefore", surfaces.instances.previous},
+            {"surfaces", surfaces.current},
+            {"surfacesBefore", surfaces.previous},
             {"colorBefore", feedback.previous},
             {"momentsBefore", moments.previous},
             {"color", color},
@@ -234,7 +232,7 @@ class Svgf {
                 feedback, stable.current,  stablePast, moments};
     }
 
-    SignalReasons reasons(const Signal& signal, const Surfaces& surfaces,
+    SignalReasons reasons(const Signal& signal, const History& surfaces,
                           const Accumulated& accumulated) const {
         const SvgfReprojectParams params = reprojectParams(false);
         return recordReasons(
@@ -288,12 +286,12 @@ class Svgf {
                 {"ROUGHNESS", hasRoughness(signal) && settings_.phiRoughness > 0.0f ? 1u : 0u}};
     }
 
-    void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
+    void estimateVariance(const Signal& signal, const History& surfaces, const Accumulated& accumulated) {
         const SvgfFilterParams params = filterParams(1);
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         constants.push_back({"FIREFLIES", settings_.fireflies > 0.0f ? 1u : 0u});
-        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
                                            {"moments", accumulated.moments},
                                            {"color", accumulated.color}};
         if (buffers_) bindings.push_back({"youngTiles", accumulated.youngTiles});
@@ -305,7 +303,7 @@ class Svgf {
                          .extent = buffers_ ? extent_ : levelInvocations(extent_, 1, {1, SVGF_COLUMN})});
     }
 
-    ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+    ImageHandle level(const Signal& signal, const History& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
         const bool mixed = stabilises() && number == settings_.levels;
@@ -323,7 +321,7 @@ class Svgf {
         constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
         graph_.dispatch({.pass = name,
                          .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
-                         .bindings = {{"surfaces", surfaces.surfaces.current},
+                         .bindings = {{"surfaces", surfaces.current},
                                       {"signal", before},
                                       {"filtered", filtered},
                                       {"stablePast", mixed ? accumulated.stablePast : before}},
@@ -336,9 +334,9 @@ class Svgf {
     /// After the first level, whose result is replaced. A last level stabilises, and has to come afterwards.
     bool fillsYoung() const { return settings_.youngRadius > 0 && settings_.levels > 1; }
 
-    void fillYoung(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+    void fillYoung(const Signal& signal, const History& surfaces, const Accumulated& accumulated,
                    ImageHandle filtered) {
-        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
                                            {"moments", accumulated.moments},
                                            {"signal", accumulated.color},
                                            {"filtered", filtered}};

@@ -92,7 +92,7 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
     using gpu::Format;
     const gpu::Extent extent = graph.extent(input.diffuse);
     const gpu::History color = graph.history("temporal/color", Format::RGBA32Float, extent);
-    const Surfaces surfaces = recordSurfaces(graph, input);
+    const gpu::History surfaces = recordSurfaces(graph, input);
     const bool buffers = input.filters == gpu::Backing::Buffer;
     const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
     const TemporalParams params = makeParams(extent, input.camera, settings);
@@ -102,12 +102,10 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
          .bindings = {{"diffuse", input.diffuse},
                       {"specular", input.specular ? input.specular : input.diffuse},
                       {"albedo", input.albedo},
-                      {"surfaces", surfaces.surfaces.current},
-                      {"instances", surfaces.instances.current},
+                      {"surfaces", surfaces.current},
                       {"motion", input.motion},
                       {"previousNormal", input.previousNormal ? input.previousNormal : input.motion},
-                      {"surfacesBefore", surfaces.surfaces.previous},
-                      {"instancesBefore", surfaces.instances.previous},
+                      {"surfacesBefore", surfaces.previous},
                       {"colorBefore", color.previous},
                       {"color", color.current},
                       {"disocclusion", disocclusion}},

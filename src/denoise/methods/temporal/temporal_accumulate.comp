@@ -17,14 +17,12 @@ READ_LAYER(1, diffuse);
 READ_LAYER(2, specular);
 READ_LAYER(3, albedo);
 READ_UINT2(4, surfaces);
-layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D instances;
-READ_LAYER(6, motion);
-READ_LAYER(7, previousNormal);
-READ_UINT2(8, surfacesBefore);
-layout(set = 0, binding = 9, r32ui) uniform readonly uimage2D instancesBefore;
-layout(set = 0, binding = 10, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
-layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D color;
-layout(set = 0, binding = 12, r32ui) uniform writeonly uimage2D disocclusion;
+READ_LAYER(5, motion);
+READ_LAYER(6, previousNormal);
+READ_UINT2(7, surfacesBefore);
+layout(set = 0, binding = 8, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
+layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D color;
+layout(set = 0, binding = 10, r32ui) uniform writeonly uimage2D disocclusion;
 
 const float MAX_FLOAT = 3.4e38;
 

@@ -20,10 +20,9 @@ READ_LAYER(1, normalIn);
 READ_LAYER(2, depthIn);
 READ_LAYER(3, motionIn);
 READ_UINT_LAYER(4, idIn);
-READ_LAYER(8, roughnessIn);
-WRITE_UINT2(5, surfaces);                                                  // surface_texel.glsl
-layout(set = 0, binding = 6, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
-layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D motion;
+READ_LAYER(7, roughnessIn);
+WRITE_UINT2(5, surfaces);  // surface_texel.glsl
+layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D motion;
 
 #include "denoise/stages/ingest/normals.glsl"
 #include "denoise/stages/ingest/still.glsl"
@@ -67,10 +66,8 @@ void main() {
     const bool seen = distance > 0.0;
     const vec3 n = seen ? worldNormal(LOAD_LAYER(normalIn, at)) : vec3(0.0);
     const float rough = ROUGHNESS ? LOAD_LAYER(roughnessIn, at).r : 1.0;
-    STORE_UINT2(surfaces, at, uvec2(packedShading(unitNormal(vec4(n, 0.0)), rough), floatBitsToUint(distance)));
-    uint instance = 1u;
-    if (IDS) instance += LOAD_LAYER(idIn, at).x;
-    imageStore(instances, at, uvec4(seen ? instance : 0u));
+    const uint id = IDS ? LOAD_LAYER(idIn, at).x : 0u;
+    STORE_UINT2(surfaces, at, uvec2(packedShading(unitNormal(vec4(n, 0.0)), rough), packedPlace(distance, id)));
     const vec4 point = seen ? vec4(positionOf(distance, v, onScreen), 1.0) : vec4(v, 0.0);
     imageStore(motion, at, params.hasPrevious != 0u ? storedMotion(motionOf(at, point, distance)) : vec4(0.0));
 }

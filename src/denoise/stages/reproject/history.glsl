@@ -3,8 +3,7 @@
 //
 // The including shader declares beforehand:
 //   - `params` with camera, width, height and `ReprojectTests tests`
-//   - READ_UINT2 `surfacesBefore`, READ_LAYER `previousNormal`, and the images `instances`, `instancesBefore`.
-//     Constant 8 is used here.
+//   - READ_UINT2 `surfacesBefore`, and READ_LAYER `previousNormal`. Constant 8 is used here.
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
 //   - bool weighsNormals(): whether a tap weighs less by exp2(-s (1 - cosine of the normals)); s is
@@ -75,15 +74,12 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const uvec2 surface = LOAD_UINT2(surfacesBefore, inside);
     const float depth = distanceOf(surface), cosine = dot(expected.normal, normalOf(surface));
-    uint instance = 0u;
-    if (LOAD_AT_ONCE) instance = imageLoad(instancesBefore, inside).x;
     Past there = loadFirst(inside);
     if (LOAD_AT_ONCE) loadRest(there, inside);
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
                         sameNormal(cosine) &&
                         sameDistance(depth, expected) &&
-                        (!comparesInstances() ||
-                         (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
+                        (!comparesInstances() || instanceOf(surface) == expected.instance);
     if (weighsNormals()) weight *= normalWeight(cosine, expected);
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);
@@ -134,7 +130,7 @@ Expected expectedOf(ivec2 at, uvec2 surface, Reprojection was, vec2 size) {
     const float tolerance = depthTolerance(params.camera, depthBefore, normal, vec2(at), size, params.tests);
     vec3 normalBefore = normal;
     if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
-    return Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
+    return Expected(normalBefore, depthBefore, tolerance, instanceOf(surface),
                     weighsNormals() ? normalScaleOf(surface) : 0.0);
 }
 

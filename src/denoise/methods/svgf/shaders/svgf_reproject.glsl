@@ -19,9 +19,7 @@ READ_LAYER(5, motion);
 READ_LAYER(6, previousNormal);
 READ_LAYER(16, reflectionMotion);
 READ_UINT2(7, surfaces);
-layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
-READ_UINT2(9, surfacesBefore);
-layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
+READ_UINT2(8, surfacesBefore);
 READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D momentsBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*

@@ -17,12 +17,10 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_LAYER(3, motion);
 READ_LAYER(4, previousNormal);
 READ_UINT2(5, surfaces);
-layout(set = 0, binding = 6, r32ui) uniform readonly uimage2D instances;
-READ_UINT2(7, surfacesBefore);
-layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instancesBefore;
-layout(set = 0, binding = 9, rgba16f) uniform readonly image2D momentsBefore;
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
-WRITE_UINT1(11, signal);                                                   // visibility_texel.glsl
+READ_UINT2(6, surfacesBefore);
+layout(set = 0, binding = 7, rgba16f) uniform readonly image2D momentsBefore;
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
+WRITE_UINT1(9, signal);                                                   // visibility_texel.glsl
 
 struct Past {
     vec4 moments;
