@@ -3,6 +3,7 @@
 
 #include "base/layers/layer_set.h"
 #include "denoise/api/host_frame.h"
+#include "denoise/stages/normal_encoding.h"
 #include "gpu/graph/frame_graph.h"
 #include "shaders/common/camera.h"
 
@@ -16,7 +17,7 @@ struct ReasonsRequest {
 };
 
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
-/// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
+/// they may have any float format, and albedos may have one pixel that counts for all; networks need rgba32f. `ids` has unsigned components: instance and
 /// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
 /// components. Filters that find specular, albedoSpecular, emission, previousNormal, reflectionMotion or ids
 /// empty do without. Rays go through the same point of all pixels. NaN and infinity are allowed: such
@@ -37,6 +38,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them, methods
     /// whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
+    NormalEncoding normalEncoding{};  ///< of previousNormal
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;

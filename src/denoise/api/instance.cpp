@@ -117,9 +117,6 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
     params.previousClipY = before.clip[1];
     params.previousClipW = before.clip[2];
     params.deviceDepth = now.deviceDepth;
-    params.viewX = now.axes[0];
-    params.viewY = now.axes[1];
-    params.viewZ = now.axes[2];
     const float direction = desc.motion_direction == LIMPID_MOTION_TO_PREVIOUS ? 1.0f : -1.0f;
     const auto width = static_cast<float>(desc.width), height = static_cast<float>(desc.height);
     params.motionToPixels = {direction, direction};
@@ -131,8 +128,9 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
     params.jitter = {camera.jitter[0], camera.jitter[1]};
     params.width = desc.width;
     params.height = desc.height;
-    params.normalEncoding = static_cast<uint>(desc.normal_encoding);
-    params.normalInView = desc.normal_space == LIMPID_SPACE_VIEW ? 1u : 0u;
+    params.normals = {static_cast<uint>(desc.normal_encoding),
+                      desc.normal_space == LIMPID_SPACE_VIEW ? 1u : 0u, now.axes[0], now.axes[1],
+                      now.axes[2]};
     params.depthKind = static_cast<uint>(desc.depth);
     params.reversed = now.reversed ? 1u : 0u;
     params.hasPrevious = hasPrevious ? 1u : 0u;

@@ -144,7 +144,8 @@ class Svgf {
         params.tests = {.normal = settings_.normalTest,
                         .depth = settings_.depthTest,
                         .relative = settings_.relative,
-                        .search = settings_.search};
+                        .search = settings_.search,
+                        .previousNormals = input_.normalEncoding};
         params.minAlbedo = minAlbedo();
         params.lobeScale = 8.0f * log2e / std::max(settings_.lobeTest * settings_.lobeTest, 1e-12f);
         params.alpha = settings_.alpha;

@@ -12,15 +12,16 @@
 namespace limpid::denoise {
 namespace {
 
-TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const TemporalSettings& settings) {
+TemporalParams makeParams(gpu::Extent extent, const DenoiserInput& input, const TemporalSettings& settings) {
     TemporalParams params{};
-    params.camera = camera;
+    params.camera = input.camera;
     params.width = extent.width;
     params.height = extent.height;
     params.tests = {.normal = settings.normal,
                     .depth = settings.depth,
                     .relative = settings.relative,
-                    .search = settings.search};
+                    .search = settings.search,
+                    .previousNormals = input.normalEncoding};
     params.identity = settings.identity;
     params.minAlbedo = settings.demodulate ? settings.minAlbedo : 0.0f;
     params.greyRestart = settings.greyRestart;
@@ -95,7 +96,7 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
     const gpu::History surfaces = recordSurfaces(graph, input);
     const bool buffers = input.filters == gpu::Backing::Buffer;
     const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
-    const TemporalParams params = makeParams(extent, input.camera, settings);
+    const TemporalParams params = makeParams(extent, input, settings);
     graph.dispatch(
         {.pass = "temporal/accumulate",
          .shader = buffers ? shaders::temporal_accumulate_buffers_comp : shaders::temporal_accumulate_comp,

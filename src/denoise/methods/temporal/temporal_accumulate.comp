@@ -81,7 +81,7 @@ void main() {
     const ivec2 at = ivec2(pixel);
     vec3 radiance = LOAD_LAYER(diffuse, at).rgb;
     if (TWO_LIGHTS) radiance += LOAD_LAYER(specular, at).rgb;
-    const vec3 divisor = modulation(LOAD_LAYER(albedo, at), params.minAlbedo);
+    const vec3 divisor = modulation(LOAD_WIDE_LAYER(albedo, at), params.minAlbedo);
     const vec3 x = clamp(radiance / divisor, -MAX_FLOAT, MAX_FLOAT);
     const vec4 moved = LOAD_LAYER(motion, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);

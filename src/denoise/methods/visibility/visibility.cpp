@@ -60,7 +60,11 @@ class Visibility {
     }
 
     ReprojectTests tests() const {
-        return {.normal = settings_.normalTest, .depth = settings_.depthTest, .relative = 1, .search = 1};
+        return {.normal = settings_.normalTest,
+                .depth = settings_.depthTest,
+                .relative = 1,
+                .search = 1,
+                .previousNormals = input_.normalEncoding};
     }
 
     float longest() const { return std::max(SVGF_YOUNG, 1.0f / settings_.alpha); }

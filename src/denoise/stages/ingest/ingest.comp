@@ -24,7 +24,7 @@ READ_LAYER(7, roughnessIn);
 WRITE_UINT2(5, surfaces);  // surface_texel.glsl
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D motion;
 
-#include "denoise/stages/ingest/normals.glsl"
+#include "denoise/stages/normals.glsl"
 #include "denoise/stages/ingest/still.glsl"
 
 /// The distance along the ray; 0 where nothing is seen. `v` is the ray; its component along the view axis is 1.
@@ -64,7 +64,7 @@ void main() {
     const vec3 v = viewVector(params.camera, onScreen);
     const float distance = distanceOf(LOAD_LAYER(depthIn, at).r, v);
     const bool seen = distance > 0.0;
-    const vec3 n = seen ? worldNormal(LOAD_LAYER(normalIn, at)) : vec3(0.0);
+    const vec3 n = seen ? worldNormal(LOAD_LAYER(normalIn, at), params.normals) : vec3(0.0);
     const float rough = ROUGHNESS ? LOAD_LAYER(roughnessIn, at).r : 1.0;
     const uint id = IDS ? LOAD_LAYER(idIn, at).x : 0u;
     STORE_UINT2(surfaces, at, uvec2(packedShading(unitNormal(vec4(n, 0.0)), rough), packedPlace(distance, id)));

@@ -6,7 +6,6 @@
 #include "ingest_given_reflection.comp.h"
 #include "ingest_layers.comp.h"
 #include "ingest_layers_buffers.comp.h"
-#include "ingest_previous_normal.comp.h"
 #include "ingest_reflection.comp.h"
 #include "ingest_reflection_buffers.comp.h"
 #include "ingest_white.comp.h"
@@ -45,18 +44,6 @@ void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestPa
                                   {"MOTION", images.motion ? 1u : 0u},
                                   {"ROUGHNESS", images.roughness ? 1u : 0u}},
                     .extent = {params.width, params.height}});
-}
-
-ImageHandle convertedPreviousNormal(FrameGraph& graph, const IngestImages& images,
-                                    const IngestParams& params) {
-    const ImageHandle normal = make(graph, params, "previousNormal", Format::RGBA16Float);
-    graph.dispatch({.pass = "ingest/previous normal",
-                    .shader = shaders::ingest_previous_normal_comp,
-                    .bindings = {{"previousNormalIn", images.previousNormal}, {"previousNormal", normal}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = {params.width, params.height}});
-    return normal;
 }
 
 void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
@@ -105,9 +92,9 @@ ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& imag
     return motion;
 }
 
-ImageHandle whiteAlbedo(FrameGraph& graph, const IngestParams& params) {
-    const ImageHandle white = make(graph, params, "white", Format::RGBA8Unorm);
-    const gpu::Extent extent = graph.extent(white);
+ImageHandle whiteAlbedo(FrameGraph& graph) {
+    const gpu::Extent extent{1, 1};
+    const ImageHandle white = graph.transient("ingest/white", Format::RGBA8Unorm, extent);
     graph.dispatch({.pass = "ingest/white",
                     .shader = shaders::ingest_white_comp,
                     .bindings = {{"white", white}},
@@ -125,7 +112,8 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
     input.camera = params.camera;
     input.filters = needs.filters;
     convertGuides(graph, images, params, input);
-    if (images.previousNormal) input.previousNormal = convertedPreviousNormal(graph, images, params);
+    input.previousNormal = images.previousNormal;
+    input.normalEncoding = params.normals;
     if (needs.twoSignals && images.reflectionMotion)
         input.reflectionMotion = givenReflectionMotion(graph, images, params);
     else if (needs.twoSignals && images.hitDistance)
@@ -140,7 +128,7 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
     if (!needs.albedo) return input;
     const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {
-        const ImageHandle white = whiteAlbedo(graph, params);
+        const ImageHandle white = whiteAlbedo(graph);
         if (!input.albedo) input.albedo = white;
         if (needsBoth) input.albedoSpecular = white;
     }

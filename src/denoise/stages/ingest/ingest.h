@@ -25,8 +25,8 @@ struct IngestNeeds {
     gpu::Backing filters = gpu::Backing::Image;
 };
 
-/// What filters read of the frame. Light, albedo and ids are the caller's images themselves; normals,
-/// distances and motion are converted. Passes: "ingest"; "ingest/previous normal", "ingest/reflection" and
+/// What filters read of the frame. Light, albedo, ids and previous normals are the caller's images
+/// themselves; normals, distances and motion are converted. Passes: "ingest"; "ingest/reflection" and
 /// "ingest/layers" if there is something to do for them; "ingest/white" if an albedo is missing. Radiance,
 /// normal and depth are required.
 DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, const IngestParams& params,

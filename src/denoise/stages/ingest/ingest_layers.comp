@@ -16,7 +16,7 @@ layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D normal;
 layout(set = 0, binding = 3, rg32f) uniform writeonly image2D depth;
 READ_LAYER(4, normalIn);
 
-#include "denoise/stages/ingest/normals.glsl"
+#include "denoise/stages/normals.glsl"
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -24,6 +24,6 @@ void main() {
     const ivec2 at = ivec2(pixel);
     const float distance = distanceOf(LOAD_UINT2(surfaces, at));
     const bool seen = distance > 0.0;
-    imageStore(normal, at, seen ? nearestHalf(vec4(worldNormal(LOAD_LAYER(normalIn, at)), 0.0)) : vec4(0.0));
+    imageStore(normal, at, seen ? nearestHalf(vec4(worldNormal(LOAD_LAYER(normalIn, at), params.normals), 0.0)) : vec4(0.0));
     imageStore(depth, at, vec4(distance, seen ? 1.0 : 0.0, 0.0, 0.0));
 }

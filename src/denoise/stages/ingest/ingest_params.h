@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_INGEST_PARAMS_H
 #define LIMPID_DENOISE_INGEST_PARAMS_H
 
+#include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -10,11 +11,6 @@ namespace limpid::denoise {
 #else
 #define LIMPID_CONST const
 #endif
-
-LIMPID_CONST uint NORMAL_SIGNED = 0u;
-LIMPID_CONST uint NORMAL_UNORM = 1u;
-LIMPID_CONST uint NORMAL_OCTAHEDRAL_SIGNED = 2u;
-LIMPID_CONST uint NORMAL_OCTAHEDRAL_UNORM = 3u;
 
 LIMPID_CONST uint DEPTH_DISTANCE = 0u;
 LIMPID_CONST uint DEPTH_LINEAR = 1u;
@@ -27,19 +23,15 @@ struct IngestParams {
     vec4 previousClipY;  // y points down
     vec4 previousClipW;
     vec4 deviceDepth;  // elements zz, zw, wz, ww (row, column) of the projection matrix
-    vec3 viewX;        // axes of view space in the world
-    vec3 viewY;
-    vec3 viewZ;
+    NormalEncoding normals;
     vec2 motionToPixels;     // scales motion to previous minus current position
     float motionToDistance;  // scales the third component; 0: motion has none
     float farDepth;
     vec2 jitter;  // pixels
     uint width;
     uint height;
-    uint normalEncoding;  // NORMAL_*
-    uint normalInView;
-    uint depthKind;    // DEPTH_*
-    uint reversed;     // device depth: 0 is far
+    uint depthKind;  // DEPTH_*
+    uint reversed;   // device depth: 0 is far
     uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
 };
 

@@ -15,6 +15,7 @@
 #ifndef LIMPID_HISTORY_GLSL
 #define LIMPID_HISTORY_GLSL
 
+#include "denoise/stages/normals.glsl"
 #include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/reproject/reproject_params.h"
 #include "denoise/stages/surfaces/surface_texel.glsl"
@@ -129,7 +130,9 @@ Expected expectedOf(ivec2 at, uvec2 surface, Reprojection was, vec2 size) {
     const vec3 normal = normalOf(surface);
     const float tolerance = depthTolerance(params.camera, depthBefore, normal, vec2(at), size, params.tests);
     vec3 normalBefore = normal;
-    if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
+    if (TURNS)
+        normalBefore =
+            unitNormal(vec4(worldNormal(LOAD_LAYER(previousNormal, at), params.tests.previousNormals), 0.0));
     return Expected(normalBefore, depthBefore, tolerance, instanceOf(surface),
                     weighsNormals() ? normalScaleOf(surface) : 0.0);
 }

@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_REPROJECT_PARAMS_H
 #define LIMPID_DENOISE_REPROJECT_PARAMS_H
 
+#include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -13,6 +14,7 @@ struct ReprojectTests {
     float depth;    // maximum deviation from the expected distance
     uint relative;  // 1: `depth` is a share of the distance, with more room on tilted planes; 0: world units
     uint search;    // 1: search 3x3 pixels if all four bilinear taps are rejected
+    NormalEncoding previousNormals;
 };
 
 #ifdef __cplusplus
