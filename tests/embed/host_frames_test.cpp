@@ -261,8 +261,8 @@ TEST_F(HostFramesTest, MemoryIsKnownBeforehand) {
     ASSERT_EQ(limpid_denoiser_memory(&desc, 1, &two), LIMPID_OK);
     // docs/embedding.md, "Memory"
     const uint64_t pixels = uint64_t{640} * 360, tiles = uint64_t{80} * 45, largeTiles = uint64_t{40} * 23;
-    EXPECT_EQ(one, pixels * 72 + tiles * 20 + largeTiles * 4);
-    EXPECT_EQ(two, pixels * 128 + tiles * 40 + largeTiles * 8);
+    EXPECT_EQ(one, pixels * 64 + tiles * 20 + largeTiles * 4);
+    EXPECT_EQ(two, pixels * 112 + tiles * 40 + largeTiles * 8);
 }
 
 }  // namespace

@@ -48,7 +48,6 @@ struct SvgfReprojectParams {
     float alphaMoments;
     float alphaFast;
     float longest;             // frames
-    float stabilisationAlpha;  // 1 if there is no stabilised history
     SvgfLagParams lag;
 };
 
@@ -82,6 +81,7 @@ struct SvgfFilterParams {
     float normalScale;         // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;          // log2(e) / phi_depth
     float roughnessScale;      // log2(e) / phi_roughness, of 1 / 255
+    float stabilisationAlpha;  // 1 if there is no stabilised history
     float stabilisationNoise;  // tolerated difference from the stabilised history
     float fireflies;           // tolerated deviations from the neighbours, of a history of one frame
     int youngRadius;           // pixels, of a history of one frame

@@ -14,6 +14,7 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 
 #include "denoise/methods/svgf/shaders/svgf_signal.glsl"
+#include "denoise/methods/svgf/shaders/svgf_stable.glsl"
 
 READ_LAYER(5, motion);
 READ_LAYER(6, previousNormal);
@@ -24,8 +25,8 @@ READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D momentsBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
-READ_HALF4(18, stableBefore);
-WRITE_HALF4(13, stablePast);  // stabilised light | weight of this frame in its mean
+READ_UINT1(18, stableBefore);  // svgf_stable.glsl
+WRITE_UINT1(13, stablePast);
 
 struct Past {
     vec3 color, stable;
@@ -50,7 +51,7 @@ float framesOf(Past past) {
 
 void loadRest(inout Past there, ivec2 at) {
     there.color = LOAD_HALF4(colorBefore, at).rgb;
-    if (STABILISE) there.stable = LOAD_HALF4(stableBefore, at).rgb;
+    if (STABILISE) there.stable = unpackedStable(LOAD_UINT1(stableBefore, at));
 }
 
 void addPast(inout Past sum, Past tap, float weight) {
@@ -82,11 +83,6 @@ Past accumulated(Past past, vec3 x) {
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
 }
 
-/// The weight of this frame's filtered light in the stabilised mean.
-float stableWeight(float frames) {
-    return max(params.stabilisationAlpha, 1.0 / max(frames, 1.0));
-}
-
 /// Returns the moments, as they are stored.
 vec4 accumulate(ivec2 at) {
     const vec3 light = lightAt(at);
@@ -100,6 +96,6 @@ vec4 accumulate(ivec2 at) {
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
     imageStore(moments, at, packed);
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(x, SVGF_NOTHING_SEEN));
-    if (STABILISE) STORE_HALF4(stablePast, at, vec4(now.stable, stableWeight(now.moments.w)));
+    if (STABILISE) STORE_UINT1(stablePast, at, packedStable(now.stable));
     return stored;
 }
