@@ -131,7 +131,7 @@ class IngestReflectionTest : public DenoiseTest {
         desc.width = width;
         desc.height = height;
         const denoise::DenoiserInput input = denoise::ingest(
-            graph_, images, denoise::ingestParams(desc, matricesOf(now, before), true), {.twoSignals = true});
+            graph_, images, denoise::ingestParams(desc, matricesOf(now, before), true), {.twoSignals = true, .layers = true});
         graph_.execute(device());
         return {graph_.downloadFloat(device(), input.motion),
                 graph_.downloadFloat(device(), input.reflectionMotion)};

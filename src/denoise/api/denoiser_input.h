@@ -3,6 +3,7 @@
 
 #include "base/layers/layer_set.h"
 #include "denoise/api/host_frame.h"
+#include "denoise/stages/motion_encoding.h"
 #include "denoise/stages/normal_encoding.h"
 #include "gpu/graph/frame_graph.h"
 #include "shaders/common/camera.h"
@@ -39,6 +40,7 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
     NormalEncoding normalEncoding{};  ///< of previousNormal
+    MotionEncoding motionEncoding{};  ///< of motion and reflectionMotion; anti-aliasing takes layers only
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;

@@ -147,7 +147,8 @@ class Svgf {
                         .depth = settings_.depthTest,
                         .relative = settings_.relative,
                         .search = settings_.search,
-                        .previousNormals = input_.normalEncoding};
+                        .previousNormals = input_.normalEncoding,
+                        .motion = input_.motionEncoding};
         params.minAlbedo = minAlbedo();
         params.lobeScale = 8.0f * log2e / std::max(settings_.lobeTest * settings_.lobeTest, 1e-12f);
         params.alpha = settings_.alpha;

@@ -21,7 +21,8 @@ TemporalParams makeParams(gpu::Extent extent, const DenoiserInput& input, const 
                     .depth = settings.depth,
                     .relative = settings.relative,
                     .search = settings.search,
-                    .previousNormals = input.normalEncoding};
+                    .previousNormals = input.normalEncoding,
+                    .motion = input.motionEncoding};
     params.identity = settings.identity;
     params.minAlbedo = settings.demodulate ? settings.minAlbedo : 0.0f;
     params.greyRestart = settings.greyRestart;

@@ -83,8 +83,8 @@ void main() {
     if (TWO_LIGHTS) radiance += LOAD_LAYER(specular, at).rgb;
     const vec3 divisor = modulation(LOAD_WIDE_LAYER(albedo, at), params.minAlbedo);
     const vec3 x = clamp(radiance / divisor, -MAX_FLOAT, MAX_FLOAT);
-    const vec4 moved = LOAD_LAYER(motion, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
+    const vec4 moved = motionAt(at, surface);
 
     const Past past = pastOf(at, surface, moved);
     const bool hit = distanceOf(surface) > 0.0;

@@ -64,7 +64,8 @@ class Visibility {
                 .depth = settings_.depthTest,
                 .relative = 1,
                 .search = 1,
-                .previousNormals = input_.normalEncoding};
+                .previousNormals = input_.normalEncoding,
+                .motion = input_.motionEncoding};
     }
 
     float longest() const { return std::max(SVGF_YOUNG, 1.0f / settings_.alpha); }

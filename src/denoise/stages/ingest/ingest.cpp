@@ -3,7 +3,6 @@
 #include "denoise/stages/surfaces/surfaces.h"
 #include "ingest.comp.h"
 #include "ingest_buffers.comp.h"
-#include "ingest_given_reflection.comp.h"
 #include "ingest_layers.comp.h"
 #include "ingest_layers_buffers.comp.h"
 #include "ingest_reflection.comp.h"
@@ -26,24 +25,33 @@ bool inBuffers(const DenoiserInput& input) {
     return input.filters == gpu::Backing::Buffer;
 }
 
-void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+/// What is bound in place of motion that the program does not give, and not read.
+ImageHandle motionOrAny(const IngestImages& images) {
+    return images.motion ? images.motion : images.depth;
+}
+
+void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestParams& params, bool layers,
                    DenoiserInput& input) {
     input.surfaces = makeSurfaces(graph, {params.width, params.height}, input.filters);
-    input.motion = make(graph, params, "motion", Format::RGBA16Float);
+    const gpu::Extent motionExtent = layers ? gpu::Extent{params.width, params.height} : gpu::Extent{1, 1};
+    const ImageHandle motion = graph.transient("ingest/motion", Format::RGBA16Float, motionExtent);
     graph.dispatch({.pass = "ingest",
                     .shader = inBuffers(input) ? shaders::ingest_buffers_comp : shaders::ingest_comp,
                     .bindings = {{"normalIn", images.normal},
                                  {"depthIn", images.depth},
-                                 {"motionIn", images.motion ? images.motion : images.depth},
+                                 {"motionIn", motionOrAny(images)},
                                  {"idIn", images.id ? images.id : noIds(graph)},
                                  {"roughnessIn", images.roughness ? images.roughness : images.normal},
                                  {"surfaces", input.surfaces.current},
-                                 {"motion", input.motion}},
+                                 {"motion", motion}},
                     .params = gpu::paramsOf(params),
                     .constants = {{"IDS", images.id ? 1u : 0u},
-                                  {"MOTION", images.motion ? 1u : 0u},
+                                  {"MOTION", layers ? 1u : 0u},
                                   {"ROUGHNESS", images.roughness ? 1u : 0u}},
                     .extent = {params.width, params.height}});
+    input.motion = layers ? motion : motionOrAny(images);
+    input.motionEncoding = params.motion;
+    if (layers) input.motionEncoding.kind = MOTION_LAYER;
 }
 
 void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
@@ -63,18 +71,6 @@ void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams
          .extent = extent});
 }
 
-ImageHandle givenReflectionMotion(FrameGraph& graph, const IngestImages& images, const IngestParams& params) {
-    const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
-    graph.dispatch(
-        {.pass = "ingest/reflection",
-         .shader = shaders::ingest_given_reflection_comp,
-         .bindings = {{"reflectionMotionIn", images.reflectionMotion}, {"reflectionMotion", motion}},
-         .params = gpu::paramsOf(params),
-         .constants = {},
-         .extent = {params.width, params.height}});
-    return motion;
-}
-
 ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& images,
                                      const IngestParams& params, const DenoiserInput& input) {
     const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
@@ -84,7 +80,7 @@ ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& imag
                     .bindings = {{"roughnessIn", images.roughness},
                                  {"hitDistanceIn", images.hitDistance},
                                  {"surfaces", input.surfaces.current},
-                                 {"motion", input.motion},
+                                 {"motionIn", motionOrAny(images)},
                                  {"reflectionMotion", motion}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
@@ -106,16 +102,19 @@ ImageHandle whiteAlbedo(FrameGraph& graph) {
 
 }  // namespace
 
-DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& given,
                      const IngestNeeds& needs) {
+    IngestParams params = given;
+    params.motion.kind = images.motion ? MOTION_GIVEN : MOTION_STILL;
+    params.motion.reflections = images.reflectionMotion ? MOTION_GIVEN : MOTION_LAYER;
     DenoiserInput input;
     input.camera = params.camera;
     input.filters = needs.filters;
-    convertGuides(graph, images, params, input);
+    convertGuides(graph, images, params, needs.layers, input);
     input.previousNormal = images.previousNormal;
     input.normalEncoding = params.normals;
     if (needs.twoSignals && images.reflectionMotion)
-        input.reflectionMotion = givenReflectionMotion(graph, images, params);
+        input.reflectionMotion = images.reflectionMotion;
     else if (needs.twoSignals && images.hitDistance)
         input.reflectionMotion = computedReflectionMotion(graph, images, params, input);
     if (needs.layers) addLayers(graph, images, params, input);

@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_INGEST_PARAMS_H
 #define LIMPID_DENOISE_INGEST_PARAMS_H
 
+#include "denoise/stages/motion_encoding.h"
 #include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
@@ -18,21 +19,14 @@ LIMPID_CONST uint DEPTH_DEVICE = 2u;
 
 struct IngestParams {
     CameraParams camera;
-    CameraParams previousCamera;
-    vec4 previousClipX;  // rows of the previous frame's matrix from world to clip space
-    vec4 previousClipY;  // y points down
-    vec4 previousClipW;
+    MotionEncoding motion;
     vec4 deviceDepth;  // elements zz, zw, wz, ww (row, column) of the projection matrix
     NormalEncoding normals;
-    vec2 motionToPixels;     // scales motion to previous minus current position
-    float motionToDistance;  // scales the third component; 0: motion has none
     float farDepth;
-    vec2 jitter;  // pixels
     uint width;
     uint height;
     uint depthKind;  // DEPTH_*
     uint reversed;   // device depth: 0 is far
-    uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
 };
 
 #undef LIMPID_CONST

@@ -3,7 +3,7 @@
 //
 // The including shader declares beforehand:
 //   - `params` with camera, width, height and `ReprojectTests tests`
-//   - READ_UINT2 `surfacesBefore`, and READ_LAYER `previousNormal`. Constant 8 is used here.
+//   - READ_UINT2 `surfacesBefore`, READ_LAYER `motion` and `previousNormal`. Constant 8 is used here.
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
 //   - bool weighsNormals(): whether a tap weighs less by exp2(-s (1 - cosine of the normals)); s is
@@ -15,6 +15,7 @@
 #ifndef LIMPID_HISTORY_GLSL
 #define LIMPID_HISTORY_GLSL
 
+#include "denoise/stages/motion.glsl"
 #include "denoise/stages/normals.glsl"
 #include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/reproject/reproject_params.h"
@@ -137,7 +138,13 @@ Expected expectedOf(ivec2 at, uvec2 surface, Reprojection was, vec2 size) {
                     weighsNormals() ? normalScaleOf(surface) : 0.0);
 }
 
-/// `moved` is a texel of the `motion` image.
+/// A texel of the layer `motion`, as everywhere below.
+vec4 motionAt(ivec2 at, uvec2 surface) {
+    return motionOfTexel(params.tests.motion, LOAD_LAYER(motion, at), params.camera, vec2(at),
+                         vec2(params.width, params.height), distanceOf(surface));
+}
+
+/// `moved` is what motionAt() returns.
 Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(moved, vec2(at), size);

@@ -156,7 +156,7 @@ Verdict verdictAt(ivec2 at, float now) {
         verdict = verdictOf(at, surface, reflectionMotionAt(at));
         verdict.reason |= REASON_REFLECTED;
     }
-    if (!(verdict.found > 0.0)) verdict = verdictOf(at, surface, LOAD_LAYER(motion, at));
+    if (!(verdict.found > 0.0)) verdict = verdictOf(at, surface, motionAt(at, surface));
     if (wasShortened(verdict.found, now)) verdict.reason = (verdict.reason & ~REASON_MASK) | REASON_SHORTENED;
     return verdict;
 }

@@ -1,11 +1,12 @@
 // How the reflection that a pixel shows has moved. docs/denoising.md, SVGF, step 2.
 //
-// The including shader declares beforehand `params` with width and height, READ_LAYER `reflectionMotion`, and READ_UINT2
+// The including shader declares beforehand `params` with width, height and tests, READ_LAYER `reflectionMotion`, and READ_UINT2
 // `surfaces`.
 #ifndef LIMPID_REFLECTION_MOTION_GLSL
 #define LIMPID_REFLECTION_MOTION_GLSL
 
 #include "denoise/stages/guides.glsl"
+#include "denoise/stages/motion.glsl"
 #include "denoise/stages/surfaces/surface_texel.glsl"
 
 /// The mean over the 3x3 pixels of the same instance: each pixel's value comes from one random ray, or none.
@@ -16,7 +17,7 @@ vec4 reflectionMotionAt(ivec2 at) {
         for (int i = -1; i <= 1; ++i) {
             const ivec2 there = at + ivec2(i, j);
             const ivec2 inside = clamp(there, ivec2(0), ivec2(params.width, params.height) - 1);
-            const vec4 moved = LOAD_LAYER(reflectionMotion, inside);
+            const vec4 moved = reflectionOfTexel(params.tests.motion, LOAD_LAYER(reflectionMotion, inside));
             const vec3 motionThere = moved.xyz / max(moved.w, 1e-20);
             const bool valid = moved.w > 0.0 && isFinite(vec3(moved.w)) && isFinite(motionThere);
             if (inside == there && valid && instanceOf(LOAD_UINT2(surfaces, inside)) == own)

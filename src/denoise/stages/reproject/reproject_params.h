@@ -2,6 +2,7 @@
 #ifndef LIMPID_DENOISE_REPROJECT_PARAMS_H
 #define LIMPID_DENOISE_REPROJECT_PARAMS_H
 
+#include "denoise/stages/motion_encoding.h"
 #include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
@@ -15,6 +16,7 @@ struct ReprojectTests {
     uint relative;  // 1: `depth` is a share of the distance, with more room on tilted planes; 0: world units
     uint search;    // 1: search 3x3 pixels if all four bilinear taps are rejected
     NormalEncoding previousNormals;
+    MotionEncoding motion;
 };
 
 #ifdef __cplusplus

@@ -90,7 +90,7 @@ vec4 accumulate(ivec2 at) {
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     Past now = NO_PAST;
     if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
-    if (framesOf(now) <= 0.0) now = pastOf(at, surface, LOAD_LAYER(motion, at));
+    if (framesOf(now) <= 0.0) now = pastOf(at, surface, motionAt(at, surface));
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = distanceOf(surface) > 0.0;
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);

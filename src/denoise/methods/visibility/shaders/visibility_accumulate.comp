@@ -70,7 +70,7 @@ void main() {
         STORE_UINT1(signal, at, packedSignal(vec2(x < 0.0 ? 1.0 : x, NOTHING_SEEN)));
         return;
     }
-    vec4 now = pastOf(at, surface, LOAD_LAYER(motion, at)).moments;
+    vec4 now = pastOf(at, surface, motionAt(at, surface)).moments;
     const float frames = min(now.w + 1.0, params.longest);
     if (x >= 0.0) now = withSample(now, x, sharesOf(frames), frames);
     const vec4 packed = packedMoments(now);
