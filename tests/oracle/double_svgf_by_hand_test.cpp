@@ -379,7 +379,7 @@ TEST(SvgfTilesByHand, ErrorsOfMomentsAreCarriedThrough) {
 TEST(SvgfTilesByHand, AreReadBilinearly) {
     const HostFrame frame = frontalPlane(16, 1);
     const std::vector<dvec4> zeros(16, dvec4(0));
-    SvgfAccumulated result{zeros, std::vector<dvec4>(16, dvec4(0, 0, 0, 3)), zeros,
+    SvgfAccumulated result{zeros, std::vector<dvec4>(16, dvec4(0, 0, 0, 3)), std::vector<dvec3>(16, dvec3(0)),
                            std::vector<SvgfPixel>(16)};
     svgfShorten(frame, SvgfSignal::Joint, {0.0, 0.8}, {}, result);
     for (size_t p = 0; p < 16; ++p) {

@@ -27,7 +27,7 @@ class Sequence {
         tiles = svgfTiles(frame, result.moments, params_).tiles;
         svgfShorten(frame, signal_, tiles, params_, result);
         history = {frame.width,  frame.height,   svgfSurfaces(frame),
-                   result.color, result.moments, result.color};
+                   result.color, result.moments, {result.color.begin(), result.color.end()}};
         return result;
     }
     SvgfAccumulated next(const HostFrame& frame) {

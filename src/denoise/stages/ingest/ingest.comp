@@ -24,23 +24,9 @@ READ_LAYER(7, roughnessIn);
 WRITE_UINT2(5, surfaces);  // surface_texel.glsl
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D motion;
 
-#include "denoise/stages/normals.glsl"
+#include "denoise/stages/ingest/depth.glsl"
 #include "denoise/stages/motion.glsl"
-
-/// The distance along the ray; 0 where nothing is seen. `v` is the ray; its component along the view axis is 1.
-float distanceOf(float z, vec3 v) {
-    if (params.depthKind == DEPTH_DEVICE) {
-        if (params.reversed != 0u ? !(z > 0.0) : !(z < 1.0)) return 0.0;
-        const vec4 p = params.deviceDepth;
-        z = abs((z * p.w - p.y) / (p.x - z * p.z));
-    } else {
-        if (params.depthKind == DEPTH_LINEAR) z = abs(z);
-        if (!(z > 0.0 && z < params.farDepth)) return 0.0;
-    }
-    const bool alongRay = params.depthKind == DEPTH_DISTANCE || params.camera.orthographic != 0u;
-    const float distance = alongRay ? z : z * length(v);
-    return isinf(distance) ? 0.0 : distance;
-}
+#include "denoise/stages/normals.glsl"
 
 /// In halves: wrong by at most 1/128 pixel up to 32 pixels, and by 1/2048 of itself beyond.
 vec4 motionAt(ivec2 at, float distance) {
@@ -55,7 +41,7 @@ void main() {
     const ivec2 at = ivec2(pixel);
     const vec2 onScreen = pixelOnScreen(vec2(pixel) + params.motion.jitter, vec2(params.width, params.height));
     const vec3 v = viewVector(params.camera, onScreen);
-    const float distance = distanceOf(LOAD_LAYER(depthIn, at).r, v);
+    const float distance = givenDistance(LOAD_LAYER(depthIn, at).r, v);
     const bool seen = distance > 0.0;
     const vec3 n = seen ? worldNormal(LOAD_LAYER(normalIn, at), params.normals) : vec3(0.0);
     const float rough = ROUGHNESS ? LOAD_LAYER(roughnessIn, at).r : 1.0;

@@ -4,7 +4,6 @@
 #include "ingest.comp.h"
 #include "ingest_buffers.comp.h"
 #include "ingest_layers.comp.h"
-#include "ingest_layers_buffers.comp.h"
 #include "ingest_reflection.comp.h"
 #include "ingest_reflection_buffers.comp.h"
 #include "ingest_white.comp.h"
@@ -61,9 +60,9 @@ void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams
     const gpu::Extent extent = graph.extent(input.depth);
     graph.dispatch(
         {.pass = "ingest/layers",
-         .shader = inBuffers(input) ? shaders::ingest_layers_buffers_comp : shaders::ingest_layers_comp,
+         .shader = shaders::ingest_layers_comp,
          .bindings = {{"normalIn", images.normal},
-                      {"surfaces", input.surfaces.current},
+                      {"depthIn", images.depth},
                       {"normal", input.normal},
                       {"depth", input.depth}},
          .params = gpu::paramsOf(params),
