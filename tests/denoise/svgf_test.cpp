@@ -404,9 +404,8 @@ void SvgfPassTest::compare(const HostFrame& frame) {
         if (!HasFatalFailure()) compareLevels(frame, seen, signal, is, colors);
         if (HasFatalFailure()) return;
         const auto fedBack = static_cast<size_t>(std::min(settings_.historyLevel, settings_.levels));
-        before_[signal.name] = {frame.width, frame.height,
-                                seen,        colors[fedBack],
-                                is.moments,  stableNow(signal, colors.back())};
+        before_[signal.name] = {frame.width,     frame.height, seen,
+                                colors[fedBack], is.moments,   stableNow(signal, colors.back())};
         filtered.push_back({signal.signal, colors.back()});
     }
     const std::vector<dvec4> beauty = download(output_.beauty);

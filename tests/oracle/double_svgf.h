@@ -42,8 +42,8 @@ struct SvgfSurfaces {
     std::vector<double> roughness;  ///< 1 if it is unknown
 };
 SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame);
-/// Decodes what a device stored, two words per pixel: normal and roughness, then z (6 bits of exponent and 13 of
-/// mantissa) and the id (13 bits).
+/// Decodes what a device stored, two words per pixel: normal and roughness, then z (6 bits of exponent and 13
+/// of mantissa) and the id (13 bits).
 SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words);
 
 /// The history of one signal. Images of another size than the frame's (empty before the first frame) count as
@@ -148,7 +148,8 @@ std::vector<bool> svgfFillYoung(const denoise::HostFrame& frame, SvgfSignal sign
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
 
-/// Returns b. `frames`: N'; `wasStable`: something has been stabilised before.
+/// Returns b. `frames`: N', 1 - 2^-9 for a history that step 4 shortened to one frame; `wasStable`: something
+/// has been stabilised before.
 double svgfStableWeight(double frames, bool wasStable, const DoubleSvgfParams& params);
 
 /// Decodes a word of stabilised light: three whole numbers of 9 bits with a common exponent in the upper 5.

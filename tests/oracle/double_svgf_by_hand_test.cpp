@@ -117,7 +117,7 @@ TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
     expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 2));
     frame.diffuse[4 * middle + 1] = 2.0f;
     tiles[0] = 1.0;
-    expect(dvec3(4), dvec4(4, 16, 4, 1));
+    expect(dvec3(4), dvec4(4, 16, 4, 1 - 0x1p-9));
     before.moments.assign(25, dvec4(1, 3, 2, 9));  // five frames is the maximum: a share of 0.2 becomes 0.5
     tiles[0] = 0.75;
     expect(dvec3(2.5, 3, 3.5), dvec4(2.5, 9.5, 3, 2));
@@ -139,7 +139,8 @@ TEST_F(SvgfByHand, StableLightIsFollowed) {
     before.stable[12] = before.stable[17] = dvec3(8, 5, 6);  // both of weight 3/8
     EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec3(7, 5, 6)), 1e-6);
     tiles[0] = 1.0;
-    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec3(7, 5, 6)), 1e-6) << "anti-lag leaves it alone";
+    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec3(7, 5, 6)), 1e-6)
+        << "anti-lag leaves it alone";
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
     EXPECT_EQ(accumulate().stablePast[middle], dvec3(0));
 }
@@ -147,6 +148,9 @@ TEST_F(SvgfByHand, StableLightIsFollowed) {
 TEST_F(SvgfByHand, StableLightWeighsAsTheHistoryIsLong) {
     params.stabilisationAlpha = 0.25;
     EXPECT_EQ(svgfStableWeight(0.0, true, params), 1.0);
+    EXPECT_EQ(svgfStableWeight(1.0, true, params), 1.0);
+    EXPECT_EQ(svgfStableWeight(1.0 - 0x1p-9, true, params), 0.5) << "anti-lag leaves stable light alone";
+    EXPECT_EQ(svgfStableWeight(1.5, true, params), 0.5);
     EXPECT_EQ(svgfStableWeight(2.0, true, params), 0.5);
     EXPECT_EQ(svgfStableWeight(9.0, true, params), 0.25);
     EXPECT_EQ(svgfStableWeight(9.0, false, params), 1.0);

@@ -134,7 +134,12 @@ Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     const Reprojection found = reproject(p, pixel);
     if (found.failure != 0) return {};
     return {resample(found, [&](size_t q) { return previous_.color[q]; }),
-            resample(found, [&](size_t q) { return previous_.moments[q]; }), resample(found, [&](size_t q) {
+            resample(found,
+                     [&](size_t q) {
+                         const dvec4& m = previous_.moments[q];
+                         return dvec4(dvec3(m), m.w > 0.0 ? std::max(m.w, 1.0) : m.w);
+                     }),
+            resample(found, [&](size_t q) {
                 return previous_.stable.empty() ? dvec4(0.0) : dvec4(previous_.stable[q], 0.0);
             })};
 }
@@ -252,7 +257,8 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
 }
 
 double svgfStableWeight(double frames, bool wasStable, const DoubleSvgfParams& params) {
-    return wasStable ? std::max(params.stabilisationAlpha, 1.0 / std::max(frames, 1.0)) : 1.0;
+    if (!wasStable || frames == 0.0 || frames == 1.0) return 1.0;
+    return std::max(params.stabilisationAlpha, std::min(1.0 / frames, 0.5));
 }
 
 dvec3 decodeStable(uint32_t word) {

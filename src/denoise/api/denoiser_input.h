@@ -18,12 +18,12 @@ struct ReasonsRequest {
 };
 
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
-/// they may have any float format, and albedos may have one pixel that counts for all; networks need rgba32f. `ids` has unsigned components: instance and
-/// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
-/// components. Filters that find specular, albedoSpecular, emission, previousNormal, reflectionMotion or ids
-/// empty do without. Rays go through the same point of all pixels. NaN and infinity are allowed: such
-/// radiance is rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by
-/// +Z).
+/// they may have any float format, and albedos may have one pixel that counts for all; networks need rgba32f.
+/// `ids` has unsigned components: instance and material, UINT32_MAX where the ray misses. docs/denoising.md,
+/// "What a frame gives", describes the components. Filters that find specular, albedoSpecular, emission,
+/// previousNormal, reflectionMotion or ids empty do without. Rays go through the same point of all pixels.
+/// NaN and infinity are allowed: such radiance is rejected; such a distance, motion or normal counts as
+/// missing (SVGF replaces such a normal by +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
@@ -36,8 +36,8 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
-    /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them, methods
-    /// whose `readsLayers` is false find normal, depth and ids empty.
+    /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
+    /// methods whose `readsLayers` is false find normal, depth and ids empty.
     gpu::History surfaces;
     NormalEncoding normalEncoding{};  ///< of previousNormal
     MotionEncoding motionEncoding{};  ///< of motion and reflectionMotion; anti-aliasing takes layers only

@@ -226,8 +226,7 @@ class Svgf {
         const ImageHandle youngTiles = buffers_ ? graph_.transient(name + " young tiles", Format::R32Float,
                                                                    tilesOf(extent_, SVGF_YOUNG_TILE))
                                                 : ImageHandle{};
-        return {color,    moments.current, tileSums,   tiles,  youngTiles,
-                feedback, stable,          stablePast, moments};
+        return {color, moments.current, tileSums, tiles, youngTiles, feedback, stable, stablePast, moments};
     }
 
     SignalReasons reasons(const Signal& signal, const History& surfaces,
@@ -289,9 +288,8 @@ class Svgf {
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         constants.push_back({"FIREFLIES", settings_.fireflies > 0.0f ? 1u : 0u});
-        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
-                                           {"moments", accumulated.moments},
-                                           {"color", accumulated.color}};
+        std::vector<gpu::Binding> bindings{
+            {"surfaces", surfaces.current}, {"moments", accumulated.moments}, {"color", accumulated.color}};
         if (buffers_) bindings.push_back({"youngTiles", accumulated.youngTiles});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),

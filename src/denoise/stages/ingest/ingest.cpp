@@ -58,16 +58,15 @@ void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams
     input.normal = make(graph, params, "normal", Format::RGBA16Float);
     input.depth = make(graph, params, "depth", Format::RG32Float);
     const gpu::Extent extent = graph.extent(input.depth);
-    graph.dispatch(
-        {.pass = "ingest/layers",
-         .shader = shaders::ingest_layers_comp,
-         .bindings = {{"normalIn", images.normal},
-                      {"depthIn", images.depth},
-                      {"normal", input.normal},
-                      {"depth", input.depth}},
-         .params = gpu::paramsOf(params),
-         .constants = {},
-         .extent = extent});
+    graph.dispatch({.pass = "ingest/layers",
+                    .shader = shaders::ingest_layers_comp,
+                    .bindings = {{"normalIn", images.normal},
+                                 {"depthIn", images.depth},
+                                 {"normal", input.normal},
+                                 {"depth", input.depth}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
 }
 
 ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& images,

@@ -184,7 +184,9 @@ void addTo(inout Centre centre, Tap tap, ivec2 from) {
 vec3 mixedWithPast(vec4 now, vec3 past, float frames) {
     const float l = luminance(now.rgb), change = abs(luminance(past) - l);
     const float noise = params.stabilisationNoise * max(now.a, 0.0) + SVGF_LUMINANCE_FLOOR * abs(l);
-    const float weight = max(params.stabilisationAlpha, 1.0 / max(frames, 1.0));
+    // Only anti-lag leaves less than two frames where there was a history.
+    const bool hadNone = frames == 1.0 || frames == 0.0;
+    const float weight = hadNone ? 1.0 : max(params.stabilisationAlpha, min(1.0 / frames, 0.5));
     return mix(now.rgb, past, (1.0 - weight) * min(noise / max(change, 1e-30), 1.0));
 }
 #endif

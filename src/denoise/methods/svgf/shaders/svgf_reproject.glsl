@@ -42,6 +42,7 @@ bool comparesInstances() {
 Past loadFirst(ivec2 at) {
     Past there = NO_PAST;
     there.moments = unpackedMoments(imageLoad(momentsBefore, at));
+    if (there.moments.w > 0.0) there.moments.w = max(there.moments.w, 1.0);  // SVGF_SHORTENED
     return there;
 }
 
