@@ -106,8 +106,7 @@ class TemporalPassTest : public DenoiseTest, public testing::WithParamInterface<
         TemporalImages images{frame.width, frame.height, download("temporal/accumulate", "color"), {}, {}};
         const DoubleFrame pixels(frame);
         const SvgfSurfaces surfaces =
-            decodeSurfaces(graph_.downloadUint(device(), written("surfaces", "normal_distance")),
-                           graph_.downloadUint(device(), written("surfaces", "instances")));
+            decodeSurfaces(graph_.downloadUint(device(), written("surfaces", "surfaces")));
         for (size_t p = 0; p < frame.pixelCount(); ++p) {
             images.normalDepth.emplace_back(surfaces.normal[p], surfaces.distance[p]);
             images.albedoId.emplace_back(pixels.albedo(p), surfaces.id[p]);

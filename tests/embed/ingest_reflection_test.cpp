@@ -130,8 +130,9 @@ class IngestReflectionTest : public DenoiseTest {
         limpid_denoiser_desc desc = {};
         desc.width = width;
         desc.height = height;
-        const denoise::DenoiserInput input = denoise::ingest(
-            graph_, images, denoise::ingestParams(desc, matricesOf(now, before), true), {.twoSignals = true});
+        const denoise::DenoiserInput input =
+            denoise::ingest(graph_, images, denoise::ingestParams(desc, matricesOf(now, before), true),
+                            {.twoSignals = true, .layers = true});
         graph_.execute(device());
         return {graph_.downloadFloat(device(), input.motion),
                 graph_.downloadFloat(device(), input.reflectionMotion)};

@@ -16,6 +16,13 @@ double marginOf(double threshold, double operands) {
     return 1e-4 * std::abs(threshold) + 1e-6 * operands;
 }
 
+/// As a device stores it, with 13 bits of mantissa.
+double storedDistance(double z) {
+    int exponent = 0;
+    const double mantissa = std::frexp(z, &exponent);
+    return std::ldexp(std::floor(std::ldexp(mantissa, 14) + 0.5), exponent - 14);
+}
+
 double weightOf(const std::vector<Tap>& taps) {
     double sum = 0.0;
     for (const Tap& tap : taps) sum += tap.weight;
@@ -46,7 +53,7 @@ Reprojector::Reprojector(const denoise::HostFrame& frame, const std::vector<Prev
 
 Reprojector::Expected Reprojector::expect(size_t p, const dvec3& motion) const {
     Expected e{frame_.previousNormal(p),
-               frame_.distance(p) + motion.z,
+               storedDistance(frame_.distance(p)) + motion.z,
                frame_.id(p),
                params_.depth,
                0.0,

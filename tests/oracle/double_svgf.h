@@ -43,9 +43,9 @@ struct SvgfSurfaces {
     std::vector<double> roughness;  ///< 1 if it is unknown
 };
 SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame);
-/// Decodes what a device stored: two words per pixel (normal and roughness, bits of z as
-/// a float) and one (id).
-SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids);
+/// Decodes what a device stored, two words per pixel: normal and roughness, then z (6 bits of exponent and 13
+/// of mantissa) and the id (13 bits).
+SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words);
 
 /// The history of one signal. Images of another size than the frame's (empty before the first frame) count as
 /// no hit everywhere.
@@ -54,8 +54,7 @@ struct SvgfHistory {
     SvgfSurfaces surfaces;
     std::vector<dvec4> color;    ///< c; the fourth component is ignored
     std::vector<dvec4> moments;  ///< m1, m2, f, N
-    std::vector<dvec4>
-        stable;  ///< from step 7; the fourth component is ignored. Empty if nothing has been stabilised yet
+    std::vector<dvec3> stable;   ///< from step 7. Empty if nothing has been stabilised yet
 };
 
 struct SvgfPixel {
@@ -65,14 +64,16 @@ struct SvgfPixel {
     /// A decision was so close that float32 may decide otherwise: skip the comparison here.
     bool doubtful = false;
     /// Bounds the change of the results if the reprojected position s is off by one pixel.
-    dvec4 colorSlope{0.0}, momentsSlope{0.0}, stablePastSlope{0.0};
+    dvec4 colorSlope{0.0}, momentsSlope{0.0};
+    dvec3 stablePastSlope{0.0};
     /// The magnitude of the averaged values. Rounding errors are relative to it.
     dvec4 colorOperands{0.0}, momentsOperands{0.0};
 };
 
-/// The result of steps 2 and 3: c' with sigma, the moments (m1', m2', f', N'), and h with b.
+/// The result of steps 2 and 3: c' with sigma, the moments (m1', m2', f', N'), and h.
 struct SvgfAccumulated {
-    std::vector<dvec4> color, moments, stablePast;
+    std::vector<dvec4> color, moments;
+    std::vector<dvec3> stablePast;
     std::vector<SvgfPixel> pixels;
 };
 
@@ -147,6 +148,13 @@ std::vector<bool> svgfFillYoung(const denoise::HostFrame& frame, SvgfSignal sign
 /// frame.
 std::vector<dvec4> svgfLevel(const denoise::HostFrame& frame, SvgfSignal signal, const SvgfSurfaces& surfaces,
                              const std::vector<dvec4>& color, uint32_t i, const DoubleSvgfParams& params);
+
+/// Returns b. `frames`: N', 1 - 2^-9 for a history that step 4 shortened to one frame; `wasStable`: something
+/// has been stabilised before.
+double svgfStableWeight(double frames, bool wasStable, const DoubleSvgfParams& params);
+
+/// Decodes a word of stabilised light: three whole numbers of 9 bits with a common exponent in the upper 5.
+dvec3 decodeStable(uint32_t word);
 
 /// Computes step 7 for one pixel with a hit. `color`: c with sigma; `past`: h with b.
 dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params);

@@ -14,6 +14,8 @@ constexpr size_t tileEdge = 8;
 constexpr double minLength = 1.5;
 /// Smaller lags do not affect a pixel.
 constexpr double minLag = 0.1;
+/// The length of a history that was shortened to one frame.
+constexpr double shortened = 1.0 - 0x1p-9;
 /// Relative rounding error of float32, for one operation and for a sum of 64 numbers.
 constexpr double rounding = 0x1p-24, sumRounding = 64 * rounding;
 
@@ -145,7 +147,7 @@ void shorten(size_t p, double lag, const dvec3& x, const DoubleSvgfParams& param
     for (int i = 0; i < 3; ++i)
         move(moments[i], values[i], furtherShare(alphas[i], length, shorter, kept), lengthSlope,
              pixel.momentsSlope[i], pixel.momentsOperands[i]);
-    moments.w = shorter;
+    moments.w = shorter > 1.0 ? shorter : shortened;
     pixel.momentsSlope.w *= kept;
     color.w = std::min(svgfBoost(shorter, params.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
 }

@@ -117,7 +117,7 @@ TEST_F(SvgfByHand, AntiLagShortensTheHistory) {
     expect(dvec3(1, 2, 3), dvec4(1, 3, 2, 2));
     frame.diffuse[4 * middle + 1] = 2.0f;
     tiles[0] = 1.0;
-    expect(dvec3(4), dvec4(4, 16, 4, 1));
+    expect(dvec3(4), dvec4(4, 16, 4, 1 - 0x1p-9));
     before.moments.assign(25, dvec4(1, 3, 2, 9));  // five frames is the maximum: a share of 0.2 becomes 0.5
     tiles[0] = 0.75;
     expect(dvec3(2.5, 3, 3.5), dvec4(2.5, 9.5, 3, 2));
@@ -134,18 +134,32 @@ TEST_F(SvgfByHand, AntiLagLeavesWhatHasNoHistory) {
 }
 
 TEST_F(SvgfByHand, StableLightIsFollowed) {
-    EXPECT_EQ(accumulate().stablePast[middle], dvec4(0, 0, 0, 1)) << "nothing so far";
-    before.stable.assign(25, dvec4(4, 5, 6, nan));
-    before.stable[12] = before.stable[17] = dvec4(8, 5, 6, nan);  // both of weight 3/8
-    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec4(7, 5, 6, 0.5)), 1e-6);
-    params.stabilisationAlpha = 0.1;  // for the third frame
-    EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6);
+    EXPECT_EQ(accumulate().stablePast[middle], dvec3(0)) << "nothing so far";
+    before.stable.assign(25, dvec3(4, 5, 6));
+    before.stable[12] = before.stable[17] = dvec3(8, 5, 6);  // both of weight 3/8
+    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec3(7, 5, 6)), 1e-6);
     tiles[0] = 1.0;
-    EXPECT_NEAR(accumulate().stablePast[middle].w, 1.0 / 3, 1e-6) << "anti-lag leaves it alone";
-    frame.diffuse[4 * middle] = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(accumulate().stablePast[middle].w, 0.5) << "of two frames";
+    EXPECT_LT(glm::distance(accumulate().stablePast[middle], dvec3(7, 5, 6)), 1e-6)
+        << "anti-lag leaves it alone";
     frame.depth[4 * middle] = frame.depth[4 * middle + 1] = 0.0f;  // the sky
-    EXPECT_EQ(accumulate().stablePast[middle], dvec4(0, 0, 0, 1));
+    EXPECT_EQ(accumulate().stablePast[middle], dvec3(0));
+}
+
+TEST_F(SvgfByHand, StableLightWeighsAsTheHistoryIsLong) {
+    params.stabilisationAlpha = 0.25;
+    EXPECT_EQ(svgfStableWeight(0.0, true, params), 1.0);
+    EXPECT_EQ(svgfStableWeight(1.0, true, params), 1.0);
+    EXPECT_EQ(svgfStableWeight(1.0 - 0x1p-9, true, params), 0.5) << "anti-lag leaves stable light alone";
+    EXPECT_EQ(svgfStableWeight(1.5, true, params), 0.5);
+    EXPECT_EQ(svgfStableWeight(2.0, true, params), 0.5);
+    EXPECT_EQ(svgfStableWeight(9.0, true, params), 0.25);
+    EXPECT_EQ(svgfStableWeight(9.0, false, params), 1.0);
+}
+
+TEST_F(SvgfByHand, StableLightIsDecoded) {
+    EXPECT_EQ(decodeStable(0), dvec3(0));
+    EXPECT_EQ(decodeStable(255u | 1u << 9 | 0x1FFu << 18 | 23u << 27), dvec3(255, 1, -1));
+    EXPECT_EQ(decodeStable(0x100u | 31u << 27), dvec3(-65536, 0, 0));
 }
 
 TEST_F(SvgfByHand, StableLightIsAMeanWithWhatWas) {
@@ -369,7 +383,7 @@ TEST(SvgfTilesByHand, ErrorsOfMomentsAreCarriedThrough) {
 TEST(SvgfTilesByHand, AreReadBilinearly) {
     const HostFrame frame = frontalPlane(16, 1);
     const std::vector<dvec4> zeros(16, dvec4(0));
-    SvgfAccumulated result{zeros, std::vector<dvec4>(16, dvec4(0, 0, 0, 3)), zeros,
+    SvgfAccumulated result{zeros, std::vector<dvec4>(16, dvec4(0, 0, 0, 3)), std::vector<dvec3>(16, dvec3(0)),
                            std::vector<SvgfPixel>(16)};
     svgfShorten(frame, SvgfSignal::Joint, {0.0, 0.8}, {}, result);
     for (size_t p = 0; p < 16; ++p) {

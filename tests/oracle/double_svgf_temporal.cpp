@@ -86,7 +86,6 @@ class Accumulator {
     std::optional<dvec3> reflectionMotion(size_t p) const;
     Reprojection reproject(size_t p, SvgfPixel& pixel) const;
     Old find(size_t p, SvgfPixel& pixel) const;
-    dvec4 stablePast(const Old& old, double frames) const;
     void update(const dvec3& x, const Old& old, dvec4& color, dvec4& moments, SvgfPixel& pixel) const;
 
     const denoise::HostFrame& frame_;
@@ -135,8 +134,13 @@ Accumulator::Old Accumulator::find(size_t p, SvgfPixel& pixel) const {
     const Reprojection found = reproject(p, pixel);
     if (found.failure != 0) return {};
     return {resample(found, [&](size_t q) { return previous_.color[q]; }),
-            resample(found, [&](size_t q) { return previous_.moments[q]; }), resample(found, [&](size_t q) {
-                return previous_.stable.empty() ? dvec4(0.0) : previous_.stable[q];
+            resample(found,
+                     [&](size_t q) {
+                         const dvec4& m = previous_.moments[q];
+                         return dvec4(dvec3(m), m.w > 0.0 ? std::max(m.w, 1.0) : m.w);
+                     }),
+            resample(found, [&](size_t q) {
+                return previous_.stable.empty() ? dvec4(0.0) : dvec4(previous_.stable[q], 0.0);
             })};
 }
 
@@ -171,12 +175,6 @@ void Accumulator::update(const dvec3& x, const Old& old, dvec4& color, dvec4& mo
     pixel.momentsOperands.w = old.moments.mean.w;
 }
 
-/// Returns the stable light h of the previous frame, with its weight b in w.
-dvec4 Accumulator::stablePast(const Old& old, double frames) const {
-    if (previous_.stable.empty()) return {0.0, 0.0, 0.0, 1.0};
-    return {dvec3(old.stable.mean), std::max(params_.stabilisationAlpha, 1.0 / std::max(frames, 1.0))};
-}
-
 void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     const SvgfSample sample = svgfSample(frame_, signal_, p, params_.minAlbedo);
     SvgfPixel& pixel = result.pixels[p];
@@ -185,7 +183,6 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     pixel.rejected = sample.rejected;
     if (pixel.failure == 1) {
         color = dvec4(sample.x, -1.0);
-        result.stablePast[p] = dvec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
     if (sample.rejected) {
@@ -196,10 +193,8 @@ void Accumulator::accumulate(size_t p, SvgfAccumulated& result) const {
     } else {
         update(sample.x, old, color, moments, pixel);
     }
-    result.stablePast[p] = stablePast(old, moments.w);
-    const double length = std::max(moments.w, 1.0);
-    if (!previous_.stable.empty())
-        pixel.stablePastSlope = dvec4(dvec3(old.stable.slope), pixel.momentsSlope.w / (length * length));
+    result.stablePast[p] = dvec3(old.stable.mean);
+    pixel.stablePastSlope = dvec3(old.stable.slope);
     color = glm::clamp(color, -largestHalf, largestHalf);
     color.w =
         std::min(svgfBoost(moments.w, params_.boost) * svgfDeviation(moments.x, moments.y), largestHalf);
@@ -220,11 +215,14 @@ SvgfSurfaces svgfSurfaces(const denoise::HostFrame& frame) {
     return surfaces;
 }
 
-SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words, const std::vector<uint32_t>& ids) {
-    SvgfSurfaces surfaces{.id = {ids.begin(), ids.end()}};
+SvgfSurfaces decodeSurfaces(const std::vector<uint32_t>& words) {
+    SvgfSurfaces surfaces;
     for (size_t i = 0; i + 1 < words.size(); i += 2) {
         surfaces.normal.push_back(decodeOctahedral(words[i], 12));
-        surfaces.distance.push_back(double{std::bit_cast<float>(words[i + 1])});
+        const uint32_t place = words[i + 1], exponent = place >> 26, mantissa = place >> 13 & 0x1FFFu;
+        surfaces.distance.push_back(
+            exponent > 0 ? std::ldexp(1.0 + mantissa / 8192.0, static_cast<int>(exponent) - 32) : 0.0);
+        surfaces.id.push_back(place & 0x1FFFu);
         surfaces.roughness.push_back((words[i] >> 24) / 255.0);
     }
     return surfaces;
@@ -252,9 +250,24 @@ SvgfAccumulated svgfAccumulate(const denoise::HostFrame& frame, SvgfSignal signa
     const SvgfHistory none;
     const Accumulator accumulator(frame, signal, fits ? previous : none, params);
     const std::vector<dvec4> zeros(frame.pixelCount(), dvec4(0.0));
-    SvgfAccumulated result{zeros, zeros, zeros, std::vector<SvgfPixel>(frame.pixelCount())};
+    SvgfAccumulated result{zeros, zeros, std::vector<dvec3>(frame.pixelCount(), dvec3(0.0)),
+                           std::vector<SvgfPixel>(frame.pixelCount())};
     for (size_t p = 0; p < frame.pixelCount(); ++p) accumulator.accumulate(p, result);
     return result;
+}
+
+double svgfStableWeight(double frames, bool wasStable, const DoubleSvgfParams& params) {
+    if (!wasStable || frames == 0.0 || frames == 1.0) return 1.0;
+    return std::max(params.stabilisationAlpha, std::min(1.0 / frames, 0.5));
+}
+
+dvec3 decodeStable(uint32_t word) {
+    dvec3 light(0.0);
+    for (int c = 0; c < 3; ++c) {
+        const auto bits = static_cast<int>(word >> (9 * c) & 0x1FFu);
+        light[c] = std::ldexp(bits < 256 ? bits : bits - 512, static_cast<int>(word >> 27) - 23);
+    }
+    return light;
 }
 
 dvec3 svgfStable(const dvec4& color, const dvec4& past, const DoubleSvgfParams& params) {

@@ -27,7 +27,7 @@ class Sequence {
         tiles = svgfTiles(frame, result.moments, params_).tiles;
         svgfShorten(frame, signal_, tiles, params_, result);
         history = {frame.width,  frame.height,   svgfSurfaces(frame),
-                   result.color, result.moments, result.color};
+                   result.color, result.moments, {result.color.begin(), result.color.end()}};
         return result;
     }
     SvgfAccumulated next(const HostFrame& frame) {
@@ -262,7 +262,8 @@ TEST_P(DoubleSvgfSignal, SlopeAndDoubtCoverErrorsOfPosition) {
         };
         outside += exceeds(dvec4(dvec3(a.color[p]), 0.0), dvec4(dvec3(b.color[p]), 0.0), pixel.colorSlope) ||
                    exceeds(a.moments[p], b.moments[p], pixel.momentsSlope) ||
-                   exceeds(a.stablePast[p], b.stablePast[p], pixel.stablePastSlope);
+                   exceeds(dvec4(a.stablePast[p], 0.0), dvec4(b.stablePast[p], 0.0),
+                           dvec4(pixel.stablePastSlope, 0.0));
     }
     EXPECT_GT(compared, frame.pixelCount() * 9 / 10);
     // If s passes a pixel's centre, other taps are used, which the slope does not include.

@@ -184,7 +184,7 @@ limpid_result limpid_denoiser_memory(const limpid_denoiser_desc* desc, int32_t f
         const limpid_denoiser_desc d = wholeStruct(desc, "limpid_denoiser_desc");
         check(d);
         uint64_t& most = required(bytes, "bytes") = 0;
-        for (const DryFrame& frame : {DryFrame{}, DryFrame{.without = {LIMPID_INPUT_ALBEDO}}}) {
+        for (const DryFrame& frame : {DryFrame{}, DryFrame{.without = {LIMPID_INPUT_REFLECTION_MOTION}}}) {
             gpu::FrameGraph dry(graphOptions(d));
             recordDryFrame(dry, d, {}, for_gpu ? gpu::Backing::Buffer : gpu::Backing::Image, frame, false);
             most = std::max(most, dry.imageBytes());

@@ -3,17 +3,12 @@
 
 #include "base/layers/layer_set.h"
 #include "denoise/api/host_frame.h"
+#include "denoise/stages/motion_encoding.h"
+#include "denoise/stages/normal_encoding.h"
 #include "gpu/graph/frame_graph.h"
 #include "shaders/common/camera.h"
 
 namespace limpid::denoise {
-
-/// What the surfaces stage makes of a frame's layers. Histories of the graph; `previous` holds the previous
-/// frame's surfaces.
-struct Surfaces {
-    gpu::History surfaces;   ///< two words: surface_texel.glsl
-    gpu::History instances;  ///< r32ui: instance number + 1 (0: nothing seen)
-};
 
 /// For debugging: whether methods with histories also tell why they kept or rejected those of each pixel, in
 /// DenoiserOutput::reasons.
@@ -23,12 +18,12 @@ struct ReasonsRequest {
 };
 
 /// One frame: an image for each layer of base/layers/layer_table.h, all of one size. Filters sample them, so
-/// they may have any float format; networks need rgba32f. `ids` has unsigned components: instance and
-/// material, UINT32_MAX where the ray misses. docs/denoising.md, "What a frame gives", describes the
-/// components. Filters that find specular, albedoSpecular, emission, previousNormal, reflectionMotion or ids
-/// empty do without. Rays go through the same point of all pixels. NaN and infinity are allowed: such
-/// radiance is rejected; such a distance, motion or normal counts as missing (SVGF replaces such a normal by
-/// +Z).
+/// they may have any float format, and albedos may have one pixel that counts for all; networks need rgba32f.
+/// `ids` has unsigned components: instance and material, UINT32_MAX where the ray misses. docs/denoising.md,
+/// "What a frame gives", describes the components. Filters that find specular, albedoSpecular, emission,
+/// previousNormal, reflectionMotion or ids empty do without. Rays go through the same point of all pixels.
+/// NaN and infinity are allowed: such radiance is rejected; such a distance, motion or normal counts as
+/// missing (SVGF replaces such a normal by +Z).
 struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     CameraParams camera{};
     /// Samples per pixel in the means. Alpha of diffuse, specular, albedo, normal and depth is the mean
@@ -41,9 +36,11 @@ struct DenoiserInput : LayerSet<gpu::ImageHandle> {
     /// The jitter changes from frame to frame, to smooth edges: TaaSettings::frames is 2 by default.
     bool jitterChanges = false;
     gpu::Backing filters = gpu::Backing::Image;  ///< from gpu::filterBacking(device)
-    /// Made by the ingest pass, or empty. With them, methods whose `readsLayers` is false find normal, depth
-    /// and ids empty.
-    Surfaces surfaces;
+    /// Made by the ingest pass, or empty: what the surfaces stage makes of a frame's layers. With them,
+    /// methods whose `readsLayers` is false find normal, depth and ids empty.
+    gpu::History surfaces;
+    NormalEncoding normalEncoding{};  ///< of previousNormal
+    MotionEncoding motionEncoding{};  ///< of motion and reflectionMotion; anti-aliasing takes layers only
     /// Where a method that ends with the compose stage writes its picture (ComposeInput::target), unless it
     /// is anti-aliased afterwards.
     gpu::ImageHandle target;

@@ -52,6 +52,27 @@ void checkMethod(const limpid_method& method) {
     checkEnum("method", method, static_cast<int>(methods().size()) - 1);
 }
 
+/// Its `kind` and `reflections` follow from the frame's images.
+MotionEncoding motionEncoding(const limpid_denoiser_desc& desc, const limpid_camera& camera,
+                              const CameraMatrices& before, bool hasPrevious) {
+    const float direction = desc.motion_direction == LIMPID_MOTION_TO_PREVIOUS ? 1.0f : -1.0f;
+    const float downwards = desc.clip_y == LIMPID_CLIP_Y_UP ? -1.0f : 1.0f;
+    const auto width = static_cast<float>(desc.width), height = static_cast<float>(desc.height);
+    MotionEncoding encoding{};
+    encoding.hasPrevious = hasPrevious ? 1u : 0u;
+    encoding.toPixels = {direction, direction};
+    if (desc.motion_unit == LIMPID_MOTION_UV) encoding.toPixels = {direction * width, direction * height};
+    if (desc.motion_unit == LIMPID_MOTION_NDC)
+        encoding.toPixels = {0.5f * direction * width, 0.5f * downwards * direction * height};
+    encoding.toDistance = desc.motion_depth == LIMPID_MOTION_DISTANCE ? direction : 0.0f;
+    encoding.jitter = {camera.jitter[0], camera.jitter[1]};
+    encoding.previousCamera = before.params;
+    encoding.previousClipX = before.clip[0];
+    encoding.previousClipY = before.clip[1];
+    encoding.previousClipW = before.clip[2];
+    return encoding;
+}
+
 [[noreturn]] void failUnknown(std::string_view name) {
     throw UsageError(formatText("the method has no parameter '{}'", name));
 }
@@ -112,30 +133,16 @@ IngestParams ingestParams(const limpid_denoiser_desc& desc, const limpid_camera&
                     : now;
     IngestParams params{};
     params.camera = now.params;
-    params.previousCamera = before.params;
-    params.previousClipX = before.clip[0];
-    params.previousClipY = before.clip[1];
-    params.previousClipW = before.clip[2];
+    params.motion = motionEncoding(desc, camera, before, hasPrevious);
     params.deviceDepth = now.deviceDepth;
-    params.viewX = now.axes[0];
-    params.viewY = now.axes[1];
-    params.viewZ = now.axes[2];
-    const float direction = desc.motion_direction == LIMPID_MOTION_TO_PREVIOUS ? 1.0f : -1.0f;
-    const auto width = static_cast<float>(desc.width), height = static_cast<float>(desc.height);
-    params.motionToPixels = {direction, direction};
-    if (desc.motion_unit == LIMPID_MOTION_UV) params.motionToPixels = {direction * width, direction * height};
-    if (desc.motion_unit == LIMPID_MOTION_NDC)
-        params.motionToPixels = {0.5f * direction * width, (yUp ? -0.5f : 0.5f) * direction * height};
-    params.motionToDistance = desc.motion_depth == LIMPID_MOTION_DISTANCE ? direction : 0.0f;
     params.farDepth = desc.far_depth > 0.0f ? desc.far_depth : 1e9f;
-    params.jitter = {camera.jitter[0], camera.jitter[1]};
     params.width = desc.width;
     params.height = desc.height;
-    params.normalEncoding = static_cast<uint>(desc.normal_encoding);
-    params.normalInView = desc.normal_space == LIMPID_SPACE_VIEW ? 1u : 0u;
+    params.normals = {static_cast<uint>(desc.normal_encoding),
+                      desc.normal_space == LIMPID_SPACE_VIEW ? 1u : 0u, now.axes[0], now.axes[1],
+                      now.axes[2]};
     params.depthKind = static_cast<uint>(desc.depth);
     params.reversed = now.reversed ? 1u : 0u;
-    params.hasPrevious = hasPrevious ? 1u : 0u;
     return params;
 }
 
@@ -154,7 +161,7 @@ InstanceOutputs recordFrame(gpu::FrameGraph& graph, const limpid_denoiser_desc& 
                                   .layers = method.readsLayers || antialiases,
                                   .albedo = !method.oneChannel,
                                   .filters = filters});
-    input.jitter = params.jitter;
+    input.jitter = params.motion.jitter;
     if (!antialiases && !used.temporal.showDisocclusion) input.target = target;
     if (desc.method != LIMPID_METHOD_SVGF || !signalsToo)
         return {method.record(graph, input, used).beauty, {}, {}};

@@ -28,7 +28,7 @@ void main() {
     vec4 light = LOAD_LAYER(lightA, at);
     if (TWO_LIGHTS) light.rgb += LOAD_LAYER(lightB, at).rgb;
     if (!MEAN) light.a = 1.0;
-    const vec4 a = LOAD_LAYER(albedo, at);
+    const vec4 a = LOAD_WIDE_LAYER(albedo, at);
     const vec3 factor = modulation(a, params.givenMinAlbedo) / modulation(a, params.minAlbedo);
     const vec3 demodulated = finiteOr(light.rgb, vec3(0.0)) * factor;
     const float z = hitDistance(LOAD_LAYER(depth, at));

@@ -42,7 +42,7 @@ vec3 pointAt(ivec2 at, float distance) {
 
 Tap tapAt(ivec2 at) {
     const float distance = hitDistance(LOAD_LAYER(depth, at));
-    const vec3 light = lightAt(at) / modulation(LOAD_LAYER(albedo, at), params.minAlbedo);
+    const vec3 light = lightAt(at) / modulation(LOAD_WIDE_LAYER(albedo, at), params.minAlbedo);
     const bool counts = distance > 0.0 && isFinite(light);
     return Tap(light, unitNormal(LOAD_LAYER(normal, at)), pointAt(at, distance), counts);
 }
@@ -75,7 +75,7 @@ void main() {
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     // Where no surface is seen, there is nothing to filter.
     const bool seen = hitDistance(LOAD_LAYER(depth, pixel)) > 0.0;
-    vec3 light = seen ? filtered(pixel) * modulation(LOAD_LAYER(albedo, pixel), params.minAlbedo)
+    vec3 light = seen ? filtered(pixel) * modulation(LOAD_WIDE_LAYER(albedo, pixel), params.minAlbedo)
                       : finiteOr(lightAt(pixel), vec3(0.0));
     if (EMISSION) light += finiteOr(LOAD_LAYER(emission, pixel).rgb, vec3(0.0));
     imageStore(beauty, pixel, vec4(light, 1.0));

@@ -11,6 +11,8 @@
 #include "denoise/stages/surfaces/surfaces.h"
 #include "svgf_antilag.comp.h"
 #include "svgf_antilag_buffers.comp.h"
+#include "svgf_last_level.comp.h"
+#include "svgf_last_level_buffers.comp.h"
 #include "svgf_level.comp.h"
 #include "svgf_level_buffers.comp.h"
 #include "svgf_reproject.comp.h"
@@ -49,8 +51,8 @@ struct Accumulated {
     ImageHandle tiles;       ///< r32f: lag
     ImageHandle youngTiles;  ///< r32f: number of young pixels; only with buffers
     History feedback;        ///< of colors; `current` is what the next frame reads
-    ImageHandle stable;      ///< half4: the last level's result, or as `feedback` where that is not kept
-    ImageHandle stablePast;  ///< half4: stable light of before, weight of the light of now
+    History stable;          ///< r32ui, svgf_stable.glsl: light of the last level
+    ImageHandle stablePast;  ///< r32ui: stable light of before, where it is now
     History momentsKept;     ///< `current` is `moments`
 };
 
@@ -66,7 +68,7 @@ class Svgf {
     /// Records each pass for all signals before the next pass. Passes of one kind do not wait for each other,
     /// so the device fills up with the second while the first one ends.
     SvgfImages record(bool signalsToo) {
-        const Surfaces surfaces = recordSurfaces(graph_, input_);
+        const History surfaces = recordSurfaces(graph_, input_);
         const std::vector<Signal> all = signals();
         std::vector<Accumulated> accumulated;
         std::vector<ImageHandle> filtered;
@@ -136,7 +138,7 @@ class Svgf {
                               .pixel = settings_.antilagPixel});
     }
 
-    SvgfReprojectParams reprojectParams(bool wasStable) const {
+    SvgfReprojectParams reprojectParams() const {
         SvgfReprojectParams params{};
         params.camera = input_.camera;
         params.width = extent_.width;
@@ -144,14 +146,15 @@ class Svgf {
         params.tests = {.normal = settings_.normalTest,
                         .depth = settings_.depthTest,
                         .relative = settings_.relative,
-                        .search = settings_.search};
+                        .search = settings_.search,
+                        .previousNormals = input_.normalEncoding,
+                        .motion = input_.motionEncoding};
         params.minAlbedo = minAlbedo();
         params.lobeScale = 8.0f * log2e / std::max(settings_.lobeTest * settings_.lobeTest, 1e-12f);
         params.alpha = settings_.alpha;
         params.alphaMoments = settings_.alphaMoments;
         params.alphaFast = settings_.alphaFast;
         params.lag = lagParams();
-        params.stabilisationAlpha = wasStable ? settings_.stabilisationAlpha : 1.0f;
         // With a shorter limit, all pixels would stay young for ever.
         params.longest = std::max(SVGF_YOUNG, 1.0f / std::min(settings_.alpha, settings_.alphaMoments));
         return params;
@@ -159,12 +162,6 @@ class Svgf {
 
     /// The last of the filter's levels does.
     bool stabilises() const { return settings_.stabilisationAlpha < 1.0f && settings_.levels > 0; }
-
-    /// Stable light is what is fed back, or has a history of its own.
-    History stableOf(const std::string& name, const History& feedback) {
-        if (!stabilises() || fedBack() == settings_.levels) return feedback;
-        return graph_.history(name + " stable", Format::RGBA16Float, extent_, input_.filters);
-    }
 
     /// Adds the images that svgf_signal.glsl declares.
     static std::vector<gpu::Binding> withLight(const Signal& signal, std::vector<gpu::Binding> others) {
@@ -181,7 +178,7 @@ class Svgf {
                 {"BOOST", settings_.boost ? 1u : 0u}};
     }
 
-    Accumulated reproject(const Signal& signal, const Surfaces& surfaces) {
+    Accumulated reproject(const Signal& signal, const History& surfaces) {
         const std::string name = "svgf/" + signal.name;
         const Extent tileExtent = tilesOf(extent_, SVGF_TILE);
         const History feedback =
@@ -189,23 +186,22 @@ class Svgf {
         const History moments = graph_.history(name + " moments", Format::RGBA16Float, extent_);
         const ImageHandle tileSums = graph_.transient(name + " tile sums", Format::RGBA32Float, tileExtent);
         const ImageHandle tiles = graph_.transient(name + " tiles", Format::R32Float, tileExtent);
-        const History stable = stableOf(name, feedback);
+        const Extent stableExtent = stabilises() ? extent_ : Extent{1, 1};
+        const History stable =
+            graph_.history(name + " stable", Format::R32Uint, stableExtent, input_.filters);
         const ImageHandle stablePast =
-            graph_.transient(name + " stable past", Format::RGBA16Float,
-                             stabilises() ? extent_ : Extent{1, 1}, input_.filters);
+            graph_.transient(name + " stable past", Format::R32Uint, stableExtent, input_.filters);
         const ImageHandle color =
             fedBack() == 0
                 ? feedback.current
                 : graph_.transient(name + " accumulated", Format::RGBA16Float, extent_, input_.filters);
-        const SvgfReprojectParams params = reprojectParams(stable.valid);
+        const SvgfReprojectParams params = reprojectParams();
         std::vector<gpu::Binding> bindings{
             {"motion", input_.motion},
             {"reflectionMotion", signal.reflects ? input_.reflectionMotion : input_.motion},
             {"previousNormal", input_.previousNormal ? input_.previousNormal : input_.motion},
-            {"surfaces", surfaces.surfaces.current},
-            {"instances", surfaces.instances.current},
-            {"surfacesBefore", surfaces.surfaces.previous},
-            {"instancesBefore", surfaces.instances.previous},
+            {"surfaces", surfaces.current},
+            {"surfacesBefore", surfaces.previous},
             {"colorBefore", feedback.previous},
             {"momentsBefore", moments.previous},
             {"color", color},
@@ -230,13 +226,12 @@ class Svgf {
         const ImageHandle youngTiles = buffers_ ? graph_.transient(name + " young tiles", Format::R32Float,
                                                                    tilesOf(extent_, SVGF_YOUNG_TILE))
                                                 : ImageHandle{};
-        return {color,    moments.current, tileSums,   tiles,  youngTiles,
-                feedback, stable.current,  stablePast, moments};
+        return {color, moments.current, tileSums, tiles, youngTiles, feedback, stable, stablePast, moments};
     }
 
-    SignalReasons reasons(const Signal& signal, const Surfaces& surfaces,
+    SignalReasons reasons(const Signal& signal, const History& surfaces,
                           const Accumulated& accumulated) const {
-        const SvgfReprojectParams params = reprojectParams(false);
+        const SvgfReprojectParams params = reprojectParams();
         return recordReasons(
             graph_, input_, surfaces,
             {.method = "svgf",
@@ -288,14 +283,13 @@ class Svgf {
                 {"ROUGHNESS", hasRoughness(signal) && settings_.phiRoughness > 0.0f ? 1u : 0u}};
     }
 
-    void estimateVariance(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated) {
+    void estimateVariance(const Signal& signal, const History& surfaces, const Accumulated& accumulated) {
         const SvgfFilterParams params = filterParams(1);
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BOOST", settings_.boost ? 1u : 0u});
         constants.push_back({"FIREFLIES", settings_.fireflies > 0.0f ? 1u : 0u});
-        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
-                                           {"moments", accumulated.moments},
-                                           {"color", accumulated.color}};
+        std::vector<gpu::Binding> bindings{
+            {"surfaces", surfaces.current}, {"moments", accumulated.moments}, {"color", accumulated.color}};
         if (buffers_) bindings.push_back({"youngTiles", accumulated.youngTiles});
         graph_.dispatch({.pass = "svgf/variance " + signal.name,
                          .shader = choose(shaders::svgf_variance_comp, shaders::svgf_variance_buffers_comp),
@@ -305,30 +299,37 @@ class Svgf {
                          .extent = buffers_ ? extent_ : levelInvocations(extent_, 1, {1, SVGF_COLUMN})});
     }
 
-    ImageHandle level(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+    const gpu::ShaderCode& levelShader(bool last) const {
+        if (last) return choose(shaders::svgf_last_level_comp, shaders::svgf_last_level_buffers_comp);
+        return choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp);
+    }
+
+    ImageHandle level(const Signal& signal, const History& surfaces, const Accumulated& accumulated,
                       ImageHandle before, int number) {
         const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
         const bool mixed = stabilises() && number == settings_.levels;
         const ImageHandle filtered =
-            mixed                 ? accumulated.stable
-            : number == fedBack() ? accumulated.feedback.current
-                                  : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
+            number == fedBack() ? accumulated.feedback.current
+                                : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
         const int step = levelStep(number);
-        const SvgfFilterParams params = filterParams(step);
+        SvgfFilterParams params = filterParams(step);
+        params.stabilisationAlpha = accumulated.stable.valid ? settings_.stabilisationAlpha : 1.0f;
         std::vector<gpu::ConstantValue> constants = filterConstants(signal);
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
-        constants.push_back({"STABILISE", mixed ? 1u : 0u});
         constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
         constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
         // Not in the first level: its deviations are those of single pixels, and say too little.
         constants.push_back({"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u});
+        std::vector<gpu::Binding> bindings{
+            {"surfaces", surfaces.current}, {"signal", before}, {"filtered", filtered}};
+        if (mixed)
+            bindings.insert(bindings.end(), {{"stablePast", accumulated.stablePast},
+                                             {"stable", accumulated.stable.current},
+                                             {"moments", accumulated.moments}});
         graph_.dispatch({.pass = name,
-                         .shader = choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp),
-                         .bindings = {{"surfaces", surfaces.surfaces.current},
-                                      {"signal", before},
-                                      {"filtered", filtered},
-                                      {"stablePast", mixed ? accumulated.stablePast : before}},
+                         .shader = levelShader(mixed),
+                         .bindings = bindings,
                          .params = gpu::paramsOf(params),
                          .constants = constants,
                          .extent = levelInvocations(extent_, step, {1, SVGF_COLUMN})});
@@ -338,9 +339,9 @@ class Svgf {
     /// After the first level, whose result is replaced. A last level stabilises, and has to come afterwards.
     bool fillsYoung() const { return settings_.youngRadius > 0 && settings_.levels > 1; }
 
-    void fillYoung(const Signal& signal, const Surfaces& surfaces, const Accumulated& accumulated,
+    void fillYoung(const Signal& signal, const History& surfaces, const Accumulated& accumulated,
                    ImageHandle filtered) {
-        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.surfaces.current},
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
                                            {"moments", accumulated.moments},
                                            {"signal", accumulated.color},
                                            {"filtered", filtered}};

@@ -50,7 +50,7 @@ struct SvgfSettings {
 /// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL",
 /// "svgf/young SIGNAL" (unless it is off), "svgf/level 2 SIGNAL" and so on, "svgf/compose", and for
 /// debugging "svgf/reasons SIGNAL". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
-/// "svgf/SIGNAL moments" and, unless it is fed back, "svgf/SIGNAL stable".
+/// "svgf/SIGNAL moments" and "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 
 /// The same, and each filtered signal: rgba32f, with albedo, without emission, alpha 1.

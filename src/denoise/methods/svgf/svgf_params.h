@@ -23,10 +23,13 @@ LIMPID_CONST float SVGF_NOTHING_SEEN = -1.0;
 LIMPID_CONST float SVGF_STILL_YOUNG = -2.0;  // until it is estimated in space
 LIMPID_CONST float SVGF_YOUNG = 4.0;       // frames of history below which the variance is estimated in space
 LIMPID_CONST float SVGF_MIN_FRAMES = 1.5;  // length of history; 2 is the first, minus rounding
-LIMPID_CONST float SVGF_MIN_LAG = 0.1;     // smaller lags change little and cost as much memory traffic
-LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;  // minimum cosine: more grazing angles use the slope of this one
-LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;      // minimum tolerance, relative to the distance
-LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;      // sums of weights below which neighbours show other surfaces
+// The length of a history that anti-lag has shortened to one frame. Elsewhere it counts as 1, but stabilised
+// light stays, as it does not where there was no history.
+LIMPID_CONST float SVGF_SHORTENED = 0.998046875;
+LIMPID_CONST float SVGF_MIN_LAG = 0.1;       // smaller lags change little and cost as much memory traffic
+LIMPID_CONST float SVGF_MIN_SLOPE = 0.05;    // minimum cosine: more grazing angles use the slope of this one
+LIMPID_CONST float SVGF_DEPTH_FLOOR = 1e-3;  // minimum tolerance, relative to the distance
+LIMPID_CONST float SVGF_MIN_WEIGHTS = 1e-3;  // sums of weights below which neighbours show other surfaces
 LIMPID_CONST float SVGF_LUMINANCE_FLOOR = 1e-3;  // minimum tolerance, relative to the luminance
 
 /// How tiles interpret the moments.
@@ -47,8 +50,7 @@ struct SvgfReprojectParams {
     float alpha;
     float alphaMoments;
     float alphaFast;
-    float longest;             // frames
-    float stabilisationAlpha;  // 1 if there is no stabilised history
+    float longest;  // frames
     SvgfLagParams lag;
 };
 
@@ -82,6 +84,7 @@ struct SvgfFilterParams {
     float normalScale;         // log2(e) phi_normal; with positions log2(e) / phi_normal
     float depthScale;          // log2(e) / phi_depth
     float roughnessScale;      // log2(e) / phi_roughness, of 1 / 255
+    float stabilisationAlpha;  // 1 if there is no stabilised history
     float stabilisationNoise;  // tolerated difference from the stabilised history
     float fireflies;           // tolerated deviations from the neighbours, of a history of one frame
     int youngRadius;           // pixels, of a history of one frame

@@ -12,15 +12,17 @@
 namespace limpid::denoise {
 namespace {
 
-TemporalParams makeParams(gpu::Extent extent, const CameraParams& camera, const TemporalSettings& settings) {
+TemporalParams makeParams(gpu::Extent extent, const DenoiserInput& input, const TemporalSettings& settings) {
     TemporalParams params{};
-    params.camera = camera;
+    params.camera = input.camera;
     params.width = extent.width;
     params.height = extent.height;
     params.tests = {.normal = settings.normal,
                     .depth = settings.depth,
                     .relative = settings.relative,
-                    .search = settings.search};
+                    .search = settings.search,
+                    .previousNormals = input.normalEncoding,
+                    .motion = input.motionEncoding};
     params.identity = settings.identity;
     params.minAlbedo = settings.demodulate ? settings.minAlbedo : 0.0f;
     params.greyRestart = settings.greyRestart;
@@ -92,22 +94,20 @@ TemporalImages accumulateTemporally(gpu::FrameGraph& graph, const DenoiserInput&
     using gpu::Format;
     const gpu::Extent extent = graph.extent(input.diffuse);
     const gpu::History color = graph.history("temporal/color", Format::RGBA32Float, extent);
-    const Surfaces surfaces = recordSurfaces(graph, input);
+    const gpu::History surfaces = recordSurfaces(graph, input);
     const bool buffers = input.filters == gpu::Backing::Buffer;
     const gpu::ImageHandle disocclusion = graph.transient("temporal/disocclusion", Format::R32Uint, extent);
-    const TemporalParams params = makeParams(extent, input.camera, settings);
+    const TemporalParams params = makeParams(extent, input, settings);
     graph.dispatch(
         {.pass = "temporal/accumulate",
          .shader = buffers ? shaders::temporal_accumulate_buffers_comp : shaders::temporal_accumulate_comp,
          .bindings = {{"diffuse", input.diffuse},
                       {"specular", input.specular ? input.specular : input.diffuse},
                       {"albedo", input.albedo},
-                      {"surfaces", surfaces.surfaces.current},
-                      {"instances", surfaces.instances.current},
+                      {"surfaces", surfaces.current},
                       {"motion", input.motion},
                       {"previousNormal", input.previousNormal ? input.previousNormal : input.motion},
-                      {"surfacesBefore", surfaces.surfaces.previous},
-                      {"instancesBefore", surfaces.instances.previous},
+                      {"surfacesBefore", surfaces.previous},
                       {"colorBefore", color.previous},
                       {"color", color.current},
                       {"disocclusion", disocclusion}},

@@ -17,14 +17,12 @@ READ_LAYER(1, diffuse);
 READ_LAYER(2, specular);
 READ_LAYER(3, albedo);
 READ_UINT2(4, surfaces);
-layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D instances;
-READ_LAYER(6, motion);
-READ_LAYER(7, previousNormal);
-READ_UINT2(8, surfacesBefore);
-layout(set = 0, binding = 9, r32ui) uniform readonly uimage2D instancesBefore;
-layout(set = 0, binding = 10, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
-layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D color;
-layout(set = 0, binding = 12, r32ui) uniform writeonly uimage2D disocclusion;
+READ_LAYER(5, motion);
+READ_LAYER(6, previousNormal);
+READ_UINT2(7, surfacesBefore);
+layout(set = 0, binding = 8, rgba32f) uniform readonly image2D colorBefore;  // mean without albedo | frames
+layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D color;
+layout(set = 0, binding = 10, r32ui) uniform writeonly uimage2D disocclusion;
 
 const float MAX_FLOAT = 3.4e38;
 
@@ -83,10 +81,10 @@ void main() {
     const ivec2 at = ivec2(pixel);
     vec3 radiance = LOAD_LAYER(diffuse, at).rgb;
     if (TWO_LIGHTS) radiance += LOAD_LAYER(specular, at).rgb;
-    const vec3 divisor = modulation(LOAD_LAYER(albedo, at), params.minAlbedo);
+    const vec3 divisor = modulation(LOAD_WIDE_LAYER(albedo, at), params.minAlbedo);
     const vec3 x = clamp(radiance / divisor, -MAX_FLOAT, MAX_FLOAT);
-    const vec4 moved = LOAD_LAYER(motion, at);
     const uvec2 surface = LOAD_UINT2(surfaces, at);
+    const vec4 moved = motionAt(at, surface);
 
     const Past past = pastOf(at, surface, moved);
     const bool hit = distanceOf(surface) > 0.0;

@@ -60,7 +60,12 @@ class Visibility {
     }
 
     ReprojectTests tests() const {
-        return {.normal = settings_.normalTest, .depth = settings_.depthTest, .relative = 1, .search = 1};
+        return {.normal = settings_.normalTest,
+                .depth = settings_.depthTest,
+                .relative = 1,
+                .search = 1,
+                .previousNormals = input_.normalEncoding,
+                .motion = input_.motionEncoding};
     }
 
     float longest() const { return std::max(SVGF_YOUNG, 1.0f / settings_.alpha); }
@@ -96,10 +101,8 @@ class Visibility {
              .bindings = withSample(
                  {{"motion", input_.motion},
                   {"previousNormal", input_.previousNormal ? input_.previousNormal : input_.motion},
-                  {"surfaces", surfaces_.surfaces.current},
-                  {"instances", surfaces_.instances.current},
-                  {"surfacesBefore", surfaces_.surfaces.previous},
-                  {"instancesBefore", surfaces_.instances.previous},
+                  {"surfaces", surfaces_.current},
+                  {"surfacesBefore", surfaces_.previous},
                   {"momentsBefore", moments_.previous},
                   {"moments", moments_.current},
                   {"signal", signal}}),
@@ -166,7 +169,7 @@ class Visibility {
         graph_.dispatch(
             {.pass = name,
              .shader = choose(shaders::visibility_level_comp, shaders::visibility_level_buffers_comp),
-             .bindings = {{"surfaces", surfaces_.surfaces.current},
+             .bindings = {{"surfaces", surfaces_.current},
                           {"signal", before},
                           {"filtered", filtered},
                           {"picture", picture}},
@@ -181,7 +184,7 @@ class Visibility {
         graph_.dispatch({.pass = "visibility/young",
                          .shader = choose(shaders::svgf_young_one_channel_comp,
                                           shaders::svgf_young_buffers_one_channel_comp),
-                         .bindings = {{"surfaces", surfaces_.surfaces.current},
+                         .bindings = {{"surfaces", surfaces_.current},
                                       {"moments", moments_.current},
                                       {"signal", signal},
                                       {"filtered", filtered}},
@@ -205,7 +208,7 @@ class Visibility {
     const VisibilitySettings& settings_;
     const Extent extent_;
     const bool buffers_;
-    const Surfaces surfaces_;
+    const History surfaces_;
     const History moments_;
 };
 

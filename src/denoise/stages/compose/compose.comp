@@ -48,10 +48,10 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    vec4 albedo = LOAD_LAYER(albedoA, at);
-    if (ALBEDOS == 2u) albedo += LOAD_LAYER(albedoB, at);
+    vec4 albedo = LOAD_WIDE_LAYER(albedoA, at);
+    if (ALBEDOS == 2u) albedo += LOAD_WIDE_LAYER(albedoB, at);
     vec3 light = LOAD_LIGHT(lightA, at) * modulation(albedo, params.minAlbedo);
-    if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(LOAD_LAYER(albedoB, at), params.minAlbedo);
+    if (SECOND) light += LOAD_LIGHT(lightB, at) * modulation(LOAD_WIDE_LAYER(albedoB, at), params.minAlbedo);
     if (EMISSION) light += finiteOr(LOAD_LAYER(emission, at).rgb, vec3(0.0));
     imageStore(beauty, at, STORED(vec4(light, 1.0)));
 }

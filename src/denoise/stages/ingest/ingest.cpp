@@ -3,10 +3,7 @@
 #include "denoise/stages/surfaces/surfaces.h"
 #include "ingest.comp.h"
 #include "ingest_buffers.comp.h"
-#include "ingest_given_reflection.comp.h"
 #include "ingest_layers.comp.h"
-#include "ingest_layers_buffers.comp.h"
-#include "ingest_previous_normal.comp.h"
 #include "ingest_reflection.comp.h"
 #include "ingest_reflection_buffers.comp.h"
 #include "ingest_white.comp.h"
@@ -27,37 +24,33 @@ bool inBuffers(const DenoiserInput& input) {
     return input.filters == gpu::Backing::Buffer;
 }
 
-void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+/// What is bound in place of motion that the program does not give, and not read.
+ImageHandle motionOrAny(const IngestImages& images) {
+    return images.motion ? images.motion : images.depth;
+}
+
+void convertGuides(FrameGraph& graph, const IngestImages& images, const IngestParams& params, bool layers,
                    DenoiserInput& input) {
     input.surfaces = makeSurfaces(graph, {params.width, params.height}, input.filters);
-    input.motion = make(graph, params, "motion", Format::RGBA16Float);
+    const gpu::Extent motionExtent = layers ? gpu::Extent{params.width, params.height} : gpu::Extent{1, 1};
+    const ImageHandle motion = graph.transient("ingest/motion", Format::RGBA16Float, motionExtent);
     graph.dispatch({.pass = "ingest",
                     .shader = inBuffers(input) ? shaders::ingest_buffers_comp : shaders::ingest_comp,
                     .bindings = {{"normalIn", images.normal},
                                  {"depthIn", images.depth},
-                                 {"motionIn", images.motion ? images.motion : images.depth},
-                                 {"idIn", images.id ? images.id : input.surfaces.instances.previous},
+                                 {"motionIn", motionOrAny(images)},
+                                 {"idIn", images.id ? images.id : noIds(graph)},
                                  {"roughnessIn", images.roughness ? images.roughness : images.normal},
-                                 {"surfaces", input.surfaces.surfaces.current},
-                                 {"instances", input.surfaces.instances.current},
-                                 {"motion", input.motion}},
+                                 {"surfaces", input.surfaces.current},
+                                 {"motion", motion}},
                     .params = gpu::paramsOf(params),
                     .constants = {{"IDS", images.id ? 1u : 0u},
-                                  {"MOTION", images.motion ? 1u : 0u},
+                                  {"MOTION", layers ? 1u : 0u},
                                   {"ROUGHNESS", images.roughness ? 1u : 0u}},
                     .extent = {params.width, params.height}});
-}
-
-ImageHandle convertedPreviousNormal(FrameGraph& graph, const IngestImages& images,
-                                    const IngestParams& params) {
-    const ImageHandle normal = make(graph, params, "previousNormal", Format::RGBA16Float);
-    graph.dispatch({.pass = "ingest/previous normal",
-                    .shader = shaders::ingest_previous_normal_comp,
-                    .bindings = {{"previousNormalIn", images.previousNormal}, {"previousNormal", normal}},
-                    .params = gpu::paramsOf(params),
-                    .constants = {},
-                    .extent = {params.width, params.height}});
-    return normal;
+    input.motion = layers ? motion : motionOrAny(images);
+    input.motionEncoding = params.motion;
+    if (layers) input.motionEncoding.kind = MOTION_LAYER;
 }
 
 void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
@@ -65,28 +58,15 @@ void addLayers(FrameGraph& graph, const IngestImages& images, const IngestParams
     input.normal = make(graph, params, "normal", Format::RGBA16Float);
     input.depth = make(graph, params, "depth", Format::RG32Float);
     const gpu::Extent extent = graph.extent(input.depth);
-    graph.dispatch(
-        {.pass = "ingest/layers",
-         .shader = inBuffers(input) ? shaders::ingest_layers_buffers_comp : shaders::ingest_layers_comp,
-         .bindings = {{"normalIn", images.normal},
-                      {"surfaces", input.surfaces.surfaces.current},
-                      {"normal", input.normal},
-                      {"depth", input.depth}},
-         .params = gpu::paramsOf(params),
-         .constants = {},
-         .extent = extent});
-}
-
-ImageHandle givenReflectionMotion(FrameGraph& graph, const IngestImages& images, const IngestParams& params) {
-    const ImageHandle motion = make(graph, params, "reflectionMotion", Format::RGBA16Float);
-    graph.dispatch(
-        {.pass = "ingest/reflection",
-         .shader = shaders::ingest_given_reflection_comp,
-         .bindings = {{"reflectionMotionIn", images.reflectionMotion}, {"reflectionMotion", motion}},
-         .params = gpu::paramsOf(params),
-         .constants = {},
-         .extent = {params.width, params.height}});
-    return motion;
+    graph.dispatch({.pass = "ingest/layers",
+                    .shader = shaders::ingest_layers_comp,
+                    .bindings = {{"normalIn", images.normal},
+                                 {"depthIn", images.depth},
+                                 {"normal", input.normal},
+                                 {"depth", input.depth}},
+                    .params = gpu::paramsOf(params),
+                    .constants = {},
+                    .extent = extent});
 }
 
 ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& images,
@@ -97,8 +77,8 @@ ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& imag
                                                : shaders::ingest_reflection_comp,
                     .bindings = {{"roughnessIn", images.roughness},
                                  {"hitDistanceIn", images.hitDistance},
-                                 {"surfaces", input.surfaces.surfaces.current},
-                                 {"motion", input.motion},
+                                 {"surfaces", input.surfaces.current},
+                                 {"motionIn", motionOrAny(images)},
                                  {"reflectionMotion", motion}},
                     .params = gpu::paramsOf(params),
                     .constants = {},
@@ -106,9 +86,9 @@ ImageHandle computedReflectionMotion(FrameGraph& graph, const IngestImages& imag
     return motion;
 }
 
-ImageHandle whiteAlbedo(FrameGraph& graph, const IngestParams& params) {
-    const ImageHandle white = make(graph, params, "white", Format::RGBA8Unorm);
-    const gpu::Extent extent = graph.extent(white);
+ImageHandle whiteAlbedo(FrameGraph& graph) {
+    const gpu::Extent extent{1, 1};
+    const ImageHandle white = graph.transient("ingest/white", Format::RGBA8Unorm, extent);
     graph.dispatch({.pass = "ingest/white",
                     .shader = shaders::ingest_white_comp,
                     .bindings = {{"white", white}},
@@ -120,15 +100,19 @@ ImageHandle whiteAlbedo(FrameGraph& graph, const IngestParams& params) {
 
 }  // namespace
 
-DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& params,
+DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const IngestParams& given,
                      const IngestNeeds& needs) {
+    IngestParams params = given;
+    params.motion.kind = images.motion ? MOTION_GIVEN : MOTION_STILL;
+    params.motion.reflections = images.reflectionMotion ? MOTION_GIVEN : MOTION_LAYER;
     DenoiserInput input;
     input.camera = params.camera;
     input.filters = needs.filters;
-    convertGuides(graph, images, params, input);
-    if (images.previousNormal) input.previousNormal = convertedPreviousNormal(graph, images, params);
+    convertGuides(graph, images, params, needs.layers, input);
+    input.previousNormal = images.previousNormal;
+    input.normalEncoding = params.normals;
     if (needs.twoSignals && images.reflectionMotion)
-        input.reflectionMotion = givenReflectionMotion(graph, images, params);
+        input.reflectionMotion = images.reflectionMotion;
     else if (needs.twoSignals && images.hitDistance)
         input.reflectionMotion = computedReflectionMotion(graph, images, params, input);
     if (needs.layers) addLayers(graph, images, params, input);
@@ -141,7 +125,7 @@ DenoiserInput ingest(FrameGraph& graph, const IngestImages& images, const Ingest
     if (!needs.albedo) return input;
     const bool needsBoth = needs.twoSignals && !input.albedoSpecular;
     if (!input.albedo || needsBoth) {
-        const ImageHandle white = whiteAlbedo(graph, params);
+        const ImageHandle white = whiteAlbedo(graph);
         if (!input.albedo) input.albedo = white;
         if (needsBoth) input.albedoSpecular = white;
     }

@@ -20,13 +20,13 @@ struct IngestImages {
 /// What the method that follows reads.
 struct IngestNeeds {
     bool twoSignals = false;
-    bool layers = false;  ///< normal and depth, besides the surfaces
+    bool layers = false;  ///< normal, depth and motion, besides the surfaces
     bool albedo = true;
     gpu::Backing filters = gpu::Backing::Image;
 };
 
-/// What filters read of the frame. Light, albedo and ids are the caller's images themselves; normals,
-/// distances and motion are converted. Passes: "ingest"; "ingest/previous normal", "ingest/reflection" and
+/// What filters read of the frame. Light, albedo, ids, motion and previous normals are the caller's
+/// images themselves; normals and distances are converted. Passes: "ingest"; "ingest/reflection" and
 /// "ingest/layers" if there is something to do for them; "ingest/white" if an albedo is missing. Radiance,
 /// normal and depth are required.
 DenoiserInput ingest(gpu::FrameGraph& graph, const IngestImages& images, const IngestParams& params,

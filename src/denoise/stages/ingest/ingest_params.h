@@ -2,6 +2,8 @@
 #ifndef LIMPID_DENOISE_INGEST_PARAMS_H
 #define LIMPID_DENOISE_INGEST_PARAMS_H
 
+#include "denoise/stages/motion_encoding.h"
+#include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -11,36 +13,20 @@ namespace limpid::denoise {
 #define LIMPID_CONST const
 #endif
 
-LIMPID_CONST uint NORMAL_SIGNED = 0u;
-LIMPID_CONST uint NORMAL_UNORM = 1u;
-LIMPID_CONST uint NORMAL_OCTAHEDRAL_SIGNED = 2u;
-LIMPID_CONST uint NORMAL_OCTAHEDRAL_UNORM = 3u;
-
 LIMPID_CONST uint DEPTH_DISTANCE = 0u;
 LIMPID_CONST uint DEPTH_LINEAR = 1u;
 LIMPID_CONST uint DEPTH_DEVICE = 2u;
 
 struct IngestParams {
     CameraParams camera;
-    CameraParams previousCamera;
-    vec4 previousClipX;  // rows of the previous frame's matrix from world to clip space
-    vec4 previousClipY;  // y points down
-    vec4 previousClipW;
+    MotionEncoding motion;
     vec4 deviceDepth;  // elements zz, zw, wz, ww (row, column) of the projection matrix
-    vec3 viewX;        // axes of view space in the world
-    vec3 viewY;
-    vec3 viewZ;
-    vec2 motionToPixels;     // scales motion to previous minus current position
-    float motionToDistance;  // scales the third component; 0: motion has none
+    NormalEncoding normals;
     float farDepth;
-    vec2 jitter;  // pixels
     uint width;
     uint height;
-    uint normalEncoding;  // NORMAL_*
-    uint normalInView;
-    uint depthKind;    // DEPTH_*
-    uint reversed;     // device depth: 0 is far
-    uint hasPrevious;  // 0: there is no previous frame, all motion is invalid
+    uint depthKind;  // DEPTH_*
+    uint reversed;   // device depth: 0 is far
 };
 
 #undef LIMPID_CONST

@@ -15,10 +15,10 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_LAYER(1, roughnessIn);
 READ_LAYER(2, hitDistanceIn);
 READ_UINT2(3, surfaces);
-READ_LAYER(4, motion);
+READ_LAYER(4, motionIn);
 layout(set = 0, binding = 5, rgba16f) uniform writeonly image2D reflectionMotion;
 
-#include "denoise/stages/ingest/still.glsl"
+#include "denoise/stages/motion.glsl"
 #include "shaders/common/reflection_share.glsl"
 
 const int BASELINE = 3;             // pixels to each side over which the curvature is measured
@@ -33,7 +33,7 @@ struct Point {
 };
 
 vec2 onScreenAt(ivec2 at) {
-    return pixelOnScreen(vec2(at) + params.jitter, vec2(params.width, params.height));
+    return pixelOnScreen(vec2(at) + params.motion.jitter, vec2(params.width, params.height));
 }
 
 Point pointAt(ivec2 at) {
@@ -41,7 +41,7 @@ Point pointAt(ivec2 at) {
     const uvec2 surface = LOAD_UINT2(surfaces, inside);
     const float z = distanceOf(surface);
     const vec2 onScreen = onScreenAt(inside);
-    return Point(positionOf(z, viewVector(params.camera, onScreen), onScreen), normalOf(surface),
+    return Point(positionOf(params.camera, z, viewVector(params.camera, onScreen), onScreen), normalOf(surface),
                  z > 0.0 && at == inside);
 }
 
@@ -68,7 +68,7 @@ bool imageOf(Point own, vec3 view, float hit, float curvature, float share, out 
 /// The distance from the previous eye at which its ray through a pixel meets the surface's tangent plane; not above 0
 /// if it does not.
 float previousReflector(Point own, vec2 pixel) {
-    const CameraParams before = params.previousCamera;
+    const CameraParams before = params.motion.previousCamera;
     const vec2 onScreen = pixelOnScreen(pixel, vec2(params.width, params.height));
     const vec3 direction = normalize(viewVector(before, onScreen));
     const vec3 origin =
@@ -89,16 +89,22 @@ vec4 reflectionMotionAt(ivec2 at) {
     vec4 image;
     const vec3 view = normalize(viewVector(params.camera, onScreenAt(at)));
     if (!imageOf(own, view, hit, curvature, share, image)) return vec4(0.0);
-    const vec4 ownMotion = LOAD_LAYER(motion, at), still = motionOfStill(vec4(own.position, 1.0), vec2(at));
-    const vec4 moved = motionOfStill(image, vec2(at));
-    if (moved.w == 0.0 || still.w == 0.0 || distance(ownMotion.xy, still.xy) > STILL) return vec4(0.0);
+    const vec2 size = vec2(params.width, params.height);
+    const float distance = distanceOf(LOAD_UINT2(surfaces, at));
+    const vec4 ownMotion =
+        motionOfTexel(params.motion, LOAD_LAYER(motionIn, at), params.camera, vec2(at), size, distance);
+    const vec4 still = motionOfStill(params.motion, vec4(own.position, 1.0), vec2(at), size);
+    const vec4 moved = motionOfStill(params.motion, image, vec2(at), size);
+    if (moved.w == 0.0 || still.w == 0.0 || length(ownMotion.xy - still.xy) > STILL) return vec4(0.0);
     const float before = previousReflector(own, vec2(at) + moved.xy);
-    return before > 0.0 ? vec4(moved.xy, before - distanceOf(LOAD_UINT2(surfaces, at)), 1.0) : vec4(0.0);
+    return before > 0.0 ? vec4(moved.xy, before - distance, 1.0) : vec4(0.0);
 }
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= params.width || pixel.y >= params.height) return;
     const ivec2 at = ivec2(pixel);
-    imageStore(reflectionMotion, at, params.hasPrevious != 0u ? storedMotion(reflectionMotionAt(at)) : vec4(0.0));
+    const vec4 moved = params.motion.hasPrevious != 0u ? reflectionMotionAt(at) : vec4(0.0);
+    const vec4 stored = nearestHalf(clamp(moved, -MAX_HALF, MAX_HALF));
+    imageStore(reflectionMotion, at, isFinite(moved.xyz) ? stored : vec4(0.0));
 }

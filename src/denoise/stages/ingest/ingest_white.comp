@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// The albedo of a caller who has none: light is then not demodulated.
+// The albedo of a caller who has none, one pixel for all: light is then not demodulated.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform Params {

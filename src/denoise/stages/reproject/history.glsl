@@ -3,8 +3,7 @@
 //
 // The including shader declares beforehand:
 //   - `params` with camera, width, height and `ReprojectTests tests`
-//   - READ_UINT2 `surfacesBefore`, READ_LAYER `previousNormal`, and the images `instances`, `instancesBefore`.
-//     Constant 8 is used here.
+//   - READ_UINT2 `surfacesBefore`, READ_LAYER `motion` and `previousNormal`. Constant 8 is used here.
 //   - struct Past, what its history holds at a pixel, and `const Past NO_PAST`
 //   - bool comparesInstances(): whether the instances must be equal
 //   - bool weighsNormals(): whether a tap weighs less by exp2(-s (1 - cosine of the normals)); s is
@@ -16,6 +15,8 @@
 #ifndef LIMPID_HISTORY_GLSL
 #define LIMPID_HISTORY_GLSL
 
+#include "denoise/stages/motion.glsl"
+#include "denoise/stages/normals.glsl"
 #include "denoise/stages/reproject/reprojection.glsl"
 #include "denoise/stages/reproject/reproject_params.h"
 #include "denoise/stages/surfaces/surface_texel.glsl"
@@ -75,15 +76,12 @@ void addTap(inout Taps taps, ivec2 at, float weight, Expected expected) {
     const ivec2 inside = clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
     const uvec2 surface = LOAD_UINT2(surfacesBefore, inside);
     const float depth = distanceOf(surface), cosine = dot(expected.normal, normalOf(surface));
-    uint instance = 0u;
-    if (LOAD_AT_ONCE) instance = imageLoad(instancesBefore, inside).x;
     Past there = loadFirst(inside);
     if (LOAD_AT_ONCE) loadRest(there, inside);
     const bool counts = at == inside && depth > 0.0 && framesOf(there) > 0.0 &&
                         sameNormal(cosine) &&
                         sameDistance(depth, expected) &&
-                        (!comparesInstances() ||
-                         (LOAD_AT_ONCE ? instance : imageLoad(instancesBefore, inside).x) == expected.instance);
+                        (!comparesInstances() || instanceOf(surface) == expected.instance);
     if (weighsNormals()) weight *= normalWeight(cosine, expected);
     if (!counts || weight <= 0.0) return;
     if (!LOAD_AT_ONCE) loadRest(there, inside);
@@ -133,12 +131,20 @@ Expected expectedOf(ivec2 at, uvec2 surface, Reprojection was, vec2 size) {
     const vec3 normal = normalOf(surface);
     const float tolerance = depthTolerance(params.camera, depthBefore, normal, vec2(at), size, params.tests);
     vec3 normalBefore = normal;
-    if (TURNS) normalBefore = unitNormal(LOAD_LAYER(previousNormal, at));
-    return Expected(normalBefore, depthBefore, tolerance, imageLoad(instances, at).x,
+    if (TURNS)
+        normalBefore =
+            unitNormal(vec4(worldNormal(LOAD_LAYER(previousNormal, at), params.tests.previousNormals), 0.0));
+    return Expected(normalBefore, depthBefore, tolerance, instanceOf(surface),
                     weighsNormals() ? normalScaleOf(surface) : 0.0);
 }
 
-/// `moved` is a texel of the `motion` image.
+/// A texel of the layer `motion`, as everywhere below.
+vec4 motionAt(ivec2 at, uvec2 surface) {
+    return motionOfTexel(params.tests.motion, LOAD_LAYER(motion, at), params.camera, vec2(at),
+                         vec2(params.width, params.height), distanceOf(surface));
+}
+
+/// `moved` is what motionAt() returns.
 Past pastOf(ivec2 at, uvec2 surface, vec4 moved) {
     const vec2 size = vec2(params.width, params.height);
     const Reprojection was = reprojectionOf(moved, vec2(at), size);

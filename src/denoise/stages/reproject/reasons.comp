@@ -21,13 +21,11 @@ READ_LAYER(1, motion);
 READ_LAYER(2, previousNormal);
 READ_LAYER(3, reflectionMotion);
 READ_UINT2(4, surfaces);
-layout(set = 0, binding = 5, r32ui) uniform readonly uimage2D instances;
-READ_UINT2(6, surfacesBefore);
-layout(set = 0, binding = 7, r32ui) uniform readonly uimage2D instancesBefore;
-READ_LAYER(8, framesBefore);  // fourth component: frames of history, when the frame began
-READ_LAYER(9, framesNow);     // fourth component: the same when it had ended
-layout(set = 0, binding = 10, rg32ui) uniform writeonly uimage2D reasons;  // reasons_params.h
-layout(set = 0, binding = 11, rgba8) uniform writeonly image2D shown;      // as colours
+READ_UINT2(5, surfacesBefore);
+READ_LAYER(6, framesBefore);  // fourth component: frames of history, when the frame began
+READ_LAYER(7, framesNow);     // fourth component: the same when it had ended
+layout(set = 0, binding = 8, rg32ui) uniform writeonly uimage2D reasons;  // reasons_params.h
+layout(set = 0, binding = 9, rgba8) uniform writeonly image2D shown;      // as colours
 
 struct Past {
     float frames;
@@ -81,7 +79,7 @@ Tap tapAt(ivec2 at, float share, Expected expected) {
     const float depth = distanceOf(surface), cosine = dot(expected.normal, normalOf(surface));
     if (!(depth > 0.0)) return Tap(TAP_NOTHING_SEEN, 0.0);
     uint reason = TAP_FITS;
-    if (comparesInstances() && imageLoad(instancesBefore, at).x != expected.instance) reason |= TAP_INSTANCE;
+    if (comparesInstances() && instanceOf(surface) != expected.instance) reason |= TAP_INSTANCE;
     if (!sameNormal(cosine)) reason |= TAP_NORMAL;
     if (!sameDistance(depth, expected)) reason |= TAP_DISTANCE;
     if (!(framesOf(loadFirst(at)) > 0.0)) reason |= TAP_NO_HISTORY;
@@ -158,7 +156,7 @@ Verdict verdictAt(ivec2 at, float now) {
         verdict = verdictOf(at, surface, reflectionMotionAt(at));
         verdict.reason |= REASON_REFLECTED;
     }
-    if (!(verdict.found > 0.0)) verdict = verdictOf(at, surface, LOAD_LAYER(motion, at));
+    if (!(verdict.found > 0.0)) verdict = verdictOf(at, surface, motionAt(at, surface));
     if (wasShortened(verdict.found, now)) verdict.reason = (verdict.reason & ~REASON_MASK) | REASON_SHORTENED;
     return verdict;
 }

@@ -5,7 +5,7 @@
 
 namespace limpid::denoise {
 
-SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, const Surfaces& surfaces,
+SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, const gpu::History& surfaces,
                             const ReasonsQuestion& question) {
     const gpu::Extent extent = graph.extent(question.frames.current);
     const std::string name = question.method + "/" + question.signal;
@@ -19,7 +19,7 @@ SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, 
     params.lobeScale = question.lobeScale;
     params.longest = question.longest;
     params.shortens = question.shortens;
-    params.cut = input.reasons.cut || !question.frames.valid || !surfaces.surfaces.valid;
+    params.cut = input.reasons.cut || !question.frames.valid || !surfaces.valid;
     const bool buffers = input.filters == gpu::Backing::Buffer;
     graph.dispatch(
         {.pass = question.method + "/reasons " + question.signal,
@@ -28,10 +28,8 @@ SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, 
                       {"previousNormal", input.previousNormal ? input.previousNormal : input.motion},
                       {"reflectionMotion",
                        question.reflectionMotion ? question.reflectionMotion : input.motion},
-                      {"surfaces", surfaces.surfaces.current},
-                      {"instances", surfaces.instances.current},
-                      {"surfacesBefore", surfaces.surfaces.previous},
-                      {"instancesBefore", surfaces.instances.previous},
+                      {"surfaces", surfaces.current},
+                      {"surfacesBefore", surfaces.previous},
                       {"framesBefore", question.frames.previous},
                       {"framesNow", question.frames.current},
                       {"reasons", reasons},

@@ -30,7 +30,7 @@ struct ReasonsQuestion {
 /// a second image with colours for the reasons: blue: nothing seen; white: first frame; yellow: outside the
 /// previous picture; red: other object; orange: other distance; green: other normal; violet: other reasons;
 /// grey: kept, brighter the longer; with a tint of cyan: shortened by anti-lag.
-SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, const Surfaces& surfaces,
+SignalReasons recordReasons(gpu::FrameGraph& graph, const DenoiserInput& input, const gpu::History& surfaces,
                             const ReasonsQuestion& question);
 
 }  // namespace limpid::denoise

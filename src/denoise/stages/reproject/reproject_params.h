@@ -2,6 +2,8 @@
 #ifndef LIMPID_DENOISE_REPROJECT_PARAMS_H
 #define LIMPID_DENOISE_REPROJECT_PARAMS_H
 
+#include "denoise/stages/motion_encoding.h"
+#include "denoise/stages/normal_encoding.h"
 #include "shaders/common/camera.h"
 
 #ifdef __cplusplus
@@ -13,6 +15,8 @@ struct ReprojectTests {
     float depth;    // maximum deviation from the expected distance
     uint relative;  // 1: `depth` is a share of the distance, with more room on tilted planes; 0: world units
     uint search;    // 1: search 3x3 pixels if all four bilinear taps are rejected
+    NormalEncoding previousNormals;
+    MotionEncoding motion;
 };
 
 #ifdef __cplusplus

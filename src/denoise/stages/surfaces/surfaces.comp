@@ -13,9 +13,8 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_LAYER(1, normal);
 READ_LAYER(2, depth);
 READ_UINT_LAYER(3, ids);
-WRITE_UINT2(4, surfaces);                                                  // surface_texel.glsl
-layout(set = 0, binding = 5, r32ui) uniform writeonly uimage2D instances;  // + 1; 0: nothing seen
-READ_LAYER(6, roughness);
+WRITE_UINT2(4, surfaces);  // surface_texel.glsl
+READ_LAYER(5, roughness);
 layout(constant_id = 0) const bool IDS = true;        // else all is one instance
 layout(constant_id = 1) const bool ROUGHNESS = true;  // else all is rough
 
@@ -25,9 +24,6 @@ void main() {
     const ivec2 at = ivec2(pixel);
     const float z = hitDistance(LOAD_LAYER(depth, at));
     const float rough = ROUGHNESS ? LOAD_LAYER(roughness, at).r : 1.0;
-    STORE_UINT2(surfaces, at,
-                uvec2(packedShading(unitNormal(LOAD_LAYER(normal, at)), rough), floatBitsToUint(z)));
-    uint instance = 1u;
-    if (IDS) instance += LOAD_LAYER(ids, at).x;
-    imageStore(instances, at, uvec4(z > 0.0 ? instance : 0u));
+    const uint id = IDS ? LOAD_LAYER(ids, at).x : 0u;
+    STORE_UINT2(surfaces, at, uvec2(packedShading(unitNormal(LOAD_LAYER(normal, at)), rough), packedPlace(z, id)));
 }

@@ -6,10 +6,13 @@
 
 namespace limpid::denoise {
 
-/// Surfaces that a pass has yet to write.
-Surfaces makeSurfaces(gpu::FrameGraph& graph, gpu::Extent extent, gpu::Backing filters);
+/// The history of surfaces, which a pass has yet to write: two words, surface_texel.glsl.
+gpu::History makeSurfaces(gpu::FrameGraph& graph, gpu::Extent extent, gpu::Backing filters);
+
+/// What a pass binds in place of ids if there are none, and does not read.
+gpu::ImageHandle noIds(gpu::FrameGraph& graph);
 
 /// Pass "surfaces", unless the input has surfaces.
-Surfaces recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input);
+gpu::History recordSurfaces(gpu::FrameGraph& graph, const DenoiserInput& input);
 
 }  // namespace limpid::denoise

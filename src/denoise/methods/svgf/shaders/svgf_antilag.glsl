@@ -24,7 +24,8 @@ void shorten(ivec2 at, float lag) {
     const vec4 alphas = vec4(params.alphaMoments, params.alphaMoments, params.alphaFast, params.alpha);
     const vec4 had = max(alphas, 1.0 / before.w), has = max(alphas, 1.0 / frames);
     const vec4 more = (has - had) / max(1.0 - had, 1e-6);
-    const vec4 packed = packedMoments(vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), frames));
+    const float length = frames > 1.0 ? frames : SVGF_SHORTENED;
+    const vec4 packed = packedMoments(vec4(mix(before.xyz, vec3(l, l * l, l), more.xyz), length));
     imageStore(moments, at, packed);
     const vec3 mean = mix(LOAD_HALF4(color, at).rgb, x, more.w);
     STORE_HALF4(color, at, vec4(mean, deviationOf(unpackedMoments(packed))));

@@ -14,20 +14,19 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 
 #include "denoise/methods/svgf/shaders/svgf_signal.glsl"
+#include "denoise/methods/svgf/shaders/svgf_stable.glsl"
 
 READ_LAYER(5, motion);
 READ_LAYER(6, previousNormal);
 READ_LAYER(16, reflectionMotion);
 READ_UINT2(7, surfaces);
-layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instances;
-READ_UINT2(9, surfacesBefore);
-layout(set = 0, binding = 10, r32ui) uniform readonly uimage2D instancesBefore;
+READ_UINT2(8, surfacesBefore);
 READ_HALF4(11, colorBefore);
 layout(set = 0, binding = 12, rgba16f) uniform readonly image2D momentsBefore;
 WRITE_HALF4(14, color);                                                // light without albedo | deviation, or SVGF_*
 layout(set = 0, binding = 15, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
-READ_HALF4(18, stableBefore);
-WRITE_HALF4(13, stablePast);  // stabilised light | weight of this frame in its mean
+READ_UINT1(18, stableBefore);  // svgf_stable.glsl
+WRITE_UINT1(13, stablePast);
 
 struct Past {
     vec3 color, stable;
@@ -43,6 +42,7 @@ bool comparesInstances() {
 Past loadFirst(ivec2 at) {
     Past there = NO_PAST;
     there.moments = unpackedMoments(imageLoad(momentsBefore, at));
+    if (there.moments.w > 0.0) there.moments.w = max(there.moments.w, 1.0);  // SVGF_SHORTENED
     return there;
 }
 
@@ -52,7 +52,7 @@ float framesOf(Past past) {
 
 void loadRest(inout Past there, ivec2 at) {
     there.color = LOAD_HALF4(colorBefore, at).rgb;
-    if (STABILISE) there.stable = LOAD_HALF4(stableBefore, at).rgb;
+    if (STABILISE) there.stable = unpackedStable(LOAD_UINT1(stableBefore, at));
 }
 
 void addPast(inout Past sum, Past tap, float weight) {
@@ -84,11 +84,6 @@ Past accumulated(Past past, vec3 x) {
                 vec4(mix(past.moments.xyz, vec3(l, l * l, l), alphas), frames));
 }
 
-/// The weight of this frame's filtered light in the stabilised mean.
-float stableWeight(float frames) {
-    return max(params.stabilisationAlpha, 1.0 / max(frames, 1.0));
-}
-
 /// Returns the moments, as they are stored.
 vec4 accumulate(ivec2 at) {
     const vec3 light = lightAt(at);
@@ -96,12 +91,12 @@ vec4 accumulate(ivec2 at) {
     const uvec2 surface = LOAD_UINT2(surfaces, at);
     Past now = NO_PAST;
     if (REFLECTIONS) now = pastOf(at, surface, reflectionMotionAt(at));
-    if (framesOf(now) <= 0.0) now = pastOf(at, surface, LOAD_LAYER(motion, at));
+    if (framesOf(now) <= 0.0) now = pastOf(at, surface, motionAt(at, surface));
     if (isFinite(light)) now = accumulated(now, x);
     const bool seen = distanceOf(surface) > 0.0;
     const vec4 packed = seen ? packedMoments(now.moments) : vec4(0.0), stored = unpackedMoments(packed);
     imageStore(moments, at, packed);
     STORE_HALF4(color, at, seen ? vec4(now.color, deviationOf(stored)) : vec4(x, SVGF_NOTHING_SEEN));
-    if (STABILISE) STORE_HALF4(stablePast, at, vec4(now.stable, stableWeight(now.moments.w)));
+    if (STABILISE) STORE_UINT1(stablePast, at, packedStable(now.stable));
     return stored;
 }

@@ -22,8 +22,8 @@ vec3 lightAt(ivec2 at) {
 }
 
 vec3 demodulated(vec3 light, ivec2 at) {
-    vec4 albedo = LOAD_LAYER(albedoA, at);
-    if (TWO_ALBEDOS) albedo += LOAD_LAYER(albedoB, at);
+    vec4 albedo = LOAD_WIDE_LAYER(albedoA, at);
+    if (TWO_ALBEDOS) albedo += LOAD_WIDE_LAYER(albedoB, at);
     const vec3 x = finiteOr(light, vec3(0.0)) / modulation(albedo, params.minAlbedo);
     return clamp(x, -MAX_HALF, MAX_HALF);
 }

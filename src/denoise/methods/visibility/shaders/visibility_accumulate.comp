@@ -17,12 +17,10 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 READ_LAYER(3, motion);
 READ_LAYER(4, previousNormal);
 READ_UINT2(5, surfaces);
-layout(set = 0, binding = 6, r32ui) uniform readonly uimage2D instances;
-READ_UINT2(7, surfacesBefore);
-layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D instancesBefore;
-layout(set = 0, binding = 9, rgba16f) uniform readonly image2D momentsBefore;
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
-WRITE_UINT1(11, signal);                                                   // visibility_texel.glsl
+READ_UINT2(6, surfacesBefore);
+layout(set = 0, binding = 7, rgba16f) uniform readonly image2D momentsBefore;
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D moments;  // svgf_moments.glsl
+WRITE_UINT1(9, signal);                                                   // visibility_texel.glsl
 
 struct Past {
     vec4 moments;
@@ -72,7 +70,7 @@ void main() {
         STORE_UINT1(signal, at, packedSignal(vec2(x < 0.0 ? 1.0 : x, NOTHING_SEEN)));
         return;
     }
-    vec4 now = pastOf(at, surface, LOAD_LAYER(motion, at)).moments;
+    vec4 now = pastOf(at, surface, motionAt(at, surface)).moments;
     const float frames = min(now.w + 1.0, params.longest);
     if (x >= 0.0) now = withSample(now, x, sharesOf(frames), frames);
     const vec4 packed = packedMoments(now);
