@@ -33,10 +33,10 @@ bool differs(const dvec4& value, const dvec4& expected, const dvec4& slope) {
     return false;
 }
 
-/// Normals are stored with 12 bits per octahedral coordinate.
+/// Normals are stored with 12 bits per octahedral coordinate, distances with 13 of mantissa.
 bool surfaceDiffers(const dvec4& value, const dvec4& expected) {
     const bool seen = expected.w > 0.0;
-    return std::abs(value.w - expected.w) > 1e-5 * expected.w ||
+    return std::abs(value.w - expected.w) > 0x1.01p-14 * expected.w ||
            (seen && glm::distance(dvec3(value), dvec3(expected)) > 1.05e-3);
 }
 

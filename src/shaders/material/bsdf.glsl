@@ -3,8 +3,9 @@
 //
 //   f = metallic * metal + (1 - metallic) * ((1 - transmission) * plastic + transmission * glass)
 //
-// With iridescence, metal and plastic lie below a film (thin_film.glsl). With diffuse transmission, plastic's base sends a share of its light to the other side of the surface. With
-// anisotropy, all facets have two roughnesses, and multiple scattering is left out (docs/gltf.md).
+// With iridescence, metal and plastic lie below a film (thin_film.glsl). With diffuse transmission, plastic's base
+// sends a share of its light to the other side of the surface. With anisotropy, all facets have two roughnesses, and
+// multiple scattering is left out (docs/gltf.md).
 //
 // metal: GGX reflection plus multiple scattering between the facets (multipleReflection). plastic: GGX
 // reflection over a diffuse base that gets exactly the energy that the coat transmits, in and out. glass:
@@ -168,6 +169,33 @@ vec3 reflectedAlbedo(Bsdf b) {
     return b.f0 * b.albedo.x + b.f90 * b.albedo.y;
 }
 
+void makeRoughGlass(inout Bsdf b, Surface s) {
+    b.roughGlass = 0.0;
+    b.glassGain = vec2(0.0);
+    b.glassDiffuse = vec2(0.0);
+    if (!HAS_ROUGH_GLASS) return;
+    b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : b.glassWeight;
+    if (b.roughGlass <= 0.0 || (HAS_ANISOTROPY && s.anisotropy > 0.0)) return;
+    const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
+    b.glassGain = entry.xy;
+    b.glassDiffuse = entry.zw;
+}
+
+/// Sets the probabilities of the lobes by the light that they scatter, and returns its sum.
+float chooseLobes(inout Bsdf b) {
+    const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
+    const vec2 spread = b.glassDiffuse * b.glassWeight;
+    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
+                              luminance(reflectedAlbedo(b)) + missing * (1.0 - b.average.z),
+                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
+    float below = spread.y;
+    if (HAS_DIFFUSE_TRANSMISSION) below += luminance(b.diffuseBelow) * (1.0 - b.coatLoss);
+    const float sum = dot(weights, vec4(1.0)) + below;
+    b.probability = weights / max(sum, 1e-20);
+    b.belowProbability = below / max(sum, 1e-20);
+    return sum;
+}
+
 Bsdf makeBsdf(Surface s, vec3 toViewer) {
     Bsdf b = lambertianBsdf(s, toViewer);
     if (!HAS_SPECULAR) return b;
@@ -207,30 +235,11 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.through = s.thin ? s.baseColor * (dielectric * transmission) : vec3(0.0);
     b.glassWeight = refracting;
     b.glass = s.baseColor;
-    b.roughGlass = 0.0;
-    b.glassGain = vec2(0.0);
-    b.glassDiffuse = vec2(0.0);
-    if (HAS_ROUGH_GLASS) {
-        b.roughGlass = b.smoothSurface || abs(s.ior - 1.0) < SMOOTH_IOR_DIFFERENCE ? 0.0 : refracting;
-        if (b.roughGlass > 0.0 && !(HAS_ANISOTROPY && s.anisotropy > 0.0)) {
-            const vec4 entry = dielectricEntry(b.wo.z, b.roughness, b.eta, 0);
-            b.glassGain = entry.xy;
-            b.glassDiffuse = entry.zw;
-        }
-    }
+    makeRoughGlass(b, s);
     b.average = ggxAverage(tableRoughness(b, vec3(1.0, 0.0, 0.0)));
     if (HAS_IRIDESCENCE) b.filmedF0 = filmedReflectance(b, meanCosine(b.average.xy), b.metalF0, 1.0);
     b.multiple = b.metal * multipleTint(b, 2.0 / 3.0);
-    const float missing = luminance(b.multiple) * (1.0 - b.albedo.x - b.albedo.y);
-    const vec2 spread = b.glassDiffuse * b.glassWeight;
-    const vec4 weights = vec4(luminance(b.diffuse) * (1.0 - b.coatLoss) + missing * b.average.z + spread.x,
-                              luminance(reflectedAlbedo(b)) + missing * (1.0 - b.average.z),
-                              luminance(b.through) * (1.0 - b.coatLoss), b.glassWeight - spread.x - spread.y);
-    float below = spread.y;
-    if (HAS_DIFFUSE_TRANSMISSION) below += luminance(b.diffuseBelow) * (1.0 - b.coatLoss);
-    float sum = dot(weights, vec4(1.0)) + below;
-    b.probability = weights / max(sum, 1e-20);
-    b.belowProbability = below / max(sum, 1e-20);
+    float sum = chooseLobes(b);
     if (HAS_SHEEN) {
         b.sheen = makeSheen(s, b.wo.z, sum);
         sum = mix(sum, 1.0, b.sheen.albedo);
