@@ -48,7 +48,8 @@ struct Bsdf {
     bool smoothSurface;
     vec4 albedo;     // ggxAlbedo at wo
     vec3 average;    // ggxAverage
-    float coatLoss;  // share of energy that the coat keeps from the base at wo
+    float coatLoss;     // share of energy that the coat keeps from the base at wo
+    float coatAverage;  // the same, of light from all directions
     vec2 glassGain;     // multiple scattering's gain of the refracting boundary's two lobes, without masking
     vec2 glassDiffuse;  // diffuse-like part of multiple scattering at the boundary: reflected and transmitted
     vec4 probability;   // of sampling the diffuse, reflecting, thin transmitting and refracting lobe
@@ -56,6 +57,7 @@ struct Bsdf {
     ThinFilm film;         // over metal and plastic
     vec3 plasticF0;        // of the dielectric without its specular factor
     vec3 filmedF0;         // mean reflectance of the metal's facets
+    vec3 filmedMirror;     // reflectance of facets that face the viewer's mirrored direction
     float plainMetal, plastic;  // weights of the metal and of the dielectric below the film
     Sheen sheen;
     Clearcoat clearcoat;
@@ -138,8 +140,14 @@ vec3 reflectanceAt(Bsdf b, float cosine) {
     return mix(b.f0, vec3(b.f90), schlickWeight(cosine));
 }
 
-/// The cosine of facets that stands for all that are seen: where Schlick's term has its mean over the lobe. `albedo`: of
-/// ggxAlbedo or ggxAverage.
+/// Returns reflectanceAt() where light is mirrored by the surface itself.
+vec3 mirrorReflectance(Bsdf b) {
+    if (HAS_IRIDESCENCE) return b.filmedMirror;
+    return mix(b.f0, vec3(b.f90), schlickWeight(b.wo.z));
+}
+
+/// The cosine of facets that stands for all that are seen: where Schlick's term has its mean over the lobe.
+/// `albedo`: of ggxAlbedo or ggxAverage.
 float meanCosine(vec2 albedo) {
     return 1.0 - pow(clamp(albedo.y / max(albedo.x + albedo.y, 1e-6), 0.0, 1.0), 0.2);
 }
@@ -156,7 +164,7 @@ float coatAlbedo(Bsdf b, vec2 albedo) {
 }
 
 /// Returns its mean over all directions. A film's mean is less certain: it is taken so low that nothing gains energy.
-float coatAverageOf(Bsdf b) {
+float coatAverage(Bsdf b) {
     const float average = coatAlbedo(b, b.average.xy);
     return HAS_IRIDESCENCE && b.film.weight > 0.0 ? 0.9 * average : average;
 }
@@ -237,7 +245,11 @@ Bsdf makeBsdf(Surface s, vec3 toViewer) {
     b.glass = s.baseColor;
     makeRoughGlass(b, s);
     b.average = ggxAverage(tableRoughness(b, vec3(1.0, 0.0, 0.0)));
-    if (HAS_IRIDESCENCE) b.filmedF0 = filmedReflectance(b, meanCosine(b.average.xy), b.metalF0, 1.0);
+    b.coatAverage = coatAverage(b);
+    if (HAS_IRIDESCENCE) {
+        b.filmedF0 = filmedReflectance(b, meanCosine(b.average.xy), b.metalF0, 1.0);
+        b.filmedMirror = reflectanceAt(b, b.wo.z);
+    }
     b.multiple = b.metal * multipleTint(b, 2.0 / 3.0);
     float sum = chooseLobes(b);
     if (HAS_SHEEN) {
@@ -319,8 +331,8 @@ float reflectionChance(Bsdf b, float reflectance) {
 void addReflection(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 albedo = ggxAlbedo(wi.z, tableRoughness(b, wi));
     const float cosinePdf = wi.z / PI;
-    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
-    value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
+    const float coatLoss = coatAlbedo(b, albedo.xy);
+    value.diffuse += b.diffuse * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - b.coatAverage, 1e-6) * cosinePdf);
     value.specular += multipleTint(b, wi.z) * (b.metal * multipleReflection(b, albedo) * wi.z);
     value.pdf += b.probability.x * cosinePdf;
     if (b.smoothSurface) return;
@@ -352,7 +364,8 @@ void addTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const float panePdf = reflectionPdf(b, paneHalf);
     const float lambdaOut = lambdaOf(b, b.wo), lambdaIn = lambdaOf(b, mirrored);
     const float single = b.albedo.x + b.albedo.y;
-    value.specular += b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
+    value.specular +=
+        b.through * ((1.0 - b.coatLoss) / single * panePdf * (1.0 + lambdaOut) / (1.0 + lambdaOut + lambdaIn));
     value.pdf += b.probability.z * panePdf;
     if (!HAS_ROUGH_GLASS) return;
     vec3 m = b.wo + b.eta * wi;
@@ -386,8 +399,9 @@ void addDielectricMultiple(Bsdf b, vec3 wi, inout BsdfValue value) {
 void addDiffuseTransmission(Bsdf b, vec3 wi, inout BsdfValue value) {
     const vec4 albedo = ggxAlbedo(-wi.z, tableRoughness(b, wi));
     const float cosinePdf = -wi.z / PI;
-    const float coatLoss = coatAlbedo(b, albedo.xy), coatAverage = coatAverageOf(b);
-    value.diffuse += b.diffuseBelow * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - coatAverage, 1e-6) * cosinePdf);
+    const float coatLoss = coatAlbedo(b, albedo.xy);
+    value.diffuse +=
+        b.diffuseBelow * ((1.0 - b.coatLoss) * (1.0 - coatLoss) / max(1.0 - b.coatAverage, 1e-6) * cosinePdf);
     value.pdf += b.belowProbability * cosinePdf;
 }
 
@@ -412,8 +426,8 @@ BsdfValue evaluateLocal(Bsdf b, vec3 wi) {
     return value;
 }
 
-BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
-    const vec3 wi = direction * b.frame;
+/// `wi` is the same direction as `direction`.
+BsdfValue evaluateBsdf(Bsdf b, vec3 wi, vec3 direction) {
     BsdfValue value = evaluateLocal(b, wi);
     if (!sidesAgree(b, wi)) value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
     if (HAS_SHEEN) {
@@ -434,13 +448,17 @@ BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
     return value;
 }
 
+BsdfValue evaluateBsdf(Bsdf b, vec3 direction) {
+    return evaluateBsdf(b, direction * b.frame, direction);
+}
+
 /// Samples a perfectly smooth lobe; value holds f cos / pdf of the lobe with pdf 1.
 BsdfSample sampleSmooth(Bsdf b, uint lobe, float u) {
     BsdfSample result = BsdfSample(vec3(0.0), BsdfValue(vec3(0.0), vec3(0.0), 1.0), true, true);
     const vec3 reflected = vec3(-b.wo.xy, b.wo.z);
     vec3 wi = reflected;
     if (lobe == 1u) {
-        result.value.specular = reflectanceAt(b, b.wo.z) / b.probability.y;
+        result.value.specular = mirrorReflectance(b) / b.probability.y;
     } else if (lobe == 2u) {
         wi = -b.wo;
         result.value.specular = b.through * (1.0 - b.coatLoss) / b.probability.z;
@@ -467,7 +485,7 @@ BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
         result.value.specular *= pane ? b.probability.z : b.probability.w * (1.0 - reflectance);
     } else {
         result = sampleSmooth(b, 3u, -1.0);
-        result.value.specular = reflectanceAt(b, b.wo.z) + b.glassWeight * reflectance;
+        result.value.specular = mirrorReflectance(b) + b.glassWeight * reflectance;
     }
     result.valid = result.valid && result.value.specular != vec3(0.0);
     return result;
@@ -509,23 +527,8 @@ vec3 sampleRough(Bsdf b, uint lobe, vec2 u, float choice) {
     return refracted.z < 0.0 ? refracted : vec3(0.0);
 }
 
-/// Samples a direction; value.diffuse + value.specular over value.pdf is the throughput.
-BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
-    vec2 u = stratified2(rng);
-    if (HAS_CLEARCOAT) {
-        if (stratified(rng) < b.clearcoat.probability) {
-            BsdfSample coat = sampleCoat(b, u);
-            if (!coat.delta) coat.value = evaluateBsdf(b, coat.direction);
-            return coat;
-        }
-    }
-    if (HAS_SHEEN) {
-        if (stratified(rng) < b.sheen.probability) {
-            const vec3 wi = sampleSheen(u);
-            const vec3 direction = b.frame * wi;
-            return BsdfSample(direction, evaluateBsdf(b, direction), false, wi.z > 0.0 && sidesAgree(b, wi));
-        }
-    }
+/// Samples what lies below coat and sheen, without its value unless the lobe is smooth. `wi`: the direction, local.
+BsdfSample sampleBase(Bsdf b, vec2 u, inout uint rng, out vec3 wi) {
     uint lobe = 0u;
     float choice = 0.0;
     if (HAS_SPECULAR) {
@@ -547,7 +550,7 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
             choice = clamp((choice - bounds.z) / max(b.probability.w, 1e-20), 0.0, 1.0);
         }
     }
-    vec3 wi = sampleCosineHemisphere(u);
+    wi = sampleCosineHemisphere(u);
     if (HAS_SPECULAR) {
         const bool smoothLobe = b.smoothSurface || (lobe == 3u && b.roughGlass == 0.0);
         const bool diffuse = lobe == 0u || (HAS_DIFFUSE_TRANSMISSION && lobe == 4u);
@@ -555,9 +558,37 @@ BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
         if (lobe == 4u) wi.z = -wi.z;
         else if (lobe != 0u) wi = sampleRough(b, lobe, u, choice);
     }
-    const vec3 direction = b.frame * wi;
-    const BsdfValue value = HAS_CLEARCOAT || HAS_SHEEN ? evaluateBsdf(b, direction) : evaluateLocal(b, wi);
-    return BsdfSample(direction, value, false, value.pdf > 0.0 && wi.z != 0.0 && sidesAgree(b, wi));
+    return BsdfSample(b.frame * wi, BsdfValue(vec3(0.0), vec3(0.0), 0.0), false, wi.z != 0.0 && sidesAgree(b, wi));
+}
+
+/// Samples a direction; value.diffuse + value.specular over value.pdf is the throughput. Values are computed in one
+/// place for all layers: drivers copy functions to where they are called, and take long to compile many copies.
+BsdfSample sampleBsdf(Bsdf b, inout uint rng) {
+    const vec2 u = stratified2(rng);
+    BsdfSample drawn;
+    vec3 wi;
+    bool below = true;
+    if (HAS_CLEARCOAT) {
+        if (stratified(rng) < b.clearcoat.probability) {
+            drawn = sampleCoat(b, u);
+            wi = drawn.direction * b.frame;
+            below = false;
+        }
+    }
+    if (HAS_SHEEN) {
+        if (below && stratified(rng) < b.sheen.probability) {
+            wi = sampleSheen(u);
+            drawn.direction = b.frame * wi;
+            drawn.delta = false;
+            drawn.valid = wi.z > 0.0 && sidesAgree(b, wi);
+            below = false;
+        }
+    }
+    if (below) drawn = sampleBase(b, u, rng, wi);
+    if (drawn.delta) return drawn;
+    drawn.value = evaluateBsdf(b, wi, drawn.direction);
+    drawn.valid = drawn.valid && drawn.value.pdf > 0.0;
+    return drawn;
 }
 
 /// Returns the specular lobes' reflection and transmission of uniform light: the albedoSpecular layer.
