@@ -217,9 +217,8 @@ TEST_F(StudioTest, TellsWhyHistoriesWereKeptOrRejected) {
     EXPECT_EQ(historyText(*cut->reasons, {0.5f, 0.5f}), "no history: first frame after a cut");
 
     const auto listed = rest(*studio, studio->edit({{"pass", "svgf/reasons diffuse"}}));
-    EXPECT_THAT(listed->facts.images,
-                testing::ElementsAre("svgf/diffuse reasons", "svgf/diffuse history", HasSubstr("surfaces"),
-                                     HasSubstr("surfaces"), HasSubstr("moments")));
+    EXPECT_THAT(listed->facts.images, testing::ElementsAre("svgf/diffuse reasons", "svgf/diffuse history",
+                                                           HasSubstr("surfaces"), HasSubstr("moments")));
     EXPECT_EQ(listed->facts.frames, cut->facts.frames) << "the frame had it already";
     const auto closed = rest(*studio, studio->edit({{"pass", ""}}));
     EXPECT_FALSE(closed->reasons);
@@ -259,7 +258,9 @@ double meanDifference(const Picture& a, const Picture& b) {
 
 /// Without their parts, four methods have nothing in common but their input: they must show the same.
 TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
-    const auto studio = make(small());
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;  // else a busy machine shrinks some of the pictures
+    const auto studio = make(settings);
     rest(*studio, studio->edit({{"jitter", "off"}, {"max_samples", 1}}));
     const json off{{"part.temporal", false}, {"part.spatial", false}, {"part.demodulation", false}};
     const json on{{"part.temporal", true}, {"part.spatial", true}, {"part.demodulation", true}};
