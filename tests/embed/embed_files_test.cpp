@@ -206,7 +206,9 @@ TEST_F(EmbedFilesTest, GivesThePicturesOfTheProgramBitForBit) {
 
 TEST_F(EmbedFilesTest, GuidesInHalvesChangeLittle) {
     roundCameras();
-    for (const Variant& variant : {oneSignal, twoSignals, atrous, bilateral}) {
+    for (const Variant& variant : {oneSignal, twoSignals})
+        EXPECT_EQ(differenceOf(variant).values, 0u) << variant.options << " reads them as they are given";
+    for (const Variant& variant : {atrous, bilateral}) {
         const Difference difference = differenceOf(variant);
         fmt::print("guides in halves, {}: mean {:.2g}, at most {:.2g}\n", variant.options, difference.mean,
                    difference.largest);

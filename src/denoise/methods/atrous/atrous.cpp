@@ -33,7 +33,7 @@ float minAlbedo(const AtrousSettings& settings) {
 
 Demodulated demodulate(FrameGraph& graph, const DenoiserInput& input, const AtrousLight& light,
                        const AtrousSettings& settings) {
-    const Extent extent = graph.extent(input.albedo);
+    const Extent extent = graph.extent(input.diffuse);
     const Demodulated signal{
         graph.transient("atrous/demodulated", gpu::Format::RGBA16Float, extent, input.filters),
         graph.transient("atrous/geometry", gpu::Format::RG32Uint, extent, input.filters)};
