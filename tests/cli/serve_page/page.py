@@ -76,7 +76,7 @@ def evaluate(browser, body):
 def settle(browser, what):
     """Until the lossless picture is there."""
     browser.wait("document.querySelector('#stage').dataset.lossless === 'true' && "
-                 "document.querySelector('#activity').textContent.match(/finished|stopped/)", what, 30)
+                 "document.querySelector('#activity').textContent.match(/finished|stopped/)", what, 60)
 
 
 def open_page(browser, address):
