@@ -212,11 +212,11 @@ TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
 }
 
 TEST_F(ViewEventsTest, RestsWhereNothingChangesAndKeepsNothing) {
-    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 1300");
-    viewer.waitFor("200 frames", [&] { return viewer.number("frames") >= 200; });
+    DrivenViewer viewer(folder_, "builtin:cornell --max-spp 420");
+    viewer.waitFor("100 frames", [&] { return viewer.number("frames") >= 100; });
     const double early = viewer.residentBytes();
-    viewer.waitFor("1200 frames", [&] { return viewer.number("frames") >= 1200; });
-    EXPECT_LT(viewer.residentBytes() - early, 4e6);
+    viewer.waitFor("400 frames", [&] { return viewer.number("frames") >= 400; });
+    EXPECT_LT(viewer.residentBytes() - early, 1.2e6);  // 4 KB a frame
     viewer.settledPicture();
     std::this_thread::sleep_for(std::chrono::seconds(1));
     const double before = viewer.processorSeconds();

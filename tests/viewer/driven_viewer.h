@@ -208,9 +208,11 @@ class DrivenViewer {
     void waitFor(const std::string& what, const std::function<bool()>& done) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(240);
         while (!done()) {
-            if (std::chrono::steady_clock::now() > end)
-                throw std::runtime_error("waited in vain for " + what + "; log:\n" + get("log") +
-                                         get("controls"));
+            const bool ended = !get("code").empty();
+            if (ended && done()) break;  // with its last file
+            if (ended || std::chrono::steady_clock::now() > end)
+                throw std::runtime_error((ended ? "the program ended before " : "waited in vain for ") +
+                                         what + "; log:\n" + get("log") + get("controls"));
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
         }
     }
