@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "gpu/specialise/specialise.h"
 #include "image/io/picture.h"
 #include "studio/compare/history_text.h"
 #include "studio/state/state_file.h"
@@ -39,7 +40,7 @@ class StudioTest : public testing::Test {
     static std::unique_ptr<Studio> make(StudioSettings settings, SceneLoader load = scene::openScene) {
         settings.maxSamples = std::min<uint64_t>(settings.maxSamples, 2);
         return std::make_unique<Studio>(
-            gpu::DeviceOptions{.select = wantedDevice()},
+            gpu::DeviceOptions{.select = wantedDevice(), .specialise = gpu::specialiser()},
             [](const gpu::Device&) { return scene::Tracer::Compute; }, std::move(load),
             [](const scene::Scene& scene) { return scene.cameras.front(); }, settings);
     }

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gpu/graph/frame_graph.h"
+#include "gpu/specialise/specialise.h"
 #include "gpu/vulkan/device.h"
 #include "scene/device/gpu_scene.h"
 
@@ -47,7 +48,10 @@ class TestDevice : public testing::Environment {
 
   private:
     static std::unique_ptr<gpu::Device> make() {
-        gpu::DeviceOptions options{.select = wantedDevice(), .validation = true, .messages = log::write};
+        gpu::DeviceOptions options{.select = wantedDevice(),
+                                   .validation = true,
+                                   .messages = log::write,
+                                   .specialise = gpu::specialiser()};
         try {
             return std::make_unique<gpu::Device>(options);
         } catch (const Error& error) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "cli/help_text.h"
+#include "gpu/specialise/specialise.h"
 
 namespace limpid::cli {
 
@@ -23,6 +24,7 @@ void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
     command.add_option("--tracer", choice.tracer, "Ray tracing method: auto (default), compute or hardware")
         ->check(CLI::Validator(faultOfTracer, "auto|compute|hardware"));
     choice.device.messages = log::write;
+    choice.device.specialise = gpu::specialiser();
     command.add_flag("--validation", choice.device.validation, "Run with the Vulkan validation layer; slow");
 }
 

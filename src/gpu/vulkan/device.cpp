@@ -22,10 +22,10 @@ std::vector<DeviceInfo> enumerateDevices() {
 }
 
 Device::Device(const DeviceOptions& options)
-    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(options))) {}
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(options), options.specialise)) {}
 
 Device::Device(const AdoptedDevice& adopted)
-    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted))) {}
+    : impl_(std::make_unique<Impl>(std::make_shared<const Context>(adopted), Specialise{})) {}
 
 Device::~Device() {
     // For an adopted device this is the caller's job.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,6 +61,13 @@ struct DeviceInfo {
     std::vector<std::pair<std::string, uint64_t>> limits;  ///< those that Limpid checks, by Vulkan name
 };
 
+/// Ids and values, sorted.
+using SpecialisationConstants = std::vector<std::pair<uint32_t, uint32_t>>;
+
+/// Returns the SPIR-V of a shader in which the constants have these values, or nothing if it cannot.
+using Specialise =
+    std::function<std::vector<uint32_t>(std::span<const uint32_t>, const SpecialisationConstants&)>;
+
 struct DeviceOptions {
     /// "" selects the best usable device (discrete before integrated before cpu); "cpu" a software device; a
     /// number the device with that index; anything else the first device whose name contains it, ignoring
@@ -76,6 +84,9 @@ struct DeviceOptions {
     bool readsEnvironment = true;  ///< LIMPID_VALIDATION is respected
     /// Receives the validation layer's messages. None: they are only counted.
     MessageCallback messages;
+    /// Sets specialisation constants before the driver sees a shader (gpu/specialise/specialise.h). Called
+    /// from several threads at once. None: the driver does it.
+    Specialise specialise;
 };
 
 struct AdoptedDevice;  ///< in gpu/vulkan/adopted_device.h

@@ -11,8 +11,9 @@
 namespace limpid::gpu {
 
 struct Device::Impl {
-    explicit Impl(std::shared_ptr<const Context> on)
-        : context(std::move(on)), pipelines(std::make_shared<PipelineCache>(context)) {}
+    Impl(std::shared_ptr<const Context> on, Specialise specialise)
+        : context(std::move(on)),
+          pipelines(std::make_shared<PipelineCache>(context, std::move(specialise))) {}
 
     /// Created at the first copy: an adopted device may never need it.
     Transfer& transfer() {

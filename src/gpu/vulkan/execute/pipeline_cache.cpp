@@ -129,8 +129,8 @@ VkShaderStageFlagBits stageFlag(ShaderStage stage) {
     return VK_SHADER_STAGE_ALL;
 }
 
-PipelineCache::PipelineCache(std::shared_ptr<const Context> context)
-    : context_(std::move(context)), driverCache_(makeDriverCache({})) {}
+PipelineCache::PipelineCache(std::shared_ptr<const Context> context, Specialise specialise)
+    : context_(std::move(context)), specialise_(std::move(specialise)), driverCache_(makeDriverCache({})) {}
 
 UniqueDriverCache PipelineCache::makeDriverCache(std::span<const std::byte> data) const {
     VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
@@ -218,7 +218,8 @@ PipelineCache::Layouts PipelineCache::makeLayouts(const Shader& shader) const {
     Layouts layouts;
     layouts.set = makeSetLayout(shader);
     layouts.pipeline = makePipelineLayout(shader, layouts.set.get());
-    for (const Shader::Stage& stage : shader.stages) layouts.modules.push_back(makeModule(shader, stage));
+    for (const Shader::Stage& stage : shader.stages)
+        layouts.modules.push_back(makeModule(shader, stage.words));
     return layouts;
 }
 
@@ -251,10 +252,10 @@ UniquePipelineLayout PipelineCache::makePipelineLayout(const Shader& shader,
     return owned;
 }
 
-UniqueShaderModule PipelineCache::makeModule(const Shader& shader, const Shader::Stage& stage) const {
+UniqueShaderModule PipelineCache::makeModule(const Shader& shader, std::span<const uint32_t> words) const {
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    info.codeSize = stage.words.size() * sizeof(uint32_t);
-    info.pCode = stage.words.data();
+    info.codeSize = words.size() * sizeof(uint32_t);
+    info.pCode = words.data();
     VkShaderModule module = VK_NULL_HANDLE;
     LIMPID_VK(context_->vk().CreateShaderModule(context_->device(), &info, nullptr, &module));
     UniqueShaderModule owned(context_->vk(), module);
@@ -290,6 +291,7 @@ PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch
     specialisation.dataSize = values.size() * sizeof(uint32_t);
     specialisation.pData = values.data();
     std::vector<VkPipelineShaderStageCreateInfo> stages;
+    std::vector<UniqueShaderModule> specialised;  // until the pipeline exists
     for (size_t i = 0; i < shader.stages.size(); ++i) {
         VkPipelineShaderStageCreateInfo& stage = stages.emplace_back();
         stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -297,6 +299,12 @@ PipelineCache::Made PipelineCache::makePipeline(const RecordedDispatch& dispatch
         stage.module = layouts.modules[i].get();
         stage.pName = "main";
         stage.pSpecializationInfo = entries.empty() ? nullptr : &specialisation;
+        if (!specialise_ || entries.empty()) continue;
+        const std::vector<uint32_t> words = specialise_(shader.stages[i].words, dispatch.constants);
+        if (words.empty()) continue;
+        specialised.push_back(makeModule(shader, words));
+        stage.module = specialised.back().get();
+        stage.pSpecializationInfo = nullptr;
     }
     Made made;
     if (shader.tracesRays()) {

@@ -15,7 +15,8 @@ namespace limpid::gpu {
 
 class PipelineCache {
   public:
-    explicit PipelineCache(std::shared_ptr<const Context> context);
+    /// `specialise`: of DeviceOptions.
+    PipelineCache(std::shared_ptr<const Context> context, Specialise specialise);
 
     struct Pipeline {
         VkPipeline pipeline = VK_NULL_HANDLE;
@@ -48,9 +49,7 @@ class PipelineCache {
         UniquePipeline pipeline;
         std::optional<ShaderTable> table;
     };
-    using Constants = std::vector<std::pair<uint32_t, uint32_t>>;
-
-    using Key = std::pair<uint64_t, Constants>;  ///< Shader::hash and the constants
+    using Key = std::pair<uint64_t, SpecialisationConstants>;  ///< Shader::hash and the constants
 
     /// `mutex_` must be held.
     const Layouts& layoutsOf(const Shader& shader);
@@ -58,12 +57,13 @@ class PipelineCache {
     Layouts makeLayouts(const Shader& shader) const;
     UniqueSetLayout makeSetLayout(const Shader& shader) const;
     UniquePipelineLayout makePipelineLayout(const Shader& shader, VkDescriptorSetLayout set) const;
-    UniqueShaderModule makeModule(const Shader& shader, const Shader::Stage& stage) const;
+    UniqueShaderModule makeModule(const Shader& shader, std::span<const uint32_t> words) const;
     Made makePipeline(const RecordedDispatch& dispatch, const Layouts& layouts) const;
     UniquePipeline makeComputePipeline(const VkPipelineShaderStageCreateInfo& stage,
                                        VkPipelineLayout layout) const;
 
     std::shared_ptr<const Context> context_;
+    Specialise specialise_;
     UniqueDriverCache driverCache_;
     std::function<void()> listener_;
     mutable std::mutex mutex_;             ///< protects the members below; their elements do not move
