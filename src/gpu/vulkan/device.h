@@ -84,8 +84,8 @@ struct DeviceOptions {
     bool readsEnvironment = true;  ///< LIMPID_VALIDATION is respected
     /// Receives the validation layer's messages. None: they are only counted.
     MessageCallback messages;
-    /// Sets specialisation constants before the driver sees a shader (gpu/specialise/specialise.h). Called
-    /// from several threads at once. None: the driver does it.
+    /// Sets specialisation constants before a CPU's driver sees a shader (gpu/specialise/specialise.h).
+    /// Called from several threads at once. None: the driver does it, as on GPUs.
     Specialise specialise;
 };
 
