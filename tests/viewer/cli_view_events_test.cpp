@@ -185,9 +185,14 @@ TEST_F(ViewEventsTest, TheCommandLineMakesTheSameFrame) {
         {
             DrivenViewer viewer(folder_, "builtin:cornell --max-spp 12 --seed 5 --denoiser " + denoiser +
                                              " --screenshot shown.exr");
-            viewer.xdotool(
-                "mousemove 420 1000 mousedown 1 mousemove 430 1004 sleep 0.1 mousemove 437 1011 sleep 0.2 "
-                "mouseup 1");
+            viewer.xdotool("mousemove 420 1000 sleep 0.1 mousedown 1");
+            for (const char* place : {"430 1004", "437 1011"}) {  // each is seen by frames of its own
+                viewer.waitFor("rest", [&] { return viewer.fact("rendering") == "no"; });
+                const double frames = viewer.number("frames");
+                viewer.xdotool(std::string("mousemove ") + place + " sleep 0.1");
+                viewer.waitFor("a frame", [&] { return viewer.number("frames") != frames; });
+            }
+            viewer.xdotool("mouseup 1");
             viewer.settledPicture();
             viewer.click("copy command line");
             viewer.waitFor("the command",
