@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// Widens what light_first_hits.glsl has found: the farthest of each texel and its neighbours on the sphere, and a
-// margin.
+// From what light_first_hits.glsl has found: the farthest of each texel; and of each texel and its neighbours on the
+// sphere, and a margin.
 #include "passes/light_distances/light_distances_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -21,6 +21,11 @@ ivec2 wrapped(ivec2 texel) {
     return texel;
 }
 
+/// The upper half of the least float with 16 bits that is not below the distance.
+uint halfAbove(float distance) {
+    return (floatBitsToUint(distance) + 0xFFFFu) >> 16;
+}
+
 void main() {
     const ivec2 place = ivec2(gl_GlobalInvocationID.xy);
     const int map = place.y / SIZE, first = map * SIZE * SIZE;
@@ -33,5 +38,7 @@ void main() {
             farthest = max(farthest, imageLoad(lightFirstHits, first + at.y * SIZE + at.x).x);
         }
     }
-    imageStore(lightDistances, first + place.x + texel.y * SIZE, vec4(farthest * LIGHT_MAP_MARGIN));
+    const int at = first + place.x + texel.y * SIZE;
+    const uint own = halfAbove(imageLoad(lightFirstHits, at).x), around = halfAbove(farthest * LIGHT_MAP_MARGIN);
+    imageStore(lightDistances, at, vec4(uintBitsToFloat(around << 16 | own)));
 }

@@ -14,7 +14,7 @@ using layout::SceneParams;
 
 LIMPID_CONST uint LIGHT_MAP_RAYS = 2u;  // rows and columns of rays through a texel
 /// Surfaces between rays may be a little farther away than those that the rays meet.
-LIMPID_CONST float LIGHT_MAP_MARGIN = 1.05;
+LIMPID_CONST float LIGHT_MAP_MARGIN = 1.1;
 
 struct LightDistancesParams {
     SceneParams scene;

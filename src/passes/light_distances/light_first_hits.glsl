@@ -9,14 +9,16 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 layout(set = 0, binding = 21, r32f) uniform writeonly imageBuffer lightFirstHits;
 
-float farthestHit(vec3 light, uvec2 texel, uint rng) {
+float farthestHit(vec3 light, uvec2 texel, uint number) {
     float farthest = 0.0;
     for (uint ray = 0u; ray < LIGHT_MAP_RAYS * LIGHT_MAP_RAYS; ++ray) {
-        const vec2 within = (vec2(ray % LIGHT_MAP_RAYS, ray / LIGHT_MAP_RAYS) + 0.5) / float(LIGHT_MAP_RAYS);
+        // Regular directions would meet edges exactly, where rays may slip through.
+        uint state = tea(number, ray);
+        const vec2 within = (vec2(ray % LIGHT_MAP_RAYS, ray / LIGHT_MAP_RAYS) + random2(state)) / float(LIGHT_MAP_RAYS);
         const vec2 place = (vec2(texel) + within) / float(LIGHT_MAP_SIZE);
         const vec3 direction = fromOctahedral(2.0 * place - 1.0, 1.0);
         // Each ray decides anew on partly transparent surfaces.
-        const Hit hit = traceClosest(Ray(light, direction, INFINITE_DISTANCE), params.scene.rootNode, tea(rng, ray));
+        const Hit hit = traceClosest(Ray(light, direction, INFINITE_DISTANCE), params.scene.rootNode, state);
         farthest = max(farthest, hit.t);
     }
     return farthest;

@@ -1,6 +1,7 @@
 #include "scene/device/gpu_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "base/error.h"
@@ -65,8 +66,10 @@ void GpuScene::addLightDistances(gpu::Device& device, const SceneData& data) {
     };
     if (!features_.lightDistances) return add(buffers_, "lightDistances", {});
     mappedLights_ = std::min(data.params.punctualCount, layout::LIGHT_MAPS);
+    // Two upper halves of floats, both above LIGHT_MAP_NOT_HIDDEN.
+    constexpr auto notHidden = std::bit_cast<float>(0x714A714Au);
     const std::vector<float> values(size_t{mappedLights_} * layout::LIGHT_MAP_SIZE * layout::LIGHT_MAP_SIZE,
-                                    layout::LIGHT_MAP_NOT_HIDDEN);
+                                    notHidden);
     add(buffers_, "lightDistances", values);
     add(passBuffers_, "lightFirstHits", values);
     lightDistancesStale_ = true;

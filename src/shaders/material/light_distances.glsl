@@ -6,8 +6,9 @@
 #include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_data.glsl"
 
-/// Factors of the weights of lights that are hidden by their maps: if chosen by usable light, and if chosen uniformly.
-/// Both are above 0, since a map can miss a narrow gap. The second is larger: it bounds the noise of such gaps.
+/// Factors of the weights of lights that are hidden by their maps: probably hidden, if chosen by usable light; almost
+/// surely hidden, if chosen uniformly. Both are above 0, since a map can miss a narrow gap. The second is larger, and
+/// bounds the noise where the first is wrong.
 const float HIDDEN_WEIGHT = 0.001;
 const float HIDDEN_UNIFORM_WEIGHT = 0.05;
 
@@ -18,13 +19,17 @@ ivec2 lightMapTexel(vec3 direction) {
     return ivec2(clamp(place, vec2(0.0), vec2(size - 1.0)));
 }
 
-/// `map`: number of the punctual light. `direction` and `distance` are those from the point to the light. True:
-/// nothing, or almost nothing, of the light arrives.
-bool hiddenByMap(uint map, vec3 direction, float distance) {
-    if (map >= LIGHT_MAPS) return false;
+struct Hidden {
+    bool probably, surely;
+};
+
+/// `map`: number of the punctual light. `direction` and `distance` are those from the point to the light.
+Hidden hiddenByMap(uint map, vec3 direction, float distance) {
+    if (map >= LIGHT_MAPS) return Hidden(false, false);
     const ivec2 texel = lightMapTexel(-direction);
     const int at = int((map * LIGHT_MAP_SIZE + uint(texel.y)) * LIGHT_MAP_SIZE) + texel.x;
-    return distance > imageLoad(lightDistances, at).x;
+    const uint both = floatBitsToUint(imageLoad(lightDistances, at).x);
+    return Hidden(distance > uintBitsToFloat(both << 16), distance > uintBitsToFloat(both & 0xFFFF0000u));
 }
 
 #endif

@@ -99,8 +99,9 @@ ChildWeights childWeights(Receiver from, uvec4 place, uvec4 effect, uint firstPu
         if ((effect.w & LIGHT_LINK_LEAF) != 0u && map < LIGHT_MAPS && child.weight > 0.0) {
             const vec3 way = uintBitsToFloat(place.xyz) - from.position;
             const float distance = length(way);
-            if (hiddenByMap(map, way / max(distance, 1e-37), distance))
-                child = ChildWeights(max(child.weight * HIDDEN_WEIGHT, 1e-37), HIDDEN_UNIFORM_WEIGHT);
+            const Hidden hidden = hiddenByMap(map, way / max(distance, 1e-37), distance);
+            if (hidden.probably) child.weight = max(child.weight * HIDDEN_WEIGHT, 1e-37);
+            if (hidden.surely) child.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
         }
     }
     return child;

@@ -186,10 +186,9 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
         PunctualCandidate tried = PunctualCandidate(at, usableLight(from, light) / max(source, 1e-30), 1.0, source);
         if (!(tried.weight > 0.0)) continue;
         if (HAS_LIGHT_DISTANCES) {
-            if (hiddenByMap(index, light.direction, light.distance)) {
-                tried.weight = max(tried.weight * HIDDEN_WEIGHT, 1e-37);
-                tried.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
-            }
+            const Hidden hidden = hiddenByMap(index, light.direction, light.distance);
+            if (hidden.probably) tried.weight = max(tried.weight * HIDDEN_WEIGHT, 1e-37);
+            if (hidden.surely) tried.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
         }
         sum += tried.weight;
         reaching += tried.uniformWeight;
