@@ -104,15 +104,12 @@ struct Draws {
     std::vector<double> error;    ///< standard error of `inverse`
 };
 
-class LightDistancesTest : public RenderTest, public testing::WithParamInterface<scene::Tracer> {
+/// With the `compute` tracer, as the shader that draws lights.
+class LightChoiceTest : public RenderTest {
   protected:
-    void SetUp() override {
-        GpuTest::SetUp();
-        if (!IsSkipped() && GetParam() == scene::Tracer::Hardware && !device().info().rayTracing)
-            GTEST_SKIP() << "NOT TESTED: " << device().info().name << " has no ray-tracing pipelines.";
-    }
+    explicit LightChoiceTest(scene::Tracer tracer = scene::Tracer::Compute) : tracer_(tracer) {}
 
-    scene::GpuScene onDevice(const scene::SceneData& data) { return {device(), data, {GetParam(), {}}}; }
+    scene::GpuScene onDevice(const scene::SceneData& data) { return {device(), data, {tracer_, {}}}; }
 
     void measure(scene::GpuScene& scene) {
         gpu::FrameGraph graph;
@@ -190,6 +187,19 @@ class LightDistancesTest : public RenderTest, public testing::WithParamInterface
                 if (light[i] > 0.0) least = std::min(least, draws.share[i] * sum / light[i]);
         }
         return least;
+    }
+
+  private:
+    scene::Tracer tracer_;
+};
+
+class LightDistancesTest : public LightChoiceTest, public testing::WithParamInterface<scene::Tracer> {
+  protected:
+    LightDistancesTest() : LightChoiceTest(GetParam()) {}
+    void SetUp() override {
+        GpuTest::SetUp();
+        if (!IsSkipped() && GetParam() == scene::Tracer::Hardware && !device().info().rayTracing)
+            GTEST_SKIP() << "NOT TESTED: " << device().info().name << " has no ray-tracing pipelines.";
     }
 };
 
@@ -276,7 +286,7 @@ TEST_P(LightDistancesTest, NothingIsHiddenWhereRaysMeetNothing) {
     }
 }
 
-TEST_P(LightDistancesTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
+TEST_F(LightChoiceTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
     const Scene scene = house();
     scene::SceneData data = scene::buildSceneData(scene);
     ASSERT_TRUE(data.features.lightDistances);
@@ -296,7 +306,7 @@ TEST_P(LightDistancesTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
 }
 
 /// Of every lamp in front of the surface, hidden or not, the samples' 1 / pdf must sum to 1.
-TEST_P(LightDistancesTest, TheDensityIsTheProbability) {
+TEST_F(LightChoiceTest, TheDensityIsTheProbability) {
     const Scene scene = house();
     scene::GpuScene mapped = onDevice(scene::buildSceneData(scene));
     measure(mapped);
