@@ -1,5 +1,7 @@
 #include "passes/deform/deform.h"
 
+#include <algorithm>
+
 #include "expand.comp.h"
 #include "passes/deform/deform_params.h"
 #include "pose.comp.h"
@@ -60,11 +62,21 @@ void expand(gpu::FrameGraph& graph, const scene::GpuScene& scene, const scene::S
     }
 }
 
+/// True if anything is new that shadow rays meet, or a light.
+bool changesLight(const scene::SceneFrame& frame) {
+    if (!frame.placements.empty() || !frame.poses.empty()) return true;
+    return std::ranges::any_of(frame.uploads, [](const scene::SceneFrame::Upload& upload) {
+        return upload.buffer == "lights" || upload.buffer.starts_with("bvh") ||
+               upload.buffer == "quantisedNodes";
+    });
+}
+
 }  // namespace
 
 void deform(gpu::FrameGraph& graph, scene::GpuScene& scene, const scene::SceneFrame& frame) {
     upload(graph, scene, frame);
     scene.setParams(frame.params);
+    if (changesLight(frame)) scene.setLightDistancesStale(true);
     pose(graph, scene, frame);
     if (!frame.poses.empty()) refit(graph, scene, frame);
     if (scene.expandsNodes()) expand(graph, scene, frame);

@@ -6,6 +6,7 @@
 
 #include "passes/accumulate/accumulate.h"
 #include "passes/deform/deform.h"
+#include "passes/light_distances/light_distances.h"
 #include "passes/preview/preview.h"
 
 namespace limpid {
@@ -242,6 +243,7 @@ std::optional<vec2> jitterOf(const RenderSettings& settings, uint64_t number, ui
 FrameImages recordFrame(FrameGraph& graph, scene::GpuScene& scene, const RenderSettings& settings,
                         const FrameInput& input) {
     if (input.moved) deform(graph, scene, *input.moved);
+    if (scene.lightDistancesStale()) lightDistances(graph, scene);
     if (settings.pipeline.denoiser) return recordDenoised(graph, scene, settings, input);
     switch (settings.pipeline.integrator) {
         case Integrator::Path:

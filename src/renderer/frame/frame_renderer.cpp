@@ -111,7 +111,8 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
     images_ = recordFrame(graph_, scene_, settings_, input);
     if (display_) displayed_ = display_(graph_, images_);
     graph_.execute(device_);
-    moment_.scene.reset();  // the device keeps this state until the next frame
+    scene_.setLightDistancesStale(false);  // unless execute() throws Interrupted
+    moment_.scene.reset();                 // the device keeps this state until the next frame
     ++launches_;
     samplesLaunched_ += taken.count;
     if (!settings_.pipeline.accumulates()) return;

@@ -1,5 +1,7 @@
 #include "scene/device/gpu_scene.h"
 
+#include <algorithm>
+#include <bit>
 #include <string>
 
 #include "base/error.h"
@@ -40,6 +42,7 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
         add(names[i], Format::R32Uint, data.texels[i]);
         if (!data.texels[i].empty()) texelBufferCount_ = i + 1;
     }
+    addLightDistances(device, data);
     if (!data.motion.deforming.empty()) addDeformBuffers(device, data);
     if (options.tracer == Tracer::Hardware) {
         structures_.emplace(device, "scene/structures", buffer("bvhTriangles"), data.trees, data.placements);
@@ -53,13 +56,29 @@ void GpuScene::addNodes(gpu::Device& device, const SceneData& data) {
     };
     if (!gpuTraversal_) return add(buffers_, "bvhNodes", data.bvhNodes);
     add(buffers_, "bvhNodes", expandNodes(data.bvhNodes));
-    if (data.motion.moving) add(deformBuffers_, "quantisedNodes", data.bvhNodes);
+    if (data.motion.moving) add(passBuffers_, "quantisedNodes", data.bvhNodes);
+}
+
+void GpuScene::addLightDistances(gpu::Device& device, const SceneData& data) {
+    const auto add = [&](std::vector<NamedBuffer>& list, const char* name, const std::vector<float>& values) {
+        list.push_back({name, device.createTexelBuffer(std::string("scene/") + name, gpu::Format::R32Float,
+                                                       gpu::bytesOf(values))});
+    };
+    if (!features_.lightDistances) return add(buffers_, "lightDistances", {});
+    mappedLights_ = std::min(data.params.punctualCount, layout::LIGHT_MAPS);
+    // Two upper halves of floats, both above LIGHT_MAP_NOT_HIDDEN.
+    constexpr auto notHidden = std::bit_cast<float>(0x714A714Au);
+    const std::vector<float> values(size_t{mappedLights_} * layout::LIGHT_MAP_SIZE * layout::LIGHT_MAP_SIZE,
+                                    notHidden);
+    add(buffers_, "lightDistances", values);
+    add(passBuffers_, "lightFirstHits", values);
+    lightDistancesStale_ = true;
 }
 
 void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
     using gpu::Format;
     const auto add = [&](const char* name, Format format, const auto& values) {
-        deformBuffers_.push_back(
+        passBuffers_.push_back(
             {name, device.createTexelBuffer(std::string("scene/") + name, format, gpu::bytesOf(values))});
     };
     uint64_t vertices = 0, matrices = 0;
@@ -79,7 +98,7 @@ void GpuScene::addDeformBuffers(gpu::Device& device, const SceneData& data) {
 
 const gpu::Buffer& GpuScene::buffer(std::string_view name) const {
     if (name == "quantisedNodes" && !gpuTraversal_) name = "bvhNodes";
-    for (const auto* list : {&buffers_, &deformBuffers_}) {
+    for (const auto* list : {&buffers_, &passBuffers_}) {
         for (const NamedBuffer& named : *list) {
             if (named.name == name) return named.buffer;
         }
@@ -117,6 +136,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_DIFFUSE_TRANSMISSION", features_.diffuseTransmission},
             {"HAS_DISPERSION", features_.dispersion},
             {"HAS_IRIDESCENCE", features_.iridescence},
+            {"HAS_LIGHT_DISTANCES", features_.lightDistances},
             {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},
@@ -126,7 +146,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
 uint64_t GpuScene::byteCount() const {
     uint64_t sum = 0;
     for (const NamedBuffer& named : buffers_) sum += named.buffer.size();
-    for (const NamedBuffer& named : deformBuffers_) sum += named.buffer.size();
+    for (const NamedBuffer& named : passBuffers_) sum += named.buffer.size();
     if (structures_) sum += structures_->byteCount();
     return sum;
 }

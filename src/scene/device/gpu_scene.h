@@ -27,13 +27,19 @@ class GpuScene {
     const layout::SceneParams& params() const { return params_; }
     /// Sets the parameters from the current frame on (scene/motion/scene_animator.h).
     void setParams(const layout::SceneParams& params) { params_ = params; }
-    /// Returns a buffer of scene_data.glsl or of passes/deform. "quantisedNodes" are bvhNodes, or the nodes
-    /// from which those are expanded. Throws Error if there is no buffer of that name.
+    /// Returns a buffer of scene_data.glsl, passes/deform or passes/light_distances. "quantisedNodes" are
+    /// bvhNodes, or the nodes from which those are expanded. Throws Error if there is no buffer of that name.
     const gpu::Buffer& buffer(std::string_view name) const;
     /// True if bvhNodes are expanded copies: changes of "quantisedNodes" must be repeated there.
     bool expandsNodes() const { return gpuTraversal_; }
     /// For the `hardware` tracer; null with the other one.
     const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
+    /// The number of maps in "lightDistances"; 0 if the scene has fewer than two point and spot lights.
+    uint32_t mappedLights() const { return mappedLights_; }
+    /// True if geometry or lights have changed since the distances were measured, and at first. Stale maps
+    /// cost samples, not correctness: at first they hide nothing.
+    bool lightDistancesStale() const { return lightDistancesStale_; }
+    void setLightDistancesStale(bool stale) { lightDistancesStale_ = stale && mappedLights_ > 0; }
     uint64_t byteCount() const;
 
   private:
@@ -42,15 +48,18 @@ class GpuScene {
         gpu::Buffer buffer;
     };
     void addNodes(gpu::Device& device, const SceneData& data);
+    void addLightDistances(gpu::Device& device, const SceneData& data);
     void addDeformBuffers(gpu::Device& device, const SceneData& data);
 
     std::vector<NamedBuffer> buffers_;
-    std::vector<NamedBuffer> deformBuffers_;  ///< used by passes/deform only
+    std::vector<NamedBuffer> passBuffers_;  ///< used by passes/deform and passes/light_distances only
     std::optional<gpu::AccelerationStructures> structures_;
     SceneFeatures features_;
     layout::SceneParams params_;
     uint32_t stackSize_;
     uint32_t texelBufferCount_ = 1;
+    uint32_t mappedLights_ = 0;
+    bool lightDistancesStale_ = false;
     bool gpuTraversal_;
 };
 

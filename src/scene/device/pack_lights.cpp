@@ -22,6 +22,8 @@ constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
 /// With fewer lights there is no tree. Its walk would make a scene with one lamp a quarter slower on a CPU,
 /// and their power, or what arrives from each lamp, is enough.
 constexpr size_t minTreeLights = 9;
+/// With fewer point and spot lights there is no choice in which distance maps could help.
+constexpr size_t minMappedLights = 2;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
 constexpr double uniformShare = 0.25;
 
@@ -103,6 +105,7 @@ class LightPacker {
     void packTree() {
         data_.features.lightTree = bounds_.size() - suns_.size() >= minTreeLights;
         data_.features.suns = !suns_.empty();
+        data_.features.lightDistances = scene_.lights.size() - suns_.size() >= minMappedLights;
         if (!data_.features.lightTree) return;
         LightTree tree(bounds_, weights_.size());
         data_.lightTree = packLightTree(tree);

@@ -20,7 +20,7 @@ struct SceneFeatures {
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
          mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
          roughGlass = false, lightTree = false, suns = false, anisotropy = false, sheen = false,
-         diffuseTransmission = false, dispersion = false, iridescence = false;
+         diffuseTransmission = false, dispersion = false, iridescence = false, lightDistances = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

@@ -31,6 +31,7 @@ layout(constant_id = 29) const bool HAS_DISPERSION = true;
 layout(constant_id = 30) const bool HAS_IRIDESCENCE = true;
 layout(constant_id = 19) const bool HAS_LIGHT_TREE = false;    // several lights that are not directional
 layout(constant_id = 23) const bool HAS_SUNS = true;          // directional lights
+layout(constant_id = 31) const bool HAS_LIGHT_DISTANCES = false;  // several point and spot lights
 // A setting of the pass, not of the scene: choose lights by the tree, else by power.
 layout(constant_id = 24) const bool LIGHT_TREE = true;
 
@@ -55,6 +56,7 @@ layout(set = 0, binding = 17, r32ui) uniform readonly uimageBuffer texels2;
 layout(set = 0, binding = 18, r32ui) uniform readonly uimageBuffer texels3;
 layout(set = 0, binding = 19, rgba32ui) uniform readonly uimageBuffer previousGeometry;
 layout(set = 0, binding = 62, rgba32ui) uniform readonly uimageBuffer lightTree;
-// Bindings from 20 to 61 belong to the pass that includes this file.
+layout(set = 0, binding = 61, r32f) uniform readonly imageBuffer lightDistances;
+// Bindings from 20 to 60 belong to the pass that includes this file.
 
 #endif

@@ -116,6 +116,15 @@ LIMPID_CONST uint LIGHT_LINK_SPOT = 0x20000000u;
 LIMPID_CONST uint LIGHT_LINK_LAST = 0x10000000u;  // the node's last child
 LIMPID_CONST uint LIGHT_LINK_INDEX = 0x0FFFFFFFu;
 
+// lightDistances (4-byte texels), only with several point and spot lights: an octahedral map of
+// LIGHT_MAP_SIZE^2 texels for each of the first LIGHT_MAPS punctual lights. A texel has two distances, in
+// world units, as upper halves of floats (passes/light_distances): beyond that of the lower 16 bits the light
+// is probably hidden in these directions, beyond that of the upper 16 bits almost surely. Those of
+// directional lights are infinite.
+LIMPID_CONST uint LIGHT_MAP_SIZE = 16u;
+LIMPID_CONST uint LIGHT_MAPS = 1024u;
+LIMPID_CONST float LIGHT_MAP_NOT_HIDDEN = 1e30;  // equals INFINITE_DISTANCE
+
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
 // entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
 // environment: radiance | probability of choosing this texel.

@@ -6,6 +6,7 @@
 #include "shaders/common/rng.glsl"
 #include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_data.glsl"
+#include "shaders/material/light_distances.glsl"
 
 /// The point that is lit.
 struct Receiver {
@@ -79,8 +80,32 @@ uint linkedIndex(uint link) {
 /// While the children of a node are compared: those with any weight, their weights, and the one that is taken.
 struct LightShare {
     float reaching, sum, taken;
-    uint next;  // its link
+    float takenUniformly;  // the weight of the one that is taken, if chosen uniformly
+    uint next;             // its link
 };
+const LightShare NO_LIGHT_SHARE = LightShare(0.0, 0.0, 0.0, 1.0, 0u);
+
+/// The weights of a child, if chosen by weight and uniformly.
+struct ChildWeights {
+    float weight, uniformWeight;
+};
+
+/// lightWeight(), and 1; or little of both for a lamp that is hidden by its distance map. Lamps that share a node with
+/// others are known as such only at the end of the walk.
+ChildWeights childWeights(Receiver from, uvec4 place, uvec4 effect, uint firstPunctual) {
+    ChildWeights child = ChildWeights(lightWeight(from, place, effect), 1.0);
+    if (HAS_LIGHT_DISTANCES) {
+        const uint map = linkedIndex(effect.w) - firstPunctual;  // wraps for triangles
+        if ((effect.w & LIGHT_LINK_LEAF) != 0u && map < LIGHT_MAPS && child.weight > 0.0) {
+            const vec3 way = uintBitsToFloat(place.xyz) - from.position;
+            const float distance = length(way);
+            const Hidden hidden = hiddenByMap(map, way / max(distance, 1e-37), distance);
+            if (hidden.probably) child.weight = max(child.weight * HIDDEN_WEIGHT, 1e-37);
+            if (hidden.surely) child.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
+        }
+    }
+    return child;
+}
 
 /// At the root, a share of the choices is uniform among the children that reach the point, whatever their weights,
 /// since the brightest may be hidden. It falls with their number.
@@ -91,7 +116,7 @@ float uniformShare(float reaching, bool root) {
 float probabilityOf(LightShare share, bool root) {
     const float uniformly = uniformShare(share.reaching, root);
     const float byWeight = (1.0 - uniformly) * share.taken / max(share.sum, 1e-30);
-    return share.taken > 0.0 ? byWeight + uniformly / share.reaching : 0.0;
+    return share.taken > 0.0 ? byWeight + uniformly * share.takenUniformly / share.reaching : 0.0;
 }
 
 /// A light of the tree, the probability of choosing it, and the irradiance that all lights of the tree might cause;
@@ -101,58 +126,62 @@ struct ChosenLight {
     float probability, irradiance;
 };
 
-/// Goes from the root to a light. If a node turns out to have no child that reaches the point, the walk ends without a
-/// light.
-ChosenLight chooseFromLightTree(Receiver from, inout uint rng) {
+/// Goes from the root to a light. `firstPunctual`: the index of the first punctual light. If a node turns out to have
+/// no child that reaches the point, the walk ends without a light.
+ChosenLight chooseFromLightTree(Receiver from, uint firstPunctual, inout uint rng) {
     ChosenLight chosen = ChosenLight(0u, 1.0, -1.0);
-    LightShare byWeight = LightShare(0.0, 0.0, 0.0, 0u);
+    LightShare byWeight = NO_LIGHT_SHARE;
     uint child = 0u, uniformNext = 0u;
-    float uniformTaken = 0.0;
+    ChildWeights uniformTaken = ChildWeights(0.0, 1.0);
     while (true) {
         const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
         const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
-        const float weight = lightWeight(from, place, effect), u = random(rng);
-        byWeight.sum += weight;
-        byWeight.reaching += weight > 0.0 ? 1.0 : 0.0;
-        if (u * byWeight.sum < weight) {
-            byWeight.taken = weight;
+        const ChildWeights it = childWeights(from, place, effect, firstPunctual);
+        const float u = random(rng);
+        byWeight.sum += it.weight;
+        byWeight.reaching += it.weight > 0.0 ? it.uniformWeight : 0.0;
+        if (u * byWeight.sum < it.weight) {
+            byWeight.taken = it.weight;
+            byWeight.takenUniformly = it.uniformWeight;
             byWeight.next = effect.w;
         }
-        if (weight > 0.0 && u * byWeight.reaching < 1.0) {
-            uniformTaken = weight;
+        if (it.weight > 0.0 && u * byWeight.reaching < it.uniformWeight) {
+            uniformTaken = it;
             uniformNext = effect.w;
         }
         ++child;
         if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
         const bool root = chosen.irradiance < 0.0;
         if (random(rng) < uniformShare(byWeight.reaching, root)) {
-            byWeight.taken = uniformTaken;
+            byWeight.taken = uniformTaken.weight;
+            byWeight.takenUniformly = uniformTaken.uniformWeight;
             byWeight.next = uniformNext;
         }
         chosen.probability *= probabilityOf(byWeight, root);
         if (root) chosen.irradiance = byWeight.sum;
         child = linkedIndex(byWeight.next);
         if (byWeight.taken == 0.0 || (byWeight.next & LIGHT_LINK_LEAF) != 0u) break;
-        byWeight = LightShare(0.0, 0.0, 0.0, 0u);
-        uniformTaken = 0.0;
+        byWeight = NO_LIGHT_SHARE;
+        uniformTaken = ChildWeights(0.0, 1.0);
     }
     chosen.light = child;
     return chosen;
 }
 
 /// Returns the probability with which chooseFromLightTree() chooses the light at the end of `trail`.
-float lightTreeProbability(Receiver from, uvec4 trail) {
-    LightShare share = LightShare(0.0, 0.0, 0.0, 0u);
+float lightTreeProbability(Receiver from, uint firstPunctual, uvec4 trail) {
+    LightShare share = NO_LIGHT_SHARE;
     float probability = 1.0;
     uint first = 0u, child = 0u, bits = LIGHT_TRAIL_ROOT_BITS;
     while (true) {
         const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
         const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
-        const float weight = lightWeight(from, place, effect);
-        share.sum += weight;
-        share.reaching += weight > 0.0 ? 1.0 : 0.0;
+        const ChildWeights it = childWeights(from, place, effect, firstPunctual);
+        share.sum += it.weight;
+        share.reaching += it.weight > 0.0 ? it.uniformWeight : 0.0;
         if (child - first == (trail.x & ((1u << bits) - 1u))) {
-            share.taken = weight;
+            share.taken = it.weight;
+            share.takenUniformly = it.uniformWeight;
             share.next = effect.w;
         }
         ++child;
@@ -160,7 +189,7 @@ float lightTreeProbability(Receiver from, uvec4 trail) {
         probability *= probabilityOf(share, bits == LIGHT_TRAIL_ROOT_BITS);
         first = child = linkedIndex(share.next);
         if (share.taken == 0.0 || (share.next & LIGHT_LINK_LEAF) != 0u) break;
-        share = LightShare(0.0, 0.0, 0.0, 0u);
+        share = NO_LIGHT_SHARE;
         trail = (trail >> bits) | (uvec4(trail.yzw, 0u) << (32u - bits));
         bits = LIGHT_TRAIL_BITS;
     }

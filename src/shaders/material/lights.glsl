@@ -154,17 +154,24 @@ struct PunctualChoice {
     float pdf;
 };
 
+/// A light that may become the choice.
+struct PunctualCandidate {
+    int at;
+    float weight, uniformWeight;
+    float source;  // expected number of times it is a candidate
+};
+
 /// Evaluates all punctual lights, or PUNCTUAL_CANDIDATES of them drawn by power (resampled importance
 /// sampling, J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005). Chooses by
 /// usable light or, with probability PUNCTUAL_UNIFORM_SHARE, uniformly among those with any, since the
-/// brightest may be occluded. One pass with two weighted reservoirs.
+/// brightest may be occluded. Lights that are hidden by their distance maps count little in both. One pass with two
+/// weighted reservoirs.
 PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
     const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
     const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
     float u = stratified(rng), v = random(rng);
-    PunctualChoice best = PunctualChoice(0, 0.0), any = PunctualChoice(0, 0.0);  // pdf holds the weight for
-                                                                                 // now
-    float bestSource = 1.0, anySource = 1.0, sum = 0.0, reaching = 0.0;
+    PunctualCandidate best = PunctualCandidate(0, 0.0, 0.0, 1.0), any = best;
+    float sum = 0.0, reaching = 0.0;
     for (uint i = 0u; i < count; ++i) {
         uint index = i;
         float source = 1.0;
@@ -176,31 +183,29 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
         const int at = int((scene.triangleLightCount + index) * LIGHT_TEXELS);
         const LightSample light = samplePunctualLight(at, from.position);
         if (!all) source = light.pdf * float(count);
-        const float weight = usableLight(from, light) / max(source, 1e-30);
-        if (!(weight > 0.0)) continue;
-        sum += weight;
-        reaching += 1.0;
-        const float share = weight / sum, uniformShare = 1.0 / reaching;
-        if (u < share) {
-            best = PunctualChoice(at, weight);
-            bestSource = source;
+        PunctualCandidate tried = PunctualCandidate(at, usableLight(from, light) / max(source, 1e-30), 1.0, source);
+        if (!(tried.weight > 0.0)) continue;
+        if (HAS_LIGHT_DISTANCES) {
+            const Hidden hidden = hiddenByMap(index, light.direction, light.distance);
+            if (hidden.probably) tried.weight = max(tried.weight * HIDDEN_WEIGHT, 1e-37);
+            if (hidden.surely) tried.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
         }
-        if (v < uniformShare) {
-            any = PunctualChoice(at, weight);
-            anySource = source;
-        }
+        sum += tried.weight;
+        reaching += tried.uniformWeight;
+        const float share = tried.weight / sum, uniformShare = tried.uniformWeight / reaching;
+        if (u < share) best = tried;
+        if (v < uniformShare) any = tried;
         // The rescaled remainder of each number is again uniform.
         u = u < share ? u / share : (u - share) / (1.0 - share);
         v = v < uniformShare ? v / uniformShare : (v - uniformShare) / (1.0 - uniformShare);
     }
-    if (random(rng) < PUNCTUAL_UNIFORM_SHARE) {
-        best = any;
-        bestSource = anySource;
-    }
+    if (random(rng) < PUNCTUAL_UNIFORM_SHARE) best = any;
+    PunctualChoice choice = PunctualChoice(best.at, 0.0);
     if (reaching > 0.0) {
-        best.pdf = bestSource * mix(best.pdf / sum, 1.0 / reaching, PUNCTUAL_UNIFORM_SHARE);
+        const float share = best.weight / sum, uniformShare = best.uniformWeight / reaching;
+        choice.pdf = best.source * mix(share, uniformShare, PUNCTUAL_UNIFORM_SHARE);
     }
-    return best;
+    return choice;
 }
 
 LightShares lightShares(Receiver from, bool punctual, SceneParams scene) {
@@ -329,7 +334,7 @@ LightSample sampleListedLight(uint index, Receiver from, vec2 u) {
 /// Samples the environment, a directional light or a light of the tree. Each gets samples only if it can reach the
 /// point.
 LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
-    const ChosenLight chosen = chooseFromLightTree(from, rng);
+    const ChosenLight chosen = chooseFromLightTree(from, scene.triangleLightCount, rng);
     SunChoice sun = SunChoice(0, 0.0, 0.0);
     if (HAS_SUNS) sun = chooseSun(from, scene, rng);
     const float both = chosen.irradiance + sun.irradiance;
@@ -378,7 +383,7 @@ float lightPdf(Surface s, float distance, vec3 direction, LightShares shares, Sc
     float perArea;
     if (LIGHT_TREE && HAS_LIGHT_TREE) {
         const uvec4 trail = imageLoad(lightTree, int(scene.firstLightTrail + first + s.primitive));
-        perArea = s.area > 0.0 ? lightTreeProbability(shares.from, trail) / s.area : 0.0;
+        perArea = s.area > 0.0 ? lightTreeProbability(shares.from, scene.triangleLightCount, trail) / s.area : 0.0;
     } else {
         perArea = imageLoad(lightDensity, int(first + s.primitive)).x;
     }

@@ -34,7 +34,8 @@ void main() {
     const Receiver from = Receiver(q.position, q.normal, q.normal, q.bothSides != 0u, q.grazing);
     uint rng = startStream(i, 0u, q.seed);
     const int at = int(q.child * LIGHT_CHILD_TEXELS);
-    const ChosenLight chosen = chooseFromLightTree(from, rng);
+    const uint noMaps = 0x7FFFFFFFu;
+    const ChosenLight chosen = chooseFromLightTree(from, noMaps, rng);
     results.values[i] = Answer(lightWeight(from, imageLoad(lightTree, at), imageLoad(lightTree, at + 1)),
-                               lightTreeProbability(from, q.trail), chosen.light, chosen.probability);
+                               lightTreeProbability(from, noMaps, q.trail), chosen.light, chosen.probability);
 }
