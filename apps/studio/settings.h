@@ -29,6 +29,8 @@ struct StudioSettings {
     /// Samples per pixel at which a picture in which nothing changes is finished.
     uint64_t maxSamples = 4096;
     Resolution resolution = Resolution::Automatic;
+    /// Pictures are for a display of a high dynamic range: with ToneCurve::None, they exceed 1.
+    bool extended = false;
     /// Fields that are set once the first scene is there (state_json.h); null: none.
     nlohmann::json state;
     /// A frame begins while the picture of the one before it is brought to the host. Empty: except on CPUs,

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <glm/gtc/packing.hpp>
 #include <thread>
 #include <utility>
 
@@ -67,6 +68,37 @@ class StudioTest : public testing::Test {
         });
     }
 };
+
+/// For a display of a high dynamic range: what is up to white is as before, and what was clipped is not.
+TEST_F(StudioTest, PicturesOfAHighRangeExceedWhite) {
+    const auto studio = make(small());
+    rest(*studio);
+    const auto clipped = rest(*studio, studio->edit({{"tone_curve", "none"}, {"exposure", 3.0}}));
+    EXPECT_TRUE(clipped->picture->extended.empty());
+    const auto extended = wait(*studio, studio->ask({.kind = Kind::Extended, .index = 1}),
+                               [](const Shown& s) { return !s.picture->extended.empty(); });
+    EXPECT_TRUE(extended->picture->texels.empty());
+    ASSERT_EQ(extended->picture->extended.size(), clipped->picture->texels.size());
+    size_t above = 0;
+    for (size_t i = 0; i < clipped->picture->texels.size(); ++i) {
+        const vec4 high = glm::unpackHalf4x16(extended->picture->extended[i]),
+                   low = glm::unpackUnorm4x8(clipped->picture->texels[i]);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(std::min(high[c], 1.0f), low[c], 1.5f / 255.0f) << i;
+            above += high[c] > 1.01f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(above, 100u);
+    // A frame that is rendered so is the same as one that is only exposed so.
+    const auto again = wait(*studio, studio->ask({.kind = Kind::Reset}), [&](const Shown& s) {
+        return !s.facts.computing && s.picture != extended->picture && s.facts.samplesInMean == 2;
+    });
+    ASSERT_FALSE(again->picture->extended.empty());
+    EXPECT_NEAR(glm::unpackHalf4x16(again->picture->extended[1500]).g,
+                glm::unpackHalf4x16(extended->picture->extended[1500]).g, 0.01f);
+    wait(*studio, studio->ask({.kind = Kind::Extended, .index = 0}),
+         [&](const Shown& s) { return s.picture->texels == clipped->picture->texels; });
+}
 
 TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
     const auto studio = make(small());

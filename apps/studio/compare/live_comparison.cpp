@@ -41,7 +41,7 @@ void LiveComparison::render(Stage& stage, const State& state, const RenderSettin
     const std::string choice = comparisonNames()[static_cast<size_t>(state.comparison.with)];
     if (std::exchange(choice_, choice) != choice) scores_.clear();
     if (alone) moment.number = numbersAlone + other_.framesOfSame();
-    other_.setToneCurve(now.pipeline.needsExposure() ? state.toneCurve : image::ToneCurve::Standard);
+    other_.setLook(now.pipeline.needsExposure() ? look_ : Look{});
     other_.prepare(stage, now, state.samples, now.pipeline.needsExposure() ? state.exposure : 0.0f);
     other_.render(std::move(moment));
     ++frames_;
@@ -51,7 +51,7 @@ void LiveComparison::render(Stage& stage, const State& state, const RenderSettin
 
 void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {
     if (!main || !other_) return;
-    other_.setToneCurve(other_.settings().pipeline.needsExposure() ? curve_ : image::ToneCurve::Standard);
+    other_.setLook(other_.settings().pipeline.needsExposure() ? look_ : Look{});
     other_.expose(other_.settings().pipeline.needsExposure() ? exposure : 0.0f);
     const std::tuple now(main.frames(), frames_, exposure);
     const auto time = std::chrono::steady_clock::now();

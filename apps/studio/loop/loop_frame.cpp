@@ -61,6 +61,7 @@ bool RenderLoop::mustRender() {
 bool RenderLoop::renderWhatIsDue() {
     applySettings();
     const bool main = mustRender();
+    comparison_.setLook({state_.toneCurve, settings_.extended});
     if (wanted_.extent.width == 0 || wanted_.extent.height == 0) return false;
     const CameraParams camera = cameraNow();
     const bool other =
@@ -77,10 +78,9 @@ bool RenderLoop::renderWhatIsDue() {
         return true;
     }
     measureExposure();
-    if (main_) main_.setToneCurve(curveOf(main_.settings().pipeline));
+    if (main_) main_.setLook(lookOf(main_.settings().pipeline));
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
     noteFrameTime(main);
-    comparison_.setToneCurve(state_.toneCurve);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
     return main || other;
@@ -120,7 +120,7 @@ void RenderLoop::render(const CameraParams& camera) {
     if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
         throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (wanted_ != main_.settings() || state_.fovDegrees != fovOfLast_);
-    main_.setToneCurve(curveOf(wanted_.pipeline));
+    main_.setLook(lookOf(wanted_.pipeline));
     if (main_.prepare(*stage_, wanted_, state_.samples, stopsOf(wanted_.pipeline)))
         playback_.reset(playback_.time());
     else if (changed)
@@ -167,6 +167,10 @@ float RenderLoop::stopsOf(const Pipeline& pipeline) const {
 /// The same for the tone curve.
 image::ToneCurve RenderLoop::curveOf(const Pipeline& pipeline) const {
     return pipeline.needsExposure() ? state_.toneCurve : image::ToneCurve::Standard;
+}
+
+Look RenderLoop::lookOf(const Pipeline& pipeline) const {
+    return {curveOf(pipeline), settings_.extended};
 }
 
 /// Recompiles changed shaders. Returns true if there were any.

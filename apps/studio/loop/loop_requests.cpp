@@ -68,7 +68,7 @@ void RenderLoop::steer(const Gesture& gesture) {
 void RenderLoop::carryOut(const Request& request) {
     using Kind = Request::Kind;
     const Kind kind = request.kind;
-    facts_.fault.clear();  // something new is being done
+    if (kind != Kind::Extended) facts_.fault.clear();  // something new is being done
     if (kind == Kind::Open || kind == Kind::OpenDropped)
         return void(attempt([&] { open(request.file, kind == Kind::OpenDropped); }));
     if (kind == Kind::CancelLoading && loading_) {
@@ -76,6 +76,7 @@ void RenderLoop::carryOut(const Request& request) {
         facts_.activity.clear();
         return say("cancelled");
     }
+    if (kind == Kind::Extended) settings_.extended = request.index != 0;
     if (!stage_) return;
     if (kind == Kind::Reset) startAnew();
     if (kind == Kind::Step) step_ = true;

@@ -96,6 +96,7 @@ class RenderLoop {
     void measureExposure();
     float stopsOf(const Pipeline& pipeline) const;
     image::ToneCurve curveOf(const Pipeline& pipeline) const;
+    Look lookOf(const Pipeline& pipeline) const;
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
     void choosePictures();
