@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "image/io/picture.h"
+#include "renderer/frame/network_file.h"
 #include "studio/compare/history_text.h"
 #include "studio/state/state_file.h"
 #include "studio/state/state_json.h"
@@ -306,6 +307,52 @@ TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
         EXPECT_GT(meanDifference(*whole->picture, *input), ofOneFrame ? -1.0 : 2.0) << denoiser;
         rest(*studio, studio->edit(on));
     }
+    studio->finish();
+}
+
+/// The method before is rendered until the network is there; one that cannot be read changes nothing.
+TEST_F(StudioTest, NetworksLoadBesideTheRendering) {
+    std::atomic<bool> go = false;
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    settings.weights = std::filesystem::path(LIMPID_SOURCE_DIR) / "tests/data/kpcn_small.safetensors";
+    settings.loadNetworks = [&](gpu::Device& device, const denoise::Denoiser* denoiser,
+                                const std::filesystem::path& weights, const denoise::DenoiserSettings& with,
+                                const Progress& progress) {
+        if (with.kpcn.cis565) return loadNetworks(device, denoiser, "none.safetensors", with, progress);
+        while (!go) {
+            progress.at(0.4);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return loadNetworks(device, denoiser, weights, with, progress);
+    };
+    const auto studio = make(settings);
+    const auto filtered = rest(*studio, studio->edit({{"denoiser", "atrous"}}));
+    const auto loading = wait(*studio, studio->edit({{"denoiser", "kpcn"}}),
+                              [](const Shown& s) { return s.facts.percent == 40; });
+    EXPECT_EQ(loading->facts.activityText(), "loading the network, 40 %");
+    EXPECT_EQ(loading->picture->texels, filtered->picture->texels);
+    const auto still = rest(*studio, studio->edit({{"seed", 3}}));
+    EXPECT_NE(still->picture->texels, filtered->picture->texels) << "it answers meanwhile";
+    EXPECT_EQ(toJson(still->state)["denoiser"], "kpcn");
+    const auto given = rest(*studio, studio->ask({Kind::CancelLoading}));
+    EXPECT_EQ(toJson(given->state)["denoiser"], "atrous");
+    EXPECT_EQ(given->facts.message, "cancelled");
+    EXPECT_EQ(given->facts.activity, "");
+
+    const auto broken = wait(*studio, studio->edit({{"denoiser", "kpcn"}, {"kpcn.cis565", true}}),
+                             [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(broken->facts.fault, HasSubstr("none.safetensors"));
+    EXPECT_EQ(toJson(broken->state)["denoiser"], "atrous");
+
+    wait(*studio, studio->edit({{"kpcn.cis565", false}, {"compare", "kpcn"}}),
+         [](const Shown& s) { return s.facts.percent == 40; });
+    EXPECT_FALSE(rest(*studio, studio->edit({{"seed", 4}}))->compared) << "it waits for its network";
+    go = true;
+    wait(*studio, 0, [](const Shown& s) { return s.compared != nullptr; });
+    const auto denoised = rest(*studio, studio->edit({{"denoiser", "kpcn"}, {"compare", "nothing"}}));
+    EXPECT_EQ(denoised->facts.activity, "");
+    EXPECT_NE(denoised->picture->texels, still->picture->texels);
     studio->finish();
 }
 

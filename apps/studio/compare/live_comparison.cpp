@@ -28,7 +28,7 @@ void LiveComparison::drop() {
 bool LiveComparison::mustRender(const State& state, const RenderSettings& main, const CameraParams& camera,
                                 bool moved) const {
     const gpu::Extent extent = main.extent;
-    if (!state.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
+    if (!state.comparison.isOn() || waits_ || extent.width == 0 || extent.height == 0) return false;
     const int wanted = state.comparison.isReference() ? state.comparison.referenceSamples : state.maxSamples;
     return moved || other_.differs(settingsOfComparison(state, main, networks_), state.samples) ||
            !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);

@@ -31,6 +31,8 @@ class LiveComparison {
                     bool moved) const;
     /// `alone`: the picture rests, and numbers no frames.
     void render(Stage& stage, const State& state, const RenderSettings& main, Moment moment, bool alone);
+    /// Nothing is rendered: the network that it needs is not there yet.
+    void setWaiting(bool waits) { waits_ = waits; }
     /// For the next update().
     void setLook(const Look& look) { look_ = look; }
     /// Exposes it as the picture, and scores the picture against it: now and then while frames are rendered,
@@ -55,6 +57,7 @@ class LiveComparison {
     std::tuple<uint64_t, uint64_t, float> scored_;  ///< both numbers of frames and the exposure, of the last
     std::chrono::steady_clock::time_point lastScores_{};
     Look look_;
+    bool waits_ = false;
 };
 
 }  // namespace limpid::studio

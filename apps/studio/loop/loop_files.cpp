@@ -20,9 +20,10 @@ constexpr const char* stateFile = "state.json";
 
 }  // namespace
 
-/// Writes the pictures that were asked for, once there is one of the full resolution.
+/// Writes the pictures that were asked for, once there is one of the full resolution and of the method that
+/// was chosen.
 void RenderLoop::saveWhatIsAsked() {
-    if (toSave_.empty() || !main_ || resolution_.isCoarse()) return;
+    if (toSave_.empty() || !main_ || resolution_.isCoarse() || networks_.isLoading()) return;
     for (const std::string& extension : std::exchange(toSave_, {}))
         attempt([&] { save(unusedFile("limpid", extension)); });
 }

@@ -79,7 +79,11 @@ class RenderLoop {
     void showPose();
     void placeCamera();
     void applySettings();
-    void loadNetworks();
+    void provideNetworks();
+    void finishNetworks();
+    void doWithoutNetworks();
+    void cancelLoading();
+    void noteActivity();
 
     bool reloadShaders();
     void say(const std::string& message);
@@ -149,6 +153,7 @@ class RenderLoop {
     ShaderReload reload_;
     LiveRender main_;
     Networks networks_;
+    Pipeline withNetworks_;  ///< the last one that was not waiting for its network
     LiveComparison comparison_;
     Picker picker_;
     ResolutionControl resolution_;
