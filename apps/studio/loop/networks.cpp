@@ -8,7 +8,7 @@
 namespace limpid::studio {
 namespace {
 
-bool isReady(const std::future<denoise::DenoiserNetworks>& loading) {
+bool hasEnded(const std::future<denoise::DenoiserNetworks>& loading) {
     return loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
@@ -43,7 +43,7 @@ void Networks::begin(const Pipeline& pipeline, const denoise::DenoiserSettings& 
 }
 
 bool Networks::isDone() const {
-    return isLoading() && isReady(loading_);
+    return isLoading() && hasEnded(loading_);
 }
 
 void Networks::take() {
@@ -52,7 +52,7 @@ void Networks::take() {
 }
 
 void Networks::cancel() {
-    std::erase_if(cancelled_, isReady);
+    std::erase_if(cancelled_, hasEnded);
     progress_.cancel();
     cancelled_.push_back(std::move(loading_));
 }
