@@ -72,7 +72,9 @@ class StudioTest : public testing::Test {
 
 /// For a display of a high dynamic range: what is up to white is as before, and what was clipped is not.
 TEST_F(StudioTest, PicturesOfAHighRangeExceedWhite) {
-    const auto studio = make(small());
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    const auto studio = make(settings);
     rest(*studio);
     const auto clipped = rest(*studio, studio->edit({{"tone_curve", "none"}, {"exposure", 3.0}}));
     EXPECT_TRUE(clipped->picture->extended.empty());
@@ -150,6 +152,27 @@ TEST_F(StudioTest, ShadersThatAreCompiledAreTold) {
     rest(*studio, studio->edit({{"seed", 3}}));
     EXPECT_EQ(told, before) << "they are there";
     studio->removeListener(listener);
+    studio->finish();
+}
+
+/// While the pipelines of the first frame are compiled, the preview of the scene is shown.
+TEST_F(StudioTest, APreviewComesFirst) {
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    settings.maxSamples = 1;
+    settings.preview = true;
+    const auto preview = rest(*make(settings))->picture;
+    settings.preview = false;
+    const auto studio = make(settings);
+    const auto first = wait(*studio, 0, [](const Shown& s) { return s.picture != nullptr; });
+    EXPECT_EQ(first->picture->texels, preview->texels);
+    EXPECT_TRUE(first->facts.computing);
+    EXPECT_EQ(toJson(first->state)["integrator"], "path");
+    const auto picture = rest(*studio);
+    EXPECT_NE(picture->picture->texels, preview->texels);
+    EXPECT_EQ(picture->facts.frames, 1u) << "the preview's frames do not count";
+    EXPECT_FALSE(picture->facts.compiling);
+    EXPECT_NE(picture->state.exposure, 0.0f) << "that of the preview is none";
     studio->finish();
 }
 

@@ -5,6 +5,17 @@
 #include "passes/tonemap/tonemap.h"
 
 namespace limpid::studio {
+namespace {
+
+gpu::ImageHandle display(gpu::FrameGraph& graph, const FrameImages& images, float exposure,
+                         const Look& look) {
+    const gpu::ImageHandle radiance = images.beauty ? images.beauty : images.diffuse,
+                           added = images.beauty ? gpu::ImageHandle{} : images.emission;
+    if (look.isExtended()) return tonemapExtended(graph, radiance, exposure, added);
+    return tonemap(graph, radiance, exposure, added, look.curve);
+}
+
+}  // namespace
 
 bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure) {
     exposure_ = exposure;
@@ -18,16 +29,24 @@ bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t 
     renderer_->graph().setReplacements(&shaders_);
     renderer_->graph().setInterruption(interrupted_);
     renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
-        const gpu::ImageHandle radiance = images.beauty ? images.beauty : images.diffuse,
-                               added = images.beauty ? gpu::ImageHandle{} : images.emission;
-        if (look_.isExtended()) return tonemapExtended(graph, radiance, exposure_, added);
-        return tonemap(graph, radiance, exposure_, added, look_.curve);
+        return display(graph, images, exposure_, look_);
     });
     next_ = settings;
     samples_ = samples;
     launches_ = framesOfSame_ = 0;
     shown_ = false;
     return true;
+}
+
+std::unique_ptr<FrameRenderer> LiveRender::plan(Stage& stage, const RenderSettings& settings,
+                                                uint32_t samples, const Look& look, Moment moment) {
+    auto planned = std::make_unique<FrameRenderer>(device_, stage.onDevice(), settings, samples);
+    planned->graph().setReplacements(&shaders_);
+    planned->setDisplay([look](gpu::FrameGraph& graph, const FrameImages& images) {
+        return display(graph, images, 0.0f, look);
+    });
+    planned->plan(std::move(moment));
+    return planned;
 }
 
 bool LiveRender::differs(const RenderSettings& settings, uint32_t samples) const {

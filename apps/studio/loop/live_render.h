@@ -38,6 +38,9 @@ class LiveRender {
 
     /// For the frames to come. True if nothing is known of frames before: they are the first.
     bool prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure);
+    /// The first frame that would be rendered so, recorded only (FrameRenderer::plan()).
+    std::unique_ptr<FrameRenderer> plan(Stage& stage, const RenderSettings& settings, uint32_t samples,
+                                        const Look& look, Moment moment);
     /// Whether frames rendered so from here would differ from the last one by more than their noise.
     bool differs(const RenderSettings& settings, uint32_t samples) const;
     /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`

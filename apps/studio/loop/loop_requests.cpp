@@ -151,7 +151,7 @@ void RenderLoop::placeCamera() {
 /// Returns true if it has filled Facts::allValues. Waits for a frame that tells about histories, too, unless
 /// rendering is stopped.
 bool RenderLoop::answerProbe() {
-    if (!probeAt_ || !main_ || (state_.running && main_.lacksReasons())) return false;
+    if (!probeAt_ || !main_ || isNew_ || (state_.running && main_.lacksReasons())) return false;
     facts_.allValues = probeAll(*std::exchange(probeAt_, std::nullopt));
     return true;
 }

@@ -71,6 +71,7 @@ void RenderLoop::show(LoadedScene scene) {
     main_.drop();
     comparison_.drop();
     stage_ = std::move(stage);
+    isNew_ = true;
     ++facts_.scenesShown;
     facts_.scene = stage_->scene().name;
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);

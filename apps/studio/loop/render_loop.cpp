@@ -110,7 +110,7 @@ void RenderLoop::run() {
         // The newest messages are for the next frame, which begins when the device has finished the last one.
         awaitFrame();
         const bool waits =
-            comparison_.isScoring() || loading_ || networks_.isLoading() || resolution_.isCoarse();
+            comparison_.isScoring() || loading_ || networks_.isLoading() || isNew_ || resolution_.isCoarse();
         handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
         finishLoading();
         noteActivity();
@@ -119,7 +119,9 @@ void RenderLoop::run() {
         changedFacts_ |= comparison_.hasScored();
         const bool rendered = stage_ && renderWhatIsDue();
         changedFacts_ |= answerProbe();
-        if (std::exchange(facts_.computing, rendered) != rendered) changedFacts_ = true;
+        const bool computing = rendered || isNew_;
+        if (std::exchange(facts_.computing, computing) != computing) changedFacts_ = true;
+        facts_.compiling = isNew_;
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
     }
@@ -167,8 +169,8 @@ void RenderLoop::finish() {
     if (loading_.isFirst() && !settings_.screenshot.empty()) showFirst(loading_.take());
     handleMessages(0.0);
     ending_ = true;
-    if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty()) && networks_.isLoading())
-        renderWhatIsDue();  // with them
+    if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty()) && (networks_.isLoading() || isNew_))
+        renderWhatIsDue();  // with what was waited for
     if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
         if (!main_ || resolution_.isCoarse()) {
             state_.resolution = Resolution::Full;
@@ -206,12 +208,14 @@ void RenderLoop::choosePictures() {
         compared_.reset();
     else if (!compared_ || std::exchange(comparedOf_, other->version()) != other->version())
         compared_ = other->picture();
-    if (!state_.arrows)
+    if (!state_.arrows || isNew_)
         motion_.reset();
     else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
         motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
-    inspect();
-    explain();
+    if (!isNew_) {  // its passes are those of the preview
+        inspect();
+        explain();
+    }
     if (begun_ && main_.underWay() == begun_->copy) return;
     if (picture_ && pictureOf_ == main_.version()) return;
     const auto begin = Clock::now();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -92,6 +93,7 @@ class RenderLoop {
     bool isOther(const CameraParams& camera) const;
     bool mustRender();
     bool renderWhatIsDue();
+    bool previewsFirst();
     void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
     bool overlaps() const;
@@ -156,6 +158,9 @@ class RenderLoop {
     Pipeline withNetworks_;  ///< the last one that was not waiting for its network
     LiveComparison comparison_;
     Picker picker_;
+    /// The scene is new: until the pipelines of its first frame are compiled, its preview is shown.
+    bool isNew_ = false;
+    std::future<void> compiling_;  ///< them
     ResolutionControl resolution_;
     std::tuple<Pipeline, uint32_t, bool, int> work_;  ///< what decides how long a pixel takes
     Clock::time_point changed_{};                     ///< when something that is seen has changed last
