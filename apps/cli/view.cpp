@@ -1,5 +1,6 @@
 // `limpid view`: opens the window.
 #include <memory>
+#include <optional>
 
 #include "base/error.h"
 #include "cli/options/studio_options.h"
@@ -15,13 +16,20 @@ namespace {
 struct ViewOptions {
     StudioChoice studio;
     std::string settings = "auto", screenshot, controls;
+    std::string hdr;
+    std::optional<float> paperWhite, peak;
     uint64_t frames = 0, loseDeviceAt = 0;
 };
 
 #ifdef LIMPID_HAVE_VIEWER
 /// Returns the saved settings, overridden by the command line.
 viewer::ViewSettings settingsOf(const ViewOptions& o) {
-    viewer::ViewSettings view{.studio = {}, .controls = o.controls, .kept = {}};
+    viewer::ViewSettings view{.studio = {},
+                              .controls = o.controls,
+                              .kept = {},
+                              .hdr = o.hdr.empty() ? std::optional<bool>() : o.hdr == "on",
+                              .paperWhite = o.paperWhite,
+                              .peak = o.peak};
     if (o.settings != "none")
         view.kept = o.settings == "auto" ? studio::keptSettingsFile() : std::filesystem::path(o.settings);
     restoreSettings(view.kept, view.studio);
@@ -59,6 +67,16 @@ void addViewCommand(CLI::App& app) {
         "--settings", o->settings,
         "File that keeps integrator, denoiser and parameters between sessions; default: limpid/view.json in "
         "$XDG_CONFIG_HOME or ~/.config; 'none' keeps nothing; the command line overrides it");
+    command
+        ->add_option(
+            "--hdr", o->hdr,
+            "on or off: output of a high dynamic range, for a display that is in that mode; with the "
+            "tone curve 'none', highlights are brighter than white; default: the last one; at first off")
+        ->check(CLI::IsMember({"on", "off"}));
+    command->add_option("--paper-white", o->paperWhite, "Brightness of white with HDR, cd/m^2 (203)")
+        ->check(CLI::Range(80.0f, 500.0f));
+    command->add_option("--peak", o->peak, "Brightness at which HDR highlights are clipped, cd/m^2 (1000)")
+        ->check(CLI::Range(200.0f, 10000.0f));
     command->add_option("--controls", o->controls,
                         "For tests: write the position of each control in the window to this file");
     command->add_option("--lose-device", o->loseDeviceAt,

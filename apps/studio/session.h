@@ -55,6 +55,7 @@ struct Request {
         SaveExr,
         KeepSettings,  ///< the settings become those of the comparison with `kept settings`
         CommandLine,   ///< fills Facts::command
+        Extended,      ///< StudioSettings::extended from now on: `index` is 1, or 0
     } kind = Kind::Reset;
     std::string file = {};
     int index = 0;

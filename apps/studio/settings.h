@@ -12,6 +12,7 @@
 #include "scene/device/tracer.h"
 #include "scene/model/scene.h"
 #include "scene/model/scene_source.h"
+#include "studio/loop/networks.h"
 #include "studio/loop/scene_loading.h"
 #include "studio/state/state.h"
 
@@ -29,6 +30,8 @@ struct StudioSettings {
     /// Samples per pixel at which a picture in which nothing changes is finished.
     uint64_t maxSamples = 4096;
     Resolution resolution = Resolution::Automatic;
+    /// Pictures are for a display of a high dynamic range: with ToneCurve::None, they exceed 1.
+    bool extended = false;
     /// Fields that are set once the first scene is there (state_json.h); null: none.
     nlohmann::json state;
     /// A frame begins while the picture of the one before it is brought to the host. Empty: except on CPUs,
@@ -36,6 +39,7 @@ struct StudioSettings {
     std::optional<bool> overlaps;
     bool writesFiles = true;           ///< requests may write into the working folder
     std::filesystem::path weights;     ///< of networks; empty: those that come with Limpid
+    NetworkLoader loadNetworks;        ///< empty: limpid::loadNetworks()
     std::filesystem::path shaders;     ///< Limpid's src: shaders are compiled anew when saved; empty: not
     uint64_t quitAfter = 0;            ///< frames, which are rendered also where nothing changes; 0: no limit
     std::filesystem::path screenshot;  ///< .png or .exr, written when the studio ends; empty: none

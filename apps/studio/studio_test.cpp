@@ -10,12 +10,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <glm/gtc/packing.hpp>
 #include <thread>
 #include <utility>
 
 #include "base/error.h"
 #include "gpu/specialise/specialise.h"
 #include "image/io/picture.h"
+#include "renderer/frame/network_file.h"
 #include "studio/compare/history_text.h"
 #include "studio/state/state_file.h"
 #include "studio/state/state_json.h"
@@ -69,6 +71,39 @@ class StudioTest : public testing::Test {
     }
 };
 
+/// For a display of a high dynamic range: what is up to white is as before, and what was clipped is not.
+TEST_F(StudioTest, PicturesOfAHighRangeExceedWhite) {
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    const auto studio = make(settings);
+    rest(*studio);
+    const auto clipped = rest(*studio, studio->edit({{"tone_curve", "none"}, {"exposure", 3.0}}));
+    EXPECT_TRUE(clipped->picture->extended.empty());
+    const auto extended = wait(*studio, studio->ask({.kind = Kind::Extended, .index = 1}),
+                               [](const Shown& s) { return !s.picture->extended.empty(); });
+    EXPECT_TRUE(extended->picture->texels.empty());
+    ASSERT_EQ(extended->picture->extended.size(), clipped->picture->texels.size());
+    size_t above = 0;
+    for (size_t i = 0; i < clipped->picture->texels.size(); ++i) {
+        const vec4 high = glm::unpackHalf4x16(extended->picture->extended[i]),
+                   low = glm::unpackUnorm4x8(clipped->picture->texels[i]);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(std::min(high[c], 1.0f), low[c], 1.5f / 255.0f) << i;
+            above += high[c] > 1.01f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(above, 100u);
+    // A frame that is rendered so is the same as one that is only exposed so.
+    const auto again = wait(*studio, studio->ask({.kind = Kind::Reset}), [&](const Shown& s) {
+        return !s.facts.computing && s.picture != extended->picture && s.facts.samplesInMean == 2;
+    });
+    ASSERT_FALSE(again->picture->extended.empty());
+    EXPECT_NEAR(glm::unpackHalf4x16(again->picture->extended[1500]).g,
+                glm::unpackHalf4x16(extended->picture->extended[1500]).g, 0.01f);
+    wait(*studio, studio->ask({.kind = Kind::Extended, .index = 0}),
+         [&](const Shown& s) { return s.picture->texels == clipped->picture->texels; });
+}
+
 TEST_F(StudioTest, EditsGesturesAndRequestsChangeThePicture) {
     const auto studio = make(small());
     const auto first = rest(*studio);
@@ -118,6 +153,27 @@ TEST_F(StudioTest, ShadersThatAreCompiledAreTold) {
     rest(*studio, studio->edit({{"seed", 3}}));
     EXPECT_EQ(told, before) << "they are there";
     studio->removeListener(listener);
+    studio->finish();
+}
+
+/// While the pipelines of the first frame are compiled, the preview of the scene is shown.
+TEST_F(StudioTest, APreviewComesFirst) {
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    settings.maxSamples = 1;
+    settings.preview = true;
+    const auto preview = rest(*make(settings))->picture;
+    settings.preview = false;
+    const auto studio = make(settings);
+    const auto first = wait(*studio, 0, [](const Shown& s) { return s.picture != nullptr; });
+    EXPECT_EQ(first->picture->texels, preview->texels);
+    EXPECT_TRUE(first->facts.computing);
+    EXPECT_EQ(toJson(first->state)["integrator"], "path");
+    const auto picture = rest(*studio);
+    EXPECT_NE(picture->picture->texels, preview->texels);
+    EXPECT_EQ(picture->facts.frames, 1u) << "the preview's frames do not count";
+    EXPECT_FALSE(picture->facts.compiling);
+    EXPECT_NE(picture->state.exposure, 0.0f) << "that of the preview is none";
     studio->finish();
 }
 
@@ -275,6 +331,52 @@ TEST_F(StudioTest, DenoisersWithoutTheirPartsShowTheirInput) {
         EXPECT_GT(meanDifference(*whole->picture, *input), ofOneFrame ? -1.0 : 2.0) << denoiser;
         rest(*studio, studio->edit(on));
     }
+    studio->finish();
+}
+
+/// The method before is rendered until the network is there; one that cannot be read changes nothing.
+TEST_F(StudioTest, NetworksLoadBesideTheRendering) {
+    std::atomic<bool> go = false;
+    StudioSettings settings = small();
+    settings.resolution = Resolution::Full;
+    settings.weights = std::filesystem::path(LIMPID_SOURCE_DIR) / "tests/data/kpcn_small.safetensors";
+    settings.loadNetworks = [&](gpu::Device& device, const denoise::Denoiser* denoiser,
+                                const std::filesystem::path& weights, const denoise::DenoiserSettings& with,
+                                const Progress& progress) {
+        if (with.kpcn.cis565) return loadNetworks(device, denoiser, "none.safetensors", with, progress);
+        while (!go) {
+            progress.at(0.4);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return loadNetworks(device, denoiser, weights, with, progress);
+    };
+    const auto studio = make(settings);
+    const auto filtered = rest(*studio, studio->edit({{"denoiser", "atrous"}}));
+    const auto loading = wait(*studio, studio->edit({{"denoiser", "kpcn"}}),
+                              [](const Shown& s) { return s.facts.percent == 40; });
+    EXPECT_EQ(loading->facts.activityText(), "loading the network, 40 %");
+    EXPECT_EQ(loading->picture->texels, filtered->picture->texels);
+    const auto still = rest(*studio, studio->edit({{"seed", 3}}));
+    EXPECT_NE(still->picture->texels, filtered->picture->texels) << "it answers meanwhile";
+    EXPECT_EQ(toJson(still->state)["denoiser"], "kpcn");
+    const auto given = rest(*studio, studio->ask({Kind::CancelLoading}));
+    EXPECT_EQ(toJson(given->state)["denoiser"], "atrous");
+    EXPECT_EQ(given->facts.message, "cancelled");
+    EXPECT_EQ(given->facts.activity, "");
+
+    const auto broken = wait(*studio, studio->edit({{"denoiser", "kpcn"}, {"kpcn.cis565", true}}),
+                             [](const Shown& s) { return !s.facts.fault.empty(); });
+    EXPECT_THAT(broken->facts.fault, HasSubstr("none.safetensors"));
+    EXPECT_EQ(toJson(broken->state)["denoiser"], "atrous");
+
+    wait(*studio, studio->edit({{"kpcn.cis565", false}, {"compare", "kpcn"}}),
+         [](const Shown& s) { return s.facts.percent == 40; });
+    EXPECT_FALSE(rest(*studio, studio->edit({{"seed", 4}}))->compared) << "it waits for its network";
+    go = true;
+    wait(*studio, 0, [](const Shown& s) { return s.compared != nullptr; });
+    const auto denoised = rest(*studio, studio->edit({{"denoiser", "kpcn"}, {"compare", "nothing"}}));
+    EXPECT_EQ(denoised->facts.activity, "");
+    EXPECT_NE(denoised->picture->texels, still->picture->texels);
     studio->finish();
 }
 

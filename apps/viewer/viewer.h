@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "studio/settings.h"
 
@@ -12,6 +13,9 @@ struct ViewSettings {
     std::filesystem::path
         controls;                ///< file that says where the panel's controls are, for tests; empty: none
     std::filesystem::path kept;  ///< file that these are written to on leaving; empty: none
+    // Output of a high dynamic range (looks/memory.h); empty: as the window remembers it.
+    std::optional<bool> hdr;
+    std::optional<float> paperWhite, peak;
 };
 
 /// Opens the window and returns when it is closed. Throws Error where there is no display, or a device that

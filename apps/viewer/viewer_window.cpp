@@ -56,11 +56,31 @@ ViewerWindow::ViewerWindow(const gpu::DeviceOptions& options, const ViewSettings
       screen_(std::make_unique<Screen>(window_, options)),
       shown_(std::make_shared<studio::Shown>()) {
     panel_.memory = readMemory(memoryFile(settings.kept));
+    chooseRange();
     const float scale = screen_->display.interface().scale();
     if (panel_.memory.panelWidth == 0.0f && scale > 1.0f) {
         const gpu::Extent size = window_.size();
         window_.resize({size.width + static_cast<uint32_t>((scale - 1.0f) * usualPanelWidth), size.height});
     }
+}
+
+/// What the command line says of HDR, over what the window remembers.
+void ViewerWindow::chooseRange() {
+    Memory& memory = panel_.memory;
+    memory.hdr = settings_.hdr.value_or(memory.hdr);
+    memory.paperWhite = settings_.paperWhite.value_or(memory.paperWhite);
+    memory.peak = settings_.peak.value_or(memory.peak);
+    const std::string fault = screen_->display.highRangeFault();
+    if (settings_.hdr.value_or(false) && !fault.empty())
+        log::warn("--hdr on: {}; the window has the range of sRGB", fault);
+}
+
+/// Tells the studio which range its pictures are for.
+void ViewerWindow::noteRange() {
+    panel_.hdrFault = screen_->display.highRangeFault();
+    const bool extended = panel_.memory.hdr && panel_.hdrFault.empty();
+    if (std::exchange(extended_, extended) != extended)
+        panel_.asked.push_back({.kind = Request::Kind::Extended, .index = extended ? 1 : 0});
 }
 
 void ViewerWindow::run(studio::Studio& studio) {
@@ -115,6 +135,7 @@ void ViewerWindow::draw(studio::Session& session, double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     const float scale = display.interface().scale();
     panel_.area = pictureArea(panel_, io.DisplaySize.x, io.DisplaySize.y, scale);
+    noteRange();
     panel_.state.viewport = window_.pixels();
     if (panel_.state.viewport.width > 0)
         panel_.state.viewport = {pixelsOf(panel_.area.width, io.DisplayFramebufferScale.x),

@@ -47,6 +47,8 @@ class ViewerWindow {
     void handleEscape();
     void noteOpened();
     void noteCommand();
+    void chooseRange();
+    void noteRange();
     void noteLayout();
     void writeControls();
 
@@ -68,6 +70,7 @@ class ViewerWindow {
     uint64_t commands_ = 0;
     std::string title_;
     int scenesShown_ = 0;
+    bool extended_ = false;       ///< what the studio was told of its pictures' range
     std::string fault_, values_;  ///< those of the snapshot before
 };
 

@@ -10,6 +10,13 @@
 namespace limpid::image {
 namespace {
 
+/// Without NaN and negative values.
+vec3 usableOf(const vec3& exposed) {
+    vec3 usable;
+    for (int i = 0; i < 3; ++i) usable[i] = exposed[i] > 0.0f ? exposed[i] : 0.0f;
+    return usable;
+}
+
 vec3 encoded(const vec3& linear) {
     return {srgbEncode(linear.r), srgbEncode(linear.g), srgbEncode(linear.b)};
 }
@@ -59,8 +66,7 @@ ToneCurve parseToneCurve(std::string_view name) {
 }
 
 vec3 displayColor(ToneCurve curve, const vec3& exposed) {
-    vec3 usable;
-    for (int i = 0; i < 3; ++i) usable[i] = exposed[i] > 0.0f ? exposed[i] : 0.0f;
+    const vec3 usable = usableOf(exposed);
     switch (curve) {
         case ToneCurve::Standard:
             return encoded({filmicCurve(usable.r), filmicCurve(usable.g), filmicCurve(usable.b)});
@@ -72,6 +78,10 @@ vec3 displayColor(ToneCurve curve, const vec3& exposed) {
             return falseColor(glm::min(usable, vec3(filmicLargest)));
     }
     return vec3(0.0f);
+}
+
+vec3 extendedColor(const vec3& exposed) {
+    return encoded(glm::min(usableOf(exposed), vec3(extendedLargest)));
 }
 
 std::span<const vec3> falseColors() {

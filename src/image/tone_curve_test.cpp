@@ -114,5 +114,18 @@ TEST(ToneCurve, HasNames) {
     EXPECT_THROW(parseToneCurve("aces"), UsageError);
 }
 
+/// As `none` up to 1, and sRGB's formula beyond it up to the largest value.
+TEST(ToneCurve, ExtendedContinuesAboveWhite) {
+    const vec3 below(0.0f, 0.18f, 1.0f);
+    EXPECT_EQ(extendedColor(below), displayColor(ToneCurve::None, below));
+    const auto formula = [](double linear) { return 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055; };
+    const vec3 above = extendedColor({2.0f, 30.0f, 1e6f});
+    EXPECT_NEAR(double{above.r}, formula(2.0), 1e-5);
+    EXPECT_NEAR(double{above.g}, formula(30.0), 1e-5);
+    EXPECT_NEAR(double{above.b}, formula(125.0), 1e-5);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(extendedColor({nan, -3.0f, 0.0f}), vec3(0.0f));
+}
+
 }  // namespace
 }  // namespace limpid::image

@@ -16,6 +16,9 @@ const float filmicE = 0.14f;
 /// Radiance is clamped to this before the curve, whose squares would overflow. The curve reaches 1 long
 /// before.
 const float filmicLargest = 65504.0f;
+/// Of pictures for displays of a high dynamic range, relative to paper white: 10,000 cd/m^2, which is the
+/// most that any display signal can say, where paper white is 80 cd/m^2.
+const float extendedLargest = 125.0f;
 /// The average luminance after automatic exposure.
 const float filmicKey = 0.18f;
 

@@ -43,5 +43,27 @@ TEST_F(TonemapTest, ShowsWhatFilesShow) {
     }
 }
 
+/// Beyond paper white, up to the largest value; half floats have 11 bits.
+TEST_F(TonemapTest, ExtendedShowsWhatFilesClip) {
+    const std::vector<float> radiance{0.0f,  0.18f, 1.0f,   1.0f, 2.0f, 50.0f, 1000.0f,  1.0f,
+                                      -1.0f, NAN,   0.002f, 1.0f, 8.0f, 0.5f,  INFINITY, 1.0f};
+    gpu::FrameGraph graph;
+    graph.beginFrame();
+    const gpu::ImageHandle source = graph.transient("radiance", gpu::Format::RGBA32Float, {4, 1});
+    graph.upload(source, gpu::bytesOf(radiance));
+    const gpu::ImageHandle display = tonemapExtended(graph, source, 1.0f);
+    graph.execute(device());
+    EXPECT_EQ(graph.format(display), gpu::Format::RGBA16Float);
+    const std::vector<float> shown = graph.downloadFloat(device(), display);
+    for (size_t pixel = 0; pixel < 4; ++pixel) {
+        const float* const p = &radiance[4 * pixel];
+        const vec3 expected = image::extendedColor(2.0f * vec3(p[0], p[1], p[2]));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(shown[4 * pixel + static_cast<size_t>(c)], expected[c],
+                        1e-3f * std::max(expected[c], 0.1f))
+                << pixel << ", " << c;
+    }
+}
+
 }  // namespace
 }  // namespace limpid::test

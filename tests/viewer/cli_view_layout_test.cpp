@@ -115,7 +115,7 @@ TEST_F(ViewLayoutTest, FindsMarksAndUndoes) {
 
 TEST_F(ViewLayoutTest, KeysAndTheme) {
     {
-        DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2");
+        DrivenViewer viewer(folder_, "builtin:cornell --max-spp 2 --hdr on");
         const auto lists = [&] { return viewer.controls().contains("key map"); };
         viewer.xdotool("mousemove 200 900 key question");
         viewer.waitFor("the list of keys", lists);
@@ -130,6 +130,13 @@ TEST_F(ViewLayoutTest, KeysAndTheme) {
         viewer.xdotool("key Escape");
         viewer.waitFor("the choices to close", [&] { return !viewer.controls().contains("denoiser=svgf"); });
         EXPECT_EQ(viewer.get("code"), "") << "Escape closes what is open before it quits";
+
+        // No driver offers HDR on Xvfb. The switch tells why, and cannot be moved.
+        EXPECT_THAT(viewer.value("hdr fault"), HasSubstr("HDR"));
+        EXPECT_THAT(viewer.get("log"), HasSubstr("--hdr on: "));
+        viewer.click("hdr");
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        EXPECT_EQ(viewer.value("hdr"), "off");
 
         open(viewer, "section window");
 #ifdef LIMPID_WINDOW_PIXELS

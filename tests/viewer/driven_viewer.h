@@ -63,8 +63,13 @@ class DrivenViewer {
                   (folder_ / "view.pid").string() + "'; wait $!; echo $? > '" + (folder_ / "code").string() +
                   "'",
               true);
-        // Without a scene, there are no frames.
-        waitFor("the panel", [&] { return number("frames") > 0 || controls().contains("start.cornell"); });
+        // Without a scene, there are no frames. Before the first one of the method, there is a preview.
+        waitFor("the panel", [&] {
+            const auto drawn = controls();
+            const auto status = drawn.find("status");
+            return drawn.contains("start.cornell") || (number("frames") > 0 && status != drawn.end() &&
+                                                       status->second.value != "compiling shaders");
+        });
         findWindow();
     }
     void findWindow() {

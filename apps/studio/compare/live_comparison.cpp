@@ -28,7 +28,7 @@ void LiveComparison::drop() {
 bool LiveComparison::mustRender(const State& state, const RenderSettings& main, const CameraParams& camera,
                                 bool moved) const {
     const gpu::Extent extent = main.extent;
-    if (!state.comparison.isOn() || extent.width == 0 || extent.height == 0) return false;
+    if (!state.comparison.isOn() || waits_ || extent.width == 0 || extent.height == 0) return false;
     const int wanted = state.comparison.isReference() ? state.comparison.referenceSamples : state.maxSamples;
     return moved || other_.differs(settingsOfComparison(state, main, networks_), state.samples) ||
            !sameCamera(camera, other_.camera()) || other_.samples() < static_cast<uint64_t>(wanted);
@@ -41,7 +41,7 @@ void LiveComparison::render(Stage& stage, const State& state, const RenderSettin
     const std::string choice = comparisonNames()[static_cast<size_t>(state.comparison.with)];
     if (std::exchange(choice_, choice) != choice) scores_.clear();
     if (alone) moment.number = numbersAlone + other_.framesOfSame();
-    other_.setToneCurve(now.pipeline.needsExposure() ? state.toneCurve : image::ToneCurve::Standard);
+    other_.setLook(now.pipeline.needsExposure() ? look_ : Look{});
     other_.prepare(stage, now, state.samples, now.pipeline.needsExposure() ? state.exposure : 0.0f);
     other_.render(std::move(moment));
     ++frames_;
@@ -51,7 +51,7 @@ void LiveComparison::render(Stage& stage, const State& state, const RenderSettin
 
 void LiveComparison::update(LiveRender& main, float exposure, bool rendering) {
     if (!main || !other_) return;
-    other_.setToneCurve(other_.settings().pipeline.needsExposure() ? curve_ : image::ToneCurve::Standard);
+    other_.setLook(other_.settings().pipeline.needsExposure() ? look_ : Look{});
     other_.expose(other_.settings().pipeline.needsExposure() ? exposure : 0.0f);
     const std::tuple now(main.frames(), frames_, exposure);
     const auto time = std::chrono::steady_clock::now();

@@ -31,8 +31,10 @@ class LiveComparison {
                     bool moved) const;
     /// `alone`: the picture rests, and numbers no frames.
     void render(Stage& stage, const State& state, const RenderSettings& main, Moment moment, bool alone);
+    /// Nothing is rendered: the network that it needs is not there yet.
+    void setWaiting(bool waits) { waits_ = waits; }
     /// For the next update().
-    void setToneCurve(image::ToneCurve curve) { curve_ = curve; }
+    void setLook(const Look& look) { look_ = look; }
     /// Exposes it as the picture, and scores the picture against it: now and then while frames are rendered,
     /// and the last ones.
     void update(LiveRender& main, float exposure, bool rendering);
@@ -54,7 +56,8 @@ class LiveComparison {
     uint64_t frames_ = 0;                           ///< ever
     std::tuple<uint64_t, uint64_t, float> scored_;  ///< both numbers of frames and the exposure, of the last
     std::chrono::steady_clock::time_point lastScores_{};
-    image::ToneCurve curve_ = image::ToneCurve::Standard;
+    Look look_;
+    bool waits_ = false;
 };
 
 }  // namespace limpid::studio

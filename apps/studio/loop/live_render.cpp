@@ -5,10 +5,21 @@
 #include "passes/tonemap/tonemap.h"
 
 namespace limpid::studio {
+namespace {
+
+gpu::ImageHandle display(gpu::FrameGraph& graph, const FrameImages& images, float exposure,
+                         const Look& look) {
+    const gpu::ImageHandle radiance = images.beauty ? images.beauty : images.diffuse,
+                           added = images.beauty ? gpu::ImageHandle{} : images.emission;
+    if (look.isExtended()) return tonemapExtended(graph, radiance, exposure, added);
+    return tonemap(graph, radiance, exposure, added, look.curve);
+}
+
+}  // namespace
 
 bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure) {
     exposure_ = exposure;
-    curve_ = nextCurve_;
+    look_ = nextLook_;
     if (renderer_ && samples == samples_) {
         const bool anew = renderer_->setSettings(settings);
         next_ = settings;
@@ -18,14 +29,24 @@ bool LiveRender::prepare(Stage& stage, const RenderSettings& settings, uint32_t 
     renderer_->graph().setReplacements(&shaders_);
     renderer_->graph().setInterruption(interrupted_);
     renderer_->setDisplay([this](gpu::FrameGraph& graph, const FrameImages& images) {
-        if (images.beauty) return tonemap(graph, images.beauty, exposure_, {}, curve_);
-        return tonemap(graph, images.diffuse, exposure_, images.emission, curve_);
+        return display(graph, images, exposure_, look_);
     });
     next_ = settings;
     samples_ = samples;
     launches_ = framesOfSame_ = 0;
     shown_ = false;
     return true;
+}
+
+std::unique_ptr<FrameRenderer> LiveRender::plan(Stage& stage, const RenderSettings& settings,
+                                                uint32_t samples, const Look& look, Moment moment) {
+    auto planned = std::make_unique<FrameRenderer>(device_, stage.onDevice(), settings, samples);
+    planned->graph().setReplacements(&shaders_);
+    planned->setDisplay([look](gpu::FrameGraph& graph, const FrameImages& images) {
+        return display(graph, images, 0.0f, look);
+    });
+    planned->plan(std::move(moment));
+    return planned;
 }
 
 bool LiveRender::differs(const RenderSettings& settings, uint32_t samples) const {
@@ -65,12 +86,16 @@ uint64_t LiveRender::samples() const {
 }
 
 bool LiveRender::expose(float stops) {
-    if (stops == exposure_ && curve_ == nextCurve_) return false;
+    if (stops == exposure_ && look_ == nextLook_) return false;
     exposure_ = stops;
-    curve_ = nextCurve_;
-    const image::ByteImage bytes =
-        image::toBytes(image::tonemap(beautyOf(renderer_->download()), stops, curve_));
-    picture_ = std::make_shared<const Picture>(Picture{{bytes.width, bytes.height}, packedTexels(bytes)});
+    look_ = nextLook_;
+    const image::Image beauty = beautyOf(renderer_->download());
+    Picture picture{.extent = {beauty.width, beauty.height}, .texels = {}};
+    if (look_.isExtended())
+        picture.extended = extendedTexels(beauty, stops);
+    else
+        picture.texels = packedTexels(image::toBytes(image::tonemap(beauty, stops, look_.curve)));
+    picture_ = std::make_shared<const Picture>(std::move(picture));
     ++version_;
     return true;
 }

@@ -14,6 +14,15 @@
 
 namespace limpid::studio {
 
+/// How radiance becomes a picture, beside its exposure.
+struct Look {
+    image::ToneCurve curve = image::ToneCurve::Standard;
+    /// ToneCurve::None is not clipped at 1 (Picture::extended). The other curves end there anyway.
+    bool extended = false;
+    bool isExtended() const { return extended && curve == image::ToneCurve::None; }
+    bool operator==(const Look&) const = default;
+};
+
 class LiveRender {
   public:
     /// Both outlive this.
@@ -29,6 +38,9 @@ class LiveRender {
 
     /// For the frames to come. True if nothing is known of frames before: they are the first.
     bool prepare(Stage& stage, const RenderSettings& settings, uint32_t samples, float exposure);
+    /// The first frame that would be rendered so, recorded only (FrameRenderer::plan()).
+    std::unique_ptr<FrameRenderer> plan(Stage& stage, const RenderSettings& settings, uint32_t samples,
+                                        const Look& look, Moment moment);
     /// Whether frames rendered so from here would differ from the last one by more than their noise.
     bool differs(const RenderSettings& settings, uint32_t samples) const;
     /// A mean that starts anew starts with the first random numbers, so that it can be made again; `moment`
@@ -53,7 +65,7 @@ class LiveRender {
         return *this && !hasReasons_ && settings_.pipeline.denoiser && !settings_.pipeline.usesNetwork();
     }
     /// For frames to come, and for the next expose().
-    void setToneCurve(image::ToneCurve curve) { nextCurve_ = curve; }
+    void setLook(const Look& look) { nextLook_ = look; }
     /// Exposes the last frame differently, without rendering it again. Waits for the device. Returns false if
     /// it was exposed so already.
     bool expose(float stops);
@@ -76,7 +88,7 @@ class LiveRender {
     RenderSettings next_;
     uint32_t samples_ = 1;
     float exposure_ = 0.0f;
-    image::ToneCurve curve_ = image::ToneCurve::Standard, nextCurve_ = curve_;
+    Look look_, nextLook_;
     /// Of the last frame and the one before it. Copies that somebody still holds are not used again.
     std::array<std::shared_ptr<PictureCopy>, 2> copies_;
     size_t copy_ = 0;                         ///< index of the last frame's

@@ -20,9 +20,10 @@ constexpr const char* stateFile = "state.json";
 
 }  // namespace
 
-/// Writes the pictures that were asked for, once there is one of the full resolution.
+/// Writes the pictures that were asked for, once there is one of the full resolution and of the method that
+/// was chosen.
 void RenderLoop::saveWhatIsAsked() {
-    if (toSave_.empty() || !main_ || resolution_.isCoarse()) return;
+    if (toSave_.empty() || !main_ || resolution_.isCoarse() || networks_.isLoading() || isNew_) return;
     for (const std::string& extension : std::exchange(toSave_, {}))
         attempt([&] { save(unusedFile("limpid", extension)); });
 }
@@ -34,7 +35,7 @@ void RenderLoop::save(const std::filesystem::path& file) {
 }
 
 void RenderLoop::makeCommand() {
-    if (!main_ || playback_.frames() == 0) throw Error("there is no frame yet");
+    if (!main_ || isNew_ || playback_.frames() == 0) throw Error("there is no frame yet");
     const scene::Scene& scene = stage_->scene();
     ShownFrame frame{.source = settings_.source,
                      .clip = stage_->moves() ? scene.rig.clips[static_cast<size_t>(scene.clip)].name : "",

@@ -8,6 +8,7 @@
 #include "image/tonemap.h"
 #include "renderer/frame/reset_rule.h"
 #include "scene/model/camera.h"
+#include "studio/loop/priority.h"
 #include "studio/loop/render_loop.h"
 
 namespace limpid::studio {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double betweenTimes = 0.25;   ///< seconds between reads of the passes' times
 constexpr double betweenSources = 0.5;  ///< seconds between checks of the shaders' files
+constexpr int previewDivisor = 4;       ///< of the viewport's sides, on CPUs
 constexpr double settleSeconds = 0.3;   ///< without a change, after which nothing counts as moving
 
 }  // namespace
@@ -42,7 +44,10 @@ bool RenderLoop::mustRender() {
     const auto now = Clock::now();
     if (other) changed_ = now;
     const bool moves = std::chrono::duration<double>(now - changed_).count() < settleSeconds;
-    wanted_.extent = resolution_.choose(state_.viewport, state_.resolution, moves);
+    // The compiler needs the cores of a CPU more than the preview that stands in for the first frame.
+    const bool rough = isNew_ && device_.isCpu() && state_.resolution == Resolution::Automatic;
+    wanted_.extent = rough ? divided(state_.viewport, previewDivisor)
+                           : resolution_.choose(state_.viewport, state_.resolution, moves);
     interruptible_ = !moves && resolution_.takesLong(uint64_t{wanted_.extent.width} * wanted_.extent.height);
     const bool resized = main_ && wanted_.extent != main_.settings().extent;
     if (other || resized) {
@@ -52,15 +57,47 @@ bool RenderLoop::mustRender() {
     if (std::exchange(step_, false) || other || resized) return true;
     if (state_.running && wantsReasons() && main_.lacksReasons()) return true;
     // Nothing is known of the device's speed yet: the coarse picture is not the last one.
-    const bool unmeasured = !moves && resolution_.isCoarse();
+    const bool unmeasured = !isNew_ && !moves && resolution_.isCoarse();
     return state_.running && (unmeasured || settings_.quitAfter > 0 ||
-                              main_.samples() < static_cast<uint64_t>(state_.maxSamples));
+                              main_.samples() < (isNew_ ? 1u : static_cast<uint64_t>(state_.maxSamples)));
+}
+
+/// Whether the preview stands in for the first frame of a scene. Compiles what that needs meanwhile.
+bool RenderLoop::previewsFirst() {
+    if (compiling_.valid()) {
+        if (compiling_.wait_for(std::chrono::seconds(0)) != std::future_status::ready && !ending_)
+            return true;
+        compiling_.get();
+    }
+    // A given number of frames is for scripts, which want the same pictures each time.
+    const bool hasPixels = state_.viewport.width > 0 && state_.viewport.height > 0;
+    if (settings_.quitAfter > 0 || ending_ || !hasPixels ||
+        wanted_.pipeline.integrator == Integrator::Preview)
+        return false;
+    wanted_.extent = state_.viewport;
+    std::shared_ptr<FrameRenderer> first =
+        main_.plan(*stage_, wanted_, state_.samples, lookOf(wanted_.pipeline), {.camera = cameraNow()});
+    if (first->graph().isPrepared(device_)) return false;
+    compiling_ = std::async(std::launch::async, [this, first = std::move(first)] {
+        lowerPriorityBelowFrames();
+        first->graph().prepareBeside(device_);
+    });
+    return true;
 }
 
 /// Renders the next frame, or another one of the comparison alone. Returns false if neither is needed.
 bool RenderLoop::renderWhatIsDue() {
     applySettings();
+    const bool wasNew = std::exchange(isNew_, isNew_ && previewsFirst());
+    if (wasNew && !isNew_) flight_.reset(playback_.time());
+    if (isNew_) {
+        wanted_.pipeline = {Integrator::Preview};
+        wanted_.jitter = defaultJitter(wanted_.pipeline);
+        networks_.set(wanted_);
+        comparison_.setWaiting(true);
+    }
     const bool main = mustRender();
+    comparison_.setLook({state_.toneCurve, settings_.extended});
     if (wanted_.extent.width == 0 || wanted_.extent.height == 0) return false;
     const CameraParams camera = cameraNow();
     const bool other =
@@ -77,10 +114,9 @@ bool RenderLoop::renderWhatIsDue() {
         return true;
     }
     measureExposure();
-    if (main_) main_.setToneCurve(curveOf(main_.settings().pipeline));
+    if (main_) main_.setLook(lookOf(main_.settings().pipeline));
     if (main_ && main_.expose(stopsOf(main_.settings().pipeline))) changedFacts_ = true;
     noteFrameTime(main);
-    comparison_.setToneCurve(state_.toneCurve);
     comparison_.update(main_, state_.exposure, main || other);
     saveWhatIsAsked();
     return main || other;
@@ -120,7 +156,7 @@ void RenderLoop::render(const CameraParams& camera) {
     if (settings_.loseDeviceAt > 0 && rendered() == settings_.loseDeviceAt)
         throw gpu::DeviceLost("the device is taken for lost");
     const bool changed = main_ && (wanted_ != main_.settings() || state_.fovDegrees != fovOfLast_);
-    main_.setToneCurve(curveOf(wanted_.pipeline));
+    main_.setLook(lookOf(wanted_.pipeline));
     if (main_.prepare(*stage_, wanted_, state_.samples, stopsOf(wanted_.pipeline)))
         playback_.reset(playback_.time());
     else if (changed)
@@ -167,6 +203,10 @@ float RenderLoop::stopsOf(const Pipeline& pipeline) const {
 /// The same for the tone curve.
 image::ToneCurve RenderLoop::curveOf(const Pipeline& pipeline) const {
     return pipeline.needsExposure() ? state_.toneCurve : image::ToneCurve::Standard;
+}
+
+Look RenderLoop::lookOf(const Pipeline& pipeline) const {
+    return {curveOf(pipeline), settings_.extended};
 }
 
 /// Recompiles changed shaders. Returns true if there were any.

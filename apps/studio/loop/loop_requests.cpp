@@ -68,14 +68,11 @@ void RenderLoop::steer(const Gesture& gesture) {
 void RenderLoop::carryOut(const Request& request) {
     using Kind = Request::Kind;
     const Kind kind = request.kind;
-    facts_.fault.clear();  // something new is being done
+    if (kind != Kind::Extended) facts_.fault.clear();  // something new is being done
     if (kind == Kind::Open || kind == Kind::OpenDropped)
         return void(attempt([&] { open(request.file, kind == Kind::OpenDropped); }));
-    if (kind == Kind::CancelLoading && loading_) {
-        loading_.cancel();
-        facts_.activity.clear();
-        return say("cancelled");
-    }
+    if (kind == Kind::CancelLoading) return cancelLoading();
+    if (kind == Kind::Extended) settings_.extended = request.index != 0;
     if (!stage_) return;
     if (kind == Kind::Reset) startAnew();
     if (kind == Kind::Step) step_ = true;
@@ -154,7 +151,7 @@ void RenderLoop::placeCamera() {
 /// Returns true if it has filled Facts::allValues. Waits for a frame that tells about histories, too, unless
 /// rendering is stopped.
 bool RenderLoop::answerProbe() {
-    if (!probeAt_ || !main_ || (state_.running && main_.lacksReasons())) return false;
+    if (!probeAt_ || !main_ || isNew_ || (state_.running && main_.lacksReasons())) return false;
     facts_.allValues = probeAll(*std::exchange(probeAt_, std::nullopt));
     return true;
 }
@@ -188,10 +185,6 @@ std::string RenderLoop::probeAll(const std::array<float, 2>& position) {
 
 /// Derives settings from others, and restores the previous value of impossible ones.
 void RenderLoop::applySettings() {
-    if (state_.jitter > 0)
-        state_.render.jitter = static_cast<Jitter>(state_.jitter - 1);
-    else
-        state_.render.jitter = defaultJitter(state_.render.pipeline);
     rig_.hand().setVerticalFov(glm::radians(state_.fovDegrees));
     stage_->setLights(state_.lights.lights);
     playback_.playing = state_.playing && (stage_->moves() || rig_.movesOnPath());
@@ -199,21 +192,64 @@ void RenderLoop::applySettings() {
     if (facts_.duration > 0.0 && playback_.time() > facts_.duration) playback_.seek(0.0);
     state_.time = static_cast<float>(playback_.time());
     showPose();
-    loadNetworks();
+    provideNetworks();
+    noteActivity();
     if (!state_.comparison.isOn()) comparison_.drop();
 }
 
-/// Loads the networks that the pipelines need. If that fails, goes back to a pipeline without one.
-void RenderLoop::loadNetworks() {
-    const auto have = [&](const Pipeline& pipeline) {
-        return !networks_.lacks(pipeline, state_.render.denoisers) ||
-               attempt([&] { networks_.load(pipeline, state_.render.denoisers); });
-    };
-    if (!have(state_.render.pipeline)) state_.render.pipeline = main_.settings().pipeline;
-    if (state_.comparison.isOn() && !have(settingsOfComparison(state_, state_.render, networks_).pipeline))
-        state_.comparison.with = 0;
-    wanted_ = withParts(state_.render, state_.parts);
+/// Begins to load the networks that the pipelines need. Until they are there, the method before is rendered,
+/// and the comparison waits.
+void RenderLoop::provideNetworks() {
+    finishNetworks();
+    const denoise::DenoiserSettings& denoisers = state_.render.denoisers;
+    Pipeline& chosen = state_.render.pipeline;
+    const Pipeline compared = settingsOfComparison(state_, state_.render, networks_).pipeline;
+    if (networks_.lacks(chosen, denoisers))
+        networks_.begin(chosen, denoisers);
+    else if (state_.comparison.isOn() && networks_.lacks(compared, denoisers))
+        networks_.begin(compared, denoisers);
+    else if (networks_.isLoading())
+        networks_.cancel();
+    // A given number of frames is for scripts, which want the same pictures each time.
+    if (networks_.isLoading() && (settings_.quitAfter > 0 || ending_)) {
+        networks_.wait();
+        finishNetworks();
+    }
+    if (networks_.canRender(chosen)) withNetworks_ = chosen;
+    wanted_ = state_.render;
+    wanted_.pipeline = withNetworks_;
+    wanted_.jitter =
+        state_.jitter > 0 ? static_cast<Jitter>(state_.jitter - 1) : defaultJitter(wanted_.pipeline);
+    state_.render.jitter = wanted_.jitter;
+    wanted_ = withParts(wanted_, state_.parts);
     networks_.set(wanted_);
+    comparison_.setWaiting(!networks_.canRender(compared));
+}
+
+/// Takes the network over that was being loaded. If that failed, goes back to what needs none.
+void RenderLoop::finishNetworks() {
+    if (!networks_.isDone()) return;
+    changedFacts_ = true;
+    if (!attempt([&] { networks_.take(); })) doWithoutNetworks();
+}
+
+/// Pipelines that lack a network are no longer wanted.
+void RenderLoop::doWithoutNetworks() {
+    if (!networks_.canRender(state_.render.pipeline)) state_.render.pipeline = withNetworks_;
+    if (state_.comparison.isOn() &&
+        !networks_.canRender(settingsOfComparison(state_, state_.render, networks_).pipeline))
+        state_.comparison.with = 0;
+}
+
+void RenderLoop::cancelLoading() {
+    if (!loading_ && !networks_.isLoading()) return;
+    if (loading_) {
+        loading_.cancel();
+    } else {
+        networks_.settle();
+        doWithoutNetworks();
+    }
+    say("cancelled");
 }
 
 }  // namespace limpid::studio

@@ -16,19 +16,14 @@ void RenderLoop::load(const scene::SceneSource& source, SceneLoading::Why why, s
     std::optional<std::string> clip = "";
     if (why == SceneLoading::Why::First) clip = settings_.animation;
     if (relights) clip = stage_->moves() ? std::optional(scene::clipChoice(stage_->scene())) : std::nullopt;
-    facts_.activity = relights ? "changing the lights" : "loading " + source.scene;
-    facts_.percent = 0;
     loading_.begin({source, why, std::move(clip), std::move(message)});
 }
 
 /// Shows the scene that was being loaded, if that is done; leaves everything unchanged if it failed. Throws
 /// what the loader throws if it was the scene that the studio starts with.
 void RenderLoop::finishLoading() {
-    if (!loading_) return;
-    if (std::exchange(facts_.percent, loading_.percent()) != loading_.percent()) changedFacts_ = true;
-    if (!loading_.isDone()) return;
+    if (!loading_ || !loading_.isDone()) return;
     const SceneLoading::Order order = loading_.order();
-    facts_.activity.clear();
     changedFacts_ = true;
     if (order.why == SceneLoading::Why::First) return showFirst(loading_.take());
     attempt([&] {
@@ -76,6 +71,7 @@ void RenderLoop::show(LoadedScene scene) {
     main_.drop();
     comparison_.drop();
     stage_ = std::move(stage);
+    isNew_ = true;
     ++facts_.scenesShown;
     facts_.scene = stage_->scene().name;
     facts_.sceneRadius = std::max(stage_->sphere().radius, 1e-3f);

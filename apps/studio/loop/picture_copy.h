@@ -13,8 +13,8 @@ class PictureCopy {
     /// The device outlives this.
     explicit PictureCopy(gpu::Device& device) : readback_(device) {}
 
-    /// Submits the copy of an RGBA8Unorm image of the graph's last executed frame. Does not wait for it, but
-    /// for the copy before it.
+    /// Submits the copy of an RGBA8Unorm or RGBA16Float image of the graph's last executed frame. Does not
+    /// wait for it, but for the copy before it.
     void start(gpu::FrameGraph& graph, gpu::ImageHandle image);
     /// Waits until the device has finished the frame.
     void wait() { readback_.wait(); }
@@ -24,6 +24,7 @@ class PictureCopy {
   private:
     gpu::ImageReadback readback_;
     gpu::Extent extent_;
+    bool extended_ = false;
     std::shared_ptr<const Picture> picture_;
 };
 

@@ -36,7 +36,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
       device_(options),
       reload_(settings.shaders),
       main_(device_, reload_.replacements()),
-      networks_(device_, settings.weights),
+      networks_(device_, settings.weights, settings.loadNetworks),
       comparison_(device_, reload_.replacements(), networks_),
       picker_(device_, reload_.replacements()),
       resolution_(device_.isCpu()),
@@ -44,6 +44,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     loadPipelines(device_, pipelineFile(device_));
     state_.viewport = settings.render.extent;
     state_.render = settings.render;
+    withNetworks_ = {settings.render.pipeline.integrator};
     if (settings.preview) state_.setPreview(true);
     if (settings.jitter) state_.jitter = jitterChoice(*settings.jitter, settings.render.pipeline);
     state_.samples = settings.samples;
@@ -52,7 +53,7 @@ RenderLoop::RenderLoop(const gpu::DeviceOptions& options, const TracerChoice& tr
     facts_.device = device_.info().name;
     const auto interrupted = [this] {
         const bool ends = mailbox_.isClosed() && settings_.quitAfter == 0 && settings_.screenshot.empty();
-        return interruptible_ && !ending_ && (ends || mailbox_.hasUrgentMail());
+        return interruptible_ && !ending_ && (ends || mailbox_.hasUrgentMail() || networks_.isDone());
     };
     main_.setInterruption(interrupted);
     comparison_.setInterruption(interrupted);
@@ -108,15 +109,19 @@ void RenderLoop::run() {
     while (!mailbox_.isClosed() && (settings_.quitAfter == 0 || rendered() < settings_.quitAfter)) {
         // The newest messages are for the next frame, which begins when the device has finished the last one.
         awaitFrame();
-        const bool waits = comparison_.isScoring() || loading_ || resolution_.isCoarse();
+        const bool waits =
+            comparison_.isScoring() || loading_ || networks_.isLoading() || isNew_ || resolution_.isCoarse();
         handleMessages(!rests ? 0.0 : waits ? waitingSeconds : idleSeconds);
         finishLoading();
+        noteActivity();
         changedFacts_ |= reloadShaders();
         changedFacts_ |= messageAges();
         changedFacts_ |= comparison_.hasScored();
         const bool rendered = stage_ && renderWhatIsDue();
         changedFacts_ |= answerProbe();
-        if (std::exchange(facts_.computing, rendered) != rendered) changedFacts_ = true;
+        const bool computing = rendered || isNew_;
+        if (std::exchange(facts_.computing, computing) != computing) changedFacts_ = true;
+        facts_.compiling = isNew_;
         rests = !rendered;
         if (rendered || std::exchange(changedFacts_, false)) publish();
     }
@@ -140,11 +145,32 @@ void RenderLoop::handleMessages(double patience) {
     }
 }
 
+/// Tells the clients what is being loaded, and how far that is.
+void RenderLoop::noteActivity() {
+    std::string activity;
+    int percent = 0;
+    if (loading_) {
+        activity = loading_.order().why == SceneLoading::Why::Relit
+                       ? "changing the lights"
+                       : "loading " + loading_.order().source.scene;
+        percent = loading_.percent();
+    } else if (networks_.isLoading()) {
+        activity = "loading the network";
+        percent = networks_.percent();
+    }
+    if (facts_.activity == activity && facts_.percent == percent) return;
+    facts_.activity = activity;
+    facts_.percent = percent;
+    changedFacts_ = true;
+}
+
 /// Does what was asked for last: pictures are not lost because the window was closed.
 void RenderLoop::finish() {
     if (loading_.isFirst() && !settings_.screenshot.empty()) showFirst(loading_.take());
     handleMessages(0.0);
     ending_ = true;
+    if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty()) && (networks_.isLoading() || isNew_))
+        renderWhatIsDue();  // with what was waited for
     if (stage_ && (!toSave_.empty() || !settings_.screenshot.empty())) {
         if (!main_ || resolution_.isCoarse()) {
             state_.resolution = Resolution::Full;
@@ -182,12 +208,14 @@ void RenderLoop::choosePictures() {
         compared_.reset();
     else if (!compared_ || std::exchange(comparedOf_, other->version()) != other->version())
         compared_ = other->picture();
-    if (!state_.arrows)
+    if (!state_.arrows || isNew_)
         motion_.reset();
     else if (!motion_ || std::exchange(motionOf_, main_.frames()) != main_.frames())
         motion_ = std::make_shared<const image::Image>(main_.renderer().motion());
-    inspect();
-    explain();
+    if (!isNew_) {  // its passes are those of the preview
+        inspect();
+        explain();
+    }
     if (begun_ && main_.underWay() == begun_->copy) return;
     if (picture_ && pictureOf_ == main_.version()) return;
     const auto begin = Clock::now();

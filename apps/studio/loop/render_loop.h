@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -79,7 +80,11 @@ class RenderLoop {
     void showPose();
     void placeCamera();
     void applySettings();
-    void loadNetworks();
+    void provideNetworks();
+    void finishNetworks();
+    void doWithoutNetworks();
+    void cancelLoading();
+    void noteActivity();
 
     bool reloadShaders();
     void say(const std::string& message);
@@ -88,6 +93,7 @@ class RenderLoop {
     bool isOther(const CameraParams& camera) const;
     bool mustRender();
     bool renderWhatIsDue();
+    bool previewsFirst();
     void renderTimed(const CameraParams& camera);
     void render(const CameraParams& camera);
     bool overlaps() const;
@@ -96,6 +102,7 @@ class RenderLoop {
     void measureExposure();
     float stopsOf(const Pipeline& pipeline) const;
     image::ToneCurve curveOf(const Pipeline& pipeline) const;
+    Look lookOf(const Pipeline& pipeline) const;
     std::string probeAll(const std::array<float, 2>& position);
     void inspect();
     void choosePictures();
@@ -148,8 +155,12 @@ class RenderLoop {
     ShaderReload reload_;
     LiveRender main_;
     Networks networks_;
+    Pipeline withNetworks_;  ///< the last one that was not waiting for its network
     LiveComparison comparison_;
     Picker picker_;
+    /// The scene is new: until the pipelines of its first frame are compiled, its preview is shown.
+    bool isNew_ = false;
+    std::future<void> compiling_;  ///< them
     ResolutionControl resolution_;
     std::tuple<Pipeline, uint32_t, bool, int> work_;  ///< what decides how long a pixel takes
     Clock::time_point changed_{};                     ///< when something that is seen has changed last

@@ -14,18 +14,18 @@ constexpr double tooSlow = 1.8, tooFast = 0.3;
 /// Share of the newest time in the running mean.
 constexpr double newest = 0.5;
 
+uint64_t pixelsOf(gpu::Extent extent) {
+    return uint64_t{extent.width} * extent.height;
+}
+
+}  // namespace
+
 gpu::Extent divided(gpu::Extent viewport, int divisor) {
     const auto side = [&](uint32_t pixels) {
         return pixels == 0 ? 0u : std::max(pixels / static_cast<uint32_t>(divisor), 1u);
     };
     return {side(viewport.width), side(viewport.height)};
 }
-
-uint64_t pixelsOf(gpu::Extent extent) {
-    return uint64_t{extent.width} * extent.height;
-}
-
-}  // namespace
 
 void ResolutionControl::note(uint64_t pixels, double seconds) {
     if (pixels == 0) return;

@@ -8,6 +8,9 @@
 
 namespace limpid::studio {
 
+/// The viewport with its sides divided; at least one pixel each, unless it has none.
+gpu::Extent divided(gpu::Extent viewport, int divisor);
+
 /// Divisors of the viewport's sides. A frame's time grows with its pixels, so the measured time of one frame
 /// tells that of others; the choice never depends on the number of pixels alone.
 class ResolutionControl {

@@ -190,7 +190,7 @@ void Display::inspect(PanelState& panel, const studio::Shown& shown) {
 void Display::Uploaded::show(gpu::Device& device, const std::shared_ptr<const studio::Picture>& now) {
     if (picture == now || !now) return;
     picture = now;
-    texels.show(device, now->texels, now->extent);
+    texels.show(device, *now);
 }
 
 void Display::drawDivider(const std::string& left, const PanelState& panel, const studio::Facts& facts) {
@@ -229,6 +229,10 @@ void Display::present(PanelState& panel, const studio::Shown& shown) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     for (gpu::Pane& pane : panes) pane.target = placed(pane.target, panel.area, window.x, window.y);
     if (panes.empty()) drawStage(panel);
+    const Memory& memory = panel.memory;
+    presenter_.setHighRange(memory.hdr ? std::optional(gpu::HighRange{
+                                             memory.paperWhite, std::max(memory.peak, memory.paperWhite)})
+                                       : std::nullopt);
     presenter_.present(panes, window_.pixels(), interface_.end());
 }
 

@@ -37,6 +37,8 @@ class Display {
     bool dragsDivider(PanelState& panel, Controls& controls);
     /// The frame ends and is shown.
     void present(PanelState& panel, const studio::Shown& shown);
+    /// Why the window cannot show a high dynamic range; empty: it can.
+    std::string highRangeFault() const { return presenter_.highRangeFault(); }
     /// The mouse's position in the picture, 0 to 1.
     static std::array<float, 2> mousePosition(const Area& area);
 

@@ -42,6 +42,10 @@ Memory readMemory(const fs::path& file) {
         memory.dark = kept.value("theme", "dark") != "light";
         memory.panelWidth = kept.value("panel_width", 0.0f);
         if (memory.panelWidth != 0.0f) memory.panelWidth = std::clamp(memory.panelWidth, narrowest, widest);
+        memory.hdr = kept.value("hdr", memory.hdr);
+        memory.paperWhite = std::clamp(kept.value("paper_white", memory.paperWhite), Memory::leastPaperWhite,
+                                       Memory::mostPaperWhite);
+        memory.peak = std::clamp(kept.value("peak", memory.peak), Memory::leastPeak, Memory::mostPeak);
         memory.open = kept.value("open", memory.open);
         memory.recent = kept.value("recent", memory.recent);
         memory.recent.resize(std::min(memory.recent.size(), Memory::mostRecent));
@@ -55,6 +59,9 @@ void writeMemory(const fs::path& file, const Memory& memory) {
     if (file.empty()) return;
     makeFolder(fs::absolute(file).parent_path());
     const json kept{{"theme", memory.dark ? "dark" : "light"},
+                    {"hdr", memory.hdr},
+                    {"paper_white", memory.paperWhite},
+                    {"peak", memory.peak},
                     {"panel_width", memory.panelWidth},
                     {"open", memory.open},
                     {"recent", memory.recent}};

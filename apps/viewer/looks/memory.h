@@ -11,8 +11,13 @@ namespace limpid::viewer {
 
 struct Memory {
     static constexpr size_t mostRecent = 10;
+    static constexpr float leastPaperWhite = 80.0f, mostPaperWhite = 500.0f, leastPeak = 200.0f,
+                           mostPeak = 10000.0f;
 
     bool dark = true;                  ///< the theme
+    bool hdr = false;                  ///< output of a high dynamic range, where the window can show one
+    float paperWhite = 203.0f;         ///< cd/m^2 of white there, leastPaperWhite to mostPaperWhite
+    float peak = 1000.0f;              ///< cd/m^2 of the brightest highlights, leastPeak to mostPeak
     float panelWidth = 0.0f;           ///< pixels of the window; 0: the usual width
     std::map<std::string, bool> open;  ///< sections of the panel that the user has opened or closed
     std::vector<std::string> recent;   ///< scenes that were opened, the last one first, by absolute path

@@ -20,8 +20,13 @@ class MemoryTest : public testing::Test {
 };
 
 TEST_F(MemoryTest, IsReadAsItWasWritten) {
-    Memory memory{
-        .dark = false, .panelWidth = 512.0f, .open = {{"camera", true}, {"look", false}}, .recent = {}};
+    Memory memory{.dark = false,
+                  .hdr = true,
+                  .paperWhite = 150.0f,
+                  .peak = 600.0f,
+                  .panelWidth = 512.0f,
+                  .open = {{"camera", true}, {"look", false}},
+                  .recent = {}};
     memory.addRecent("/scenes/room.glb");
     writeMemory(folder_ / "window.json", memory);
     EXPECT_EQ(readMemory(folder_ / "window.json"), memory);

@@ -42,6 +42,7 @@ struct PanelState {
     bool focusesSearch = false;
     float divider = 0.65f;   ///< share of the picture's width: what is compared with lies right of it
     bool magnifier = false;  ///< beside the mouse
+    std::string hdrFault;    ///< why the window cannot show a high dynamic range; empty: it can
     bool shown = true;
     bool showsKeys = false;  ///< the list of keys, over everything
     bool holdsPose = false;  ///< a control is held or typed into: State::pose is what it says

@@ -173,6 +173,35 @@ void drawMagnifier(const Drawing& with) {
     explainRow(with, "The pixels under the mouse, enlarged");
 }
 
+constexpr const char* hdrHelp =
+    "High dynamic range (HDR) for displays that are in that mode: with the tone curve 'none', highlights are "
+    "brighter than white";
+
+/// Output of a high dynamic range, and what its numbers mean.
+void drawHdr(const Drawing& with) {
+    Memory& memory = with.panel.memory;
+    const std::string& fault = with.panel.hdrFault;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    bool on = memory.hdr && fault.empty();
+    ImGui::BeginDisabled(!fault.empty());
+    if (with.controls.toggle("hdr", on)) memory.hdr = on;
+    ImGui::EndDisabled();
+    // What is disabled does not say that the mouse is over it.
+    const ImVec2 high{low.x + ImGui::GetContentRegionAvail().x, ImGui::GetItemRectMax().y};
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(low, high) && !ImGui::IsAnyItemActive())
+        explain(fault.empty() ? hdrHelp : "No HDR here: " + fault);
+    with.controls.note("hdr fault", fault);
+    if (!on) return;
+    with.controls.slider("paper white", memory.paperWhite,
+                         Range(Memory::leastPaperWhite, Memory::mostPaperWhite), "{:.0f}", " cd/m²");
+    explainRow(with, "Brightness of white in the picture and in the panel; 203 as ITU-R BT.2408 has it");
+    with.controls.slider("peak", memory.peak,
+                         Range(Memory::leastPeak, Memory::mostPeak,
+                               {Memory::leastPeak, Memory::mostPeak, SliderScale::Logarithmic, 0.0}),
+                         "{:.0f}", " cd/m²");
+    explainRow(with, "What the display can show at most: brighter highlights are clipped");
+}
+
 /// The colours of stops.
 void drawLegend(const Drawing& with) {
     const std::span<const vec3> colors = image::falseColors();
@@ -201,6 +230,7 @@ void drawLook(const Drawing& with) {
     drawActions(with, "look");
     drawField(with, "tone_curve");
     if (with.panel.state.toneCurve == image::ToneCurve::FalseColor) drawLegend(with);
+    drawHdr(with);
     drawMagnifier(with);
     drawField(with, "arrows");
     endRows();
@@ -311,6 +341,10 @@ void drawFound(const Drawing& with) {
     if (matches(panel.search, {"magnifier", "The pixels under the mouse, enlarged"})) {
         under("look");
         drawMagnifier(with);
+    }
+    if (matches(panel.search, {"hdr", "paper white", "peak", hdrHelp})) {
+        under("look");
+        drawHdr(with);
     }
     if (matches(panel.search, {"preview", "fast"})) {
         under("method");

@@ -34,7 +34,9 @@ class Reader {
   public:
     explicit Reader(const std::filesystem::path& path) : path_(path), file_(neural::readTensorFile(path)) {}
 
-    KpcnWeights read() {
+    /// The file is read already.
+    KpcnWeights read(const Progress& progress) {
+        const size_t tensors = file_.tensors.size();
         const Shape shape = readShape();
         KpcnWeights result;
         result.kernelWidth = shape.width;
@@ -44,6 +46,7 @@ class Reader {
         for (size_t side = 0; side < 2; ++side) {
             uint32_t inputs = KPCN_INPUT_CHANNELS;
             for (uint32_t i = 0; i < shape.hidden; ++i) {
+                progress.at(tensors - file_.tensors.size(), tensors);
                 result.sides[side].push_back(
                     layer(formatText("{}.hidden.{}", names[side], i), inputs, shape.channels));
                 inputs = shape.channels;
@@ -121,8 +124,9 @@ class Reader {
 
 }  // namespace
 
-KpcnWeights readKpcnWeights(const std::filesystem::path& path) {
-    return Reader(path).read();
+KpcnWeights readKpcnWeights(const std::filesystem::path& path, const Progress& progress) {
+    progress.at(0.0);
+    return Reader(path).read(progress.part(0.5, 1.0));
 }
 
 }  // namespace limpid::denoise

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "base/progress.h"
+
 namespace limpid::denoise {
 
 /// A convolution of 5x5 taps.
@@ -28,7 +30,7 @@ struct KpcnWeights {
 
 /// Throws InputError for a file that cannot be read, is damaged (neural/tensor_file.h), is not such a
 /// network, has missing, additional or other tensors than its shape says, or contains numbers that are not
-/// finite or outside the range of half precision.
-KpcnWeights readKpcnWeights(const std::filesystem::path& path);
+/// finite or outside the range of half precision; Cancelled.
+KpcnWeights readKpcnWeights(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace limpid::denoise

@@ -266,6 +266,11 @@ class FrameGraph {
     void clearImages(Device& device, VkCommandBuffer_T* commands);
     /// Compiles the missing pipelines of all recorded passes, on several threads. Executes nothing.
     void prepare(Device& device);
+    /// Whether all of them are there.
+    bool isPrepared(Device& device) const;
+    /// As prepare(), but on a thread beside that which executes other graphs on the device: leaves one core
+    /// to it, and does not call Device::onNewPipelines().
+    void prepareBeside(Device& device);
     /// Returns the device memory of the images that this frame needs. Histories count as pairs, images that
     /// share memory as one; imported images do not count.
     uint64_t imageBytes() const;

@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "gpu/graph/frame_graph_impl.h"
 #include "gpu/present/overlay_drawer.h"
+#include "gpu/present/surface_encoder.h"
+#include "gpu/present/surface_format.h"
 #include "gpu/vulkan/check.h"
 #include "gpu/vulkan/device_impl.h"
 #include "gpu/vulkan/execute/frame_executor.h"
@@ -80,22 +82,31 @@ struct Presenter::Impl {
 
     bool present(std::span<const DevicePane> panes, Extent window, const Overlay& overlay);
 
-    VkSurfaceFormatKHR chooseFormat() const;
+    void readOffered();
+    void chooseFormat();
     bool makeSwapchain(Extent window);
     void dropSwapchain();
     void record(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
                 const Overlay& overlay) const;
-    void blit(VkCommandBuffer commands, uint32_t index, const DevicePane& pane) const;
+    void recordDirectly(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                        const Overlay& overlay) const;
+    void recordEncoded(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                       const Overlay& overlay) const;
+    void blit(VkCommandBuffer commands, VkImage target, VkImageLayout layout,
+              std::span<const DevicePane> panes) const;
     void submit(Slot& slot, uint32_t index) const;
 
     std::shared_ptr<const Context> context;
     VkSurfaceKHR surface = VK_NULL_HANDLE;
-    VkSurfaceFormatKHR format{};
-    std::optional<OverlayDrawer> overlays;
+    std::vector<VkSurfaceFormatKHR> offered;
+    std::optional<HighRange> wanted;
+    std::optional<SurfaceFormat> format;
+    OverlayDrawer overlays;
+    std::optional<SurfaceEncoder> encoder;  ///< none: the range is that of sRGB
 
     UniqueSwapchain swapchain;
-    Extent extent;   ///< swapchain's extent
-    Extent madeFor;  ///< the window's extent
+    Extent extent;                  ///< swapchain's extent
+    std::optional<Extent> madeFor;  ///< the window's extent; none: it must be made anew
     std::vector<VkImage> images;
     std::vector<UniqueImageView> views;
     std::vector<UniqueSemaphore> rendered;  ///< one per image
@@ -104,7 +115,7 @@ struct Presenter::Impl {
 };
 
 Presenter::Impl::Impl(std::shared_ptr<const Context> from, const std::function<uint64_t(void*)>& makeSurface)
-    : context(std::move(from)) {
+    : context(std::move(from)), overlays(context) {
     if (!context->presents())
         throw Error(context->info().name + " cannot show pictures in windows; 'limpid render' writes files");
     surface = reinterpret_cast<VkSurfaceKHR>(makeSurface(context->instance()));
@@ -114,8 +125,8 @@ Presenter::Impl::Impl(std::shared_ptr<const Context> from, const std::function<u
     if (!supported)
         throw Error(context->info().name +
                     " cannot show pictures in this window; 'limpid render' writes files");
-    format = chooseFormat();
-    overlays.emplace(context, format.format);
+    readOffered();
+    chooseFormat();
     for (Slot& slot : slots) {
         slot.pool = makeCommandPool(*context, "presenter commands");
         slot.commands = allocateCommandBuffer(*context, slot.pool.get(), "presenter commands");
@@ -131,22 +142,25 @@ Presenter::Impl::~Impl() {
         context->instanceVk().DestroySurfaceKHR(context->instance(), surface, nullptr);
 }
 
-/// Pictures are already encoded, so choose a format that does not encode again.
-VkSurfaceFormatKHR Presenter::Impl::chooseFormat() const {
+void Presenter::Impl::readOffered() {
     uint32_t count = 0;
     LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface,
                                                                        &count, nullptr));
-    std::vector<VkSurfaceFormatKHR> formats(count);
+    offered.resize(count);
     LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceFormatsKHR(context->physicalDevice(), surface,
-                                                                       &count, formats.data()));
-    for (const VkFormat wanted :
-         {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32}) {
-        for (const VkSurfaceFormatKHR& candidate : formats) {
-            if (candidate.format == wanted && candidate.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
-                return candidate;
-        }
-    }
-    throw Error("this window takes no 8-bit sRGB pictures from " + context->info().name);
+                                                                       &count, offered.data()));
+}
+
+/// Chooses the format for the next swapchain, and what draws into it. The device must be idle.
+void Presenter::Impl::chooseFormat() {
+    std::optional<SurfaceFormat> next = wanted ? highRangeFormat(offered) : std::nullopt;
+    if (!next) next = standardFormat(offered);
+    if (!next) throw Error("this window takes no 8-bit sRGB pictures from " + context->info().name);
+    if (format && format->vulkan.format == next->vulkan.format && format->encoding == next->encoding) return;
+    format = next;
+    encoder.reset();
+    if (format->encoding != SurfaceEncoding::Srgb) encoder.emplace(context, *format);
+    overlays.setTarget(encoder ? SurfaceEncoder::composedFormat : format->vulkan.format);
 }
 
 void Presenter::Impl::dropSwapchain() {
@@ -159,21 +173,23 @@ void Presenter::Impl::dropSwapchain() {
 /// Returns false if the window has no pixels.
 bool Presenter::Impl::makeSwapchain(Extent window) {
     context->waitIdle();
+    readOffered();
+    chooseFormat();
     VkSurfaceCapabilitiesKHR can{};
     LIMPID_VK(context->instanceVk().GetPhysicalDeviceSurfaceCapabilitiesKHR(context->physicalDevice(),
                                                                             surface, &can));
     const bool free = can.currentExtent.width == UINT32_MAX;  // the swapchain decides its own size
-    const Extent wanted = free ? window : Extent{can.currentExtent.width, can.currentExtent.height};
-    extent = {std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width),
-              std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height)};
+    const Extent size = free ? window : Extent{can.currentExtent.width, can.currentExtent.height};
+    extent = {std::clamp(size.width, can.minImageExtent.width, can.maxImageExtent.width),
+              std::clamp(size.height, can.minImageExtent.height, can.maxImageExtent.height)};
     madeFor = window;
-    if (wanted.width == 0 || wanted.height == 0 || extent.width == 0 || extent.height == 0) return false;
+    if (size.width == 0 || size.height == 0 || extent.width == 0 || extent.height == 0) return false;
     VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
     info.surface = surface;
     info.minImageCount = std::max(3u, can.minImageCount);
     if (can.maxImageCount != 0) info.minImageCount = std::min(info.minImageCount, can.maxImageCount);
-    info.imageFormat = format.format;
-    info.imageColorSpace = format.colorSpace;
+    info.imageFormat = format->vulkan.format;
+    info.imageColorSpace = format->vulkan.colorSpace;
     info.imageExtent = {extent.width, extent.height};
     info.imageArrayLayers = 1;
     info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
@@ -194,27 +210,33 @@ bool Presenter::Impl::makeSwapchain(Extent window) {
         VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
         view.image = image;
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format.format;
+        view.format = format->vulkan.format;
         view.subresourceRange = wholeImage();
         VkImageView made = VK_NULL_HANDLE;
         LIMPID_VK(context->vk().CreateImageView(context->device(), &view, nullptr, &made));
         views.emplace_back(context->vk(), made);
         rendered.push_back(makeSemaphore(*context));
     }
+    if (encoder) encoder->resize(extent);
     return true;
 }
 
-void Presenter::Impl::blit(VkCommandBuffer commands, uint32_t index, const DevicePane& pane) const {
-    const auto source = corners(pane.source, pane.picture->extent), target = corners(pane.target, extent);
-    const int32_t from = source[1].x - source[0].x, to = target[1].x - target[0].x;
-    VkImageBlit region{};
-    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    std::copy(source.begin(), source.end(), region.srcOffsets);
-    std::copy(target.begin(), target.end(), region.dstOffsets);
-    const bool pixels = from == to || pane.enlarge;
-    context->vk().CmdBlitImage(commands, pane.picture->image.get(), VK_IMAGE_LAYOUT_GENERAL, images[index],
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
-                               pixels ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+void Presenter::Impl::blit(VkCommandBuffer commands, VkImage target, VkImageLayout layout,
+                           std::span<const DevicePane> panes) const {
+    for (const DevicePane& pane : panes) {
+        const auto source = corners(pane.source, pane.picture->extent), place = corners(pane.target, extent);
+        const int32_t from = source[1].x - source[0].x, to = place[1].x - place[0].x;
+        VkImageBlit region{};
+        region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        std::copy(source.begin(), source.end(), region.srcOffsets);
+        std::copy(place.begin(), place.end(), region.dstOffsets);
+        const bool pixels = from == to || pane.enlarge;
+        context->vk().CmdBlitImage(commands, pane.picture->image.get(), VK_IMAGE_LAYOUT_GENERAL, target,
+                                   layout, 1, &region, pixels ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+        // The next pane may overlap it.
+        memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    }
 }
 
 void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
@@ -225,31 +247,62 @@ void Presenter::Impl::record(const Slot& slot, uint32_t index, std::span<const D
     // The frame that rendered the picture was submitted to the same queue.
     memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
-    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED,
-                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT, 0,
-                 VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-    for (const DevicePane& pane : panes) {
-        blit(commands, index, pane);
-        // The next pane may overlap it.
-        memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
-    }
-    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT,
-                 VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                 VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
-    overlays->draw(commands, slot.triangles, overlay, views[index].get(), extent);
+    if (encoder)
+        recordEncoded(slot, index, panes, overlay);
+    else
+        recordDirectly(slot, index, panes, overlay);
     imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                  VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                  VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE, 0);
     LIMPID_VK(context->vk().EndCommandBuffer(commands));
 }
 
+/// Composes in the swapchain's image.
+void Presenter::Impl::recordDirectly(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                                     const Overlay& overlay) const {
+    const VkCommandBuffer commands = slot.commands;
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT, 0,
+                 VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    blit(commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, panes);
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_BLIT_BIT,
+                 VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                 VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    overlays.draw(commands, slot.triangles, overlay, views[index].get(),
+                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, extent);
+}
+
+/// Composes as sRGB in the encoder's image, so that transparent parts of the overlay look as usual, and
+/// converts that.
+void Presenter::Impl::recordEncoded(const Slot& slot, uint32_t index, std::span<const DevicePane> panes,
+                                    const Overlay& overlay) const {
+    const VkCommandBuffer commands = slot.commands;
+    const Image& composed = encoder->composed();
+    imageBarrier(*context, commands, composed.image.get(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
+                 VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, VK_PIPELINE_STAGE_2_BLIT_BIT,
+                 VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    blit(commands, composed.image.get(), VK_IMAGE_LAYOUT_GENERAL, panes);
+    memoryBarrier(*context, commands, VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    overlays.draw(commands, slot.triangles, overlay, composed.view.get(), VK_IMAGE_LAYOUT_GENERAL, extent);
+    memoryBarrier(*context, commands,
+                  VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                  VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+    imageBarrier(*context, commands, images[index], VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, 0,
+                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                 VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    encoder->encode(commands, views[index].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, *wanted);
+}
+
 void Presenter::Impl::submit(Slot& slot, uint32_t index) const {
     VkSemaphoreSubmitInfo wait{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO},
         signal{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
     wait.semaphore = slot.acquired.get();
-    wait.stageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
+    wait.stageMask = VK_PIPELINE_STAGE_2_BLIT_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
     signal.semaphore = rendered[index].get();
     signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
@@ -274,11 +327,11 @@ bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, 
     const VkResult acquired = context->vk().AcquireNextImageKHR(
         context->device(), swapchain.get(), UINT64_MAX, slot.acquired.get(), VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
-        madeFor = {};  // recreated next time
+        madeFor.reset();  // recreated next time
         return false;
     }
     if (acquired != VK_SUBOPTIMAL_KHR) LIMPID_VK(acquired);
-    overlays->upload(slot.triangles, overlay);
+    overlays.upload(slot.triangles, overlay);
     record(slot, index, panes, overlay);
     submit(slot, index);
     ++presented;
@@ -292,7 +345,7 @@ bool Presenter::Impl::present(std::span<const DevicePane> panes, Extent window, 
     info.pImageIndices = &index;
     const VkResult result = context->vk().QueuePresentKHR(context->queue(), &info);
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
-        madeFor = {};
+        madeFor.reset();
     else
         LIMPID_VK(result);
     return true;
@@ -304,7 +357,20 @@ Presenter::Presenter(Device& device, const std::function<uint64_t(void*)>& makeS
 Presenter::~Presenter() = default;
 
 void Presenter::setTexture(Extent extent, std::span<const uint32_t> texels) {
-    impl_->overlays->setTexture(device_.impl().transfer(), extent, texels);
+    impl_->overlays.setTexture(device_.impl().transfer(), extent, texels);
+}
+
+std::string Presenter::highRangeFault() const {
+    const Context& context = *impl_->context;
+    if (highRangeFormat(impl_->offered)) return {};
+    if (!context.hasColorSpaces())
+        return "the Vulkan driver has no colour spaces for HDR (VK_EXT_swapchain_colorspace)";
+    return context.info().name + " offers no HDR format for this window (16-bit scRGB or HDR10)";
+}
+
+void Presenter::setHighRange(const std::optional<HighRange>& wanted) {
+    if (wanted.has_value() != impl_->wanted.has_value()) impl_->madeFor.reset();  // another swapchain
+    impl_->wanted = wanted;
 }
 
 bool Presenter::present(std::span<const Pane> panes, Extent window, const Overlay& overlay) {

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "gpu/graph/frame_graph.h"
 
@@ -33,10 +35,19 @@ struct Rectangle {
     float left = 0.0f, top = 0.0f, right = 1.0f, bottom = 1.0f;
 };
 
+/// Output of a high dynamic range (HDR).
+struct HighRange {
+    float paperWhite = 203.0f;  ///< cd/m^2 of white, 1 in pictures and in the overlay (ITU-R BT.2408)
+    float peak = 1000.0f;       ///< cd/m^2 at which each channel is clipped; at least paperWhite
+    bool operator==(const HighRange&) const = default;
+};
+
 /// A picture shown in a part of the window.
 struct Pane {
     FrameGraph* graph = nullptr;
-    ImageHandle picture;       ///< from its last executed frame; RGBA8Unorm, not in a buffer
+    /// From its last executed frame; encoded sRGB, not in a buffer: RGBA8Unorm, or RGBA16Float, whose curve
+    /// continues above 1 (with HighRange; else it is clipped).
+    ImageHandle picture;
     Rectangle source, target;  ///< the shown part of the picture, and where it goes in the window
     bool enlarge = false;      ///< show pixels as squares instead of filtering them
 };
@@ -53,6 +64,12 @@ class Presenter {
 
     /// Sets the RGBA8 texels of the texture that overlays use.
     void setTexture(Extent extent, std::span<const uint32_t> texels);
+
+    /// Why the window cannot show a high dynamic range; empty: it can. The answer may change with the
+    /// window's place and size. A surface that can need not mean a display that does.
+    std::string highRangeFault() const;
+    /// Shows a high dynamic range where the window can; none: the range of sRGB, as at first.
+    void setHighRange(const std::optional<HighRange>& wanted);
 
     /// Shows the panes, each scaled to its part of the window, later ones over earlier ones, and the overlay
     /// on top. `window`: its size in pixels. Returns false if nothing was shown: the window has no pixels, or

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <thread>
 #include <vector>
 
 #include "gpu/graph/dispatch_recorder.h"
@@ -401,6 +402,20 @@ TEST_F(GpuTest, NewPipelinesAreAnnouncedOnce) {
     run(16);
     EXPECT_EQ(announced, 2);
     EXPECT_EQ(device().pipelineCount(), before + 1);
+    // What another thread compiles meanwhile is no news of a frame.
+    FrameGraph other;
+    other.beginFrame();
+    const ImageHandle image = other.transient("size", Format::RG32Uint, odd);
+    other.dispatch({.pass = "size",
+                    .shader = shaders::test_group_size_comp,
+                    .bindings = {{"result", image}},
+                    .constants = {{"groupWidth", 2}, {"groupHeight", 4}},
+                    .extent = odd});
+    EXPECT_FALSE(other.isPrepared(device()));
+    std::jthread([&] { other.prepareBeside(device()); }).join();
+    EXPECT_TRUE(other.isPrepared(device()));
+    run(2);
+    EXPECT_EQ(announced, 2);
     device().onNewPipelines({});
     run(4);
     EXPECT_EQ(announced, 2);

@@ -28,6 +28,8 @@ class Context {
     VkPhysicalDevice physicalDevice() const { return physical_.handle; }
     /// True if it can present pictures in windows.
     bool presents() const { return presents_; }
+    /// True if windows may have colour spaces other than sRGB.
+    bool hasColorSpaces() const { return instance_ && instance_->hasColorSpaces(); }
     VkQueue queue() const { return queue_; }
     /// True if it has a queue of its own; false for an adopted device.
     bool submits() const { return queue_ != VK_NULL_HANDLE; }

@@ -79,7 +79,7 @@ struct DeviceOptions {
     bool validation = false;
     /// Instance extensions that the window system requires (glfwGetRequiredInstanceExtensions) for presenting
     /// pictures in windows (gpu/present/presenter.h). Missing extensions are skipped; then the device cannot
-    /// present.
+    /// present. With them, VK_EXT_swapchain_colorspace is enabled where there is one.
     std::vector<std::string> surfaceExtensions;
     bool readsEnvironment = true;  ///< LIMPID_VALIDATION is respected
     /// Receives the validation layer's messages. None: they are only counted.

@@ -26,7 +26,8 @@ namespace limpid::gpu {
     X(CmdBeginRendering) X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) \
     X(CmdBindVertexBuffers) X(CmdBlitImage) X(CmdBuildAccelerationStructuresKHR) X(CmdClearColorImage) \
     X(CmdCopyAccelerationStructureKHR) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdCopyImageToBuffer) \
-    X(CmdDispatch) X(CmdDispatchBase) X(CmdDrawIndexed) X(CmdEndDebugUtilsLabelEXT) X(CmdEndRendering) X(CmdFillBuffer) \
+    X(CmdDispatch) X(CmdDispatchBase) X(CmdDraw) X(CmdDrawIndexed) X(CmdEndDebugUtilsLabelEXT) \
+    X(CmdEndRendering) X(CmdFillBuffer) \
     X(CmdPipelineBarrier2) X(CmdPushConstants) X(CmdResetQueryPool) X(CmdSetScissor) X(CmdSetViewport) \
     X(CmdTraceRaysKHR) X(CmdWriteAccelerationStructuresPropertiesKHR) X(CmdWriteTimestamp2) \
     X(CreateAccelerationStructureKHR) X(CreateBuffer) X(CreateBufferView) X(CreateCommandPool) \

@@ -97,6 +97,8 @@ std::unique_ptr<Instance> Instance::create(bool validation, const std::vector<st
         });
     if (self->surfaces_) {
         for (const std::string& name : surfaceExtensions) extensions.push_back(name.c_str());
+        self->colorSpaces_ = hasExtension(loader, nullptr, VK_EXT_SWAPCHAIN_COLOR_SPACE_EXTENSION_NAME);
+        if (self->colorSpaces_) extensions.push_back(VK_EXT_SWAPCHAIN_COLOR_SPACE_EXTENSION_NAME);
     }
 
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};

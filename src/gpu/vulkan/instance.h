@@ -27,6 +27,8 @@ class Instance {
     bool hasDebugUtils() const { return debugUtils_; }
     /// True if all requested surface extensions are available.
     bool hasSurfaces() const { return surfaces_; }
+    /// True if surfaces may also offer colour spaces other than sRGB (VK_EXT_swapchain_colorspace).
+    bool hasColorSpaces() const { return colorSpaces_; }
     VkInstance handle() const { return instance_; }
     const InstanceFunctions& vk() const { return vk_; }
     uint64_t validationMessages() const { return messages_->count; }
@@ -46,7 +48,7 @@ class Instance {
     VkInstance instance_ = VK_NULL_HANDLE;
     InstanceFunctions vk_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    bool debugUtils_ = false, surfaces_ = false;
+    bool debugUtils_ = false, surfaces_ = false, colorSpaces_ = false;
 };
 
 }  // namespace limpid::gpu

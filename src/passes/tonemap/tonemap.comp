@@ -13,7 +13,11 @@ layout(set = 0, binding = 0, scalar) uniform Params {
 };
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D radiance;
 layout(set = 0, binding = 3, rgba32f) uniform readonly image2D added;
+#ifdef LIMPID_EXTENDED  // for displays of a high dynamic range: 1 is paper white, and may be exceeded
+layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D display;
+#else
 layout(set = 0, binding = 2, rgba8) uniform writeonly image2D display;
+#endif
 
 vec3 filmicCurve(vec3 value) {
     const vec3 x = filmicScale * min(value, vec3(filmicLargest));
@@ -43,6 +47,12 @@ vec3 falseColor(vec3 exposed) {
     return colors[int(floor(stops + most + 0.5))];
 }
 
+#ifdef LIMPID_EXTENDED
+/// As image::extendedColor().
+vec3 displayColor(vec3 exposed) {
+    return srgbEncode(min(exposed, vec3(extendedLargest)));
+}
+#else
 /// As image::displayColor().
 vec3 displayColor(vec3 exposed) {
     switch (params.curve) {
@@ -52,6 +62,7 @@ vec3 displayColor(vec3 exposed) {
         default: return srgbEncode(filmicCurve(exposed));
     }
 }
+#endif
 
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;

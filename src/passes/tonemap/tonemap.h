@@ -11,4 +11,9 @@ namespace limpid {
 gpu::ImageHandle tonemap(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
                          gpu::ImageHandle added = {}, image::ToneCurve curve = image::ToneCurve::Standard);
 
+/// For displays of a high dynamic range. Returns RGBA16Float, alpha 1: image::extendedColor() of the radiance
+/// times 2^stops, or of that of the sum of both images. The pass is called "tonemap", too.
+gpu::ImageHandle tonemapExtended(gpu::FrameGraph& graph, gpu::ImageHandle radiance, float stops,
+                                 gpu::ImageHandle added = {});
+
 }  // namespace limpid

@@ -72,8 +72,18 @@ void FrameRenderer::render(Moment moment) {
     while (launch()) continue;
 }
 
+void FrameRenderer::plan(Moment moment) {
+    begin(std::move(moment));
+    record(nextSamples());
+}
+
 bool FrameRenderer::launch() {
     if (samplesLaunched_ >= samples_) return false;
+    launch(nextSamples());
+    return true;
+}
+
+LaunchSamples FrameRenderer::nextSamples() const {
     const uint32_t most = samplesPerLaunch(device_, settings_);
     const uint64_t launchesOfAFrame = 1 + (samples_ - 1) / most;
     LaunchSamples taken{.stream = moment_.number * launchesOfAFrame + launches_,
@@ -86,11 +96,10 @@ bool FrameRenderer::launch() {
         taken.first = moment_.number * samples_;
         taken.count = static_cast<uint32_t>(samples_);
     }
-    launch(taken);
-    return true;
+    return taken;
 }
 
-void FrameRenderer::launch(const LaunchSamples& taken) {
+void FrameRenderer::record(const LaunchSamples& taken) {
     FrameInput input{.camera = moment_.camera,
                      .previousCamera = moment_.previousCamera.value_or(moment_.camera)};
     input.hasPrevious = moment_.previousCamera.has_value();
@@ -110,6 +119,10 @@ void FrameRenderer::launch(const LaunchSamples& taken) {
     graph_.beginFrame();
     images_ = recordFrame(graph_, scene_, settings_, input);
     if (display_) displayed_ = display_(graph_, images_);
+}
+
+void FrameRenderer::launch(const LaunchSamples& taken) {
+    record(taken);
     graph_.execute(device_);
     scene_.setLightDistancesStale(false);  // unless execute() throws Interrupted
     moment_.scene.reset();                 // the device keeps this state until the next frame

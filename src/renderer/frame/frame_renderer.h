@@ -46,6 +46,9 @@ class FrameRenderer {
 
     /// Goes to a frame that continues nothing: its mean and its histories are new. Launches render it.
     void begin(Moment moment);
+    /// Records the first launch of a frame that continues nothing, without executing it: graph() then tells
+    /// which pipelines it needs, and can compile them.
+    void plan(Moment moment);
     /// Launches the next samples of the frame; a denoising pipeline takes all of them at once. Returns false
     /// if there are none left. Does not wait for the device.
     bool launch();
@@ -102,6 +105,8 @@ class FrameRenderer {
 
   private:
     void goTo(Moment moment);
+    LaunchSamples nextSamples() const;
+    void record(const LaunchSamples& taken);
     void readIds();
 
     gpu::Device& device_;

@@ -10,6 +10,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr double weightsRead = 0.7;  ///< share of the time of loading until the weights are read
+
 const char* shippedName(const denoise::KpcnSettings& settings) {
     return settings.cis565 ? "kpcn-cis565.safetensors" : "kpcn.safetensors";
 }
@@ -40,7 +42,8 @@ fs::path shippedWeights(const denoise::KpcnSettings& settings) {
 }
 
 denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoiser* denoiser,
-                                       const fs::path& file, const denoise::DenoiserSettings& settings) {
+                                       const fs::path& file, const denoise::DenoiserSettings& settings,
+                                       const Progress& progress) {
     if (!denoiser || !denoiser->network) {
         if (!file.empty()) throw UsageError("--weights: only kpcn is a network and has weights");
         return {};
@@ -49,9 +52,11 @@ denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoi
     if (chosen.empty())
         throw InputError(shippedName(settings.kpcn),
                          "the weights that come with Limpid are not there: --weights FILE");
-    return {.kpcn = std::make_shared<denoise::KpcnNetwork>(
-                device, denoise::readKpcnWeights(chosen),
-                denoise::kpcnPrecision(device.info(), settings.kpcn.half))};
+    const denoise::KpcnWeights weights = denoise::readKpcnWeights(chosen, progress.part(0.0, weightsRead));
+    const denoise::KpcnPrecision precision = denoise::kpcnPrecision(device.info(), settings.kpcn.half);
+    auto network = std::make_shared<denoise::KpcnNetwork>(device, weights, precision);
+    progress.at(1.0);
+    return {.kpcn = std::move(network)};
 }
 
 }  // namespace limpid

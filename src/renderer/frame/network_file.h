@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "base/progress.h"
 #include "denoise/api/denoiser.h"
 #include "gpu/vulkan/device.h"
 
@@ -18,9 +19,11 @@ std::filesystem::path shippedWeights(const denoise::KpcnSettings& settings);
 
 /// Loads the network that the denoiser needs (null: none) from `file`, or from the shipped file if `file` is
 /// empty. Throws InputError like denoise::readKpcnWeights(), and if there is no such file; UsageError if a
-/// file is named for a denoiser without a network.
+/// file is named for a denoiser without a network; Cancelled. May run beside frames of the device on another
+/// thread.
 denoise::DenoiserNetworks loadNetworks(gpu::Device& device, const denoise::Denoiser* denoiser,
                                        const std::filesystem::path& file,
-                                       const denoise::DenoiserSettings& settings);
+                                       const denoise::DenoiserSettings& settings,
+                                       const Progress& progress = {});
 
 }  // namespace limpid

@@ -98,6 +98,14 @@ void FrameGraph::prepare(Device& device) {
     device.impl().pipelines->prepare(impl_->frame.dispatches);
 }
 
+bool FrameGraph::isPrepared(Device& device) const {
+    return device.impl().pipelines->hasAll(impl_->frame.dispatches);
+}
+
+void FrameGraph::prepareBeside(Device& device) {
+    device.impl().pipelines->prepareBeside(impl_->frame.dispatches);
+}
+
 const Image& FrameGraph::imageOnDevice(Device& device, ImageHandle image) {
     const RecordedImage& recorded = impl_->frame.images[impl_->indexOf(image)];
     return impl_->executed(device).image(recorded);

@@ -182,23 +182,37 @@ PipelineCache::Pipeline PipelineCache::get(const RecordedDispatch& dispatch) {
 }
 
 void PipelineCache::prepare(std::span<const RecordedDispatch> dispatches) {
-    struct Job {
-        const RecordedDispatch* dispatch;
-        const Layouts* layouts;
-    };
-    std::vector<Job> jobs;
-    {
-        const std::lock_guard lock(mutex_);
-        std::set<Key> wanted;
-        for (const RecordedDispatch& dispatch : dispatches) {
-            if (!dispatch.shader) continue;
-            const Key key{dispatch.shader->hash, dispatch.constants};
-            if (pipelines_.contains(key) || !wanted.insert(key).second) continue;
-            jobs.push_back({&dispatch, &layoutsOf(*dispatch.shader)});
-        }
-    }
+    const std::vector<Job> jobs = missing(dispatches);
     if (jobs.empty()) return;
     if (listener_) listener_();
+    makeAll(jobs);
+}
+
+void PipelineCache::prepareBeside(std::span<const RecordedDispatch> dispatches) {
+    makeAll(missing(dispatches));
+}
+
+bool PipelineCache::hasAll(std::span<const RecordedDispatch> dispatches) const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::all_of(dispatches, [&](const RecordedDispatch& dispatch) {
+        return !dispatch.shader || pipelines_.contains(Key{dispatch.shader->hash, dispatch.constants});
+    });
+}
+
+std::vector<PipelineCache::Job> PipelineCache::missing(std::span<const RecordedDispatch> dispatches) {
+    std::vector<Job> jobs;
+    const std::lock_guard lock(mutex_);
+    std::set<Key> wanted;
+    for (const RecordedDispatch& dispatch : dispatches) {
+        if (!dispatch.shader) continue;
+        const Key key{dispatch.shader->hash, dispatch.constants};
+        if (pipelines_.contains(key) || !wanted.insert(key).second) continue;
+        jobs.push_back({&dispatch, &layoutsOf(*dispatch.shader)});
+    }
+    return jobs;
+}
+
+void PipelineCache::makeAll(const std::vector<Job>& jobs) {
     forEachOnThreads(jobs.size(), [&](size_t i) {
         const RecordedDispatch& dispatch = *jobs[i].dispatch;
         Made made = makePipeline(dispatch, *jobs[i].layouts);

@@ -29,6 +29,10 @@ class PipelineCache {
     Pipeline get(const RecordedDispatch& dispatch);
     /// Creates missing pipelines, on as many threads as the machine has cores. Thread-safe.
     void prepare(std::span<const RecordedDispatch> dispatches);
+    /// The same beside frames, without telling the listener.
+    void prepareBeside(std::span<const RecordedDispatch> dispatches);
+    /// Whether none is missing. Thread-safe.
+    bool hasAll(std::span<const RecordedDispatch> dispatches) const;
     /// Device::onNewPipelines().
     void onNewPipelines(std::function<void()> listener) { listener_ = std::move(listener); }
 
@@ -51,6 +55,12 @@ class PipelineCache {
     };
     using Key = std::pair<uint64_t, SpecialisationConstants>;  ///< Shader::hash and the constants
 
+    struct Job {
+        const RecordedDispatch* dispatch;
+        const Layouts* layouts;
+    };
+    std::vector<Job> missing(std::span<const RecordedDispatch> dispatches);
+    void makeAll(const std::vector<Job>& jobs);
     /// `mutex_` must be held.
     const Layouts& layoutsOf(const Shader& shader);
     UniqueDriverCache makeDriverCache(std::span<const std::byte> data) const;

@@ -41,7 +41,7 @@ VkImageSubresourceRange wholeImage() {
 }
 
 Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
-                Backing backing) {
+                Backing backing, VkImageUsageFlags moreUsage) {
     if (backing == Backing::Buffer) return makeBufferImage(std::move(context), name, format, extent);
     const uint32_t maximum = context->limits().maxImageDimension2D;
     if (std::max(extent.width, extent.height) > maximum) {
@@ -56,7 +56,7 @@ Image makeImage(std::shared_ptr<const Context> context, const std::string& name,
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT | moreUsage;
     VkImage handle = VK_NULL_HANDLE;
     LIMPID_VK(context->vk().CreateImage(context->device(), &info, nullptr, &handle));
 

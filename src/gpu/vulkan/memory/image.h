@@ -18,9 +18,10 @@ struct Image {
     Extent extent;
 };
 
-/// The image is in UNDEFINED layout at first. Throws Error naming the limit if the extent exceeds one.
+/// The image is in UNDEFINED layout at first. `moreUsage`: beyond storage, sampling and copies. Throws Error
+/// naming the limit if the extent exceeds one.
 Image makeImage(std::shared_ptr<const Context> context, const std::string& name, Format format, Extent extent,
-                Backing backing = Backing::Image);
+                Backing backing = Backing::Image, VkImageUsageFlags moreUsage = 0);
 
 VkImageSubresourceRange wholeImage();
 
