@@ -249,7 +249,7 @@ TEST_P(LightDistancesTest, DistancesInABoxFollowTheFormula) {
             }
         }
         // The corner of a neighbour is at most this far from a texel's centre.
-        const double reach = std::cos(0.72);
+        const double reach = std::cos(0.4);
         for (uint32_t y = 0; y < side; ++y) {
             for (uint32_t x = 0; x < side; ++x) {
                 const dvec3 centre =

@@ -39,6 +39,6 @@ void main() {
         }
     }
     const int at = first + place.x + texel.y * SIZE;
-    const uint own = halfAbove(imageLoad(lightFirstHits, at).x), around = halfAbove(farthest * LIGHT_MAP_MARGIN);
+    const uint own = halfAbove(imageLoad(lightFirstHits, at).x * LIGHT_MAP_MARGIN), around = halfAbove(farthest * LIGHT_MAP_MARGIN);
     imageStore(lightDistances, at, vec4(uintBitsToFloat(around << 16 | own)));
 }

@@ -9,9 +9,9 @@ namespace limpid {
 
 /// Records the passes "light_distances/first_hits" and "light_distances", which fill the scene's buffer
 /// "lightDistances" (scene_layout.h): an octahedral map for each of the first LIGHT_MAPS punctual lights. A
-/// texel has two distances, as upper halves of floats. Lower 16 bits: the farthest first hit of
-/// LIGHT_MAP_RAYS^2 rays through the texel; beyond it the light is probably hidden. Upper 16 bits: the
-/// farthest of the 3x3 texels around it, times LIGHT_MAP_MARGIN; beyond it the light is almost surely hidden.
+/// texel has two distances, as upper halves of floats and times LIGHT_MAP_MARGIN. Lower 16 bits: the farthest
+/// first hit of LIGHT_MAP_RAYS^2 rays through the texel; beyond it the light is probably hidden. Upper 16
+/// bits: the farthest of the 3x3 texels around it; beyond it the light is almost surely hidden.
 /// At least LIGHT_MAP_NOT_HIDDEN if a ray meets nothing, and for directional lights. Rays always have the
 /// same directions, so equal scenes have equal maps. Call it while scene.mappedLights() > 0 and when anything
 /// that shadow rays meet, or a light, has moved.

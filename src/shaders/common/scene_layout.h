@@ -121,7 +121,7 @@ LIMPID_CONST uint LIGHT_LINK_INDEX = 0x0FFFFFFFu;
 // world units, as upper halves of floats (passes/light_distances): beyond that of the lower 16 bits the light
 // is probably hidden in these directions, beyond that of the upper 16 bits almost surely. Those of
 // directional lights are infinite.
-LIMPID_CONST uint LIGHT_MAP_SIZE = 16u;
+LIMPID_CONST uint LIGHT_MAP_SIZE = 32u;
 LIMPID_CONST uint LIGHT_MAPS = 1024u;
 LIMPID_CONST float LIGHT_MAP_NOT_HIDDEN = 1e30;  // equals INFINITE_DISTANCE
 

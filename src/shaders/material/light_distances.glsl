@@ -6,11 +6,11 @@
 #include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_data.glsl"
 
-/// Factors of the weights of lights that are hidden by their maps: probably hidden, if chosen by usable light; almost
-/// surely hidden, if chosen uniformly. Both are above 0, since a map can miss a narrow gap. The second is larger, and
-/// bounds the noise where the first is wrong.
-const float HIDDEN_WEIGHT = 0.001;
-const float HIDDEN_UNIFORM_WEIGHT = 0.05;
+/// Factors of the weights of lights that are hidden by their maps, if chosen by usable light, and uniformly. They are
+/// above 0, since a map can miss a narrow gap. The last one is larger, and bounds the noise where a map is wrong.
+const float HIDDEN_WEIGHT = 0.001;  // almost surely hidden
+const float PROBABLY_HIDDEN_WEIGHT = 0.01;
+const float HIDDEN_UNIFORM_WEIGHT = 0.05;  // almost surely hidden
 
 /// The texel for a direction that leaves the light.
 ivec2 lightMapTexel(vec3 direction) {
@@ -22,6 +22,12 @@ ivec2 lightMapTexel(vec3 direction) {
 struct Hidden {
     bool probably, surely;
 };
+
+/// The factor of the weight by usable light.
+float weightFactor(Hidden hidden) {
+    if (hidden.surely) return HIDDEN_WEIGHT;
+    return hidden.probably ? PROBABLY_HIDDEN_WEIGHT : 1.0;
+}
 
 /// `map`: number of the punctual light. `direction` and `distance` are those from the point to the light.
 Hidden hiddenByMap(uint map, vec3 direction, float distance) {

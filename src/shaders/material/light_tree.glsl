@@ -100,7 +100,7 @@ ChildWeights childWeights(Receiver from, uvec4 place, uvec4 effect, uint firstPu
             const vec3 way = uintBitsToFloat(place.xyz) - from.position;
             const float distance = length(way);
             const Hidden hidden = hiddenByMap(map, way / max(distance, 1e-37), distance);
-            if (hidden.probably) child.weight = max(child.weight * HIDDEN_WEIGHT, 1e-37);
+            child.weight = max(child.weight * weightFactor(hidden), 1e-37);
             if (hidden.surely) child.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
         }
     }

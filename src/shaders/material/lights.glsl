@@ -187,7 +187,7 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
         if (!(tried.weight > 0.0)) continue;
         if (HAS_LIGHT_DISTANCES) {
             const Hidden hidden = hiddenByMap(index, light.direction, light.distance);
-            if (hidden.probably) tried.weight = max(tried.weight * HIDDEN_WEIGHT, 1e-37);
+            tried.weight = max(tried.weight * weightFactor(hidden), 1e-37);
             if (hidden.surely) tried.uniformWeight = HIDDEN_UNIFORM_WEIGHT;
         }
         sum += tried.weight;
