@@ -14,7 +14,7 @@ using scene::MeshBuilder;
 using scene::Scene;
 
 constexpr gpu::Extent size{32, 24};
-constexpr uint32_t batches = 48, samplesPerBatch = 200;
+constexpr uint32_t batches = 24, samplesPerBatch = 200;
 
 /// A floor, a wall and blocks: matt, glossy, coated, and a pane of glass.
 Scene room() {
