@@ -1,6 +1,9 @@
 // Tests that shaders whose constants are set before the driver sees them are valid and compute the same.
 #include "gpu/specialise/specialise.h"
 
+#include <algorithm>
+#include <map>
+
 #include "scene/builtin/builtin.h"
 #include "shader_list.h"
 #include "tests/gpu/render_fixture.h"

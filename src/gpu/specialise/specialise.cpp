@@ -1,5 +1,8 @@
 #include "gpu/specialise/specialise.h"
 
+#include <unordered_map>
+#include <utility>
+
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
 #include <spirv-tools/optimizer.hpp>
 #endif
