@@ -440,7 +440,7 @@ TEST_P(LightDistancesTest, MovedLampsAndGeometryAreMeasuredAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Tracers, LightDistancesTest,
                          testing::Values(scene::Tracer::Compute, scene::Tracer::Hardware),
-                         [](const auto& info) { return std::string(scene::toString(info.param)); });
+                         [](const auto& listed) { return std::string(scene::toString(listed.param)); });
 
 }  // namespace
 }  // namespace limpid::test
