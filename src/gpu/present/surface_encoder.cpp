@@ -15,7 +15,7 @@ struct EncoderPush {
 
 SurfaceEncoder::SurfaceEncoder(std::shared_ptr<const Context> context, const SurfaceFormat& surface)
     : context_(std::move(context)), encoding_(surface.encoding) {
-    layout_ = makeSmallLayout(*context_, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sizeof(Push));
+    layout_ = makeSmallLayout(*context_, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sizeof(EncoderPush));
     pipeline_ = makePipeline(*context_, {.name = "surface encoder",
                                          .layout = layout_.pipelines.get(),
                                          .vertex = shaders::surface_vert,
