@@ -16,6 +16,7 @@
 #include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 #include "scene/motion/scene_animator.h"
+#include "tests/gpu/lights_sample.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {
@@ -73,21 +74,6 @@ Scene house() {
     return scene;
 }
 
-struct DrawnLight {
-    vec3 direction;
-    float distance;
-    vec3 radiance;
-    float pdf;
-    uint32_t delta;
-    float hitDistance, hitPdf;
-};
-
-struct Params {
-    layout::SceneParams scene;
-    vec3 from, normal;
-    uint32_t count, seed;
-};
-
 /// A point of the room of the dim lamps.
 struct Place {
     vec3 position, normal;
@@ -142,7 +128,7 @@ class LightChoiceTest : public RenderTest {
 
     Draws draw(const Scene& scene, const scene::GpuScene& placed, const Place& at, bool byTree) {
         constexpr uint32_t count = 1u << 14;
-        const Params params{placed.params(), at.position, at.normal, count, 7};
+        const LightsSampleParams params{placed.params(), at.position, at.normal, count, 7};
         const auto drawn = run<DrawnLight>({.shader = shaders::lights_sample_comp,
                                             .scene = &placed,
                                             .constants = {{"LIGHT_TREE", byTree ? 1u : 0u}},

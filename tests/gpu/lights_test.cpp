@@ -8,6 +8,7 @@
 #include "lights_sample.comp.h"
 #include "scene/model/environment.h"
 #include "tests/gpu/gpu_fixture.h"
+#include "tests/gpu/lights_sample.h"
 #include "tests/reference/statistics.h"
 
 namespace limpid::test {
@@ -16,21 +17,6 @@ namespace {
 using glm::dvec3;
 constexpr double pi64 = std::numbers::pi;
 constexpr uint32_t sampleCount = 1u << 17;
-
-struct DrawnLight {
-    vec3 direction;
-    float distance;
-    vec3 radiance;
-    float pdf;
-    uint32_t delta;
-    float hitDistance, hitPdf;
-};
-
-struct Params {
-    layout::SceneParams scene;
-    vec3 from, normal;
-    uint32_t count, seed;
-};
 
 /// An emissive triangle as the test represents it.
 struct Emitter {
@@ -115,7 +101,7 @@ class LightsTest : public GpuTest {
                                  const vec3& normal = vec3(0.0f), bool byTree = false) {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
-        const Params params{data.params, from, normal, count, seed};
+        const LightsSampleParams params{data.params, from, normal, count, seed};
         const Job job{.shader = shaders::lights_sample_comp,
                       .scene = &gpuScene,
                       .constants = {{"LIGHT_TREE", byTree ? 1u : 0u}},
@@ -128,7 +114,7 @@ class LightsTest : public GpuTest {
         const scene::SceneData data = scene::buildSceneData(scene);
         const scene::GpuScene gpuScene(device(), data);
         const auto count = static_cast<uint32_t>(directions.size());
-        const Params params{data.params, vec3(0.0f), vec3(0.0f), count, 0};
+        const LightsSampleParams params{data.params, vec3(0.0f), vec3(0.0f), count, 0};
         const gpu::Buffer buffer = upload("directions", directions);
         const Job job{.shader = shaders::environment_pdf_comp,
                       .scene = &gpuScene,

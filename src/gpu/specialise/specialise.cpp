@@ -1,7 +1,6 @@
 #include "gpu/specialise/specialise.h"
 
 #include <unordered_map>
-#include <utility>
 
 #if LIMPID_HAVE_SPIRV_TOOLS_OPT
 #include <spirv-tools/optimizer.hpp>
@@ -16,7 +15,8 @@ namespace {
 /// None of these passes changes what a shader computes. Dead branches and functions are removed twice: first
 /// those that constants of the module decide, then those that constants decide which are parameters or
 /// variables of functions.
-void addPasses(spvtools::Optimizer& optimizer, std::unordered_map<uint32_t, std::vector<uint32_t>> values) {
+void addPasses(spvtools::Optimizer& optimizer,
+               const std::unordered_map<uint32_t, std::vector<uint32_t>>& values) {
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
         .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
@@ -32,7 +32,7 @@ std::vector<uint32_t> specialise(std::span<const uint32_t> words, const Speciali
     std::unordered_map<uint32_t, std::vector<uint32_t>> values;
     for (const auto& [id, value] : constants) values[id] = {value};
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
-    addPasses(optimizer, std::move(values));
+    addPasses(optimizer, values);
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);  // Embedded shaders were validated when they were compiled.
     std::vector<uint32_t> result;
