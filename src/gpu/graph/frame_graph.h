@@ -268,8 +268,8 @@ class FrameGraph {
     void prepare(Device& device);
     /// Whether all of them are there.
     bool isPrepared(Device& device) const;
-    /// As prepare(), but on a thread beside that which executes other graphs on the device: leaves one core
-    /// to it, and does not call Device::onNewPipelines().
+    /// As prepare(), but beside a thread that executes other graphs on the device: does not call
+    /// Device::onNewPipelines(). Its threads have the priority of the caller's.
     void prepareBeside(Device& device);
     /// Returns the device memory of the images that this frame needs. Histories count as pairs, images that
     /// share memory as one; imported images do not count.

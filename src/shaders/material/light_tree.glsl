@@ -90,8 +90,8 @@ struct ChildWeights {
     float weight, uniformWeight;
 };
 
-/// lightWeight(), and 1; or little of both for a lamp that is hidden by its distance map. Lamps that share a node with
-/// others are known as such only at the end of the walk.
+/// lightWeight(), and 1; or little of both for a lamp that is hidden by its distance map. Only single lamps have maps:
+/// an inner node does not know that all its lamps are hidden.
 ChildWeights childWeights(Receiver from, uvec4 place, uvec4 effect, uint firstPunctual) {
     ChildWeights child = ChildWeights(lightWeight(from, place, effect), 1.0);
     if (HAS_LIGHT_DISTANCES) {
