@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "lights_sample.comp.h"
 #include "passes/light_distances/light_distances_params.h"
@@ -83,6 +84,19 @@ constexpr std::array<Place, 5> places{
     Place{{3.5f, 0.001f, 3.5f}, {0, 1, 0}}, Place{{0.001f, 1.0f, 2.0f}, {1, 0, 0}},
     Place{{3.0f, 2.8f, 3.999f}, {0, 0, -1}}};
 
+/// On the floor and the walls, near each other and near corners of this room, behind whose walls bright lamps
+/// are.
+std::vector<Place> nearCorners() {
+    std::vector<Place> near;
+    for (const float d : {0.01f, 0.1f, 0.25f}) {
+        for (const float x : {d, 4.0f - d}) {
+            for (const float z : {d, 2.0f, 4.0f - d}) near.push_back({{x, 0.001f, z}, {0, 1, 0}});
+            near.push_back({{x, d, 0.001f}, {0, 0, 1}});
+        }
+    }
+    return near;
+}
+
 /// How often each lamp is drawn at a place.
 struct Draws {
     std::vector<double> share;    ///< of all samples
@@ -157,15 +171,16 @@ class LightChoiceTest : public RenderTest {
 
     /// The smallest quotient of a visible lamp's share of the samples and its share of the light, over all
     /// places.
-    double leastQuotient(const Scene& scene, const scene::GpuScene& placed, bool byTree) {
+    double leastQuotient(const Scene& scene, const scene::GpuScene& placed, bool byTree,
+                         std::span<const Place> at) {
         double least = 1e9;
-        for (const Place& at : places) {
-            const Draws draws = draw(scene, placed, at, byTree);
+        for (const Place& place : at) {
+            const Draws draws = draw(scene, placed, place, byTree);
             double light[dimLamps] = {}, sum = 0.0;
             for (size_t i = 0; i < dimLamps; ++i) {
-                const vec3 way = scene.lights[i].position - at.position;
+                const vec3 way = scene.lights[i].position - place.position;
                 const float distance = glm::length(way);
-                const float cosine = std::max(glm::dot(way, at.normal) / distance, 0.0f);
+                const float cosine = std::max(glm::dot(way, place.normal) / distance, 0.0f);
                 light[i] = double{scene.lights[i].intensity.r * cosine / (distance * distance)};
                 sum += light[i];
             }
@@ -208,8 +223,8 @@ dvec3 fromOctahedral(double x, double y) {
     return glm::normalize(n);
 }
 
-/// In an empty box, the map is nowhere nearer than the walls, and nowhere farther than the farthest wall in
-/// the directions of the texel and its neighbours, plus the margin.
+/// In an empty box, the map is nowhere nearer than the walls (corners: 1 %), and nowhere farther than the
+/// farthest wall in the directions of the texel and its neighbours, plus the margin.
 TEST_P(LightDistancesTest, DistancesInABoxFollowTheFormula) {
     const dvec3 a(-1.0, -2.0, -1.5), b(3.0, 1.0, 2.5);
     Scene scene;
@@ -231,7 +246,8 @@ TEST_P(LightDistancesTest, DistancesInABoxFollowTheFormula) {
                                                2.0 * (y + 0.5) / (side * fine) - 1.0);
                 const double distance = toBox(from, d, a, b);
                 seen.push_back({d, distance});
-                EXPECT_GE(double{maps[(lamp * side + y / fine) * side + x / fine]}, distance * 0.999);
+                // A corner between the rays can be farther away than they and the margin tell.
+                EXPECT_GE(double{maps[(lamp * side + y / fine) * side + x / fine]}, distance * 0.99);
             }
         }
         // The corner of a neighbour is at most this far from a texel's centre.
@@ -244,7 +260,7 @@ TEST_P(LightDistancesTest, DistancesInABoxFollowTheFormula) {
                 for (const Seen& s : seen)
                     if (glm::dot(s.direction, centre) > reach) farthest = std::max(farthest, s.distance);
                 EXPECT_LE(double{maps[(lamp * side + y) * side + x]},
-                          farthest * double{LIGHT_MAP_MARGIN} * 1.01);
+                          farthest * (1.0 + double{LIGHT_MAP_MARGIN_AROUND}) * 1.01);
             }
         }
     }
@@ -281,12 +297,15 @@ TEST_F(LightChoiceTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
     const scene::GpuScene plain = onDevice(data);
     EXPECT_EQ(plain.mappedLights(), 0u);
     measure(mapped);
+    const std::vector<Place> corners = nearCorners();
     for (const bool byTree : {false, true}) {
-        const double with = leastQuotient(scene, mapped, byTree),
-                     without = leastQuotient(scene, plain, byTree);
-        fmt::print("{}: at least {:.4f} of a visible lamp's share; without maps {:.4f}\n",
-                   byTree ? "light tree" : "by power", with, without);
-        EXPECT_GE(with, 0.1);
+        const double with = leastQuotient(scene, mapped, byTree, places),
+                     without = leastQuotient(scene, plain, byTree, places),
+                     cornered = leastQuotient(scene, mapped, byTree, corners);
+        fmt::print("{}: at least {:.4f} of a visible lamp's share, {:.4f} in corners; without maps {:.4f}\n",
+                   byTree ? "light tree" : "by power", with, cornered, without);
+        EXPECT_GE(with, 0.3);
+        EXPECT_GE(cornered, 0.1);
         EXPECT_LT(without, 0.1);
     }
 }
@@ -400,7 +419,7 @@ TEST_P(LightDistancesTest, MovedLampsAndGeometryAreMeasuredAgain) {
     };
     // This texel is beside +X. The inner box is 0.4 away at first, then the wall 3.
     EXPECT_LT(towards(start, 1, side - 1, side / 2), 0.7f);
-    EXPECT_NEAR(towards(moved, 1, side - 1, side / 2), 3.1f * LIGHT_MAP_MARGIN, 0.6f);
+    EXPECT_NEAR(towards(moved, 1, side - 1, side / 2), 3.1f * (1.0f + LIGHT_MAP_MARGIN_AROUND), 0.6f);
 
     std::vector<scene::LightControl> before = scene::lightControlsOf(scene), after = before;
     after.at(0).position = {1.5f, -1.0f, 0.5f};

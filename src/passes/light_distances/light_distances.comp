@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
-// From what light_first_hits.glsl has found: the farthest of each texel; and of each texel and its neighbours on the
-// sphere, and a margin.
+// From what light_first_hits.glsl has found: up to where each texel's direction is open, by its own rays, and by those
+// of its neighbours on the sphere, too.
+#include "passes/light_distances/distance_pair.glsl"
 #include "passes/light_distances/light_distances_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -21,9 +22,10 @@ ivec2 wrapped(ivec2 texel) {
     return texel;
 }
 
-/// The upper half of the least float with 16 bits that is not below the distance.
-uint halfAbove(float distance) {
-    return (floatBitsToUint(distance) + 0xFFFFu) >> 16;
+/// Up to where the direction of a texel is open by its own rays.
+float openUpTo(float nearest, float farthest) {
+    const float differ = farthest - nearest;
+    return farthest + clamp(differ, farthest * LIGHT_MAP_LEAST_MARGIN, farthest * LIGHT_MAP_GREATEST_MARGIN);
 }
 
 void main() {
@@ -35,10 +37,12 @@ void main() {
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             const ivec2 at = wrapped(texel + ivec2(x, y));
-            farthest = max(farthest, imageLoad(lightFirstHits, first + at.y * SIZE + at.x).x);
+            farthest = max(farthest, upperDistance(imageLoad(lightFirstHits, first + at.y * SIZE + at.x).x));
         }
     }
     const int at = first + place.x + texel.y * SIZE;
-    const uint own = halfAbove(imageLoad(lightFirstHits, at).x * LIGHT_MAP_MARGIN), around = halfAbove(farthest * LIGHT_MAP_MARGIN);
-    imageStore(lightDistances, at, vec4(uintBitsToFloat(around << 16 | own)));
+    const float hits = imageLoad(lightFirstHits, at).x;
+    const float around = farthest * (1.0 + LIGHT_MAP_MARGIN_AROUND);
+    const float own = min(openUpTo(lowerDistance(hits), upperDistance(hits)), around);
+    imageStore(lightDistances, at, vec4(packDistances(own, around)));
 }

@@ -12,9 +12,13 @@ using layout::SceneParams;
 #define LIMPID_CONST const
 #endif
 
-LIMPID_CONST uint LIGHT_MAP_RAYS = 2u;  // rows and columns of rays through a texel
-/// Surfaces between rays may be a little farther away than those that the rays meet.
-LIMPID_CONST float LIGHT_MAP_MARGIN = 1.1;
+LIMPID_CONST uint LIGHT_MAP_RAYS = 3u;  // rows and columns of rays through a texel
+/// Surfaces between the rays may be farther away than what these meet: by as much as a texel's rays differ,
+/// within these shares of the distance; and by this share beyond what all rays through a texel and its
+/// neighbours meet.
+LIMPID_CONST float LIGHT_MAP_LEAST_MARGIN = 0.02;
+LIMPID_CONST float LIGHT_MAP_GREATEST_MARGIN = 0.1;
+LIMPID_CONST float LIGHT_MAP_MARGIN_AROUND = 0.02;
 
 struct LightDistancesParams {
     SceneParams scene;

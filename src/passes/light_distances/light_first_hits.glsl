@@ -1,4 +1,6 @@
-// The farthest first hit of several rays through each texel of the maps around punctual lights. Used by every tracer.
+// The nearest and farthest first hits of several rays through each texel of the maps around punctual lights. Used by
+// every tracer.
+#include "passes/light_distances/distance_pair.glsl"
 #include "passes/light_distances/light_distances_params.h"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
@@ -9,8 +11,12 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 layout(set = 0, binding = 21, r32f) uniform writeonly imageBuffer lightFirstHits;
 
-float farthestHit(vec3 light, uvec2 texel, uint number) {
-    float farthest = 0.0;
+struct HitRange {
+    float nearest, farthest;
+};
+
+HitRange firstHits(vec3 light, uvec2 texel, uint number) {
+    HitRange range = HitRange(INFINITE_DISTANCE, 0.0);
     for (uint ray = 0u; ray < LIGHT_MAP_RAYS * LIGHT_MAP_RAYS; ++ray) {
         // Regular directions would meet edges exactly, where rays may slip through.
         uint state = tea(number, ray);
@@ -19,9 +25,10 @@ float farthestHit(vec3 light, uvec2 texel, uint number) {
         const vec3 direction = fromOctahedral(2.0 * place - 1.0, 1.0);
         // Each ray decides anew on partly transparent surfaces.
         const Hit hit = traceClosest(Ray(light, direction, INFINITE_DISTANCE), params.scene.rootNode, state);
-        farthest = max(farthest, hit.t);
+        range.nearest = min(range.nearest, hit.t);
+        range.farthest = max(range.farthest, hit.t);
     }
-    return farthest;
+    return range;
 }
 
 /// The maps are below each other.
@@ -29,8 +36,8 @@ void traceTexel(uvec2 place) {
     const uint number = place.y * LIGHT_MAP_SIZE + place.x;
     const int at = int((params.scene.triangleLightCount + place.y / LIGHT_MAP_SIZE) * LIGHT_TEXELS);
     const uvec4 head = imageLoad(lights, at);
-    float distance = INFINITE_DISTANCE;
+    HitRange range = HitRange(INFINITE_DISTANCE, INFINITE_DISTANCE);
     if ((head.w & LIGHT_KIND_MASK) != LIGHT_DIRECTIONAL)
-        distance = farthestHit(uintBitsToFloat(head.xyz), uvec2(place.x, place.y % LIGHT_MAP_SIZE), number);
-    imageStore(lightFirstHits, int(number), vec4(distance));
+        range = firstHits(uintBitsToFloat(head.xyz), uvec2(place.x, place.y % LIGHT_MAP_SIZE), number);
+    imageStore(lightFirstHits, int(number), vec4(packDistances(range.nearest, range.farthest)));
 }

@@ -108,9 +108,12 @@ ChildWeights childWeights(Receiver from, uvec4 place, uvec4 effect, uint firstPu
 }
 
 /// At the root, a share of the choices is uniform among the children that reach the point, whatever their weights,
-/// since the brightest may be hidden. It falls with their number.
+/// since the brightest may be hidden. It falls with their number. Distance maps leave few that are not surely hidden,
+/// but near a wall's edge these may be very bright ones behind it.
 float uniformShare(float reaching, bool root) {
-    return root ? min(0.2, 0.8 / max(reaching, 1.0)) : 0.0;
+    const float count = max(reaching, 1.0), share = 0.8 / count;
+    if (!root) return 0.0;
+    return HAS_LIGHT_DISTANCES ? min(max(share, 15.0 / (count * count)), 0.42) : min(share, 0.2);
 }
 
 float probabilityOf(LightShare share, bool root) {
