@@ -520,7 +520,7 @@ struct Ensemble {
 
 class SvgfVarianceTest : public DenoiseTest {
   protected:
-    static constexpr uint32_t columns = 64, rows = 36, seeds = 64;
+    static constexpr uint32_t columns = 64, rows = 36, seeds = 24;
     static constexpr int frames = 40;
 
     void addDeviations(const std::string& signal, std::vector<double>& sums) {
