@@ -1,6 +1,6 @@
 // Tests the layers of what smooth glass shows: behind a pane, clear or a little clouded, they are those
 // without the pane; in a glass ball, they follow what the ball shows, against rays refracted in double
-// precision.
+// precision; a lamp that a block reflects is as free of noise as one that is seen directly.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -159,6 +159,70 @@ TEST_F(GlassLayersTest, InABallMoveAsWhatTheBallShows) {
     fmt::print("in a glass ball, pixels: motion is wrong by {:.3f}, the surface's by {:.3f}\n", error / n,
                ofTheSurface / n);
     EXPECT_LT(error, 0.35 * ofTheSurface);
+}
+
+/// A wall, before it a block of glass, and behind the camera a lamp that fills the block's reflection.
+scene::Scene blockBeforeALamp(float radiance) {
+    scene::Scene scene = wallBehind({});
+    scene::MeshBuilder block("block");
+    block.box({-1.2f, -1.0f, -0.4f}, {1.2f, 1.0f, 0.0f});
+    scene::addMesh(scene, block.take(), glass);
+    scene.materials[glass].thin = false;
+    scene.materials.push_back(scene::emitter("lamp", vec3(0.5f), vec3(radiance)));
+    scene::MeshBuilder lamp("lamp");
+    lamp.quad({40, -40, 9}, {-40, -40, 9}, {-40, 40, 9}, {40, 40, 9});
+    scene::addMesh(scene, lamp.take(), 2);
+    return scene;
+}
+
+/// Of unpolarised light that enters glass, in double precision.
+double fresnel(double cosine) {
+    const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+    const double p = (index * cosine - inside) / (index * cosine + inside);
+    const double s = (cosine - index * inside) / (cosine + index * inside);
+    return 0.5 * (p * p + s * s);
+}
+
+TEST_F(GlassLayersTest, ALampInGlassIsEmissionWithoutNoise) {
+    constexpr float radiance = 3.0f;
+    const RenderedLayers layers = layersOf(blockBeforeALamp(radiance), true);
+    const dvec3 eye(moment_.camera.origin);
+    size_t count = 0;
+    for (size_t p = 0; p < size_t{extent.width} * extent.height; ++p) {
+        const dvec2 at = dvec2(2.0, -2.0) * dvec2((p % extent.width + 0.5) / extent.width,
+                                                  (p / extent.width + 0.5) / extent.height) +
+                         dvec2(-1.0, 1.0);
+        const dvec3 direction =
+            glm::normalize(dvec3(moment_.camera.forward) + at.x * dvec3(moment_.camera.right) +
+                           at.y * dvec3(moment_.camera.up));
+        const dvec3 on = eye - direction * (eye.z / direction.z);
+        if (std::abs(on.x) > 1.19 || std::abs(on.y) > 0.99) continue;
+        for (size_t c = 0; c < 3; ++c)
+            ASSERT_NEAR(double{layers.emission[4 * p + c]}, double{radiance} * fresnel(-direction.z), 1e-3);
+        ++count;
+    }
+    EXPECT_GT(count, 1000u) << "proves little";
+}
+
+/// One lobe at each surface, or all of those of the first one and one of the rest.
+TEST_F(GlassLayersTest, TheMeanIsThatOfPathsThroughOneLobeAtATime) {
+    load(blockBeforeALamp(3.0f), {.framesPerSecond = 24.0}, "shake");
+    double mean[2] = {};
+    for (const bool through : {false, true}) {
+        RenderSettings settings = centred(64, 36, 8);
+        settings.layers = true;
+        settings.samplesPerLaunch = 4;
+        settings.pathtrace.throughGlass = through;
+        FrameRenderer renderer(device(), *gpuScene_, settings, 256);
+        renderer.render(sequence_->moment(5, settings.extent));
+        const RenderedLayers layers = renderer.download();
+        for (const auto* light : {&layers.diffuse, &layers.specular, &layers.emission}) {
+            for (size_t i = 0; i < light->size(); ++i)
+                mean[through] += i % 4 == 3 ? 0.0 : double{(*light)[i]} / double{3 * 64 * 36};
+        }
+    }
+    fmt::print("mean by one lobe {:.5f}, by all {:.5f}\n", mean[0], mean[1]);
+    EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.003);
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ const std::vector<QualitySequence>& labSequences() {
         {"disocclusion", "builtin:lab-disocclusion", "shake", {20, 36}},
         {"mirror", "builtin:lab-mirror", "orbit", {20, 36}},
         {"textures", "builtin:lab-textures", "dolly", {20, 36}},
+        {"glass", "builtin:lab-glass", "dolly", {20, 36}},
         {"many-lights", "builtin:lab-lights", "dolly", {20, 36}, 16384},
     };
     return sequences;

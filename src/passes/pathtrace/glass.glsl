@@ -1,5 +1,5 @@
 // Smooth glass that the layers see through: the path follows the brighter of its two smooth lobes, whole, and the other
-// lobes start a second path.
+// lobes start further paths.
 #ifndef LIMPID_PATHTRACE_GLASS_GLSL
 #define LIMPID_PATHTRACE_GLASS_GLSL
 
@@ -7,8 +7,7 @@
 #include "shaders/material/bsdf.glsl"
 #include "shaders/material/medium.glsl"
 
-/// The light that glass does not send where the layers look: one of the other lobes of the glasses on the way, chosen
-/// by its weight, starts a second path.
+/// The start of a path for light that glass does not send where the layers look.
 struct Branch {
     Ray ray;
     vec3 throughput, medium;
@@ -18,6 +17,13 @@ struct Branch {
     uint depth, passages;
     uint channel;
     float weight;  // sum of the weights of all lobes; 0: none
+};
+
+/// One path for the other smooth lobe of the first glass, mostly its reflection, and one for all other lobes of the
+/// glasses on the way, chosen by its weight. What the first one meets is seen in every frame, so lamps and sky in it are
+/// as sharp, and as free of noise, as seen directly.
+struct Branches {
+    Branch first, rest;
 };
 
 /// KHR_materials_dispersion: from the first glass on whose index depends on the wavelength, a path carries one colour
@@ -74,8 +80,8 @@ bool isSeenThrough(Path path, Bsdf bsdf, uint depth) {
     return isClearGlass(bsdf) || (depth > 0u && params.throughMirrors != 0u && isPerfectMirror(bsdf));
 }
 
-/// Follows the brighter of the two smooth lobes of glass, whole; the others go to `branch`.
-BsdfSample throughGlass(Path path, inout Branch branch, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
+/// Follows the brighter of the two smooth lobes of glass, whole; the others go to `branches`.
+BsdfSample throughGlass(Path path, inout Branches branches, Surface surface, Bsdf bsdf, uint depth, inout uint rng) {
     const BsdfSample transmitted = clearGlassLobe(bsdf, true), reflected = clearGlassLobe(bsdf, false);
     const bool transmits = transmitted.valid &&
                            luminance(transmitted.value.specular) >= luminance(reflected.value.specular);
@@ -84,15 +90,15 @@ BsdfSample throughGlass(Path path, inout Branch branch, Surface surface, Bsdf bs
         followed = transmitted;
         other = reflected;
     }
-    offer(branch, path, surface, bsdf, other, depth, rng);
-    if (bsdf.probability.x > 0.0) {
-        offer(branch, path, surface, bsdf, clearGlassRest(bsdf, random2(rng)), depth, rng);
-    }
+    if (depth == 0u) offer(branches.first, path, surface, bsdf, other, depth, rng);
+    else offer(branches.rest, path, surface, bsdf, other, depth, rng);
+    if (bsdf.probability.x > 0.0)
+        offer(branches.rest, path, surface, bsdf, clearGlassRest(bsdf, random2(rng)), depth, rng);
     return followed;
 }
 
-/// Goes on with the second path, whose light is specular. Its first ray is always traced, because it may find a lamp;
-/// from there on, its weight decides.
+/// Goes on with a further path, whose light is specular. Its first ray is always traced, because it may find a lamp; from
+/// there on, its weight decides.
 void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.ray = branch.ray;
     path.throughput = branch.throughput * branch.weight;
@@ -100,7 +106,7 @@ void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.bsdfPdf = branch.bsdfPdf;
     path.delta = branch.delta;
     path.shares = branch.shares;
-    path.second = true;
+    path.further = true;
     path.channel = branch.channel;
     path.coneWidth = branch.coneWidth;
     path.medium = branch.medium;
@@ -108,6 +114,21 @@ void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.primary = 0u;
     depth = branch.depth;
     branch.weight = 0.0;
+}
+
+/// Returns the weight of the path that is taken, and 0 if none is left.
+float takeBranches(inout Path path, inout Branches branches, inout uint depth) {
+    float weight = branches.first.weight;
+    path.reflected = 0u;
+    if (weight > 0.0) {
+        takeBranch(path, branches.first, depth);
+        // A single colour, chosen at random, would be noise that no filter removes.
+        if (path.channel == ALL_CHANNELS) path.reflected = depth;
+    } else {
+        weight = branches.rest.weight;
+        if (weight > 0.0) takeBranch(path, branches.rest, depth);
+    }
+    return weight;
 }
 
 #endif

@@ -12,7 +12,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 #include "shaders/material/receiver.glsl"
 
 struct PathRadiance {
-    vec3 emission;           // seen directly
+    vec3 emission;           // seen directly, or as a reflection in the first glass
     vec3 diffuse, specular;  // by lobe of the first surface; their sum is all scattered light
 };
 
@@ -31,7 +31,8 @@ struct Path {
     uint primary;  // index of the vertex that the layers describe: 0, or a later one behind mirrors and glass
     uint passages;  // through glass so far, at most params.maxTransmissionDepth
     bool mirrored;  // the vertex before the primary one is a mirror
-    bool second;    // what glass does not send where the layers look
+    bool further;    // what glass does not send where the layers look
+    uint reflected;  // the vertex that the first glass reflects directly; 0: none
     uint channel;   // of the colour that it carries, once it has met glass with dispersion; else ALL_CHANNELS
 };
 

@@ -17,14 +17,14 @@ vec3 clampFirefly(vec3 radiance, uint depth) {
 // low sample counts.
 const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25, WITHOUT_JITTER = 4.0;
 
-/// Adds the radiance that a path hits at vertex `depth`. At the primary vertex it belongs to the emission
-/// layer.
+/// Adds the radiance that a path hits at vertex `depth`. At the primary vertex, and where the first glass reflects it, it
+/// belongs to the emission layer.
 void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
     const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
     const vec3 found = clampFirefly(path.throughput * radiance * weight, max(depth, 1u) - 1u);
     if (!SPLIT_LOBES) {
         path.radiance.diffuse += found;
-    } else if (depth <= path.primary) {
+    } else if (depth <= path.primary || depth == path.reflected) {
         path.radiance.emission += found;
     } else {
         path.radiance.diffuse += found * path.diffuseShare;
@@ -68,11 +68,11 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThroug
 }
 
 /// Samples the material and continues in that direction. Returns false if the path ends.
-bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, bool seesThrough, uint depth,
+bool scatter(inout Path path, inout Branches branches, Surface surface, Bsdf bsdf, bool seesThrough, uint depth,
              inout uint rng) {
     BsdfSample next;
     if (seesThrough && isClearGlass(bsdf)) {
-        next = throughGlass(path, branch, surface, bsdf, depth, rng);
+        next = throughGlass(path, branches, surface, bsdf, depth, rng);
     } else {
         next = sampleBsdf(bsdf, rng);
     }
@@ -82,7 +82,7 @@ bool scatter(inout Path path, inout Branch branch, Surface surface, Bsdf bsdf, b
     path.throughput *= value / next.value.pdf;
     path.bsdfPdf = next.value.pdf;
     path.delta = next.delta;
-    if ((depth >= params.rouletteDepth || path.second) && !seesThrough) {
+    if ((depth >= params.rouletteDepth || path.further) && !seesThrough) {
         const float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), 0.95);
         if (random(rng) >= survival) return false;
         path.throughput /= survival;
@@ -105,7 +105,7 @@ float spreadAfter(Path path, float spread, float n) {
 }
 
 /// Traces the path's ray to vertex `depth` and scatters it there. Returns false if the path ends.
-bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, inout float spread, inout uint depth,
+bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight, inout float spread, inout uint depth,
                 inout uint culled, uint sampleIndex, inout uint rng) {
     ++path.rays;
     const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
@@ -132,7 +132,7 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
     if (depth == params.maxDepth + path.passages || surface.unlit) return false;
     const bool seesThrough = isSeenThrough(path, bsdf, depth);
     addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
-    if (!scatter(path, branch, surface, bsdf, seesThrough, depth, rng)) return false;
+    if (!scatter(path, branches, surface, bsdf, seesThrough, depth, rng)) return false;
     if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, hit, surface, bsdf, seesThrough, depth);
     if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     ++depth;
@@ -142,27 +142,28 @@ bool nextVertex(inout Path path, inout Branch branch, inout FirstSight sight, in
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, noLightShares(), true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, ALL_CHANNELS);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, 0u, ALL_CHANNELS);
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);
     sight.traveled = sight.reflection = 0.0;
     sight.reflects = false;
     sight.lens = NO_LENS;
-    Branch branch;
-    branch.weight = 0.0;
-    float branches = 0.0;
+    Branches branches;
+    branches.first.weight = branches.rest.weight = 0.0;
+    float otherLobes = 0.0;
     uint culled = 0u, depth = 0u;
     while (true) {
-        if (nextVertex(path, branch, sight, spread, depth, culled, sampleIndex, rng)) continue;
-        if (!SPLIT_LOBES || !HAS_TRANSMISSION || branch.weight == 0.0) break;
-        branches = branch.weight;
+        if (nextVertex(path, branches, sight, spread, depth, culled, sampleIndex, rng)) continue;
+        if (!SPLIT_LOBES || !HAS_TRANSMISSION) break;
+        const float weight = takeBranches(path, branches, depth);
+        if (weight == 0.0) break;
+        otherLobes += weight;
         sight.reflects = false;
-        takeBranch(path, branch, depth);
         spread = spreadAfter(path, cone.spread, rayNumber(params.view, sampleIndex));
     }
     first = sight.hit;
-    first.albedoSpecular += branches;
+    first.albedoSpecular += otherLobes;
     rays += path.rays;
     return path.radiance;
 }

@@ -185,6 +185,8 @@ constexpr Entry entries[] = {
     {"lab-mirror", "a picture seen directly and in a mirror, on a glossy floor", labMirrorScene},
     {"lab-textures", "brick, checker, plaster, wood, bumps and uneven gloss, at grazing angles too",
      labTexturesScene},
+    {"lab-glass", "a glass ball, a bottle with a liquid and a window, before checkers and bricks",
+     labGlassScene},
     {"lab-lights", "a hall with 220 small coloured lights and diffuse and glossy blocks", labLightsScene},
 };
 

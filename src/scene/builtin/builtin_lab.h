@@ -1,5 +1,5 @@
-// Scenes for testing denoisers: each has one difficulty and is otherwise plain. Closed rooms with fewer than
-// 1,000 triangles, in metres. Everything that moves does so in one clip of 4 s.
+// Scenes for testing denoisers: each has one difficulty and is otherwise plain. Closed rooms, in metres, with
+// fewer than 1,000 triangles (lab-glass: 10,000). Everything that moves does so in one clip of 4 s.
 #pragma once
 
 #include <array>
@@ -43,5 +43,9 @@ Scene labTexturesScene();
 /// A hall with 220 small coloured lights on its ceiling and walls, and diffuse and glossy blocks. Nothing
 /// moves.
 Scene labLightsScene();
+
+/// On a table before a wall of checkers, a ball of glass and a bottle with a green liquid; beside it a window
+/// pane before bricks. All are perfectly smooth. Nothing moves.
+Scene labGlassScene();
 
 }  // namespace limpid::scene
