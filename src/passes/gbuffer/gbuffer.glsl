@@ -11,6 +11,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 #define SOBOL_TABLE params.points
 #include "shaders/common/first_hit.glsl"
 #include "shaders/material/receiver.glsl"
+#include "shaders/material/shadow.glsl"
 #include "shaders/material/medium.glsl"
 
 layout(constant_id = 21) const bool LIGHT = true;    // false: the layer `light` is black
@@ -53,15 +54,12 @@ vec3 directLight(Surface surface, Bsdf bsdf, uint rng, inout uint rays) {
             scattered *= exp(-drawn.distance * mediumTowards(vec3(0.0), surface, drawn.direction));
         }
     }
-    bool arrives = drawn.pdf > 0.0 && luminance(scattered) > 0.0;
+    if (drawn.pdf <= 0.0 || luminance(scattered) <= 0.0) return vec3(0.0);
     if (SHADOWS) {
-        if (arrives) {
-            ++rays;
-            const Ray ray = shadowRay(leavingPoint(surface, drawn.direction), drawn);
-            arrives = !traceAny(ray, params.scene.rootNode, rng);
-        }
+        const vec3 start = leavingPoint(surface, drawn.direction);
+        scattered *= arrivingShare(start, drawn, MAX_PANES, params.scene, rng, rays);
     }
-    return arrives ? scattered : vec3(0.0);
+    return scattered;
 }
 
 Seen shade(Hit hit, Surface surface, float depth, vec3 toViewer, uint rng, uint rays) {

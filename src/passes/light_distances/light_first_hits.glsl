@@ -25,8 +25,13 @@ HitRange firstHits(vec3 light, uvec2 texel, uint number) {
         const vec3 direction = fromOctahedral(2.0 * place - 1.0, 1.0);
         // Each ray decides anew on partly transparent surfaces.
         const Hit hit = traceClosest(Ray(light, direction, INFINITE_DISTANCE), params.scene.rootNode, state);
-        range.nearest = min(range.nearest, hit.t);
-        range.farthest = max(range.farthest, hit.t);
+        // Light goes on through panes. How far is not worth another ray.
+        float distance = hit.t;
+        if (HAS_PANES) {
+            if (isHit(hit) && isThinGlass(hit.triangle, hit.instance)) distance = INFINITE_DISTANCE;
+        }
+        range.nearest = min(range.nearest, distance);
+        range.farthest = max(range.farthest, distance);
     }
     return range;
 }

@@ -20,8 +20,8 @@ struct Branch {
 };
 
 /// One path for the other smooth lobe of the first glass, mostly its reflection, and one for all other lobes of the
-/// glasses on the way, chosen by its weight. What the first one meets is seen in every frame, so lamps and sky in it are
-/// as sharp, and as free of noise, as seen directly.
+/// glasses on the way, chosen by its weight. What the first one meets is seen in every frame, so lamps and sky in it
+/// are as sharp, and as free of noise, as seen directly.
 struct Branches {
     Branch first, rest;
 };
@@ -97,8 +97,8 @@ BsdfSample throughGlass(Path path, inout Branches branches, Surface surface, Bsd
     return followed;
 }
 
-/// Goes on with a further path, whose light is specular. Its first ray is always traced, because it may find a lamp; from
-/// there on, its weight decides.
+/// Goes on with a further path, whose light is specular. Its first ray is always traced, because it may find a lamp;
+/// from there on, its weight decides.
 void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.ray = branch.ray;
     path.throughput = branch.throughput * branch.weight;
@@ -111,6 +111,8 @@ void takeBranch(inout Path path, inout Branch branch, inout uint depth) {
     path.coneWidth = branch.coneWidth;
     path.medium = branch.medium;
     path.passages = branch.passages;
+    path.panes = 0u;
+    path.straight = 0.0;
     path.primary = 0u;
     depth = branch.depth;
     branch.weight = 0.0;

@@ -10,6 +10,7 @@ layout(set = 0, binding = 20, scalar) uniform Params {
 
 #define SOBOL_TABLE params.points
 #include "shaders/material/receiver.glsl"
+#include "shaders/material/shadow.glsl"
 
 struct PathRadiance {
     vec3 emission;           // seen directly, or as a reflection in the first glass
@@ -33,6 +34,8 @@ struct Path {
     bool mirrored;  // the vertex before the primary one is a mirror
     bool further;    // what glass does not send where the layers look
     uint reflected;  // the vertex that the first glass reflects directly; 0: none
+    uint panes;      // crossed since the vertex at which it got its direction
+    float straight;  // the way from there to the last of them
     uint channel;   // of the colour that it carries, once it has met glass with dispersion; else ALL_CHANNELS
 };
 

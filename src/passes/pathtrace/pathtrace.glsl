@@ -17,8 +17,8 @@ vec3 clampFirefly(vec3 radiance, uint depth) {
 // low sample counts.
 const float LOBE_SHARE = 0.25, MAX_LOBE_SPREAD = 0.25, WITHOUT_JITTER = 4.0;
 
-/// Adds the radiance that a path hits at vertex `depth`. At the primary vertex, and where the first glass reflects it, it
-/// belongs to the emission layer.
+/// Adds the radiance that a path hits at vertex `depth`. At the primary vertex, and where the first glass reflects it,
+/// it belongs to the emission layer.
 void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth) {
     const float weight = path.delta ? 1.0 : powerHeuristic(path.bsdfPdf, lightDensity);
     const vec3 found = clampFirefly(path.throughput * radiance * weight, max(depth, 1u) - 1u);
@@ -59,12 +59,20 @@ void addDirectLight(inout Path path, Surface surface, Bsdf bsdf, bool seesThroug
         specular = sum - diffuse;
     }
     if (light.pdf > 0.0 && luminance(diffuse) + luminance(specular) > 0.0) {
-        ++path.rays;
-        if (!traceAny(shadowRay(leavingPoint(surface, light.direction), light), params.scene.rootNode, rng)) {
-            path.radiance.diffuse += diffuse;
-            path.radiance.specular += specular;
-        }
+        const uint panes = min(MAX_PANES, params.maxTransmissionDepth - path.passages);
+        const vec3 start = leavingPoint(surface, light.direction);
+        const vec3 share = arrivingShare(start, light, panes, params.scene, rng, path.rays);
+        path.radiance.diffuse += diffuse * share;
+        path.radiance.specular += specular * share;
     }
+}
+
+/// True if the path goes straight on through a pane, as the light that next-event estimation samples does. Then light
+/// beyond the pane is weighted as that of the vertex where the path got its direction.
+bool crossesPane(Path path, Surface surface, Bsdf bsdf, BsdfSample next) {
+    return HAS_PANES && next.delta && path.panes < MAX_PANES && isClearPane(bsdf) &&
+           dot(next.direction, path.ray.direction) > 0.999 &&
+           passagesAfter(path, surface, bsdf, next.direction) > path.passages;
 }
 
 /// Samples the material and continues in that direction. Returns false if the path ends.
@@ -80,8 +88,13 @@ bool scatter(inout Path path, inout Branches branches, Surface surface, Bsdf bsd
     const vec3 value = next.value.diffuse + next.value.specular;
     if (SPLIT_LOBES && depth == path.primary) path.diffuseShare = next.value.diffuse / max(value, vec3(1e-20));
     path.throughput *= value / next.value.pdf;
-    path.bsdfPdf = next.value.pdf;
-    path.delta = next.delta;
+    if (crossesPane(path, surface, bsdf, next)) {
+        ++path.panes;
+    } else {
+        path.panes = 0u;
+        path.bsdfPdf = next.value.pdf;
+        path.delta = next.delta;
+    }
     if ((depth >= params.rouletteDepth || path.further) && !seesThrough) {
         const float survival = min(max(path.throughput.x, max(path.throughput.y, path.throughput.z)), 0.95);
         if (random(rng) >= survival) return false;
@@ -125,14 +138,22 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
     if (depth <= path.primary) sight.traveled += hit.t;
     if (depth == 0u && passesBack(surface, culled, path.ray.origin)) return true;
     met(sight, path, hit, surface, bsdf, depth);
+    const float straight = path.straight + hit.t;
     if (surface.emission != vec3(0.0)) {
-        const float density = HAS_TRIANGLE_LIGHTS ? lightPdf(surface, hit.t, path.ray.direction, path.shares, params.scene) : 0.0;
+        const float density =
+            HAS_TRIANGLE_LIGHTS ? lightPdf(surface, straight, path.ray.direction, path.shares, params.scene) : 0.0;
         addEmission(path, surface.emission, density, depth);
     }
     if (depth == params.maxDepth + path.passages || surface.unlit) return false;
     const bool seesThrough = isSeenThrough(path, bsdf, depth);
+    const LightShares shares = path.shares;
     addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
     if (!scatter(path, branches, surface, bsdf, seesThrough, depth, rng)) return false;
+    if (HAS_PANES) {
+        const bool crossed = path.panes > 0u;
+        if (crossed) path.shares = shares;
+        path.straight = crossed ? straight : 0.0;
+    }
     if (SPLIT_LOBES && depth <= path.primary) scattered(sight, path, hit, surface, bsdf, seesThrough, depth);
     if (HAS_TEXTURES) spread = spreadAfter(path, spread, rayNumber(params.view, sampleIndex));
     ++depth;
@@ -142,7 +163,8 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, noLightShares(), true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, 0u, ALL_CHANNELS);
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, 0u, 0u, 0.0,
+                     ALL_CHANNELS);
     float spread = cone.spread;
     FirstSight sight;
     sight.hit = noHit(ray.direction);

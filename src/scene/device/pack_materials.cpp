@@ -94,6 +94,8 @@ class MaterialPacker {
         packFeaturesOfExtensions(m);
         features.specular |= !lambertian && !m.unlit;
         features.transmission |= m.transmission > 0.0f && !m.unlit;
+        features.panes |= m.transmission > 0.0f && !m.unlit && m.thin &&
+                          (m.roughness < layout::SMOOTH_ROUGHNESS || m.metallicRoughnessTexture);
         features.roughGlass |= m.transmission > 0.0f && !m.unlit && !m.thin &&
                                (m.roughness >= layout::SMOOTH_ROUGHNESS || m.anisotropy > 0.0f);
         features.clearcoat |= clearcoat > 0.0f;

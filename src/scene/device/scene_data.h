@@ -20,7 +20,8 @@ struct SceneFeatures {
          transmission = false, triangleLights = false, punctualLights = false, environment = false,
          mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
          roughGlass = false, lightTree = false, suns = false, anisotropy = false, sheen = false,
-         diffuseTransmission = false, dispersion = false, iridescence = false, lightDistances = false;
+         diffuseTransmission = false, dispersion = false, iridescence = false, lightDistances = false,
+         panes = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

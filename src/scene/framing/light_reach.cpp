@@ -74,8 +74,19 @@ class Lights {
     }
 
   private:
+    /// Panes let a ray through by chance.
     bool occluded(const vec3& from, const vec3& way, float offset, float farthest, Random& random) const {
-        return tracer_.closest(from, way, offset / glm::length(way), farthest, random.next()).has_value();
+        const float step = offset / glm::length(way);
+        float nearest = step;
+        for (int pane = 0; pane <= bounces; ++pane) {
+            const auto hit = tracer_.closest(from, way, nearest, farthest, random.next());
+            if (!hit) return false;
+            const Material& material = tracer_.materialOf(tracer_.triangles()[hit->triangle]);
+            const float through = material.thin ? (1.0f - material.metallic) * material.transmission : 0.0f;
+            if (random.next() >= through) return true;
+            nearest = hit->t + step;
+        }
+        return true;
     }
 
     vec3 fromTriangle(const vec3& from, const vec3& normal, float offset, Random& random) const {

@@ -296,6 +296,11 @@ bool isClearGlass(Bsdf b) {
     return isTransmitting(b) && smoothLobes && b.probability.x <= CLEAR_GLASS_DIFFUSE;
 }
 
+/// True for a smooth pane, through which light goes straight on.
+bool isClearPane(Bsdf b) {
+    return b.glassWeight == 0.0 && isClearGlass(b);
+}
+
 /// True if wi is on the same side of the geometric normal as of the shading normal.
 bool sidesAgree(Bsdf b, vec3 wi) {
     return dot(b.frame * wi, b.geometricNormal) * wi.z > 0.0;
@@ -489,6 +494,12 @@ BsdfSample clearGlassLobe(Bsdf b, bool transmits) {
     }
     result.valid = result.valid && result.value.specular != vec3(0.0);
     return result;
+}
+
+/// The share of light that goes straight on through a clear pane.
+vec3 throughPane(Bsdf b) {
+    const BsdfSample transmitted = clearGlassLobe(b, true);
+    return transmitted.valid ? transmitted.value.specular : vec3(0.0);
 }
 
 /// Samples what the two smooth lobes of clear glass leave, which is diffuse. value holds f cos / pdf; its pdf is that

@@ -74,6 +74,15 @@ uint materialOf(uint word, uint instance) {
     return material;
 }
 
+/// True for materials of surfaces without thickness that transmit light.
+bool isThinGlass(uint triangle, uint hitInstance) {
+    const uint shading = loadTriangleIds(triangle, hitInstance).shadingTriangle;
+    const uint instance = TWO_LEVEL ? hitInstance : NONE;
+    const int at = int(materialOf(imageLoad(triangles, int(shading)).w, instance) * MATERIAL_TEXELS);
+    const bool thin = (imageLoad(materials, at).w & MATERIAL_THIN) != 0u;
+    return thin && uintBitsToFloat(imageLoad(materials, at + 2).w) > 0.0;
+}
+
 vec3 interpolate(vec3 a, vec3 b, vec3 c, vec2 barycentrics) {
     return a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
 }
@@ -379,6 +388,10 @@ Surface loadSurface(uint triangle, uint hitInstance, vec2 barycentrics, vec3 toV
     s.transmission = uintBitsToFloat(m2.w);
     s.specularColor = HAS_SPECULAR ? uintBitsToFloat(imageLoad(materials, material + 5).yzw) : vec3(1.0);
     s.thin = (m0.w & MATERIAL_THIN) != 0u;
+    if (HAS_PANES) {
+        // Light behind a pane can be sampled through it, too (shadow.glsl), which reads its textures at points.
+        if (cone.scattered && s.thin && s.transmission > 0.0) cone.width = 0.0;
+    }
     s.unlit = (m0.w & MATERIAL_UNLIT) != 0u;
     const vec2 coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).yz) : vec2(0.0);
     s.clearcoat = coat.x;
