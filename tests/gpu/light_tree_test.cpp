@@ -190,6 +190,12 @@ class LightTreeTest : public GpuTest {
     }
     Packed child(uint32_t index) const { return unpack(data_.lightTree, index); }
 
+    /// Of the choices at the root, as docs/lighting.md says.
+    double uniformShare(double reaching) const {
+        if (!data_.features.lightDistances) return std::min(0.2, 0.8 / reaching);
+        return std::min(std::max(0.8 / reaching, 15.0 / (reaching * reaching)), 0.42);
+    }
+
     /// Adds the probabilities of lights below the node that starts at `first`, from the weights of children.
     /// Returns the probability that the walk ends there without a light.
     double addShares(const std::vector<double>& weights, uint32_t first, double probability,
@@ -201,7 +207,7 @@ class LightTreeTest : public GpuTest {
             reaching += weights[end] > 0.0 ? 1.0 : 0.0;
         } while (!child(end++).is(layout::LIGHT_LINK_LAST));
         if (sum == 0.0) return probability;
-        const double uniformly = first == 0 ? std::min(0.2, 0.8 / reaching) : 0.0;
+        const double uniformly = first == 0 ? uniformShare(reaching) : 0.0;
         for (uint32_t i = first; i < end; ++i) {
             if (weights[i] == 0.0) continue;
             const double share = probability * ((1.0 - uniformly) * weights[i] / sum + uniformly / reaching);

@@ -84,7 +84,7 @@ inline constexpr float noValue = 1e10f;
     LAYER(emission,                                                                                               \
           .suffixes = "RGB", .varianceOf = VarianceOf::Luminance, .inBeauty = true, .ofFirstHit = true,           \
           .need = Need::Always,                                                                                   \
-          .help = "emitters and sky that the camera sees directly")                                               \
+          .help = "emitters and sky that the camera sees directly, or as reflections in smooth glass")            \
     LAYER(albedo,                                                                                                 \
           .suffixes = "RGB", .varianceOf = VarianceOf::Luminance, .varianceInFiles = true, .ofFirstHit = true,    \
           .need = Need::Always,                                                                                   \

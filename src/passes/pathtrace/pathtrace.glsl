@@ -111,7 +111,7 @@ bool scatter(inout Path path, inout Branches branches, Surface surface, Bsdf bsd
 /// Without jitter, which would average, the cone is wider, so that textures in reflections do not shimmer for
 /// a denoiser.
 float spreadAfter(Path path, float spread, float n) {
-    if (path.delta) return spread;
+    if (path.delta || path.panes > 0u) return spread;
     const float lobe = LOBE_SHARE * inversesqrt(max(path.bsdfPdf, 1e-20));
     const float widened = params.view.jitter == JITTER_OFF ? WITHOUT_JITTER : 1.0;
     return length(vec2(spread, widened * min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
