@@ -236,20 +236,23 @@ double Antialiaser::countAt(const dvec2& s, double still, Decision& decision) co
     return count;
 }
 
-/// If rounding moves s across the centre of a pixel, other taps are used, but the cubic and its derivative
-/// are continuous there, so nothing is doubtful.
+/// If rounding moves s across the centre of a pixel, other taps are used, but the mean is continuous there,
+/// and its derivative nearly, so nothing is doubtful.
 dvec3 Antialiaser::pastAt(const dvec2& s) const {
     const dvec2 first = glm::floor(s - 0.5), fraction = s - 0.5 - first;
     const std::array<double, 4> across = catmullRom(fraction.x), down = catmullRom(fraction.y);
     const auto x = static_cast<int64_t>(first.x) - 1, y = static_cast<int64_t>(first.y) - 1;
     dvec3 sum(0.0);
+    double weights = 0.0;
     for (size_t j = 0; j < 4; ++j) {
         for (size_t i = 0; i < 4; ++i) {
-            sum += across[i] * down[j] *
-                   past_[clamped(x + static_cast<int64_t>(i), y + static_cast<int64_t>(j))];
+            if (i % 3 == 0 && j % 3 == 0) continue;
+            const double weight = across[i] * down[j];
+            sum += weight * past_[clamped(x + static_cast<int64_t>(i), y + static_cast<int64_t>(j))];
+            weights += weight;
         }
     }
-    return sum;
+    return sum / weights;
 }
 
 /// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.

@@ -153,15 +153,19 @@ vec4 cubicWeights(float t) {
                 t * t * (-0.5 + 0.5 * t));
 }
 
-/// At `position` (pixels, minus one half): the encoded mean, and in w the frames of the nearest pixel.
+/// At `position` (pixels, minus one half): the encoded mean, and in w the frames of the nearest pixel. Without the four
+/// corners, which count little.
 vec4 pastAt(vec2 position) {
     const vec2 corner = floor(position), share = position - corner;
     const vec4 wx = cubicWeights(share.x), wy = cubicWeights(share.y);
     vec3 sum = vec3(0.0);
     for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i)
+        for (int i = 0; i < 4; ++i) {
+            if ((i == 0 || i == 3) && (j == 0 || j == 3)) continue;
             sum += wx[i] * wy[j] * encode(LOAD_HALF4(before, inside(ivec2(corner) + ivec2(i, j) - 1)).rgb);
+        }
     }
+    sum /= 1.0 - (wx.x + wx.w) * (wy.x + wy.w);
     return vec4(sum, LOAD_HALF4(before, inside(ivec2(floor(position + 0.5)))).w);
 }
 
