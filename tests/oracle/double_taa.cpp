@@ -242,17 +242,17 @@ dvec3 Antialiaser::pastAt(const dvec2& s) const {
     const dvec2 first = glm::floor(s - 0.5), fraction = s - 0.5 - first;
     const std::array<double, 4> across = catmullRom(fraction.x), down = catmullRom(fraction.y);
     const auto x = static_cast<int64_t>(first.x) - 1, y = static_cast<int64_t>(first.y) - 1;
+    const auto value = [&](int64_t i, int64_t j) { return past_[clamped(x + i, y + j)]; };
     dvec3 sum(0.0);
-    double weights = 0.0;
-    for (size_t j = 0; j < 4; ++j) {
-        for (size_t i = 0; i < 4; ++i) {
-            if (i % 3 == 0 && j % 3 == 0) continue;
-            const double weight = across[i] * down[j];
-            sum += weight * past_[clamped(x + static_cast<int64_t>(i), y + static_cast<int64_t>(j))];
-            weights += weight;
+    for (int64_t j = 0; j < 4; ++j) {
+        for (int64_t i = 0; i < 4; ++i) {
+            const int64_t u = std::clamp<int64_t>(i, 1, 2), v = std::clamp<int64_t>(j, 1, 2);
+            const bool corner = u != i && v != j;
+            sum += across[static_cast<size_t>(i)] * down[static_cast<size_t>(j)] *
+                   (corner ? value(u, j) + value(i, v) - value(u, v) : value(i, j));
         }
     }
-    return sum / weights;
+    return sum;
 }
 
 /// Determined by trial, since the clip and E^-1 change what the cubic's derivative alone would give.

@@ -153,19 +153,25 @@ vec4 cubicWeights(float t) {
                 t * t * (-0.5 + 0.5 * t));
 }
 
-/// At `position` (pixels, minus one half): the encoded mean, and in w the frames of the nearest pixel. Without the four
-/// corners, which count little.
+vec3 encodedBefore(ivec2 at) {
+    return encode(LOAD_HALF4(before, inside(at)).rgb);
+}
+
+/// At `position` (pixels, minus one half): the encoded mean, and in w the frames of the nearest pixel. The four corners
+/// of 4x4 pixels, which count little, are taken as what the three pixels beside each of them let expect of a plane.
 vec4 pastAt(vec2 position) {
     const vec2 corner = floor(position), share = position - corner;
     const vec4 wx = cubicWeights(share.x), wy = cubicWeights(share.y);
+    const ivec2 first = ivec2(corner) - 1;
     vec3 sum = vec3(0.0);
-    for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i) {
-            if ((i == 0 || i == 3) && (j == 0 || j == 3)) continue;
-            sum += wx[i] * wy[j] * encode(LOAD_HALF4(before, inside(ivec2(corner) + ivec2(i, j) - 1)).rgb);
+    for (int j = 1; j <= 2; ++j) {
+        for (int i = 1; i <= 2; ++i) {
+            const int outerX = 3 * (i - 1), outerY = 3 * (j - 1);
+            sum += (wx[i] * wy[j] - wx[outerX] * wy[outerY]) * encodedBefore(first + ivec2(i, j)) +
+                   (wx[i] + wx[outerX]) * wy[outerY] * encodedBefore(first + ivec2(i, outerY)) +
+                   wx[outerX] * (wy[j] + wy[outerY]) * encodedBefore(first + ivec2(outerX, j));
         }
     }
-    sum /= 1.0 - (wx.x + wx.w) * (wy.x + wy.w);
     return vec4(sum, LOAD_HALF4(before, inside(ivec2(floor(position + 0.5)))).w);
 }
 
