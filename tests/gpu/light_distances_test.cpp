@@ -199,8 +199,7 @@ class LightDistancesTest : public LightChoiceTest, public testing::WithParamInte
     LightDistancesTest() : LightChoiceTest(GetParam()) {}
     void SetUp() override {
         GpuTest::SetUp();
-        if (!IsSkipped() && GetParam() == scene::Tracer::Hardware && !device().info().rayTracing)
-            GTEST_SKIP() << "NOT TESTED: " << device().info().name << " has no ray-tracing pipelines.";
+        requireTracer(GetParam());
     }
 };
 

@@ -54,8 +54,7 @@ class PanesTest : public RenderTest, public testing::WithParamInterface<scene::T
   protected:
     void SetUp() override {
         GpuTest::SetUp();
-        if (!IsSkipped() && GetParam() == scene::Tracer::Hardware && !device().info().rayTracing)
-            GTEST_SKIP() << "NOT TESTED: " << device().info().name << " has no ray-tracing pipelines.";
+        requireTracer(GetParam());
     }
 
     static constexpr gpu::Extent extent{15, 9};

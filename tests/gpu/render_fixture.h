@@ -84,6 +84,13 @@ class Renderer {
 
 class RenderTest : public GpuTest {
   protected:
+    /// For SetUp(): skips the test if the device lacks the tracer.
+    void requireTracer(scene::Tracer tracer) {
+        if (IsSkipped() || tracer != scene::Tracer::Hardware || device().info().rayTracing) return;
+        GTEST_SKIP() << "NOT TESTED: " << device().info().name
+                     << " has no ray-tracing pipelines; scripts/lavapipe25.sh fetches a driver that has.";
+    }
+
     Rendered render(const scene::Scene& scene, const RenderSettings& settings, uint64_t samples) {
         return Renderer(device(), scene)(settings, samples);
     }

@@ -2,8 +2,8 @@
 #extension GL_EXT_scalar_block_layout : require
 // From what light_first_hits.glsl has found: up to where each texel's direction is open, by its own rays, and by those
 // of its neighbours on the sphere, too.
-#include "passes/light_distances/distance_pair.glsl"
 #include "passes/light_distances/light_distances_params.h"
+#include "shaders/common/distance_pair.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,12 +1,12 @@
 // The nearest and farthest first hits of several rays through each texel of the maps around punctual lights. Used by
 // every tracer.
-#include "passes/light_distances/distance_pair.glsl"
 #include "passes/light_distances/light_distances_params.h"
 
 layout(set = 0, binding = 20, scalar) uniform Params {
     LightDistancesParams params;
 };
 
+#include "shaders/common/distance_pair.glsl"
 #include "shaders/trace/trace.glsl"
 
 layout(set = 0, binding = 21, r32f) uniform writeonly imageBuffer lightFirstHits;

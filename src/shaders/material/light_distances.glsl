@@ -3,6 +3,7 @@
 #ifndef LIMPID_LIGHT_DISTANCES_GLSL
 #define LIMPID_LIGHT_DISTANCES_GLSL
 
+#include "shaders/common/distance_pair.glsl"
 #include "shaders/common/sampling.glsl"
 #include "shaders/common/scene_data.glsl"
 
@@ -34,8 +35,8 @@ Hidden hiddenByMap(uint map, vec3 direction, float distance) {
     if (map >= LIGHT_MAPS) return Hidden(false, false);
     const ivec2 texel = lightMapTexel(-direction);
     const int at = int((map * LIGHT_MAP_SIZE + uint(texel.y)) * LIGHT_MAP_SIZE) + texel.x;
-    const uint both = floatBitsToUint(imageLoad(lightDistances, at).x);
-    return Hidden(distance > uintBitsToFloat(both << 16), distance > uintBitsToFloat(both & 0xFFFF0000u));
+    const float both = imageLoad(lightDistances, at).x;
+    return Hidden(distance > lowerDistance(both), distance > upperDistance(both));
 }
 
 #endif
