@@ -13,18 +13,19 @@ endif()
 if(LIMPID_WERROR)
   target_compile_options(limpid_options INTERFACE -Werror)
 endif()
-if(LIMPID_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+# For targets with precompiled headers.
+add_library(limpid_pch_options INTERFACE)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # With precompiled headers, GCC 12 has more wrong warnings about the standard library.
   foreach(WARNING array-bounds dangling-pointer free-nonheap-object maybe-uninitialized restrict stringop-overflow
           stringop-overread use-after-free)
-    target_compile_options(limpid_options INTERFACE -Wno-${WARNING})
+    target_compile_options(limpid_pch_options INTERFACE -Wno-${WARNING})
   endforeach()
 endif()
-if(LIMPID_UNITY)
-  # In unity builds, local names may shadow constants of other files, and types in anonymous namespaces seem to come
-  # from a header.
-  target_compile_options(limpid_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
-endif()
+# For targets that compile several files as one: local names may shadow constants of other files, and types in anonymous
+# namespaces seem to come from a header.
+add_library(limpid_unity_options INTERFACE)
+target_compile_options(limpid_unity_options INTERFACE -Wno-shadow -Wno-subobject-linkage)
 if(LIMPID_SANITIZE)
   target_compile_options(limpid_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)
@@ -78,20 +79,27 @@ set(LIMPID_PCH_HEADERS
   <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <set>
   <span> <sstream> <string> <string_view> <vector> <fmt/format.h> <glm/glm.hpp> <nlohmann/json.hpp>)
 
+# limpid_add_pch(NAME [DEPS TARGET ...] [HEADERS <header> ...]): adds the object library NAME, which precompiles the
+# headers above and these.
+function(limpid_add_pch NAME)
+  cmake_parse_arguments(ARG "" "" "DEPS;HEADERS" ${ARGN})
+  add_library(${NAME} OBJECT ${PROJECT_BINARY_DIR}/pch/pch.cpp)
+  target_link_libraries(${NAME}
+    PRIVATE limpid_options limpid_pch_options PUBLIC fmt::fmt glm::glm nlohmann_json::nlohmann_json ${ARG_DEPS})
+  target_precompile_headers(${NAME} PRIVATE ${LIMPID_PCH_HEADERS} ${ARG_HEADERS})
+endfunction()
+
 # limpid_precompile(): creates the two sets of precompiled headers. Call it after their packages are found.
 function(limpid_precompile)
   if(NOT LIMPID_PCH OR LIMPID_FUZZ)
     return()
   endif()
   file(WRITE ${PROJECT_BINARY_DIR}/pch/pch.cpp "// Compiled only to have its headers parsed.\n")
-  add_library(limpid_pch OBJECT ${PROJECT_BINARY_DIR}/pch/pch.cpp)
-  target_link_libraries(limpid_pch PRIVATE limpid_options PUBLIC fmt::fmt glm::glm nlohmann_json::nlohmann_json)
-  target_precompile_headers(limpid_pch PRIVATE ${LIMPID_PCH_HEADERS})
+  if(NOT LIMPID_PCH STREQUAL TESTS)
+    limpid_add_pch(limpid_pch)
+  endif()
   if(LIMPID_TESTS)
-    add_library(limpid_test_pch OBJECT ${PROJECT_BINARY_DIR}/pch/pch.cpp)
-    target_link_libraries(limpid_test_pch
-      PRIVATE limpid_options PUBLIC fmt::fmt glm::glm nlohmann_json::nlohmann_json GTest::gmock GTest::gtest)
-    target_precompile_headers(limpid_test_pch PRIVATE ${LIMPID_PCH_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
+    limpid_add_pch(limpid_test_pch DEPS GTest::gmock GTest::gtest HEADERS <gmock/gmock.h> <gtest/gtest.h>)
   endif()
 endfunction()
 
@@ -101,14 +109,22 @@ function(limpid_use_pch NAME FROM)
   if(TARGET ${FROM})
     target_precompile_headers(${NAME} REUSE_FROM ${FROM})
     target_compile_definitions(${NAME} PRIVATE $<TARGET_PROPERTY:${FROM},INTERFACE_COMPILE_DEFINITIONS>)
+    target_link_libraries(${NAME} PRIVATE limpid_pch_options)
   endif()
 endfunction()
 
-# limpid_unity(TARGET): with LIMPID_UNITY, compiles several files of the target as one. A clean build takes half the
-# time, but a change of one file recompiles others, too. Meant for CI.
+# limpid_unity(TARGET): compiles several files of the target as one. A clean build takes half the time, but a change of
+# one file recompiles others, too. Meant for CI.
 function(limpid_unity NAME)
-  if(LIMPID_UNITY)
-    set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${NAME} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  target_link_libraries(${NAME} PRIVATE limpid_unity_options)
+endfunction()
+
+# limpid_quick(TARGET): applies LIMPID_PCH and LIMPID_UNITY to a target that is not a test.
+function(limpid_quick NAME)
+  limpid_use_pch(${NAME} limpid_pch)
+  if(LIMPID_UNITY AND NOT LIMPID_UNITY STREQUAL TESTS)
+    limpid_unity(${NAME})
   endif()
 endfunction()
 
@@ -124,8 +140,7 @@ function(limpid_library NAME)
   add_library(limpid_${NAME} STATIC ${ARG_SOURCES})
   add_library(limpid::${NAME} ALIAS limpid_${NAME})
   target_link_libraries(limpid_${NAME} PUBLIC ${ARG_DEPS} PRIVATE limpid_options ${ARG_PRIVATE_DEPS})
-  limpid_use_pch(limpid_${NAME} limpid_pch)
-  limpid_unity(limpid_${NAME})
+  limpid_quick(limpid_${NAME})
 endfunction()
 
 # limpid_shared_library(NAME FILE EXPORTS SOURCES a.cpp ... DEPS ...): adds the shared library libFILE.so.0, target
@@ -155,8 +170,7 @@ function(limpid_program NAME)
   add_executable(${NAME} ${ARG_SOURCES})
   target_link_libraries(${NAME} PRIVATE limpid_options ${ARG_DEPS})
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
-  limpid_use_pch(${NAME} limpid_pch)
-  limpid_unity(${NAME})
+  limpid_quick(${NAME})
 endfunction()
 
 # The optimisation passes for embedded shaders. Not -O, which inlines every call and unrolls loops: shaders become
@@ -310,7 +324,9 @@ function(limpid_test NAME)
   target_include_directories(${NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${NAME} PRIVATE LIMPID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   limpid_use_pch(${NAME} limpid_test_pch)
-  limpid_unity(${NAME})
+  if(LIMPID_UNITY)
+    limpid_unity(${NAME})
+  endif()
   if(ARG_LABELS STREQUAL fast)
     add_dependencies(limpid_fast_tests ${NAME})
   endif()
