@@ -51,8 +51,8 @@ TEST(RecordingTest, AFrameIsListedWithoutADevice) {
     settings.svgf.levels = 2;
     EXPECT_THAT(passesOf(graph, settings),
                 ElementsAre("ingest", "svgf/reproject joint", "svgf/tiles joint", "svgf/lags joint",
-                            "svgf/antilag joint", "svgf/variance joint", "svgf/level 1 joint",
-                            "svgf/young joint", "svgf/level 2 joint", "svgf/compose"));
+                            "svgf/antilag joint", "svgf/variance joint", "svgf/level 1", "svgf/young joint",
+                            "svgf/level 2", "svgf/compose"));
     const gpu::RecordedPass& reproject = graph.passes().at(1);
     ASSERT_FALSE(reproject.hazards.empty());
     EXPECT_EQ(reproject.hazards[0].earlierPass, "ingest");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/text/format.h"
 #include "denoise/methods/methods.h"
 #include "denoise/methods/svgf/svgf_lags.h"
 #include "denoise/methods/svgf/svgf_params.h"
@@ -88,8 +89,7 @@ class Svgf {
             filtered.push_back(accumulated[i].color);
         }
         for (int number = 1; number <= settings_.levels; ++number) {
-            for (size_t i = 0; i < all.size(); ++i)
-                filtered[i] = level(all[i], surfaces, accumulated[i], filtered[i], number);
+            filtered = level(all, surfaces, accumulated, filtered, number);
             for (size_t i = 0; i < all.size() && number == 1 && fillsYoung(); ++i)
                 fillYoung(all[i], surfaces, accumulated[i], filtered[i]);
         }
@@ -304,30 +304,55 @@ class Svgf {
         return choose(shaders::svgf_level_comp, shaders::svgf_level_buffers_comp);
     }
 
-    ImageHandle level(const Signal& signal, const History& surfaces, const Accumulated& accumulated,
-                      ImageHandle before, int number) {
-        const std::string name = "svgf/level " + std::to_string(number) + " " + signal.name;
+    /// The result of one level for one signal.
+    ImageHandle levelTarget(const Signal& signal, const Accumulated& accumulated, int number) {
+        if (number == fedBack()) return accumulated.feedback.current;
+        return graph_.transient("svgf/level " + std::to_string(number) + " " + signal.name,
+                                Format::RGBA16Float, extent_, input_.filters);
+    }
+
+    /// All signals in one pass: they have the same surfaces and, but for roughness, the same weights of
+    /// surfaces.
+    std::vector<ImageHandle> level(const std::vector<Signal>& signals, const History& surfaces,
+                                   const std::vector<Accumulated>& accumulated,
+                                   const std::vector<ImageHandle>& before, int number) {
+        const Signal& last = signals.back();  // the only one that may be specular
         const bool mixed = stabilises() && number == settings_.levels;
-        const ImageHandle filtered =
-            number == fedBack() ? accumulated.feedback.current
-                                : graph_.transient(name, Format::RGBA16Float, extent_, input_.filters);
+        std::vector<ImageHandle> filtered;
+        for (size_t i = 0; i < signals.size(); ++i)
+            filtered.push_back(levelTarget(signals[i], accumulated[i], number));
         const int step = levelStep(number);
         SvgfFilterParams params = filterParams(step);
-        params.stabilisationAlpha = accumulated.stable.valid ? settings_.stabilisationAlpha : 1.0f;
-        std::vector<gpu::ConstantValue> constants = filterConstants(signal);
+        params.stabilisationAlpha = accumulated.front().stable.valid ? settings_.stabilisationAlpha : 1.0f;
+        std::vector<gpu::ConstantValue> constants = filterConstants(last);
         constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
         constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
         constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
         constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
         // Not in the first level: its deviations are those of single pixels, and say too little.
         constants.push_back({"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u});
+        const bool both = signals.size() > 1;
+        constants.push_back({"BOTH", both ? 1u : 0u});
+        const auto unused = [&](const char* what, Format format) {
+            return graph_.transient(formatText("svgf/level {} {}", number, what), format, {1, 1},
+                                    input_.filters);
+        };
         std::vector<gpu::Binding> bindings{
-            {"surfaces", surfaces.current}, {"signal", before}, {"filtered", filtered}};
+            {"surfaces", surfaces.current},
+            {"signalA", before.front()},
+            {"signalB", before.back()},
+            {"filteredA", filtered.front()},
+            {"filteredB", both ? filtered.back() : unused("no second", Format::RGBA16Float)}};
+        const Accumulated &a = accumulated.front(), &b = accumulated.back();
         if (mixed)
-            bindings.insert(bindings.end(), {{"stablePast", accumulated.stablePast},
-                                             {"stable", accumulated.stable.current},
-                                             {"moments", accumulated.moments}});
-        graph_.dispatch({.pass = name,
+            bindings.insert(bindings.end(),
+                            {{"stablePastA", a.stablePast},
+                             {"stablePastB", b.stablePast},
+                             {"stableA", a.stable.current},
+                             {"stableB", both ? b.stable.current : unused("no stable", Format::R32Uint)},
+                             {"momentsA", a.moments},
+                             {"momentsB", b.moments}});
+        graph_.dispatch({.pass = "svgf/level " + std::to_string(number),
                          .shader = levelShader(mixed),
                          .bindings = bindings,
                          .params = gpu::paramsOf(params),

@@ -47,9 +47,9 @@ struct SvgfSettings {
 /// Records one frame and returns the clean beauty, rgba32f, alpha 1. A pass with SIGNAL in its name runs once
 /// for "joint", or for "diffuse" and "specular". Passes: "surfaces", "svgf/reproject SIGNAL",
 /// "svgf/tiles SIGNAL" (with filters in images; otherwise "svgf/reproject" does its work), "svgf/lags SIGNAL"
-/// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1 SIGNAL",
-/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2 SIGNAL" and so on, "svgf/compose", and for
-/// debugging "svgf/reasons SIGNAL". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
+/// and "svgf/antilag SIGNAL" (none of them without anti-lag), "svgf/variance SIGNAL", "svgf/level 1",
+/// "svgf/young SIGNAL" (unless it is off), "svgf/level 2" and so on, "svgf/compose", and for debugging
+/// "svgf/reasons SIGNAL". Histories: the surfaces, and for each signal "svgf/SIGNAL color",
 /// "svgf/SIGNAL moments" and "svgf/SIGNAL stable".
 gpu::ImageHandle filterSvgf(gpu::FrameGraph& graph, const DenoiserInput& input, const SvgfSettings& settings);
 

@@ -1,5 +1,6 @@
 // One level of the variance-guided a-trous filter: docs/denoising.md, SVGF, step 6. With LIMPID_STABILISES the last
-// level, which also stabilises: step 7.
+// level, which also stabilises: step 7. With BOTH it filters two signals, which share the surfaces and most of the
+// weights.
 #extension GL_EXT_control_flow_attributes : require
 #include "denoise/methods/svgf/svgf_params.h"
 #include "shaders/common/filter_image.glsl"
@@ -9,19 +10,25 @@ layout(constant_id = 4) const bool WIDE = true;  // 5x5 taps, else 3x3
 layout(constant_id = 6) const bool SIDE_BY_SIDE = false;  // the step is 1: pixels of a block are neighbours
 layout(constant_id = 8) const bool LOOKS = false;  // compare with the mean luminance of like taps, not with the own one
 layout(constant_id = 9) const bool DAMP_OUTLIERS = false;  // a pixel noisier than its taps counts less in its own mean
+layout(constant_id = 10) const bool BOTH = false;  // filter a second signal, too; only that one compares roughness
 
 layout(set = 0, binding = 0, scalar) uniform Params {
     SvgfFilterParams params;
 };
 READ_UINT2(1, surfaces);
-READ_HALF4(2, signal);
-WRITE_HALF4(3, filtered);
+READ_HALF4(2, signalA);
+READ_HALF4(3, signalB);  // this and the other images B: only with BOTH
+WRITE_HALF4(4, filteredA);
+WRITE_HALF4(5, filteredB);
 #ifdef LIMPID_STABILISES
 #include "denoise/methods/svgf/shaders/svgf_moments.glsl"
 #include "denoise/methods/svgf/shaders/svgf_stable.glsl"
-READ_UINT1(4, stablePast);  // svgf_stable.glsl
-WRITE_UINT1(5, stable);
-layout(set = 0, binding = 6, rgba16f) uniform readonly image2D moments;
+READ_UINT1(6, stablePastA);  // svgf_stable.glsl
+READ_UINT1(7, stablePastB);
+WRITE_UINT1(8, stableA);
+WRITE_UINT1(9, stableB);
+layout(set = 0, binding = 10, rgba16f) uniform readonly image2D momentsA;
+layout(set = 0, binding = 11, rgba16f) uniform readonly image2D momentsB;
 #endif
 
 #include "denoise/methods/svgf/shaders/svgf_weights.glsl"
@@ -33,12 +40,17 @@ const int REACH = WIDE ? 2 : 1;
 const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
 const float LOG2_E = 1.44269504;
 
-// Deviations of the block's pixels and of those next to them; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
-float deviationsAround[3 * (SVGF_COLUMN + 2)];
+// Deviations of the block's pixels and of those next to them, of both signals; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
+vec2 deviationsAround[3 * (SVGF_COLUMN + 2)];
 
-struct Tap {
+/// Light of one signal.
+struct Light {
     vec4 light;  // and its deviation; negative: nothing is seen
     float luminance;
+};
+
+struct Tap {
+    Light a, b;
     Surface surface;
     bool counts;
 };
@@ -54,20 +66,25 @@ ivec2 tapOf(int pair) {
     return ivec2((pair + 2) % 5 - 2, (pair + 2) / 5);
 }
 
-struct Centre {
-    SurfaceCentre surface;
-    float perDepth[PAIRS + 1];  // by pair
+/// What the filter collects of one signal.
+struct Mean {
     float luminance, luminanceScale;
     vec2 differences;  // sum of weighted differences from the luminance, and of the weights; only if LOOKS
-    float exponents[9];  // of the surface's weights of the 3x3 taps; only if KEEPS_EXPONENTS
     vec4 sum;       // of weighted light, and of the weights
     float squares;  // sum of squared weighted deviations
     float squaresOfTaps;  // sum of weighted squared deviations, without the pixel's own; only if DAMP_OUTLIERS
-    bool seen;
 #ifdef LIMPID_STABILISES
     uint stablePast;
     float frames;
 #endif
+};
+
+struct Centre {
+    SurfaceCentre surface;
+    float perDepth[PAIRS + 1];  // by pair
+    float exponents[9];  // of the surface's weights of the 3x3 taps; only if KEEPS_EXPONENTS
+    Mean a, b;
+    bool seen;
 };
 
 /// Scales a difference of luminance to an exponent of 2.
@@ -84,42 +101,61 @@ ivec2 nearestInside(ivec2 at) {
     return clamp(at, ivec2(0), ivec2(params.width, params.height) - 1);
 }
 
-Tap loadTap(ivec2 at) {
-    const ivec2 inside = nearestInside(at);
-    const vec4 light = LOAD_HALF4(signal, inside);
-    return Tap(light, luminance(light.rgb), surfaceAt(inside), at == inside && light.a >= 0.0);
+Light lightOf(vec4 texel) {
+    return Light(texel, luminance(texel.rgb));
 }
 
-/// Negative where nothing is seen, and outside of the picture.
-float deviationAt(ivec2 at) {
+Tap loadTap(ivec2 at) {
     const ivec2 inside = nearestInside(at);
-    const float deviation = LOAD_HALF4_ALPHA(signal, inside);
-    return at == inside ? deviation : SVGF_NOTHING_SEEN;
+    const Light a = lightOf(LOAD_HALF4(signalA, inside));
+    const Light b = BOTH ? lightOf(LOAD_HALF4(signalB, inside)) : a;
+    return Tap(a, b, surfaceAt(inside), at == inside && a.light.a >= 0.0);
+}
+
+/// Of both signals. Negative where nothing is seen, and outside of the picture.
+vec2 deviationsAt(ivec2 at) {
+    const ivec2 inside = nearestInside(at);
+    const float a = LOAD_HALF4_ALPHA(signalA, inside);
+    const vec2 deviations = vec2(a, BOTH ? LOAD_HALF4_ALPHA(signalB, inside) : a);
+    return at == inside ? deviations : vec2(SVGF_NOTHING_SEEN);
 }
 
 void loadDeviationsAround(ivec2 first) {
     [[unroll]] for (int i = 0; i < deviationsAround.length(); ++i)
-        deviationsAround[i] = deviationAt(first - 1 + ivec2(i % 3, i / 3));
+        deviationsAround[i] = deviationsAt(first - 1 + ivec2(i % 3, i / 3));
 }
 
 /// `at` is the pixel with this number in the block.
-float deviationNextTo(ivec2 at, int number, ivec2 from) {
-    return SIDE_BY_SIDE ? deviationsAround[(number + 1 + from.y) * 3 + 1 + from.x] : deviationAt(at + from);
+vec2 deviationsNextTo(ivec2 at, int number, ivec2 from) {
+    return SIDE_BY_SIDE ? deviationsAround[(number + 1 + from.y) * 3 + 1 + from.x] : deviationsAt(at + from);
 }
 
 /// The root of the mean variance of the 3x3 pixels: a single pixel's variance is as noisy as its light.
-float blurredDeviation(ivec2 at, int number, float own) {
+vec2 blurredDeviations(ivec2 at, int number, vec2 own) {
     if (!BLUR_VARIANCE) return own;
-    vec2 sum = 4.0 * vec2(own * own, 1.0);
+    vec3 sum = 4.0 * vec3(own * own, 1.0);
     [[unroll]] for (int j = -1; j <= 1; ++j) {
         [[unroll]] for (int i = -1; i <= 1; ++i) {
             if (i == 0 && j == 0) continue;
-            const float deviation = deviationNextTo(at, number, ivec2(i, j));
+            const vec2 deviations = deviationsNextTo(at, number, ivec2(i, j));
             const float weight = float((2 - abs(i)) * (2 - abs(j)));
-            if (deviation >= 0.0) sum += weight * vec2(deviation * deviation, 1.0);
+            if (deviations.x >= 0.0) sum += weight * vec3(deviations * deviations, 1.0);
         }
     }
-    return sqrt(sum.x / sum.y);
+    return sqrt(sum.xy / sum.z);
+}
+
+/// `deviation` is the blurred one.
+Mean beginMean(Light own, float deviation) {
+    Mean mean;
+    mean.luminance = own.luminance;
+    mean.luminanceScale = luminanceScaleOf(own.luminance, deviation);
+    mean.differences = vec2(0.0, 1.0);
+    const float weight = kernel(ivec2(0));
+    mean.sum = weight * vec4(own.light.rgb, 1.0);
+    mean.squares = weight * weight * own.light.a * own.light.a;
+    mean.squaresOfTaps = 0.0;
+    return mean;
 }
 
 Centre begin(ivec2 at, int number) {
@@ -131,67 +167,82 @@ Centre begin(ivec2 at, int number) {
         if (max(abs(from.x), abs(from.y)) <= REACH) centre.perDepth[pair] = perDepthOf(centre.surface, from);
     }
     centre.seen = tap.counts;
-    centre.luminance = tap.luminance;
-    centre.luminanceScale = luminanceScaleOf(tap.luminance, blurredDeviation(at, number, tap.light.a));
-    centre.differences = vec2(0.0, 1.0);
-    const float weight = kernel(ivec2(0));
-    centre.sum = weight * vec4(tap.light.rgb, 1.0);
-    centre.squares = weight * weight * tap.light.a * tap.light.a;
-    centre.squaresOfTaps = 0.0;
+    const vec2 deviations = blurredDeviations(at, number, vec2(tap.a.light.a, tap.b.light.a));
+    centre.a = beginMean(tap.a, deviations.x);
+    if (BOTH) centre.b = beginMean(tap.b, deviations.y);
     // Loaded before the taps, so that its latency is hidden behind theirs.
 #ifdef LIMPID_STABILISES
-    centre.stablePast = LOAD_UINT1(stablePast, nearestInside(at));
-    centre.frames = imageLoad(moments, nearestInside(at)).w;
+    const ivec2 inside = nearestInside(at);
+    centre.a.stablePast = LOAD_UINT1(stablePastA, inside);
+    centre.a.frames = imageLoad(momentsA, inside).w;
+    if (BOTH) centre.b.stablePast = LOAD_UINT1(stablePastB, inside);
+    if (BOTH) centre.b.frames = imageLoad(momentsB, inside).w;
 #endif
     return centre;
 }
 
-/// The second visit of a tap then needs its light alone. Those of 5x5 taps would take too many registers.
-const bool KEEPS_EXPONENTS = LOOKS && !WIDE;
-
-float exponentOf(Centre centre, Tap tap, ivec2 from) {
-    return surfaceExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]);
-}
+/// The second visit of a tap then needs its light alone. Those of 5x5 taps would take too many registers, and so would
+/// those of two signals.
+const bool KEEPS_EXPONENTS = LOOKS && !WIDE && !BOTH;
 
 int numberOfTap(ivec2 from) {
     return 3 * from.y + from.x + 4;
 }
 
+/// Of the surface's weights for both signals.
+vec2 exponentsOf(Centre centre, Tap tap, ivec2 from) {
+    const float geometry = geometryExponent(centre.surface, tap.surface, centre.perDepth[pairOf(from)]);
+    const float all = geometry + roughnessExponent(centre.surface.surface, tap.surface);
+    return vec2(BOTH ? geometry : all, all);
+}
+
 /// How far a tap shows the same as the centre: 0 to 1.
-float likeness(Centre centre, Tap tap, float exponent) {
-    const float difference = abs(centre.luminance - tap.luminance) * centre.luminanceScale;
-    return tap.counts ? exp2(exponent - difference) : 0.0;
+float likeness(Mean mean, Light tap, float exponent) {
+    return exp2(exponent - abs(mean.luminance - tap.luminance) * mean.luminanceScale);
+}
+
+void lookAt(inout Mean mean, Light tap, float exponent) {
+    mean.differences += likeness(mean, tap, exponent) * vec2(tap.luminance - mean.luminance, 1.0);
 }
 
 void lookAt(inout Centre centre, Tap tap, ivec2 from) {
-    const float exponent = exponentOf(centre, tap, from);
-    if (KEEPS_EXPONENTS) centre.exponents[numberOfTap(from)] = exponent;
-    centre.differences += likeness(centre, tap, exponent) * vec2(tap.luminance - centre.luminance, 1.0);
+    const vec2 exponents = exponentsOf(centre, tap, from);
+    if (KEEPS_EXPONENTS) centre.exponents[numberOfTap(from)] = exponents.x;
+    if (!tap.counts) return;
+    lookAt(centre.a, tap.a, exponents.x);
+    if (BOTH) lookAt(centre.b, tap.b, exponents.y);
 }
 
 void looked(inout Centre centre) {
-    centre.luminance += centre.differences.x / centre.differences.y;
+    centre.a.luminance += centre.a.differences.x / centre.a.differences.y;
+    if (BOTH) centre.b.luminance += centre.b.differences.x / centre.b.differences.y;
+}
+
+void addTo(inout Mean mean, Light tap, float exponent, float kernelWeight) {
+    const float weight = kernelWeight * likeness(mean, tap, exponent);
+    mean.sum += weight * vec4(tap.light.rgb, 1.0);
+    const float deviation = weight * tap.light.a;
+    mean.squares += deviation * deviation;
+    if (DAMP_OUTLIERS) mean.squaresOfTaps += deviation * tap.light.a;
 }
 
 void addTo(inout Centre centre, Tap tap, ivec2 from) {
-    const float exponent =
-        KEEPS_EXPONENTS ? centre.exponents[numberOfTap(from)] : exponentOf(centre, tap, from);
-    const float weight = kernel(from) * likeness(centre, tap, exponent);
-    centre.sum += weight * vec4(tap.light.rgb, 1.0);
-    const float deviation = weight * tap.light.a;
-    centre.squares += deviation * deviation;
-    if (DAMP_OUTLIERS) centre.squaresOfTaps += deviation * tap.light.a;
+    const vec2 exponents =
+        KEEPS_EXPONENTS ? vec2(centre.exponents[numberOfTap(from)]) : exponentsOf(centre, tap, from);
+    const float kernelWeight = tap.counts ? kernel(from) : 0.0;
+    addTo(centre.a, tap.a, exponents.x, kernelWeight);
+    if (BOTH) addTo(centre.b, tap.b, exponents.y, kernelWeight);
 }
 
 /// Takes back a part of the pixel's own weight where the taps that it resembles are less noisy. `own`: its light and
 /// deviation. A pixel that has just seen a firefly takes in all its neighbours, but they do not take it in. Without
 /// this it would stay a dot, a quarter as bright after each level.
-void dampOutlier(inout Centre centre, vec4 own) {
+void dampOutlier(inout Mean mean, vec4 own) {
     const float weight = kernel(ivec2(0)), square = own.a * own.a;
-    const float ofTaps = (centre.squaresOfTaps + SVGF_MIN_WEIGHTS * square) / (centre.sum.a - weight + SVGF_MIN_WEIGHTS);
+    const float ofTaps = (mean.squaresOfTaps + SVGF_MIN_WEIGHTS * square) / (mean.sum.a - weight + SVGF_MIN_WEIGHTS);
     const float share = square > 0.0 ? min(sqrt(ofTaps / square), 1.0) : 1.0;
-    centre.sum -= (1.0 - share) * weight * vec4(own.rgb, 1.0);
-    centre.squares = max(centre.squares - (1.0 - share * share) * weight * weight * square, 0.0);
+    mean.sum -= (1.0 - share) * weight * vec4(own.rgb, 1.0);
+    mean.squares = max(mean.squares - (1.0 - share * share) * weight * weight * square, 0.0);
 }
 
 #ifdef LIMPID_STABILISES
@@ -206,18 +257,29 @@ vec3 mixedWithPast(vec4 now, vec3 past, float frames) {
 }
 #endif
 
+/// `own` is the pixel's light and deviation; only with DAMP_OUTLIERS or if nothing is seen.
+vec4 resultOf(Mean mean, vec4 own, bool seen) {
+    if (DAMP_OUTLIERS) dampOutlier(mean, own);
+    vec4 result = vec4(mean.sum.rgb, sqrt(mean.squares)) / mean.sum.a;
+#ifdef LIMPID_STABILISES
+    result.rgb = mixedWithPast(result, unpackedStable(mean.stablePast), mean.frames);
+#endif
+    return seen ? result : own;
+}
+
 void store(ivec2 at, Centre centre) {
     if (at.x >= int(params.width) || at.y >= int(params.height)) return;
-    const vec4 own = DAMP_OUTLIERS || !centre.seen ? LOAD_HALF4(signal, at) : vec4(0.0);
-    if (DAMP_OUTLIERS) dampOutlier(centre, own);
-    vec4 result = vec4(centre.sum.rgb, sqrt(centre.squares)) / centre.sum.a;
+    const bool needsOwn = DAMP_OUTLIERS || !centre.seen;
+    const vec4 a = resultOf(centre.a, needsOwn ? LOAD_HALF4(signalA, at) : vec4(0.0), centre.seen);
+    STORE_HALF4(filteredA, at, a);
 #ifdef LIMPID_STABILISES
-    result.rgb = mixedWithPast(result, unpackedStable(centre.stablePast), centre.frames);
+    STORE_UINT1(stableA, at, packedStable(a.rgb));
 #endif
-    if (!centre.seen) result = own;
-    STORE_HALF4(filtered, at, result);
+    if (!BOTH) return;
+    const vec4 b = resultOf(centre.b, needsOwn ? LOAD_HALF4(signalB, at) : vec4(0.0), centre.seen);
+    STORE_HALF4(filteredB, at, b);
 #ifdef LIMPID_STABILISES
-    STORE_UINT1(stable, at, packedStable(result.rgb));
+    STORE_UINT1(stableB, at, packedStable(b.rgb));
 #endif
 }
 

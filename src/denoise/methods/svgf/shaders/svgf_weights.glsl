@@ -71,15 +71,23 @@ float perDepthOf(SurfaceCentre centre, ivec2 from) {
     return POSITION ? 0.0 : 1.0 / (abs(dot(vec2(from), centre.slope)) + centre.floor);
 }
 
-/// The weight's exponent to base 2.
-float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
+/// The exponent to base 2 of the weight by normals and depths.
+float geometryExponent(SurfaceCentre centre, Surface other, float perDepth) {
     if (POSITION)
         return -distance(centre.surface.normal, other.normal) * params.normalScale -
                distance(centre.surface.point, other.point) * params.depthScale;
-    float exponent = dot(centre.scaledNormal, other.normal) - params.normalScale -
-                     abs(centre.surface.depth - other.depth) * perDepth;
-    if (ROUGHNESS) exponent -= abs(centre.surface.roughness - other.roughness) * params.roughnessScale;
-    return exponent;
+    return dot(centre.scaledNormal, other.normal) - params.normalScale -
+           abs(centre.surface.depth - other.depth) * perDepth;
+}
+
+/// That of the weight by roughness.
+float roughnessExponent(Surface centre, Surface other) {
+    return ROUGHNESS && !POSITION ? -abs(centre.roughness - other.roughness) * params.roughnessScale : 0.0;
+}
+
+/// That of the product of all weights.
+float surfaceExponent(SurfaceCentre centre, Surface other, float perDepth) {
+    return geometryExponent(centre, other, perDepth) + roughnessExponent(centre.surface, other);
 }
 
 #endif
