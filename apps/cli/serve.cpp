@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/files/file.h"
 #include "cli/options/studio_options.h"
 #include "commands.h"
 #include "interrupt.h"
@@ -23,10 +24,18 @@ struct ServeOptions {
     uint32_t uploads = 0;  ///< MB
 };
 
-void run([[maybe_unused]] const ServeOptions& o) {
-#ifdef LIMPID_HAVE_SERVE
+/// TLS would wait for ever for what a pipe does not say.
+void requireFile(const std::string& path) {
+    if (path.empty()) return;
+    if (const auto fault = irregularity(path)) throw InputError(path, *fault);
+}
+
+void run(const ServeOptions& o) {
     if (o.certificate.empty() != o.key.empty())
         throw UsageError("--certificate and --key belong together: give both or none");
+    requireFile(o.certificate);
+    requireFile(o.key);
+#ifdef LIMPID_HAVE_SERVE
     studio::StudioSettings settings;
     apply(o.studio, settings);
     settings.writesFiles = false;  // clients are elsewhere

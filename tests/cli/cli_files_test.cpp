@@ -79,6 +79,7 @@ TEST_F(CliFilesTest, PipesAndDevicesAreNoInputsAndNoOutputs) {
     expectSoon("compare " + path("p.exr") + " " + path("p.exr"), 3, fault);
     expectSoon("compare /dev/zero /dev/zero", 3, fault);
     expectSoon("merge " + pipe("p.sums") + " -o " + path("a.png"), 3, fault);
+    expectSoon("serve builtin:cornell --certificate " + pipe("p.pem") + " --key " + path("p.pem"), 3, fault);
     pipe("f.0000.exr");
     expectSoon("denoise " + path("f.%04d.exr") + " --denoiser svgf --device cpu -o " + path("g.%04d.exr"), 3,
                fault);
