@@ -45,9 +45,8 @@ struct Stages {
     }
 };
 
-/// A pass belongs to the stage whose name it begins with. A stage without a pass ("tiles" on GPUs) takes no
-/// time.
-constexpr std::array<std::pair<const char*, const char*>, 10> stageNames{{{"path tracing", "pathtrace"},
+/// A pass belongs to the stage whose name it begins with. Not every stage has passes on every device.
+constexpr std::array<std::pair<const char*, const char*>, 11> stageNames{{{"path tracing", "pathtrace"},
                                                                           {"surfaces", "surfaces"},
                                                                           {"reprojection", "svgf/reproject"},
                                                                           {"tiles", "svgf/tiles"},
@@ -56,7 +55,8 @@ constexpr std::array<std::pair<const char*, const char*>, 10> stageNames{{{"path
                                                                           {"variance", "svgf/variance"},
                                                                           {"a-trous levels", "svgf/level"},
                                                                           {"young pixels", "svgf/young"},
-                                                                          {"composition", "svgf/compose"}}};
+                                                                          {"composition", "svgf/compose"},
+                                                                          {"anti-aliasing", "taa"}}};
 
 Stages stagesOf(const std::map<std::string, PassCost>& costs) {
     Stages stages;
@@ -64,7 +64,7 @@ Stages stagesOf(const std::map<std::string, PassCost>& costs) {
         double sum = 0.0;
         for (const auto& [pass, cost] : costs)
             sum += pass.starts_with(prefix) ? median(cost.milliseconds) : 0.0;
-        stages.bars.push_back({name, sum});
+        if (sum > 0.0 || stages.bars.empty()) stages.bars.push_back({name, sum});
     }
     return stages;
 }
@@ -73,7 +73,7 @@ RenderSettings settingsOf(const SvgfBench& o) {
     RenderSettings settings;
     settings.extent = {o.width, o.height};
     settings.pipeline = pipelineFor(o.preset, {"path", "svgf"}, {});
-    settings.jitter = Jitter::Off;
+    settings.jitter = defaultJitter(settings.pipeline);
     applyPreset(settings, o.preset);
     for (const std::string& text : o.assignments) assign(settings, text);
     return settings;
@@ -117,7 +117,7 @@ struct Measured {
 
 void writePlots(const SvgfBench& o, const Measured& m) {
     const std::filesystem::path folder(o.folder);
-    writeTextAtomically(folder / "svgf.stages.svg",
+    writeTextAtomically(folder / "svgf-stages.svg",
                         barPlot("Time per stage, " + o.scene, "ms", m.stages.bars));
     PlotLine tracing{"path tracing", {}}, filtering{"SVGF", {}}, levels{"SVGF", {}};
     for (const OfScene& scene : m.scenes) {
@@ -127,9 +127,9 @@ void writePlots(const SvgfBench& o, const Measured& m) {
     }
     for (size_t i = 0; i < m.levels.size(); ++i)
         levels.points.push_back({static_cast<double>(i + 1), m.levels[i].filtering()});
-    writeTextAtomically(folder / "svgf.triangles.svg",
+    writeTextAtomically(folder / "svgf-triangles.svg",
                         linePlot("Time against triangles", {"triangles", "ms", true}, {tracing, filtering}));
-    writeTextAtomically(folder / "svgf.levels.svg",
+    writeTextAtomically(folder / "svgf-levels.svg",
                         linePlot("Time against levels", {"levels", "ms"}, {levels}));
 }
 

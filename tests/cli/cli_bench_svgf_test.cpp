@@ -22,13 +22,13 @@ TEST_F(CliBenchSvgfTest, StagesTrianglesAndLevels) {
     ASSERT_TRUE(bench.is_object()) << result.output;
 
     for (const char* stage : {"path tracing", "surfaces", "reprojection", "tiles", "anti-lag", "variance",
-                              "a-trous levels", "young pixels", "composition"})
+                              "a-trous levels", "young pixels", "composition", "anti-aliasing"})
         EXPECT_GT(bench["ms"][stage].get<double>(), 0.0) << stage;
     ASSERT_GE(bench["scenes"].size(), 5u);
     for (size_t i = 1; i < bench["scenes"].size(); ++i)
         EXPECT_LE(bench["scenes"][i - 1]["triangles"], bench["scenes"][i]["triangles"]);
     ASSERT_EQ(bench["levels"].size(), 8u);
-    for (const char* name : {"svgf.stages.svg", "svgf.triangles.svg", "svgf.levels.svg"}) {
+    for (const char* name : {"svgf-stages.svg", "svgf-triangles.svg", "svgf-levels.svg"}) {
         const std::string svg = get(std::string("plots/") + name);
         EXPECT_TRUE(svg.starts_with("<svg ")) << name;
         EXPECT_TRUE(svg.ends_with("</svg>\n")) << name;
