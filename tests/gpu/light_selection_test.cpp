@@ -172,6 +172,18 @@ class LightSelectionTest : public RenderTest {
         EXPECT_LE(apart, a.mean.size() / 200);
     }
 
+    /// One sample for each pixel, through the scene's first camera.
+    std::vector<float> firstSample(const Scene& scene, const PathtraceSettings& pathtrace) {
+        scene::GpuScene onDevice(device(), scene::buildSceneData(scene));
+        FrameRenderer renderer(device(), onDevice, {}, 1);
+        RenderSettings settings;
+        settings.extent = size;
+        settings.pathtrace = pathtrace;
+        renderer.setSettings(settings);
+        renderer.render({.camera = scene::cameraParams(scene.cameras.at(0), size.width, size.height)});
+        return renderer.download().beauty;
+    }
+
   private:
     /// Student's t of two means of `batches` values as a normal deviate: the tails have the same probability.
     static double zOf(double t) {
@@ -226,6 +238,20 @@ TEST_F(LightSelectionTest, SkySunsAndLamps) {
 
 TEST_F(LightSelectionTest, MovingLights) {
     for (const scene::Tracer tracer : tracers) check(moving(), tracer);
+}
+
+/// By power, every sample would evaluate all of them.
+TEST_F(LightSelectionTest, MoreThan256LampsAreAlwaysChosenByTheTree) {
+    Scene scene = spots();
+    scene.lights.resize(256, scene.lights.front());
+    for (int i = 0; i < 3; ++i) {
+        scene.lights.push_back({});
+        scene.lights.back().kind = scene::PunctualLight::Kind::Directional;
+    }
+    scene::prepare(scene);
+    EXPECT_NE(firstSample(scene, byTree()), firstSample(scene, byPower(true)));
+    scene.lights.push_back(scene.lights.front());
+    EXPECT_EQ(firstSample(scene, byTree()), firstSample(scene, byPower(true)));
 }
 
 TEST_F(LightSelectionTest, SobolPoints) {

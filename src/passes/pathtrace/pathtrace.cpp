@@ -41,7 +41,7 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
     const PathtraceParams params = makeParams(scene, settings, launch);
     dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
                    {{"SAMPLER", static_cast<uint32_t>(launch.sampler)},
-                    {"LIGHT_TREE", settings.lightTree ? 1u : 0u},
+                    {"LIGHT_TREE", settings.lightTree || scene.needsLightTree() ? 1u : 0u},
                     {"HAS_LENS", launch.camera.lensRadius > 0.0f ? 1u : 0u}},
                    launch.extent);
 }
@@ -80,7 +80,8 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
               "Write the layers of what smooth glass shows, or of what it mirrors where it mirrors more, "
               "which helps denoisers, and trace that light for every sample; off: the glass's own layers");
         t.add("light_tree", &S::lightTree,
-              "Choose lights by what each can send to the point, by a tree over all lights; off: by power");
+              "Choose lights by what each can send to the point, by a tree over all lights, as always with "
+              "more than 256 point and spot lights; off: by power");
         return t;
     }();
     return table;

@@ -8,6 +8,11 @@
 #include "scene/model/expanded_nodes.h"
 
 namespace limpid::scene {
+namespace {
+
+constexpr uint32_t mostLampsByPower = 256;
+
+}  // namespace
 
 GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options)
     : features_(data.features),
@@ -142,6 +147,10 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},
             {"EXPANDED_NODES", gpuTraversal_}};
+}
+
+bool GpuScene::needsLightTree() const {
+    return features_.lightTree && params_.punctualCount > params_.sunCount + mostLampsByPower;
 }
 
 uint64_t GpuScene::byteCount() const {

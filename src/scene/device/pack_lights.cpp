@@ -82,8 +82,8 @@ class LightPacker {
         data_.features.triangleLights = !weights_.empty();
         packPunctuals();
         const AliasTable table = buildAliasTable(triangleWeights());
-        data_.lightAlias.insert(data_.lightAlias.begin(), table.entries.begin(), table.entries.end());
-        setProbabilities(0, table);
+        data_.lightAlias = table.entries;
+        setProbabilities(table);
         for (MovingLights& moving : data_.motion.lights) {
             for (size_t i = 0; i < moving.triangles.size(); ++i)
                 moving.probabilities.push_back(table.probabilities[moving.firstLight + i]);
@@ -122,9 +122,10 @@ class LightPacker {
         if (moves) data_.motion.lightTree = std::move(tree);
     }
 
-    void setProbabilities(size_t first, const AliasTable& table) {
+    /// Of triangles.
+    void setProbabilities(const AliasTable& table) {
         for (size_t i = 0; i < table.probabilities.size(); ++i)
-            data_.lights[(first + i) * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
+            data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
     }
 
     /// Weights by power, and partly equal for every lamp, since it is unknown how much of a lamp's power
@@ -152,9 +153,6 @@ class LightPacker {
         const double triangles = std::accumulate(weights_.begin(), weights_.end(), 0.0);
         std::vector<double> powers;
         for (const PunctualLight& light : scene_.lights) powers.push_back(packPunctual(light));
-        const AliasTable table = buildAliasTable(powers);
-        data_.lightAlias = table.entries;
-        setProbabilities(weights_.size(), table);
         data_.features.punctualLights = !scene_.lights.empty();
         data_.params.punctualCount = static_cast<uint32_t>(scene_.lights.size());
         const double sum = std::accumulate(powers.begin(), powers.end(), triangles);

@@ -89,7 +89,7 @@ LIMPID_CONST uint TEXTURE_UV1 = 512u;
 
 // lights: emissive triangles first, then punctual lights. Triangle: v0 | kind; v1 | probability; v2 | shading
 // triangle; emission | material, or NONE if the emission has no texture and no clear coat. Punctual: position
-// | kind; direction | probability if drawn by power; cos inner | cos outer | range | 0; intensity | 0.
+// | kind; direction | 0; cos inner | cos outer | range | 0; intensity | 0.
 LIMPID_CONST uint LIGHT_TEXELS = 4u;
 LIMPID_CONST uint LIGHT_TRIANGLE = 0u;
 LIMPID_CONST uint LIGHT_TRIANGLE_TWO_SIDED = 1u;
@@ -126,7 +126,7 @@ LIMPID_CONST uint LIGHT_MAPS = 1024u;
 LIMPID_CONST float LIGHT_MAP_NOT_HIDDEN = 1e30;  // equals INFINITE_DISTANCE
 
 // lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
-// entry. lightAlias: a table for triangles, then one for punctual lights, each counting from its own first.
+// entry. lightAlias: of emissive triangles.
 // environment: radiance | probability of choosing this texel.
 
 // ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + F90
@@ -160,7 +160,7 @@ LIMPID_CONST float CLEARCOAT_F0 = 0.04;
 struct SceneParams {
     vec3 sceneCenter;
     float sceneRadius;
-    uint triangleLightCount;  // number in `lights` and `lightAlias`; punctual lights follow
+    uint triangleLightCount;  // number in `lights`; punctual lights follow
     uint punctualCount;
     uint sunCount;                   // directional lights among them
     uint firstLightTrail;            // texel of lightTree where trails begin

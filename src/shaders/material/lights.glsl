@@ -12,10 +12,6 @@
 /// With both, directional lights and the tree each get at least this share of the samples, since what is brighter may
 /// be hidden.
 const float MIN_TREE_OR_SUN_SHARE = 0.3;
-/// Up to this number of punctual lights, next-event estimation evaluates all of them.
-const uint PUNCTUAL_LIGHTS_ALL_LOOKED_AT = 256u;
-/// With more lights, it evaluates this many candidates, drawn by power.
-const uint PUNCTUAL_CANDIDATES = 32u;
 /// The probability of choosing uniformly among the punctual lights that reach the point, instead of by
 /// contribution.
 const float PUNCTUAL_UNIFORM_SHARE = 0.4;
@@ -125,7 +121,7 @@ LightSample samplePunctualLight(int at, vec3 from) {
     }
     light.radiance = uintBitsToFloat(r3.xyz) *
                      punctualAttenuation(kind, light.direction, axis, light.distance, uintBitsToFloat(r2.xyz));
-    light.pdf = uintBitsToFloat(r1.w);
+    light.pdf = 1.0;
     light.delta = true;
     return light;
 }
@@ -158,32 +154,19 @@ struct PunctualChoice {
 struct PunctualCandidate {
     int at;
     float weight, uniformWeight;
-    float source;  // expected number of times it is a candidate
 };
 
-/// Evaluates all punctual lights, or PUNCTUAL_CANDIDATES of them drawn by power (resampled importance
-/// sampling, J. F. Talbot et al., "Importance resampling for global illumination", EGSR 2005). Chooses by
-/// usable light or, with probability PUNCTUAL_UNIFORM_SHARE, uniformly among those with any, since the
-/// brightest may be occluded. Lights that are hidden by their distance maps count little in both. One pass with two
-/// weighted reservoirs.
+/// Evaluates all punctual lights. Chooses by usable light or, with probability PUNCTUAL_UNIFORM_SHARE, uniformly among
+/// those with any, since the brightest may be occluded. Lights that are hidden by their distance maps count little in
+/// both. One pass with two weighted reservoirs. (With more than 256 point and spot lights the light tree is used.)
 PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint rng) {
-    const bool all = scene.punctualCount <= PUNCTUAL_LIGHTS_ALL_LOOKED_AT;
-    const uint count = all ? scene.punctualCount : PUNCTUAL_CANDIDATES;
     float u = stratified(rng), v = random(rng);
-    PunctualCandidate best = PunctualCandidate(0, 0.0, 0.0, 1.0), any = best;
+    PunctualCandidate best = PunctualCandidate(0, 0.0, 0.0), any = best;
     float sum = 0.0, reaching = 0.0;
-    for (uint i = 0u; i < count; ++i) {
-        uint index = i;
-        float source = 1.0;
-        if (!all) {
-            index = min(uint(random(rng) * float(scene.punctualCount)), scene.punctualCount - 1u);
-            const uvec2 entry = imageLoad(lightAlias, int(scene.triangleLightCount + index)).xy;
-            index = random(rng) < uintBitsToFloat(entry.x) ? index : entry.y;
-        }
+    for (uint index = 0u; index < scene.punctualCount; ++index) {
         const int at = int((scene.triangleLightCount + index) * LIGHT_TEXELS);
         const LightSample light = samplePunctualLight(at, from.position);
-        if (!all) source = light.pdf * float(count);
-        PunctualCandidate tried = PunctualCandidate(at, usableLight(from, light) / max(source, 1e-30), 1.0, source);
+        PunctualCandidate tried = PunctualCandidate(at, usableLight(from, light), 1.0);
         if (!(tried.weight > 0.0)) continue;
         if (HAS_LIGHT_DISTANCES) {
             const Hidden hidden = hiddenByMap(index, light.direction, light.distance);
@@ -203,7 +186,7 @@ PunctualChoice choosePunctualLight(Receiver from, SceneParams scene, inout uint 
     PunctualChoice choice = PunctualChoice(best.at, 0.0);
     if (reaching > 0.0) {
         const float share = best.weight / sum, uniformShare = best.uniformWeight / reaching;
-        choice.pdf = best.source * mix(share, uniformShare, PUNCTUAL_UNIFORM_SHARE);
+        choice.pdf = mix(share, uniformShare, PUNCTUAL_UNIFORM_SHARE);
     }
     return choice;
 }
@@ -323,10 +306,7 @@ LightSample sampleListedLight(uint index, Receiver from, vec2 u) {
     if (HAS_PUNCTUAL_LIGHTS) {
         const LightSample punctual = samplePunctualLight(at, from.position);
         const uint kind = imageLoad(lights, at).w & LIGHT_KIND_MASK;
-        if (kind >= LIGHT_POINT) {
-            light = punctual;
-            light.pdf = 1.0;
-        }
+        if (kind >= LIGHT_POINT) light = punctual;
     }
     return light;
 }
