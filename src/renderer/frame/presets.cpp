@@ -55,37 +55,39 @@ Preset ambientOcclusionTutorial() {
 }
 
 Preset svgfOfCis565() {
-    return {.name = "svgf-cis565",
-            .help =
-                "SVGF as in \"Path Tracing Denoising\", a final project of the course CIS 565: one signal "
-                "with its albedo, weights by distances of points and of normals in world units. "
-                "Differences: the first step is 1 pixel instead of 2, variances are those of a weighted mean",
-            .integrators = lightIntegrators,
-            .denoisers = {"svgf"},
-            .jitter = Jitter::Off,
-            .assignments = asInSources({"svgf.separate=off",
-                                        "svgf.demodulate=off",
-                                        "svgf.alpha=0.2",
-                                        "svgf.alpha_moments=0.2",
-                                        "svgf.normal_test=0.995",
-                                        "svgf.depth_test=0.1",
-                                        "svgf.relative=off",
-                                        "svgf.antilag=0",
-                                        "svgf.fireflies=0",
-                                        "svgf.young_radius=0",
-                                        "svgf.stabilisation_alpha=1",
-                                        "svgf.levels=5",
-                                        "svgf.history_level=1",
-                                        "svgf.wide=on",
-                                        "svgf.phi_color=0.7",
-                                        "svgf.phi_normal=0.2",
-                                        "svgf.phi_depth=0.35",
-                                        "svgf.boost=off",
-                                        "svgf.blur_levels=10",
-                                        "svgf.mean_levels=0",
-                                        "svgf.damp_outliers=off",
-                                        "svgf.position=on",
-                                        "taa.frames=1"})};
+    return {
+        .name = "svgf-cis565",
+        .help =
+            "SVGF as in \"Path Tracing Denoising\", a final project of the course CIS 565: one signal "
+            "with its albedo, weights by distances of points and of normals in world units. "
+            "Differences: the first step is 1 pixel instead of 2, variances are those of a weighted mean, "
+            "and the search for history in 3x3 pixels stays on",
+        .integrators = lightIntegrators,
+        .denoisers = {"svgf"},
+        .jitter = Jitter::Off,
+        .assignments = asInSources({"svgf.separate=off",
+                                    "svgf.demodulate=off",
+                                    "svgf.alpha=0.2",
+                                    "svgf.alpha_moments=0.2",
+                                    "svgf.normal_test=0.995",
+                                    "svgf.depth_test=0.1",
+                                    "svgf.relative=off",
+                                    "svgf.antilag=0",
+                                    "svgf.fireflies=0",
+                                    "svgf.young_radius=0",
+                                    "svgf.stabilisation_alpha=1",
+                                    "svgf.levels=5",
+                                    "svgf.history_level=1",
+                                    "svgf.wide=on",
+                                    "svgf.phi_color=0.7",
+                                    "svgf.phi_normal=0.2",
+                                    "svgf.phi_depth=0.35",
+                                    "svgf.boost=off",
+                                    "svgf.blur_levels=10",
+                                    "svgf.mean_levels=0",
+                                    "svgf.damp_outliers=off",
+                                    "svgf.position=on",
+                                    "taa.frames=1"})};
 }
 
 Preset kpcnOfCis565() {
