@@ -530,7 +530,9 @@ SvgfImages filterSvgfSignals(FrameGraph& graph, const DenoiserInput& input, cons
 
 DenoiserOutput svgf::record(gpu::FrameGraph& graph, const DenoiserInput& input,
                             const FilterSettings& settings) {
-    const SvgfImages images = Svgf(graph, input, settings.svgf).record(false);
+    DenoiserInput own = input;
+    own.target = targetBeforeTaa(graph, input, settings.taa);
+    const SvgfImages images = Svgf(graph, own, settings.svgf).record(false);
     return {antialias(graph, input, images.beauty, settings.taa), {}, images.moments, images.reasons};
 }
 

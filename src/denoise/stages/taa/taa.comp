@@ -15,7 +15,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) uniform Params {
     TaaParams params;
 };
+#ifdef LIMPID_FILTER_BUFFERS
+READ_LAYER(1, beauty);  // halves or floats
+#define LOAD_BEAUTY(at) LOAD_LAYER(beauty, at).rgb
+#else
 layout(set = 0, binding = 1, rgba32f) uniform readonly image2D beauty;
+#define LOAD_BEAUTY(at) imageLoad(beauty, at).rgb
+#endif
 READ_LAYER(2, depth);
 READ_LAYER(3, motion);
 READ_HALF4(4, before);  // mean, frames in it
@@ -54,7 +60,7 @@ ivec2 inside(ivec2 at) {
 
 /// The pixel's encoded beauty; the distance of its surface, or 0.
 vec4 loadTexel(ivec2 at) {
-    return vec4(encode(imageLoad(beauty, inside(at)).rgb), hitDistance(LOAD_LAYER(depth, inside(at))));
+    return vec4(encode(LOAD_BEAUTY(inside(at))), hitDistance(LOAD_LAYER(depth, inside(at))));
 }
 
 #ifdef LIMPID_FILTER_BUFFERS

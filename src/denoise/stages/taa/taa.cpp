@@ -33,6 +33,12 @@ float framesToAverage(const TaaSettings& settings, bool jitterChanges) {
     return jitterChanges ? 2.0f : 1.0f;
 }
 
+ImageHandle targetBeforeTaa(gpu::FrameGraph& graph, const DenoiserInput& input, const TaaSettings& settings) {
+    if (framesToAverage(settings, input.jitterChanges) <= 1.0f) return input.target;
+    if (input.filters != gpu::Backing::Buffer) return {};
+    return graph.transient("taa/aliased", Format::RGBA16Float, graph.extent(input.diffuse));
+}
+
 ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, ImageHandle beauty,
                       const TaaSettings& settings) {
     const float frames = framesToAverage(settings, input.jitterChanges);

@@ -22,7 +22,12 @@ const ParamTable<TaaSettings>& taaParams();
 /// which is off.
 float framesToAverage(const TaaSettings& settings, bool jitterChanges);
 
-/// Anti-aliases `beauty` (rgba32f, not negative); returns it unchanged if that is off. The pass and its
+/// Where a method may write the picture for antialias(): on GPUs (filters in buffers) an RGBA16Float image,
+/// which they read faster than floats; on CPUs empty. If anti-aliasing is off, input.target.
+gpu::ImageHandle targetBeforeTaa(gpu::FrameGraph& graph, const DenoiserInput& input,
+                                 const TaaSettings& settings);
+
+/// Anti-aliases `beauty` (not negative), to rgba32f; returns it unchanged if that is off. The pass and its
 /// history are called "taa".
 gpu::ImageHandle antialias(gpu::FrameGraph& graph, const DenoiserInput& input, gpu::ImageHandle beauty,
                            const TaaSettings& settings);
