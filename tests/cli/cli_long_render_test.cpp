@@ -139,6 +139,29 @@ TEST_F(CliLongRenderTest, MergedSamplesAreThoseOfOneRun) {
     expectSame("whole.exr", "merged.exr");
 }
 
+/// tools/slurm/shard.sh, with the variables that Slurm sets.
+TEST_F(CliLongRenderTest, TasksOfAJobArrayAreShards) {
+    const auto task = [](const std::string& id, const std::string& range, const std::string& arguments) {
+        return runProgram(fmt::format("SLURM_ARRAY_TASK_ID={} {} LIMPID='{}' '{}/tools/slurm/shard.sh' {}",
+                                      id, range, LIMPID_PROGRAM, LIMPID_SOURCE_DIR, arguments));
+    };
+    const std::string all = "SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=2 SLURM_ARRAY_TASK_COUNT=2";
+    const std::string some = "SLURM_ARRAY_TASK_MIN=2 SLURM_ARRAY_TASK_MAX=2 SLURM_ARRAY_TASK_COUNT=1";
+    const std::string scene = "render builtin:cornell --spp 128" + std::string(small);
+    const std::string parts =
+        scene + "-o " + path("{shard}.sums") + " --checkpoint " + path("{shard}.ck") + " --resume";
+    expectDone(scene + "-o " + path("whole.exr"));
+    EXPECT_EQ(task("1", all, parts).code, 0);
+    expect("merge " + path("1.sums") + " -o " + path("merged.exr"), 3, "shard 2/2");
+    Result result = task("2", some, parts);
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.output.find("LIMPID_SHARDS"), std::string::npos) << result.output;
+    EXPECT_EQ(task("2", some + " LIMPID_SHARDS=2", parts).code, 0);
+    expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.exr"));
+    expectSame("whole.exr", "merged.exr");
+    EXPECT_EQ(task("", "", parts).code, 2);
+}
+
 TEST_F(CliLongRenderTest, MergedPngsAndFloatsAreThoseOfOneRun) {
     const std::string scene = "render builtin:cornell --spp 70 --exposure 0.5" + std::string(small);
     expectDone(scene + "-o " + path("whole.png"));
