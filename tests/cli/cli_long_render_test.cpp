@@ -152,7 +152,7 @@ TEST_F(CliLongRenderTest, TasksOfAJobArrayAreShards) {
         scene + "-o " + path("{shard}.sums") + " --checkpoint " + path("{shard}.ck") + " --resume";
     expectDone(scene + "-o " + path("whole.exr"));
     EXPECT_EQ(task("1", all, parts).code, 0);
-    expect("merge " + path("1.sums") + " -o " + path("merged.exr"), 3, "shard 2/2");
+    expect("merge " + path("1.sums") + " -o " + path("merged.exr"), 3, "shard 2 of 2");
     Result result = task("2", some, parts);
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.output.find("LIMPID_SHARDS"), std::string::npos) << result.output;

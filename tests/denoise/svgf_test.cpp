@@ -595,8 +595,8 @@ TEST_F(SvgfMemoryTest, IsWhatTheBenchmarksSay) {
         DenoiserSettings settings;
         settings.svgf.separate = separate;
         denoise(*method, frame, settings);
-        // With one signal, images of one pixel stand for those that four levels would write for the second.
-        const double others = separate ? 0.0 : 4 * 8 + 4;
+        // With one signal, images of one pixel stand for those that levels would write for the second.
+        const double others = separate ? 0.0 : 8 + 4;
         const double bytes = static_cast<double>(graph_.bytesOfImagesWrittenFrom(0)) - others;
         EXPECT_EQ(bytes / double{columns} / double{rows}, separate ? 184.625 : 108.3125);
         // With one signal, the same image is bound to both.

@@ -279,6 +279,18 @@ TEST(Prepare, AddsASkyWhereTheScenesLightsLeaveItDark) {
     EXPECT_TRUE(getsSky(punctual)) << "is off";
 }
 
+/// A lamp close to a square of area 1 lights a disc.
+TEST(Prepare, AddsASkyIfThreeQuartersOfWhatIsSeenAreDark) {
+    constexpr float pi = 3.14159265f, height = 0.01f;
+    for (const float lit : {0.22f, 0.28f}) {
+        Scene scene = squareScene();
+        scene.lights = {{.kind = PunctualLight::Kind::Point, .position = {0.5f, 0.5f, height}}};
+        scene.lights[0].range = std::sqrt(lit / pi + height * height);
+        prepare(scene, SkyRule::InTheDark);
+        EXPECT_EQ(!scene.environment.empty(), lit < 0.25f) << lit;
+    }
+}
+
 /// A texture that is black except for JPEG artefacts, and one that is not.
 TEST(Prepare, KnowsBlackEmissionTextures) {
     for (const uint8_t level : {uint8_t{3}, uint8_t{90}}) {

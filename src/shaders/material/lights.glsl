@@ -144,7 +144,7 @@ float usableLight(Receiver from, LightSample light) {
     return luminance(light.radiance) * usable;
 }
 
-/// A punctual light for the point; pdf 0: no candidate reaches it.
+/// A punctual light for the point; pdf 0: no light reaches it.
 struct PunctualChoice {
     int at;  // position in `lights`
     float pdf;

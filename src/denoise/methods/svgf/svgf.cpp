@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "base/text/format.h"
 #include "denoise/methods/methods.h"
 #include "denoise/methods/svgf/svgf_lags.h"
 #include "denoise/methods/svgf/svgf_params.h"
@@ -333,25 +332,25 @@ class Svgf {
         constants.push_back({"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u});
         const bool both = signals.size() > 1;
         constants.push_back({"BOTH", both ? 1u : 0u});
-        const auto unused = [&](const char* what, Format format) {
-            return graph_.transient(formatText("svgf/level {} {}", number, what), format, {1, 1},
-                                    input_.filters);
+        const auto unused = [&](const char* name, Format format) {
+            return graph_.transient(name, format, {1, 1}, input_.filters);
         };
-        std::vector<gpu::Binding> bindings{
-            {"surfaces", surfaces.current},
-            {"signalA", before.front()},
-            {"signalB", before.back()},
-            {"filteredA", filtered.front()},
-            {"filteredB", both ? filtered.back() : unused("no second", Format::RGBA16Float)}};
+        if (!both && !noSecond_) noSecond_ = unused("svgf/no second", Format::RGBA16Float);
+        std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
+                                           {"signalA", before.front()},
+                                           {"signalB", before.back()},
+                                           {"filteredA", filtered.front()},
+                                           {"filteredB", both ? filtered.back() : noSecond_}};
         const Accumulated &a = accumulated.front(), &b = accumulated.back();
         if (mixed)
-            bindings.insert(bindings.end(),
-                            {{"stablePastA", a.stablePast},
-                             {"stablePastB", b.stablePast},
-                             {"stableA", a.stable.current},
-                             {"stableB", both ? b.stable.current : unused("no stable", Format::R32Uint)},
-                             {"momentsA", a.moments},
-                             {"momentsB", b.moments}});
+            bindings.insert(
+                bindings.end(),
+                {{"stablePastA", a.stablePast},
+                 {"stablePastB", b.stablePast},
+                 {"stableA", a.stable.current},
+                 {"stableB", both ? b.stable.current : unused("svgf/no second stable", Format::R32Uint)},
+                 {"momentsA", a.moments},
+                 {"momentsB", b.moments}});
         graph_.dispatch({.pass = "svgf/level " + std::to_string(number),
                          .shader = levelShader(mixed),
                          .bindings = bindings,
@@ -404,6 +403,7 @@ class Svgf {
     const SvgfSettings& settings_;
     const Extent extent_;
     const bool buffers_;
+    ImageHandle noSecond_;  ///< of one pixel, where levels could write a second signal
 };
 
 }  // namespace
@@ -413,7 +413,7 @@ const ParamTable<SvgfSettings>& svgf::params() {
         using S = SvgfSettings;
         ParamTable<S> t("svgf");
         t.add("separate", &S::separate,
-              "Filter diffuse and specular light separately; off: their sum, in half the time");
+              "Filter diffuse and specular light separately; off: their sum, in 0.6 of the time");
         t.add("demodulate", &S::demodulate, "Filter light without albedo; keeps textures sharp");
         t.add("min_albedo", &S::minAlbedo, 1e-3, 1.0, "",
               "Minimum albedo that `demodulate` divides by; lower keeps the colours of dark surfaces apart, "

@@ -40,7 +40,7 @@ const int REACH = WIDE ? 2 : 1;
 const float TENT[3] = float[3](2.0 / 4.0, 1.0 / 4.0, 0.0);
 const float LOG2_E = 1.44269504;
 
-// Deviations of the block's pixels and of those next to them, of both signals; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
+// Deviations of both signals, of the block and of the pixels next to it; loaded if BLUR_VARIANCE and SIDE_BY_SIDE.
 vec2 deviationsAround[3 * (SVGF_COLUMN + 2)];
 
 /// Light of one signal.
