@@ -50,9 +50,11 @@ TEST_F(CliServeTest, RefusesAndWarns) {
     expect("serve " + std::string(small) + "--certificate a.pem", 2,
            "--certificate and --key belong together");
     expect("serve " + std::string(small) + "--port 0 --files '" + path("none") + "'", 3, "no such folder");
-    expect("serve " + std::string(small) + "--port 0 --certificate '" + path("a") + "' --key '" + path("b") +
-               "'",
-           1, "the certificate or its key cannot be read");
+    const std::string pair = "--port 0 --certificate '" + path("a") + "' --key '" + path("b") + "'";
+    expect("serve " + std::string(small) + pair, 3, "does not exist");
+    put("a", "no certificate");
+    put("b", "no key");
+    expect("serve " + std::string(small) + pair, 1, "the certificate or its key cannot be read");
     const Result open = serve("--bind 0.0.0.0", "true");
     EXPECT_NE(open.output.find("can be reached from other machines"), std::string::npos) << open.output;
 }

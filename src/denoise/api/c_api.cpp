@@ -67,7 +67,9 @@ std::vector<DryFrame> dryFrames() {
         {LIMPID_INPUT_EMISSION, LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE},
         optional,
         all};
-    std::vector<DryFrame> frames{{.orthographic = true}};
+    std::vector<DryFrame> frames{
+        {.orthographic = true},
+        {.without = {LIMPID_INPUT_ROUGHNESS, LIMPID_INPUT_HIT_DISTANCE}, .orthographic = true}};
     for (const gpu::Format color : {gpu::Format::RGBA16Float, gpu::Format::RGBA32Float})
         for (const auto& inputs : without) frames.push_back({.without = inputs, .color = color});
     return frames;
