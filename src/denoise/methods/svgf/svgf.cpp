@@ -310,52 +310,64 @@ class Svgf {
                                 Format::RGBA16Float, extent_, input_.filters);
     }
 
+    std::vector<gpu::ConstantValue> levelConstants(const std::vector<Signal>& signals, int number) const {
+        // Only the last signal may be specular, and compare roughness.
+        std::vector<gpu::ConstantValue> constants = filterConstants(signals.back());
+        constants.insert(constants.end(), {{"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u},
+                                           {"WIDE", settings_.wide ? 1u : 0u},
+                                           {"SIDE_BY_SIDE", levelStep(number) == 1 ? 1u : 0u},
+                                           {"LOOKS", number <= settings_.meanLevels ? 1u : 0u},
+                                           // Not in the first level: its deviations are those of single
+                                           // pixels, and say too little.
+                                           {"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u},
+                                           {"BOTH", signals.size() > 1 ? 1u : 0u}});
+        return constants;
+    }
+
+    /// An image of one pixel, where a level could write a second signal.
+    ImageHandle noSecond(const std::string& what, Format format) {
+        return graph_.transient("svgf/no second" + what, format, {1, 1}, input_.filters);
+    }
+
+    /// What the last level reads and writes besides.
+    std::vector<gpu::Binding> stableBindings(const std::vector<Accumulated>& accumulated) {
+        const Accumulated &a = accumulated.front(), &b = accumulated.back();
+        const bool both = accumulated.size() > 1;
+        return {{"stablePastA", a.stablePast},
+                {"stablePastB", b.stablePast},
+                {"stableA", a.stable.current},
+                {"stableB", both ? b.stable.current : noSecond(" stable", Format::R32Uint)},
+                {"momentsA", a.moments},
+                {"momentsB", b.moments}};
+    }
+
     /// All signals in one pass: they have the same surfaces and, but for roughness, the same weights of
     /// surfaces.
     std::vector<ImageHandle> level(const std::vector<Signal>& signals, const History& surfaces,
                                    const std::vector<Accumulated>& accumulated,
                                    const std::vector<ImageHandle>& before, int number) {
-        const Signal& last = signals.back();  // the only one that may be specular
-        const bool mixed = stabilises() && number == settings_.levels;
+        const bool mixed = stabilises() && number == settings_.levels, both = signals.size() > 1;
         std::vector<ImageHandle> filtered;
         for (size_t i = 0; i < signals.size(); ++i)
             filtered.push_back(levelTarget(signals[i], accumulated[i], number));
-        const int step = levelStep(number);
-        SvgfFilterParams params = filterParams(step);
-        params.stabilisationAlpha = accumulated.front().stable.valid ? settings_.stabilisationAlpha : 1.0f;
-        std::vector<gpu::ConstantValue> constants = filterConstants(last);
-        constants.push_back({"BLUR_VARIANCE", number <= settings_.blurLevels ? 1u : 0u});
-        constants.push_back({"WIDE", settings_.wide ? 1u : 0u});
-        constants.push_back({"SIDE_BY_SIDE", step == 1 ? 1u : 0u});
-        constants.push_back({"LOOKS", number <= settings_.meanLevels ? 1u : 0u});
-        // Not in the first level: its deviations are those of single pixels, and say too little.
-        constants.push_back({"DAMP_OUTLIERS", settings_.dampOutliers && number > 1 ? 1u : 0u});
-        const bool both = signals.size() > 1;
-        constants.push_back({"BOTH", both ? 1u : 0u});
-        const auto unused = [&](const char* name, Format format) {
-            return graph_.transient(name, format, {1, 1}, input_.filters);
-        };
-        if (!both && !noSecond_) noSecond_ = unused("svgf/no second", Format::RGBA16Float);
+        if (!both && !noSecond_) noSecond_ = noSecond("", Format::RGBA16Float);
         std::vector<gpu::Binding> bindings{{"surfaces", surfaces.current},
                                            {"signalA", before.front()},
                                            {"signalB", before.back()},
                                            {"filteredA", filtered.front()},
                                            {"filteredB", both ? filtered.back() : noSecond_}};
-        const Accumulated &a = accumulated.front(), &b = accumulated.back();
-        if (mixed)
-            bindings.insert(
-                bindings.end(),
-                {{"stablePastA", a.stablePast},
-                 {"stablePastB", b.stablePast},
-                 {"stableA", a.stable.current},
-                 {"stableB", both ? b.stable.current : unused("svgf/no second stable", Format::R32Uint)},
-                 {"momentsA", a.moments},
-                 {"momentsB", b.moments}});
+        if (mixed) {
+            const std::vector<gpu::Binding> stable = stableBindings(accumulated);
+            bindings.insert(bindings.end(), stable.begin(), stable.end());
+        }
+        const int step = levelStep(number);
+        SvgfFilterParams params = filterParams(step);
+        params.stabilisationAlpha = accumulated.front().stable.valid ? settings_.stabilisationAlpha : 1.0f;
         graph_.dispatch({.pass = "svgf/level " + std::to_string(number),
                          .shader = levelShader(mixed),
                          .bindings = bindings,
                          .params = gpu::paramsOf(params),
-                         .constants = constants,
+                         .constants = levelConstants(signals, number),
                          .extent = levelInvocations(extent_, step, {1, SVGF_COLUMN})});
         return filtered;
     }
@@ -403,7 +415,7 @@ class Svgf {
     const SvgfSettings& settings_;
     const Extent extent_;
     const bool buffers_;
-    ImageHandle noSecond_;  ///< of one pixel, where levels could write a second signal
+    ImageHandle noSecond_;  ///< for all levels
 };
 
 }  // namespace
