@@ -17,7 +17,7 @@
 #include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 #include "scene/motion/scene_animator.h"
-#include "tests/gpu/lights_sample.h"
+#include "tests/gpu/lights/lights_sample.h"
 #include "tests/gpu/render_fixture.h"
 
 namespace limpid::test {

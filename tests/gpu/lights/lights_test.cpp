@@ -8,7 +8,7 @@
 #include "lights_sample.comp.h"
 #include "scene/model/environment.h"
 #include "tests/gpu/gpu_fixture.h"
-#include "tests/gpu/lights_sample.h"
+#include "tests/gpu/lights/lights_sample.h"
 #include "tests/reference/statistics.h"
 
 namespace limpid::test {
