@@ -196,7 +196,9 @@ TEST_F(ViewToolsTest, LightsChangeWithoutLoadingTheScene) {
     EXPECT_EQ(viewer.fact("scenes"), "1");
 
     // While the clip plays, histories continue.
+    ASSERT_GT(viewer.number("frames"), 10) << "so that fewer frames are those of another method";
     viewer.choose("denoiser", "svgf");
+    viewer.waitFor("the method", [&] { return viewer.number("frames") < 10; });
     viewer.click("playing");
     viewer.waitFor("frames", [&] { return viewer.number("frames") > 10; });
     for (const char* state : {"off", "on"}) {
