@@ -139,6 +139,31 @@ TEST_F(CliLongRenderTest, MergedSamplesAreThoseOfOneRun) {
     expectSame("whole.exr", "merged.exr");
 }
 
+/// Each block finds its own instants of the open shutter.
+TEST_F(CliLongRenderTest, MotionBlurIsTheSameInShards) {
+    const std::string scene =
+        "render builtin:cornell-moving --time 0.5 --fps 4 --spp 130" + std::string(small);
+    const std::string blurred = scene + "--shutter 1 ";
+    expectDone(blurred + "-o " + path("whole.exr"));
+    for (const char* shard : {"2", "1"})
+        expectDone(blurred + fmt::format("--shard {}/2 -o {}", shard, path(fmt::format("{}.sums", shard))));
+    expectDone("merge " + path("1.sums") + " " + path("2.sums") + " -o " + path("merged.exr"));
+    expectSame("whole.exr", "merged.exr");
+    expectDone(scene + "-o " + path("sharp.exr"));
+    EXPECT_NE(get("whole.exr"), get("sharp.exr"));
+
+    const std::string checkpoint = "--checkpoint " + path("a.ck") + " -o " + path("a.exr");
+    expectDone(blurred + checkpoint);
+    expect(scene + "--shutter 0.5 --resume " + checkpoint, 3, "shutter is 1 frames, center, not 0.5 frames");
+    expect(scene + "--shutter 1 --denoiser svgf -o " + path("b.exr"), 2, "--shutter");
+    expect(scene + "--shutter 1 --progressive -o " + path("b.exr"), 2, "--shutter");
+    expect(scene + "--shutter-position end -o " + path("b.exr"), 2, "goes with --shutter");
+    expect("render builtin:cornell --spp 1 --shutter 1 -o " + path("b.exr") + small, 0, "nothing moves");
+    expect("render builtin:cornell-moving --spp 32 --samples-per-launch 4 --shutter 1 -o " + path("b.exr") +
+               small,
+           0, "there are 8 launches");
+}
+
 /// tools/slurm/shard.sh, with the variables that Slurm sets.
 TEST_F(CliLongRenderTest, TasksOfAJobArrayAreShards) {
     const auto task = [](const std::string& id, const std::string& range, const std::string& arguments) {

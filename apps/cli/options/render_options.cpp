@@ -66,6 +66,15 @@ void checkCheckpointIsNoOutput(const RenderOptions& o) {
     }
 }
 
+void checkShutter(const RenderOptions& o) {
+    const Shutter& shutter = o.sequence.timing.shutter;
+    if (!shutter.isOpen() && shutter != Shutter{}) throw UsageError("--shutter-position goes with --shutter");
+    if (shutter.isOpen() && (!hasIndependentFrames(pipelineOf(o)) || isProgressive(o)))
+        throw UsageError(
+            "--shutter is for --integrator path or direct, --denoiser none and no --progressive: denoisers "
+            "follow sharp surfaces from frame to frame");
+}
+
 void addOutputOptions(CLI::App& command, RenderOptions& o) {
     const OptionGroup group(command, "Output");
     command
@@ -231,6 +240,7 @@ void checkRenderOptions(const RenderOptions& o) {
                       isClip(FramePattern(o.output).format(0)) || writesSums(o)))
         throw UsageError("--preview is for stills by --integrator path or direct and --denoiser none");
     checkLens(o.lens, pipeline);
+    checkShutter(o);
     if (o.scene.fov > 0.0f && o.lens.focalLength > 0.0f)
         throw UsageError("--fov and --focal-length say the same: give one of them");
     checkLongRender(o.longRender);

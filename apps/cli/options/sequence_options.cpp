@@ -42,7 +42,7 @@ void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
     const OptionGroup group(command, "Animation");
     command.add_option("--animation", choice.animation,
                        "Clip by name or number, 'all' together, or 'none' for the rest pose; default: the "
-                       "first if there are several frames or --time");
+                       "first if there are several frames, --time or --shutter");
     command
         .add_option("--frames", choice.frames,
                     "Number of frames, with %04d in OUTPUT; default: all of the animation")
@@ -54,11 +54,25 @@ void addSequenceOptions(CLI::App& command, SequenceChoice& choice) {
         ->each([&choice](const std::string&) { choice.timeGiven = true; });
     command.add_option("--camera-path", choice.cameraPath,
                        "Camera path: a JSON file (docs/animation.md), orbit, dolly or shake");
+    command
+        .add_option("--shutter", choice.timing.shutter.open,
+                    "Motion blur: how long the shutter is open, in frames (0: none; 0.5 as film cameras); "
+                    "each launch of samples sees another instant")
+        ->check(CLI::Range(0.0, 100.0));
+    command
+        .add_option_function<std::string>(
+            "--shutter-position",
+            [&choice](const std::string& name) {
+                choice.timing.shutter.position = parseShutterPosition(name);
+            },
+            "At the frame's time, the shutter opens (start), is halfway (center, default) or closes (end)")
+        ->check(CLI::IsMember({"start", "center", "end"}));
 }
 
 void chooseAnimation(const SequenceChoice& choice, const FramePattern& output, scene::Scene& scene) {
     if (choice.animation == "none") return;
-    const bool timeMatters = choice.timeGiven || choice.frames > 1 || holdsFrames(output);
+    const bool timeMatters =
+        choice.timeGiven || choice.frames > 1 || choice.timing.shutter.isOpen() || holdsFrames(output);
     if (choice.animation.empty() && (!timeMatters || scene.rig.clips.empty())) return;
     scene::chooseClip(scene, choice.animation);
     const scene::Clip& clip = scene.rig.clips[static_cast<size_t>(scene.clip)];

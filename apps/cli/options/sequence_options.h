@@ -1,4 +1,4 @@
-// --animation, --frames, --fps, --time and --camera-path: what `limpid render` shows over time.
+// --animation, --frames, --fps, --time, --camera-path and --shutter: what `limpid render` shows over time.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -101,6 +101,8 @@ void render(const RenderOptions& o) {
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing, o.lens);
+    if (o.sequence.timing.shutter.isOpen() && !sequence.isBlurred())
+        log::warn("--shutter: nothing moves, there is nothing to blur");
     const uint64_t content = sceneHash(scene, data);
     data = {};  // now on the device, like the textures
     scene.textures.clear();

@@ -1,4 +1,6 @@
 // `limpid render` with the path tracer and no denoiser: stills, and sequences whose frames are independent.
+#include <algorithm>
+
 #include "base/files/file.h"
 #include "base/log.h"
 #include "cli/interrupt.h"
@@ -48,6 +50,15 @@ AccumulationHeader headerOf(const RenderJob& job) {
     return header;
 }
 
+/// A few sharp pictures over each other are no blur.
+void warnOfFewInstants(const Sequence& sequence, const BlockPlan& plan) {
+    constexpr uint64_t enough = 16;
+    if (!sequence.isBlurred() || plan.launches() >= std::min(plan.samples, enough)) return;
+    log::warn(
+        "--shutter: each launch sees one instant, and there are {} launches; lower --samples-per-launch",
+        plan.launches());
+}
+
 }  // namespace
 
 void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
@@ -57,6 +68,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
     FrameRenderer frames(job.device, job.scene, job.settings, header.plan.samples);
     BlockRenderer renderer(frames, header.plan);
     LongRender render(renderer, job.sequence, header);
+    warnOfFewInstants(job.sequence, header.plan);
     if (o.longRender.timeLimit > 0.0) {
         const std::chrono::duration<double> limit(o.longRender.timeLimit);
         render.setDeadline(job.started + std::chrono::duration_cast<LongRender::Clock::duration>(limit));

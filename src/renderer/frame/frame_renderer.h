@@ -46,6 +46,8 @@ class FrameRenderer {
 
     /// Goes to a frame that continues nothing: its mean and its histories are new. Launches render it.
     void begin(Moment moment);
+    /// Shows another moment from the next launch on, while the frame's mean goes on: motion blur.
+    void moveOn(Moment moment) { goTo(std::move(moment)); }
     /// Records the first launch of a frame that continues nothing, without executing it: graph() then tells
     /// which pipelines it needs, and can compile them.
     void plan(Moment moment);
@@ -60,6 +62,7 @@ class FrameRenderer {
     /// Sets the settings of the following frames. Histories continue, unless their samples are of another
     /// kind than the new ones; in that case they restart and this returns true.
     bool setSettings(const RenderSettings& settings);
+    const RenderSettings& settings() const { return settings_; }
 
     /// Records passes after those of the frame that make the displayed picture; displayed() returns it.
     using Display = std::function<gpu::ImageHandle(gpu::FrameGraph&, const FrameImages&)>;

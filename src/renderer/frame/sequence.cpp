@@ -14,15 +14,35 @@ CameraParams Sequence::cameraAt(double time, gpu::Extent extent) const {
     return scene::cameraParams(scene::withLens(camera, lens_), extent.width, extent.height);
 }
 
+Moment Sequence::momentAt(double now, std::optional<double> before, gpu::Extent extent) const {
+    Moment moment;
+    moment.camera = cameraAt(now, extent);
+    if (before) moment.previousCamera = cameraAt(*before, extent);
+    if (animator_) moment.scene = animator_->frame(now, before.value_or(now));
+    return moment;
+}
+
 Moment Sequence::moment(uint64_t frame, gpu::Extent extent) const {
     const double now = timing_.timeOf(frame);
-    const double before = frame == 0 ? now : timing_.timeOf(frame - 1);
-    Moment moment;
+    std::optional<double> before;
+    if (frame > 0) before = timing_.timeOf(frame - 1);
+    if (before && isCut(*before, now)) before.reset();
+    Moment moment = momentAt(now, before, extent);
     moment.number = frame;
-    moment.camera = cameraAt(now, extent);
-    const bool cut = frame == 0 || (path_ && path_->cutBetween(before, now));
-    if (!cut) moment.previousCamera = cameraAt(before, extent);
-    if (animator_) moment.scene = animator_->frame(now, cut ? now : before);
+    return moment;
+}
+
+Moment Sequence::momentDuring(uint64_t frame, double instant, gpu::Extent extent) const {
+    const double ofFrame = timing_.timeOf(frame);
+    double offset = timing_.shutter.offset(instant) / timing_.framesPerSecond;
+    if (isOtherShot(ofFrame, ofFrame + offset)) offset = -offset;
+    if (isOtherShot(ofFrame, ofFrame + offset)) offset = 0.0;
+    const double now = ofFrame + offset;
+    std::optional<double> before;
+    if (frame > 0) before = timing_.timeOf(frame - 1) + offset;
+    if (before && isCut(*before, now)) before.reset();
+    Moment moment = momentAt(now, before, extent);
+    moment.number = frame;
     return moment;
 }
 

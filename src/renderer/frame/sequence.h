@@ -1,11 +1,13 @@
 // A scene over time: the point in time that each frame of a sequence shows.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
 #include "gpu/graph/frame_graph.h"
 #include "renderer/frame/moment.h"
+#include "renderer/sequence/shutter.h"
 #include "scene/framing/camera_path.h"
 #include "scene/model/camera.h"
 #include "scene/motion/scene_animator.h"
@@ -15,6 +17,7 @@ namespace limpid {
 struct SequenceTiming {
     double framesPerSecond = 30.0;
     double start = 0.0;  ///< time of frame 0, seconds
+    Shutter shutter = {};
 
     double timeOf(uint64_t frame) const { return start + static_cast<double>(frame) / framesPerSecond; }
 };
@@ -30,13 +33,22 @@ class Sequence {
 
     /// The state for a picture of this size. Motion is invalid in frame 0 and at cuts of the camera path.
     Moment moment(uint64_t frame, gpu::Extent extent) const;
-    /// The camera alone.
+    /// Whether pictures have motion blur: momentDuring() then takes the place of moment().
+    bool isBlurred() const { return timing_.shutter.isOpen() && (animator_ || path_); }
+    /// The state while the shutter is open for a frame, at `instant` of shutter.h. Motion is that of one
+    /// frame's time. At a cut of the camera path, the shutter sees the frame's own shot only: instants beyond
+    /// it are mirrored at the frame's time.
+    Moment momentDuring(uint64_t frame, double instant, gpu::Extent extent) const;
+    /// The camera alone, at the frame's time.
     CameraParams camera(uint64_t frame, gpu::Extent extent) const {
         return cameraAt(timing_.timeOf(frame), extent);
     }
 
   private:
     CameraParams cameraAt(double time, gpu::Extent extent) const;
+    bool isCut(double before, double now) const { return path_ && path_->cutBetween(before, now); }
+    bool isOtherShot(double a, double b) const { return isCut(std::min(a, b), std::max(a, b)); }
+    Moment momentAt(double now, std::optional<double> before, gpu::Extent extent) const;
 
     const scene::Scene& scene_;
     std::optional<scene::SceneAnimator> animator_;

@@ -14,7 +14,13 @@ BlockPlan planBlocks(const gpu::Device& device, const RenderSettings& settings, 
     return plan;
 }
 
+void BlockRenderer::begin(const Sequence& sequence, uint64_t frame) {
+    begin(sequence.moment(frame, frames_.settings().extent));
+    if (sequence.isBlurred()) blurred_ = &sequence;
+}
+
 void BlockRenderer::begin(Moment moment) {
+    blurred_ = nullptr;
     frame_ = moment.number;
     frames_.begin(std::move(moment));
 }
@@ -25,12 +31,13 @@ uint32_t BlockRenderer::render(uint32_t block, const std::function<bool(uint32_t
     block_ = block;
     const uint64_t firstSample = uint64_t{block} * plan_.blockSamples;
     const uint32_t wanted = plan_.samplesOf(block);
-    uint64_t stream = frame_ * plan_.launches() + plan_.firstLaunch(block);
+    uint64_t launch = plan_.firstLaunch(block);
     uint32_t done = 0;
     while (done < wanted && proceed(done)) {
         const uint32_t count = std::min(plan_.launchSamples, wanted - done);
         const uint64_t first = firstSample + done;
-        frames_.launch({.stream = stream++,
+        if (blurred_) showInstant(launch);
+        frames_.launch({.stream = frame_ * plan_.launches() + launch++,
                         .first = first,
                         .point = frame_ * plan_.samples + first,
                         .count = count,
@@ -38,6 +45,12 @@ uint32_t BlockRenderer::render(uint32_t block, const std::function<bool(uint32_t
         done += count;
     }
     return done;
+}
+
+void BlockRenderer::showInstant(uint64_t launch) {
+    const RenderSettings& settings = frames_.settings();
+    const double instant = shutterInstant(settings.seed, frame_, launch);
+    frames_.moveOn(blurred_->momentDuring(frame_, instant, settings.extent));
 }
 
 void BlockRenderer::peek(FrameSums& sums) {

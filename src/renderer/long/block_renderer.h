@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "renderer/frame/frame_renderer.h"
+#include "renderer/frame/sequence.h"
 #include "renderer/long/accumulation.h"
 
 namespace limpid {
@@ -17,8 +18,10 @@ class BlockRenderer {
     /// `frames` must outlive this. Its number of samples does not matter.
     BlockRenderer(FrameRenderer& frames, const BlockPlan& plan) : frames_(frames), plan_(plan) {}
 
-    /// Goes to a frame of a sequence, or to the one frame of a still.
+    /// Goes to a frame of a sequence, or to the one frame of a still, without motion blur.
     void begin(Moment moment);
+    /// The same with motion blur, if the sequence has it: launches of the frame then see different instants.
+    void begin(const Sequence& sequence, uint64_t frame);
 
     /// Renders the samples of a block, launch by launch, as long as `proceed(samples of this block so far)`
     /// is true before a launch. Returns how many samples were rendered: plan.samplesOf(block), or fewer.
@@ -34,9 +37,12 @@ class BlockRenderer {
     const SampleCounts& counts() const { return counts_; }
 
   private:
+    void showInstant(uint64_t launch);
+
     FrameRenderer& frames_;
     BlockPlan plan_;
     uint64_t frame_ = 0;
+    const Sequence* blurred_ = nullptr;  ///< where each launch gets its instant from; none: no motion blur
     uint32_t block_ = 0;
     SampleCounts counts_;
 };

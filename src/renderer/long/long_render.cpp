@@ -99,7 +99,7 @@ bool LongRender::renderFrame(uint64_t k, const LongRenderEvents& events) {
         saveState(sums, true);
         return false;
     }
-    if (samplesMissing(sums) > 0) renderer_.begin(sequence_.moment(header_.frame, header_.extent));
+    if (samplesMissing(sums) > 0) renderer_.begin(sequence_, header_.frame);
     const bool whole = renderBlocks(sums, events);
     if (!whole && !isStill()) return false;
     if (sums.samples() > 0 || isStillShard()) events.finish(header_.frame, sums);

@@ -86,6 +86,7 @@ std::vector<std::pair<std::string, std::string>> identityOf(const RenderIdentity
         {cameraEntry, identity.camera},
         {"frames per second", fmt::format("{}", timing.framesPerSecond)},
         {"the first frame's time", fmt::format("{}", timing.start)},
+        {"the shutter", toString(timing.shutter)},
         {seedEntry, fmt::format("{}", settings.seed)},
         {"jitter", toString(settings.jitter)},
     };
