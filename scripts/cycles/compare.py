@@ -57,7 +57,7 @@ def export(folder):
     lux."""
     path = os.path.join(folder, "scene.gltf")
     bpy.ops.export_scene.gltf(filepath=path, export_format="GLTF_SEPARATE", export_cameras=True, export_lights=True,
-                              convert_lighting_mode="COMPAT", export_animations=False, export_yup=True)
+                              convert_lighting_mode="COMPAT", export_animations=True, export_yup=True)
     with open(path, encoding="utf-8") as file:
         document = json.load(file)
     for material in document.get("materials", []):
@@ -95,7 +95,7 @@ def render_limpid(given, path, gltf, settings, samples, seed):
              ["--background", ",".join(str(c) for c in settings.background)])
     limpid([given.limpid, "render", gltf, "-o", path, "--float", "--device", "cpu",
             "--width", str(scenes.WIDTH), "--height", str(settings.height),
-            "--spp", str(samples), "--seed", str(seed), "--max-depth", str(settings.bounces), *light])
+            "--spp", str(samples), "--seed", str(seed), "--max-depth", str(settings.bounces), *light, *settings.options])
     return images.read_picture(path)
 
 

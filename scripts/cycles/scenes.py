@@ -25,6 +25,7 @@ class Settings:
     strips: tuple = ()  # names of vertical strips of the picture that are measured separately
     height: int = HEIGHT
     for_cycles: object = None  # called after the export, before Cycles renders
+    options: tuple = ()  # more of Limpid's
     exact: bool = True  # False if the two renderers are known to differ
 
 
@@ -169,6 +170,33 @@ def orthographic(folder):
     stage.lamp("SUN", (2, -2, 3), (0, 0, 0), 3)
     stage.camera((2, -4, 2.5), (0, 0, 0.3), width=3.5)
     return Settings(samples=256, background=(0.3, 0.4, 0.5))
+
+
+@scene
+def depth_of_field(folder):
+    still_life()
+    diameter, distance = 0.25, 4.2
+    stage.lens(diameter, distance)
+    return Settings(environment=daylight(folder),
+                    options=("--lens-diameter", str(diameter), "--focus-distance", str(distance)))
+
+
+@scene
+def motion_blur(folder):
+    """A ball that flies past, a block that turns, a lamp that moves, all seen by a camera that moves."""
+    still_life()
+    lamp = stage.mesh("lamp", [(-0.3, -0.3, 0), (-0.3, 0.3, 0), (0.3, 0.3, 0), (0.3, -0.3, 0)], [(0, 1, 2, 3)],
+                      materials.emitter("lamp", (1, 0.9, 0.7), 30))
+    lamp.location = (0.5, -1, 3)
+    things = bpy.data.objects
+    stage.move(things["left"], "location", (-1.4, -0.2, 0.6), (-0.4, 0.2, 0.6))
+    stage.move(things["block"], "rotation_euler", (0, 0, 0.0), (0, 0, 1.2))
+    stage.move(lamp, "location", (0.1, -1, 3), (0.9, -1, 3))
+    stage.move(things["camera"], "location", (-0.1, -4.5, 2.2), (0.1, -4.5, 2.2))
+    shutter = 0.8
+    stage.shutter(shutter)
+    return Settings(background=(0.3, 0.4, 0.5), options=("--animation", "all", "--shutter", str(shutter),
+                                                         "--fps", str(stage.FPS), "--time", str(1 / stage.FPS)))
 
 
 @scene

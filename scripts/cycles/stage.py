@@ -7,6 +7,9 @@ import bpy
 import mathutils
 
 
+FPS = 24
+
+
 def empty():
     """Starts an empty Blender file with settings that match Limpid: a pixel filter one pixel wide, caustics, and no
     clamping, denoising or adaptive sampling."""
@@ -141,3 +144,32 @@ def box(name, center, size, turn, material):
     thing = mesh(name, corners, faces, material)
     thing.location, thing.scale, thing.rotation_euler = center, size, (0, 0, turn)
     return thing
+
+
+def lens(diameter, distance):
+    """Gives the camera a round aperture of this diameter, in focus at this distance."""
+    data = bpy.context.scene.camera.data
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_blades = True, distance, 0
+    data.dof.aperture_fstop = data.lens / 1000 / diameter
+
+
+def move(thing, value, before, after):
+    """Moves or turns an object at constant speed, from frame 0 to frame 2. Frame 1 is rendered."""
+    scene = bpy.context.scene
+    scene.render.fps, scene.frame_start, scene.frame_end = FPS, 0, 2
+    for frame, position in ((0, before), (2, after)):
+        setattr(thing, value, position)
+        thing.keyframe_insert(value, frame=frame)
+    for curve in thing.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+    if hasattr(thing, "cycles"):
+        thing.cycles.motion_steps = 7  # of the shutter's time, between which Cycles goes straight
+    scene.frame_set(1)
+
+
+def shutter(frames):
+    """Switches motion blur on: the shutter is open for so many frames, centred on the frame's time."""
+    scene = bpy.context.scene
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter, scene.cycles.motion_blur_position = frames, "CENTER"

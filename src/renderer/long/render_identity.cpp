@@ -46,10 +46,10 @@ uint64_t sceneHash(const scene::Scene& scene, const scene::SceneData& data) {
                                 &data.lights, &data.lightTree, &data.motion.restVertices}) {
         hash.addValues(*records);
     }
-    for (const auto* records : {&data.bvhTriangles, &data.environment, &data.ggxTable, &data.dielectricTable,
-                                &data.motion.morphDeltas})
+    for (const auto* records :
+         {&data.bvhTriangles, &data.environment, &data.environmentPyramid, &data.lightPyramid, &data.ggxTable,
+          &data.dielectricTable, &data.motion.morphDeltas})
         hash.addValues(*records);
-    for (const auto* records : {&data.lightAlias, &data.environmentAlias}) hash.addValues(*records);
     hash.addValues(data.lightDensity);
     for (const auto& texels : data.texels) hash.addValues(texels);
     static_assert(std::has_unique_object_representations_v<scene::SceneFeatures>, "no padding");

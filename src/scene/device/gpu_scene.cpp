@@ -34,11 +34,11 @@ GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOption
     add("materials", Format::RGBA32Uint, data.materials);
     add("textureRefs", Format::RGBA32Uint, data.textureRefs);
     add("lights", Format::RGBA32Uint, data.lights);
-    add("lightAlias", Format::RG32Uint, data.lightAlias);
+    add("lightPyramid", Format::RGBA32Float, data.lightPyramid);
     add("lightDensity", Format::R32Float, data.lightDensity);
     add("lightTree", Format::RGBA32Uint, data.lightTree);
     add("environment", Format::RGBA32Float, data.environment);
-    add("environmentAlias", Format::RG32Uint, data.environmentAlias);
+    add("environmentPyramid", Format::RGBA32Float, data.environmentPyramid);
     add("ggxTable", Format::RGBA32Float, data.ggxTable);
     add("dielectricTable", Format::RGBA32Float, data.dielectricTable);
     constexpr std::array<const char*, layout::TEXEL_BUFFERS> names{"texels0", "texels1", "texels2",

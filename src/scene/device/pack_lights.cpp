@@ -10,7 +10,7 @@
 #include "scene/device/light_tree.h"
 #include "scene/device/mip_levels.h"
 #include "scene/device/pack.h"
-#include "scene/device/tables/alias_table.h"
+#include "scene/device/tables/weight_pyramid.h"
 
 namespace limpid::scene {
 namespace {
@@ -81,8 +81,8 @@ class LightPacker {
         for (size_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
         data_.features.triangleLights = !weights_.empty();
         packPunctuals();
-        const AliasTable table = buildAliasTable(triangleWeights());
-        data_.lightAlias = table.entries;
+        const WeightPyramid table = buildWeightPyramid(triangleWeights());
+        data_.lightPyramid = table.records;
         setProbabilities(table);
         for (MovingLights& moving : data_.motion.lights) {
             for (size_t i = 0; i < moving.triangles.size(); ++i)
@@ -123,7 +123,7 @@ class LightPacker {
     }
 
     /// Of triangles.
-    void setProbabilities(const AliasTable& table) {
+    void setProbabilities(const WeightPyramid& table) {
         for (size_t i = 0; i < table.probabilities.size(); ++i)
             data_.lights[i * layout::LIGHT_TEXELS + 1].w = bits(table.probabilities[i]);
     }
@@ -299,11 +299,11 @@ std::vector<double> environmentWeights(const Environment& env) {
 void packEnvironment(const Environment& env, SceneData& data) {
     data.features.environment = true;
     // Free memory early: an environment of 8,192 by 4,096 pixels has 400 MB of weights.
-    AliasTable table = buildAliasTable(environmentWeights(env));
-    data.environmentAlias = std::move(table.entries);
+    WeightPyramid pyramid = buildWeightPyramid(environmentWeights(env), env.width, env.height);
+    data.environmentPyramid = std::move(pyramid.records);
     data.environment.reserve(env.radiance.size());
     for (size_t i = 0; i < env.radiance.size(); ++i) {
-        data.environment.emplace_back(env.radiance[i], table.probabilities[i]);
+        data.environment.emplace_back(env.radiance[i], pyramid.probabilities[i]);
     }
     setEnvironmentParams(env, data.params);
     data.params.environmentWidth = env.width;

@@ -28,8 +28,8 @@ size_t Scene::triangleCount() const {
 }
 
 uint64_t SceneData::byteCount() const {
-    uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightAlias) +
-                   bytesIn(environmentAlias) + bytesIn(motion.morphDeltas) + bytesIn(lightDensity) +
+    uint64_t sum = bytesIn(bvhTriangles) + bytesIn(environment) + bytesIn(ggxTable) + bytesIn(lightPyramid) +
+                   bytesIn(environmentPyramid) + bytesIn(motion.morphDeltas) + bytesIn(lightDensity) +
                    bytesIn(dielectricTable);
     for (const auto* records :
          {&bvhNodes, &bvhInstances, &triangles, &vertices, &instances, &previousGeometry, &materials,

@@ -25,17 +25,10 @@ struct SceneFeatures {
     bool operator==(const SceneFeatures&) const = default;
 };
 
-/// An entry of Walker's alias table: entry i is kept with probability `keep`, otherwise replaced by `other`.
-struct AliasEntry {
-    float keep = 1.0f;
-    uint32_t other = 0;
-};
-
 struct SceneData {
     std::vector<uvec4> bvhNodes, bvhInstances, triangles, vertices, instances, previousGeometry, materials,
         textureRefs, lights, lightTree;
-    std::vector<vec4> bvhTriangles, environment, ggxTable, dielectricTable;
-    std::vector<AliasEntry> lightAlias, environmentAlias;
+    std::vector<vec4> bvhTriangles, environment, environmentPyramid, lightPyramid, ggxTable, dielectricTable;
     std::vector<float> lightDensity;
     std::array<std::vector<uint32_t>, layout::TEXEL_BUFFERS> texels;
     SceneFeatures features;

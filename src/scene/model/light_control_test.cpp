@@ -62,7 +62,7 @@ TEST(LightControl, ChangesAreWhatBuildingTheSceneAnewWouldGive) {
     EXPECT_NE(anew.lights, built.lights);
     EXPECT_EQ(live.packed().lights, anew.lights);
     EXPECT_EQ(live.packed().lightDensity, anew.lightDensity);
-    EXPECT_EQ(live.packed().lightAlias.size(), anew.lightAlias.size());
+    EXPECT_EQ(live.packed().lightPyramid.size(), anew.lightPyramid.size());
     SceneFrame frame;
     frame.params = built.params;
     live.setParams(frame.params);

@@ -44,7 +44,7 @@ void LiveLights::update(const Scene& scene) {
 
 void LiveLights::addTo(SceneFrame& frame) const {
     addWhole(frame, "lights", std::as_bytes(std::span(packed_.lights)));
-    addWhole(frame, "lightAlias", std::as_bytes(std::span(packed_.lightAlias)));
+    addWhole(frame, "lightPyramid", std::as_bytes(std::span(packed_.lightPyramid)));
     addWhole(frame, "lightTree", std::as_bytes(std::span(packed_.lightTree)));
     addWhole(frame, "lightDensity", std::as_bytes(std::span(packed_.lightDensity)));
     for (size_t i = 0; i < emissions_.size(); ++i) {

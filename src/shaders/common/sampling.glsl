@@ -128,4 +128,14 @@ float maxAbs(vec3 v) {
     return max(a.x, max(a.y, a.z));
 }
 
+/// Takes the first part of an interval that is divided in proportion to two weights, or the second. `u`, in [0,1),
+/// becomes the place in that part, which is again uniform.
+uint takePart(float first, float second, inout float u) {
+    const float share = first / (first + second);
+    const bool isFirst = u < share;
+    u = isFirst ? u / share : (u - share) / (1.0 - share);
+    u = clamp(u, 0.0, 1.0 - 1.0 / float(0x01000000));
+    return isFirst ? 0u : 1u;
+}
+
 #endif

@@ -125,9 +125,8 @@ LIMPID_CONST uint LIGHT_MAP_SIZE = 32u;
 LIMPID_CONST uint LIGHT_MAPS = 1024u;
 LIMPID_CONST float LIGHT_MAP_NOT_HIDDEN = 1e30;  // equals INFINITE_DISTANCE
 
-// lightAlias, environmentAlias (8-byte texels): probability of keeping the entry, as float bits | the other
-// entry. lightAlias: of emissive triangles.
 // environment: radiance | probability of choosing this texel.
+// environmentPyramid, and lightPyramid of emissive triangles: scene/device/tables/weight_pyramid.h.
 
 // ggxTable: GGX_TABLE_SIZE^2 texels, row = roughness, column = cosine: A, B (directional albedo is F0 A + F90
 // B), and q, d of metals' multiple scattering (docs/gltf.md). Then a texel for each row: the cosine-weighted

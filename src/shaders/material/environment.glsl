@@ -1,5 +1,5 @@
-// The latitude-longitude environment: bilinear look-up, and importance sampling by texel (pbrt 4th ed.,
-// section 12.5).
+// The latitude-longitude environment: bilinear look-up, and importance sampling by texel (pbrt 4th ed., section 12.5,
+// with the warp of scene/device/tables/weight_pyramid.h).
 #ifndef LIMPID_ENVIRONMENT_GLSL
 #define LIMPID_ENVIRONMENT_GLSL
 
@@ -50,19 +50,28 @@ float environmentPdf(vec2 uv, SceneParams scene) {
     return environmentDensity(probability, uv.y, scene);
 }
 
-/// `cell` selects a texel (row and column separately, since one float has too few bits for both), `u` the
-/// point in it.
-EnvironmentSample sampleEnvironment(vec2 cell, vec2 u, SceneParams scene) {
-    const uvec2 size = uvec2(scene.environmentWidth, scene.environmentHeight);
-    const uvec2 texel = min(uvec2(cell * vec2(size)), size - 1u);
-    uint index = texel.y * size.x + texel.x;
-    const uvec2 entry = imageLoad(environmentAlias, int(index)).xy;
-    const float keep = uintBitsToFloat(entry.x);
-    const bool kept = u.x < keep;
-    index = kept ? index : entry.y;
-    const float x = kept ? u.x / max(keep, 1e-20) : (u.x - keep) / max(1.0 - keep, 1e-20);
-    const vec2 uv = (vec2(index % size.x, index / size.x) + vec2(clamp(x, 0.0, 0.999999), u.y)) / vec2(size);
-    const float probability = imageLoad(environment, int(index)).w;
+/// Warps `u`, of the unit square, to the picture's coordinates in proportion to the texels' probabilities: from the
+/// whole picture to a quarter of it, and on to a texel. `texel` is its index.
+vec2 warpedToTexels(vec2 u, uvec2 size, out uint texel) {
+    uvec2 at = uvec2(0u);
+    uint first = 0u;
+    for (int level = findMSB(max(size.x, size.y) * 2u - 1u); level > 0; --level) {
+        const uvec2 count = (size + (1u << level) - 1u) >> level;
+        const vec4 quarters = imageLoad(environmentPyramid, int(first + at.y * count.x + at.x));
+        first += count.x * count.y;
+        const uint column = takePart(quarters.x + quarters.z, quarters.y + quarters.w, u.x);
+        const vec2 rows = column == 0u ? quarters.xz : quarters.yw;
+        at = 2u * at + uvec2(column, takePart(rows.x, rows.y, u.y));
+    }
+    texel = at.y * size.x + at.x;
+    return (vec2(at) + u) / vec2(size);
+}
+
+/// `u`: a point of the unit square.
+EnvironmentSample sampleEnvironment(vec2 u, SceneParams scene) {
+    uint texel;
+    const vec2 uv = warpedToTexels(u, uvec2(scene.environmentWidth, scene.environmentHeight), texel);
+    const float probability = imageLoad(environment, int(texel)).w;
     return EnvironmentSample(directionOfLatLong(vec2(fract(uv.x + scene.environmentTurn), uv.y)), texelRadiance(uv, scene),
                              environmentDensity(probability, uv.y, scene));
 }

@@ -202,15 +202,28 @@ LightShares lightShares(Receiver from, bool punctual, SceneParams scene) {
     return shares;
 }
 
-LightSample chooseTriangleLight(Receiver from, float choice, float decision, vec2 u, SceneParams scene) {
-    uint index = min(uint(choice * float(scene.triangleLightCount)), scene.triangleLightCount - 1u);
-    const uvec2 entry = imageLoad(lightAlias, int(index)).xy;
-    index = decision < uintBitsToFloat(entry.x) ? index : entry.y;
-    const int at = int(index * LIGHT_TEXELS);
+/// Chooses an emissive triangle by lightPyramid. `u`, in [0,1), becomes its place in the triangle's interval.
+uint chooseTriangle(uint count, inout float u) {
+    uint at = 0u, first = 0u;
+    for (int level = (findMSB(count * 2u - 1u) + 1) / 2; level > 0; --level) {
+        const vec4 parts = imageLoad(lightPyramid, int(first + at));
+        first += (count + (1u << (2 * level)) - 1u) >> (2 * level);
+        const uint pair = takePart(parts.x + parts.y, parts.z + parts.w, u);
+        const vec2 of = pair == 0u ? parts.xy : parts.zw;
+        at = 4u * at + 2u * pair + takePart(of.x, of.y, u);
+    }
+    return at;
+}
+
+/// `choice`: a number in an interval of the width `share`, divided by it. `u`: the point on the light.
+LightSample chooseTriangleLight(Receiver from, float choice, float share, vec2 u, SceneParams scene, inout uint rng) {
+    const int at = int(chooseTriangle(scene.triangleLightCount, choice) * LIGHT_TEXELS);
     const uvec4 r1 = imageLoad(lights, at + 1);
+    const float probability = uintBitsToFloat(r1.w);
+    if (sharesNumbers()) u.x = placeWithin(choice, 1.0 / (share * probability), rng);
     LightSample light = sampleTriangleLight(imageLoad(lights, at), r1, imageLoad(lights, at + 2),
                                             imageLoad(lights, at + 3), from.position, u);
-    light.pdf *= uintBitsToFloat(r1.w);
+    light.pdf *= share * probability;
     return light;
 }
 
@@ -218,8 +231,8 @@ LightSample noLight() {
     return LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
 }
 
-LightSample environmentLight(vec2 choice, vec2 u, SceneParams scene) {
-    const EnvironmentSample s = sampleEnvironment(choice, u, scene);
+LightSample environmentLight(vec2 u, SceneParams scene) {
+    const EnvironmentSample s = sampleEnvironment(u, scene);
     return LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf, false);
 }
 
@@ -228,35 +241,28 @@ LightSample sampleLightByPower(Receiver from, SceneParams scene, inout uint rng,
     PunctualChoice punctual = PunctualChoice(0, 0.0);
     if (HAS_PUNCTUAL_LIGHTS) punctual = choosePunctualLight(from, scene, rng);
     shares = lightShares(from, punctual.pdf > 0.0, scene);
-    float choice = 0.0, decision = 0.0;
+    float choice = 0.0;
     vec2 u = vec2(0.0);
     if (sharesNumbers()) {
         u = stratified2(rng);
         choice = u.x;
-        decision = random(rng);
     } else {
         choice = random(rng);
-        decision = random(rng);
         u = random2(rng);
     }
     LightSample light = noLight();
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
-            const vec2 within = sharesNumbers() ? random2(rng) : u;  // a texel
-            light = environmentLight(vec2(choice / shares.environment, decision), within, scene);
+            if (sharesNumbers()) u.x = placeWithin(choice / shares.environment, 1.0 / shares.environment, rng);
+            light = environmentLight(u, scene);
             light.pdf *= shares.environment;
         }
     }
     const float rest = choice - shares.environment;
     if (HAS_TRIANGLE_LIGHTS) {
         if (rest >= 0.0 && (!HAS_PUNCTUAL_LIGHTS || rest < shares.triangles)) {
-            const float place = rest / max(shares.triangles, 1e-20);
-            if (sharesNumbers()) {
-                const float count = float(scene.triangleLightCount);
-                u.x = placeWithin(fract(place * count), count, rng);
-            }
-            light = chooseTriangleLight(from, place, decision, u, scene);
-            light.pdf *= shares.triangles;
+            const float share = max(shares.triangles, 1e-20);
+            light = chooseTriangleLight(from, min(rest / share, 1.0 - 1.0 / float(0x01000000)), share, u, scene, rng);
         }
     }
     if (HAS_PUNCTUAL_LIGHTS) {
@@ -341,7 +347,7 @@ LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, 
     }
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
-            light = environmentLight(vec2(choice / shares.environment, random(rng)), u, scene);
+            light = environmentLight(u, scene);
             light.pdf *= shares.environment;
         }
     }
