@@ -35,7 +35,8 @@ void addEmission(inout Path path, vec3 radiance, float lightDensity, uint depth)
 void addEnvironment(inout Path path, uint depth) {
     if (!HAS_ENVIRONMENT) return;
     const vec2 uv = latLongOf(path.ray.direction);
-    addEmission(path, environmentRadiance(uv, params.scene), environmentLightPdf(uv, path.shares, params.scene), depth);
+    const float density = environmentLightPdf(path.ray.direction, uv, path.shares, params.scene);
+    addEmission(path, environmentRadiance(uv, params.scene), density, depth);
 }
 
 /// Light from glass that the layers see through is specular.

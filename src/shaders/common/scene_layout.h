@@ -161,10 +161,11 @@ struct SceneParams {
     float sceneRadius;
     uint triangleLightCount;  // number in `lights`; punctual lights follow
     uint punctualCount;
-    uint sunCount;                   // directional lights among them
-    uint firstLightTrail;            // texel of lightTree where trails begin
-    uint firstSun;                   // texel of lightTree where the list of directional lights begins
-    float environmentProbability;    // of choosing the environment in next-event estimation
+    uint sunCount;                 // directional lights among them
+    uint firstLightTrail;          // texel of lightTree where trails begin
+    uint firstSun;                 // texel of lightTree where the list of directional lights begins
+    float environmentProbability;  // of choosing the environment in next-event estimation
+    uint environmentIsEven;        // 1: its directions are sampled by the cosine at the surface, not by texel
     float triangleLightProbability;  // of triangles rather than punctual lights, at points that a punctual
                                      // light reaches
     uint environmentWidth;

@@ -231,8 +231,26 @@ LightSample noLight() {
     return LightSample(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0.0, false);
 }
 
-LightSample environmentLight(vec2 u, SceneParams scene) {
-    const EnvironmentSample s = sampleEnvironment(u, scene);
+/// Density of directions by the cosine at the surface.
+float cosineDensity(Receiver from, vec3 direction) {
+    const float cosine = dot(from.normal, direction);
+    return from.bothSides ? abs(cosine) / (2.0 * PI) : max(cosine, 0.0) / PI;
+}
+
+EnvironmentSample sampleEvenEnvironment(Receiver from, vec2 u, SceneParams scene) {
+    vec3 normal = from.normal;
+    if (from.bothSides && takePart(1.0, 1.0, u.x) == 1u) normal = -normal;
+    const vec3 direction = frameAround(normal) * sampleCosineHemisphere(u);
+    return EnvironmentSample(direction, environmentRadiance(latLongOf(direction), scene), cosineDensity(from, direction));
+}
+
+LightSample environmentLight(Receiver from, vec2 u, SceneParams scene) {
+    EnvironmentSample s;
+    if (scene.environmentIsEven != 0u) {
+        s = sampleEvenEnvironment(from, u, scene);
+    } else {
+        s = sampleEnvironment(u, scene);
+    }
     return LightSample(s.direction, INFINITE_DISTANCE, vec3(0.0), s.radiance, s.pdf, false);
 }
 
@@ -254,7 +272,7 @@ LightSample sampleLightByPower(Receiver from, SceneParams scene, inout uint rng,
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
             if (sharesNumbers()) u.x = placeWithin(choice / shares.environment, 1.0 / shares.environment, rng);
-            light = environmentLight(u, scene);
+            light = environmentLight(from, u, scene);
             light.pdf *= shares.environment;
         }
     }
@@ -347,7 +365,7 @@ LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, 
     }
     if (HAS_ENVIRONMENT) {
         if (choice < shares.environment) {
-            light = environmentLight(u, scene);
+            light = environmentLight(from, u, scene);
             light.pdf *= shares.environment;
         }
     }
@@ -377,9 +395,10 @@ float lightPdf(Surface s, float distance, vec3 direction, LightShares shares, Sc
     return cosine > 0.0 ? shares.triangles * perArea * distance * distance / cosine : 0.0;
 }
 
-/// Like lightPdf(), but for a ray that misses.
-float environmentLightPdf(vec2 uv, LightShares shares, SceneParams scene) {
-    return environmentPdf(uv, scene) * shares.environment;
+/// Like lightPdf(), but for a ray that misses. `uv` is latLongOf(direction).
+float environmentLightPdf(vec3 direction, vec2 uv, LightShares shares, SceneParams scene) {
+    const bool even = scene.environmentIsEven != 0u;
+    return shares.environment * (even ? cosineDensity(shares.from, direction) : environmentPdf(uv, scene));
 }
 
 #endif

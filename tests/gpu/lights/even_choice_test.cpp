@@ -51,6 +51,17 @@ TEST_F(EvenChoiceTest, Environment) {
     EXPECT_LT(gain(scene), 0.15);
 }
 
+/// Each direction of a diffuse surface brings the same light, whichever way it was found.
+TEST_F(EvenChoiceTest, AnEvenSkyOverAFloorHasNoNoise) {
+    scene::Scene scene = floorScene(vec3(0.5f));
+    scene.environment = {1, 1, {vec3(1.0f)}};
+    scene.cameras = {scene::lookAt({0, 3, 4}, {0, 0, 0}, {0, 1, 0}, 0.6f)};
+    Renderer renderer(device(), scene);
+    EXPECT_LT(errorOf(renderer, false), 1e-9);
+    const Rendered one = renderer(centred(8, 6, 1), 1);
+    for (size_t i = 0; i < one.pixelCount(); ++i) EXPECT_NEAR(one.beauty(i).g, 0.5f, 1e-4f);
+}
+
 /// Six lamps, and so twelve triangles, of very different power.
 TEST_F(EvenChoiceTest, LampsOfDifferentPower) {
     scene::Scene scene = floorScene(vec3(0.5f));

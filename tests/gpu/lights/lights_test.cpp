@@ -269,6 +269,25 @@ TEST_F(LightsTest, EnvironmentWithASun) {
     checkEnvironmentPdf(drawn);
 }
 
+/// Cosines are distributed as cos / pi says, so their squares are uniform; both densities are that.
+TEST_F(LightsTest, AnEvenEnvironmentIsSampledByTheCosine) {
+    scene::Scene scene = sceneOf({});
+    scene.environment = {2, 2, {vec3(1.0f), vec3(1.5f), vec3(0.5f), vec3(1.0f)}};
+    const vec3 normal = glm::normalize(vec3(0.3f, -0.8f, 0.5f));
+    const std::vector<DrawnLight> drawn = draw(scene, vec3(0.0f), sampleCount, 6, normal);
+    std::vector<double> observed(32), expected(32, sampleCount / 32.0);
+    const vec3 side = glm::normalize(glm::cross(normal, vec3(0, 1, 0)));
+    for (const DrawnLight& light : drawn) {
+        const float cosine = glm::dot(light.direction, normal);
+        ASSERT_GE(cosine, 0.0f);
+        ASSERT_NEAR(double{light.pdf}, double{cosine} / pi64, 1e-5);
+        ASSERT_NEAR(light.hitPdf, light.pdf, 1e-5f);
+        const auto ring = static_cast<size_t>(std::min(16.0f * cosine * cosine, 15.0f));
+        observed[2 * ring + (glm::dot(light.direction, side) > 0.0f)] += 1.0;
+    }
+    expectFit(observed, expected);
+}
+
 /// Directions map to the picture as environment.h describes. The pictures contain their own coordinates.
 TEST_F(LightsTest, EnvironmentLookUpIsExact) {
     scene::Scene scene = sceneOf({});

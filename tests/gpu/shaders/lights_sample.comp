@@ -34,7 +34,7 @@ void main() {
             drawn.hitDistance = hit.t;
             drawn.hitPdf = lightPdf(s, hit.t, light.direction, shares, params.scene);
         } else if (HAS_ENVIRONMENT) {
-            drawn.hitPdf = environmentLightPdf(latLongOf(light.direction), shares, params.scene);
+            drawn.hitPdf = environmentLightPdf(light.direction, latLongOf(light.direction), shares, params.scene);
         }
     }
     results.values[i] = drawn;
