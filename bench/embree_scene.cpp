@@ -54,7 +54,7 @@ void check(RTCDevice device) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const scene::Scene& scene, const scene::SceneData& data)
-    : device_(rtcNewDevice(nullptr)), lightAlias_(data.lightAlias) {
+    : device_(rtcNewDevice(nullptr)), lightPyramid_(data.lightPyramid) {
     check(device_.get());
     refuseWhatIsNotDiffuse(data.features);
     refuse(std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.unlit; }),

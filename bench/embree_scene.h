@@ -56,7 +56,7 @@ class EmbreeScene {
     const std::vector<TriangleRecord>& triangles() const { return triangles_; }
     const std::vector<MaterialRecord>& materials() const { return materials_; }
     const std::vector<LightRecord>& lights() const { return lights_; }
-    const std::vector<scene::AliasEntry>& lightAlias() const { return lightAlias_; }
+    const std::vector<vec4>& lightPyramid() const { return lightPyramid_; }
 
   private:
     struct ReleaseDevice {
@@ -75,7 +75,7 @@ class EmbreeScene {
     std::vector<TriangleRecord> triangles_;
     std::vector<MaterialRecord> materials_;
     std::vector<LightRecord> lights_;
-    std::vector<scene::AliasEntry> lightAlias_;
+    std::vector<vec4> lightPyramid_;
 };
 
 /// Returns Embree's version and the widest instruction set it uses on this machine, such as "3.13.5, AVX2".

@@ -232,17 +232,33 @@ class PathTracer {
         return powerHeuristic(bsdfPdf, density);
     }
 
+    /// As takePart() and chooseTriangle() of the shaders (src/shaders/material/lights.glsl).
+    static uint32_t takePart(float first, float second, float& u) {
+        const float share = first / (first + second);
+        const bool isFirst = u < share;
+        u = std::clamp(isFirst ? u / share : (u - share) / (1.0f - share), 0.0f, 1.0f - 0x1p-24f);
+        return isFirst ? 0 : 1;
+    }
+    uint32_t chosenLight(float u) const {
+        const auto count = static_cast<uint32_t>(scene_.lights().size());
+        uint32_t at = 0, first = 0;
+        for (uint32_t level = static_cast<uint32_t>(std::bit_width(count * 2 - 1)) / 2; level > 0; --level) {
+            const vec4 parts = scene_.lightPyramid()[first + at];
+            first += (count + (1u << (2 * level)) - 1) >> (2 * level);
+            const uint32_t pair = takePart(parts.x + parts.y, parts.z + parts.w, u);
+            const vec2 of = pair == 0 ? vec2(parts.x, parts.y) : vec2(parts.z, parts.w);
+            at = 4 * at + 2 * pair + takePart(of.x, of.y, u);
+        }
+        return at;
+    }
+
     /// Light from one point on one light, times cosine over pi. The albedo is already in the throughput.
     vec3 directLight(const Surface& surface, const vec3& throughput, Random& random) {
-        const float choice = random.next(), decision = random.next();
+        const float choice = random.next();
         const vec2 u = random.next2();
         const std::vector<LightRecord>& lights = scene_.lights();
         if (lights.empty()) return vec3(0.0f);
-        const auto count = static_cast<uint32_t>(lights.size());
-        uint32_t index = std::min(static_cast<uint32_t>(choice * static_cast<float>(count)), count - 1);
-        const scene::AliasEntry& entry = scene_.lightAlias()[index];
-        if (decision >= entry.keep) index = entry.other;
-        const LightRecord& light = lights[index];
+        const LightRecord& light = lights[chosenLight(choice)];
 
         const float root = std::sqrt(u.x);
         const vec3 point = light.v0 + root * (1.0f - u.y) * light.edge1 + root * u.y * light.edge2;
