@@ -4,6 +4,7 @@
 
 #include <array>
 #include <csignal>
+#include <utility>
 
 #include "base/log.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t received = 0;
 std::array<struct sigaction, 3> actionsBefore{};
-bool said = false;
+bool said = false, endsLater = false;
 
 void (*volatile beforeEnd)() = nullptr;
 timespec since;  ///< of the first signal
@@ -71,8 +72,12 @@ void beforeInterruptedEnd(void (*action)()) {
     beforeEnd = action;
 }
 
+void endInterruptedLater() {
+    endsLater = true;
+}
+
 void endIfInterrupted() {
-    if (received == 0) return;
+    if (received == 0 || std::exchange(endsLater, false)) return;
     std::signal(received, SIG_DFL);
     std::raise(received);
 }

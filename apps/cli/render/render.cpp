@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/render/render_job.h"
@@ -57,6 +58,21 @@ void renderFrames(const RenderJob& job, RenderSummary& summary) {
     }
 }
 
+/// Throws UsageError if there are several processes, which cannot do this.
+void checkCluster(const RenderOptions& o) {
+    const Pipeline pipeline = pipelineOf(o);
+    refuseInCluster(
+        !hasIndependentFrames(pipeline) || isProgressive(o),
+        "several processes share out frames that are independent: the frames of " + pipeline.options() +
+            " build on each other. Render noisy frames with --integrator path --denoiser none --aov all, "
+            "then run 'limpid denoise'; or use one process");
+    refuseInCluster(isClip(FramePattern(o.output).format(0)),
+                    "'" + o.output + "': a clip is written by one process: render frame.%04d.png");
+    refuseInCluster(!o.longRender.shard.empty(),
+                    "--shard: the processes of a cluster share out the work by themselves");
+    refuseInCluster(o.preview, "--preview is for one process");
+}
+
 void renderClip(RenderJob job, RenderSummary& summary) {
     const RenderOptions& o = job.options;
     const fs::path file = FramePattern(o.output).format(0);
@@ -77,6 +93,7 @@ void renderClip(RenderJob job, RenderSummary& summary) {
 
 void render(const RenderOptions& o) {
     checkRenderOptions(o);
+    checkCluster(o);
     const InterruptGuard guard;
     RenderSettings settings = settingsOf(o);
     const FramePattern output(o.output);
@@ -112,7 +129,7 @@ void render(const RenderOptions& o) {
     } else {
         renderFrames(job, summary);
     }
-    reportRender(o, *device, summary, scene, gpuScene);
+    if (isFirstProcess()) reportRender(o, *device, summary, scene, gpuScene);
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     }
