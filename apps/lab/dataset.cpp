@@ -106,6 +106,7 @@ class Dataset {
         json list = json::array();
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
+            if (ranks()) ranks()->beat();
             const std::string name = fmt::format("{:06}", example);
             const scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             const scene::SceneData data = scene::buildSceneData(scene);

@@ -23,7 +23,6 @@ Answer PieceBoard::ask(int rank, Clock::time_point now) {
     const bool workLeft = !stopped_ && !todo_.empty();
     const bool due = !workLeft || (early_ && now - self.collectedLast >= 20 * self.cost);
     if (!self.uncollected.empty() && due) {
-        self.collecting = true;
         self.ordered = now;
         return {Order::Collect};
     }
@@ -57,7 +56,6 @@ void PieceBoard::stop(int rank) {
 
 std::vector<uint64_t> PieceBoard::collected(int rank, Clock::time_point now) {
     Rank& self = at(rank);
-    self.collecting = false;
     self.collectedLast = now;
     self.cost = now - self.ordered;
     finished_ += self.uncollected.size();
@@ -67,7 +65,6 @@ std::vector<uint64_t> PieceBoard::collected(int rank, Clock::time_point now) {
 void PieceBoard::lose(int rank) {
     Rank& self = at(rank);
     self.lost = true;
-    self.collecting = false;
     self.count -= self.uncollected.size();
     if (self.piece) self.uncollected.push_back(*self.piece);
     todo_.insert(todo_.begin(), self.uncollected.begin(), self.uncollected.end());

@@ -44,8 +44,6 @@ class PieceBoard {
 
     bool isLost(int rank) const { return at(rank).lost; }
     bool anyLost() const;
-    /// Whether the rank has been given something that it has not answered yet.
-    bool isBusy(int rank) const { return at(rank).piece || at(rank).collecting; }
     uint64_t finished() const { return finished_; }
     /// Of each rank, how many pieces it has made, without those that were lost.
     std::vector<uint64_t> madeByRank() const;
@@ -55,7 +53,7 @@ class PieceBoard {
         std::optional<uint64_t> piece;  ///< that it makes
         std::vector<uint64_t> uncollected;
         uint64_t count = 0;  ///< of pieces that it has made
-        bool collecting = false, lost = false;
+        bool lost = false;
         Clock::time_point ordered{};  ///< when it was told to send
         Clock::time_point collectedLast{};
         Clock::duration cost{};  ///< how long the last collection took

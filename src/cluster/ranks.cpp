@@ -79,11 +79,11 @@ void Ranks::show(MessageLevel level, const std::string& text) {
     if (level < MessageLevel::Warning || shown_.insert(text).second) log::print(level, text);
 }
 
-/// For tests: LIMPID_TEST_SLOW_RANK=RANK:MILLISECONDS delays each piece of one rank.
+/// For tests: LIMPID_TEST_SLOW_RANK=RANK:MILLISECONDS delays each piece of one rank, or of all (-1).
 void Ranks::slowDown() const {
     const char* const text = std::getenv("LIMPID_TEST_SLOW_RANK");
     int rank = 0, time = 0;
-    if (text && std::sscanf(text, "%d:%d", &rank, &time) == 2 && rank == place_.rank)
+    if (text && std::sscanf(text, "%d:%d", &rank, &time) == 2 && (rank == place_.rank || rank == -1))
         std::this_thread::sleep_for(milliseconds(time));
 }
 
@@ -111,6 +111,9 @@ void Ranks::shareOther(SharedWork& work) {
                 break;
             case Kind::End:
                 send(0, Writer(Kind::Farewell).rest(work.farewell ? work.farewell() : Bytes()));
+                return;
+            case Kind::Bye:  // it was given up as lost, and is late
+                bye_ = order;
                 return;
             default:
                 throw Error("a message between the processes is not one that was due");
@@ -156,8 +159,11 @@ std::vector<uint64_t> Ranks::shareFirst(SharedWork& work) {
     work_ = &work;
     board_ =
         std::make_unique<PieceBoard>(work.todo, place_.size, work.collect != nullptr, work.collectsEarly);
-    for (int rank = 1; rank < place_.size; ++rank)
-        if (peers_[static_cast<size_t>(rank)].greeted) greet(rank);
+    for (int rank = 1; rank < place_.size; ++rank) {
+        Peer& peer = peers_[static_cast<size_t>(rank)];
+        peer.heard = Clock::now();
+        if (peer.greeted) greet(rank);
+    }
     while (true) {
         const Answer next = board_->ask(0, Clock::now());
         if (next.order == Order::End) break;
@@ -170,18 +176,23 @@ std::vector<uint64_t> Ranks::shareFirst(SharedWork& work) {
         }
     }
     changed_.wait(lock, [&] { return allGone(); });
+    if (!faults_.empty()) {
+        lock.unlock();
+        fail(faults_.front().code, faults_.front().text);
+    }
     return board_->madeByRank();
 }
 
 void Ranks::greet(int rank) {
     const Peer& peer = peers_[static_cast<size_t>(rank)];
     if (peer.identity != work_->identity) {
+        constexpr Clock::time_point now{};  // rank 0 has none to tell instead
         faults_.push_back(
             {static_cast<int>(ExitCode::BadInput),
              fmt::format("process {} on {} has other work than process 0: the options, the input files and "
                          "the version of Limpid must be the same everywhere",
                          rank, peer.machine),
-             Clock::now()});
+             now});
     }
     if (peer.device == work_->device || warnedOfDevices_) return;
     warnedOfDevices_ = true;
@@ -280,7 +291,7 @@ void Ranks::loseSilent() {
     const Clock::time_point now = Clock::now();
     for (int rank = 1; board_ && rank < place_.size; ++rank) {
         const Peer& peer = peers_[static_cast<size_t>(rank)];
-        if (board_->isLost(rank) || !board_->isBusy(rank) || now - peer.heard < patience_) continue;
+        if (board_->isLost(rank) || peer.asks || peer.gone || now - peer.heard < patience_) continue;
         board_->lose(rank);
         show(MessageLevel::Warning,
              fmt::format(
@@ -339,10 +350,8 @@ bool Ranks::end() {
         orderly = orderly || !board_;  // nothing was shared out: all come here by themselves
         for (int rank = 1; rank < place_.size; ++rank) send(rank, Writer(Kind::Bye).number(orderly ? 0 : 1));
     } else {
-        Bytes order;
-        do order = receive();
-        while (kindOf(order) != Kind::Bye);
-        orderly = Reader(order).number() == 0;
+        while (bye_.empty() || kindOf(bye_) != Kind::Bye) bye_ = receive();
+        orderly = Reader(bye_).number() == 0;
     }
     if (orderly) transport_.end();
     return orderly;

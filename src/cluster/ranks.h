@@ -52,8 +52,8 @@ struct SharedWork {
 
 class Ranks {
   public:
-    /// `transport` must outlive this. A process that was not heard of for `patience` while it makes a piece
-    /// is lost: its piece is given to another, as is everything that has not been collected.
+    /// `transport` must outlive this. A process that owes an answer and was not heard of for `patience` is
+    /// lost: its piece is given to another, as is everything that has not been collected.
     Ranks(Transport& transport, std::chrono::milliseconds patience);
     ~Ranks();
     Ranks(const Ranks&) = delete;
@@ -117,6 +117,7 @@ class Ranks {
     std::chrono::milliseconds patience_;
     std::string machine_;
     Clock::time_point beaten_{};
+    Bytes bye_;  ///< on ranks other than 0: the last message
 
     std::mutex mutex_;   ///< of the members below
     std::mutex adding_;  ///< held while the work's callbacks run; before mutex_
