@@ -156,6 +156,7 @@ class ThreadTransport : public Transport {
     Place place() const override { return {rank_, post_.size(), rank_, post_.size()}; }
     void send(int to, std::span<const std::byte> bytes) override { post_.send(rank_, to, bytes); }
     bool poll(int& from, Bytes& bytes) override { return post_.poll(rank_, from, bytes); }
+    void forget(int) override {}
     void end() override {}
     [[noreturn]] void abort(int code) override { std::_Exit(code); }
 

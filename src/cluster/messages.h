@@ -19,6 +19,7 @@ enum class Kind : uint8_t {
     Farewell,  ///< answers End: a last result
     Beat,      ///< the process lives, and gets on with its piece
     Message,   ///< level and text, for the user
+    Goodbye,   ///< answers Bye
     Fault,     ///< exit code, machine and text: the run cannot go on
     // From rank 0. A process asks for work, and gets one of the first three.
     Make,  ///< a number: the piece

@@ -293,6 +293,7 @@ void Ranks::loseSilent() {
         const Peer& peer = peers_[static_cast<size_t>(rank)];
         if (board_->isLost(rank) || peer.asks || peer.gone || now - peer.heard < patience_) continue;
         board_->lose(rank);
+        transport_.forget(rank);
         show(MessageLevel::Warning,
              fmt::format(
                  "process {} on {} was not heard of for {:.0f} s and is given up; others make its pieces",
@@ -341,19 +342,32 @@ void Ranks::serve() {
 // ---- The end.
 
 bool Ranks::end() {
-    bool orderly = true;
-    if (isFirst()) {
-        ending_ = true;
-        if (server_.joinable()) server_.join();
-        for (int rank = 1; rank < place_.size; ++rank)
-            orderly = orderly && peers_[static_cast<size_t>(rank)].gone;
-        orderly = orderly || !board_;  // nothing was shared out: all come here by themselves
-        for (int rank = 1; rank < place_.size; ++rank) send(rank, Writer(Kind::Bye).number(orderly ? 0 : 1));
-    } else {
-        while (bye_.empty() || kindOf(bye_) != Kind::Bye) bye_ = receive();
-        orderly = Reader(bye_).number() == 0;
-    }
+    const bool orderly = isFirst() ? endFirst() : endOther();
     if (orderly) transport_.end();
+    return orderly;
+}
+
+bool Ranks::endOther() {
+    while (bye_.empty() || kindOf(bye_) != Kind::Bye) bye_ = receive();
+    send(0, Writer(Kind::Goodbye));
+    return Reader(bye_).number() == 0;
+}
+
+bool Ranks::endFirst() {
+    ending_ = true;
+    if (server_.joinable()) server_.join();
+    bool orderly = true;  // also where nothing was shared out: then all come to the end by themselves
+    for (int rank = 1; rank < place_.size && board_; ++rank)
+        orderly = orderly && peers_[static_cast<size_t>(rank)].gone;
+    for (int rank = 1; rank < place_.size; ++rank) send(rank, Writer(Kind::Bye).number(orderly ? 0 : 1));
+    // MPI's end waits for all without a limit of time.
+    const Clock::time_point start = Clock::now();
+    Bytes message;
+    int from = 0, left = place_.size - 1;
+    for (Pause pause; orderly && left > 0; pause()) {
+        while (transport_.poll(from, message)) left -= kindOf(message) == Kind::Goodbye ? 1 : 0;
+        orderly = Clock::now() - start < patience_;
+    }
     return orderly;
 }
 

@@ -105,9 +105,11 @@ class Ranks {
     void makeOwn(uint64_t piece);
     void tellFinished(const std::vector<uint64_t>& pieces);
     bool allGone() const;
+    bool endFirst();
     // Elsewhere.
     void shareOther(SharedWork& work);
     Bytes receive();
+    bool endOther();
 
     void send(int to, const Writer& message) { transport_.send(to, message.bytes()); }
     void slowDown() const;

@@ -22,12 +22,13 @@ class Transport {
     virtual ~Transport() = default;
 
     virtual Place place() const = 0;
-    /// Returns when `bytes` may be changed. Messages from one process to another arrive in order. From any
-    /// thread.
+    /// Returns when `bytes` may be changed. Messages from one process to another arrive in order, but short
+    /// ones may overtake long ones. From any thread.
     virtual void send(int to, std::span<const std::byte> bytes) = 0;
-    /// If a message has arrived, fills in its sender and content. Does not wait for one to begin. From one
-    /// thread only.
+    /// If a whole message has arrived, fills in its sender and content. Does not wait. From one thread only.
     virtual bool poll(int& from, std::vector<std::byte>& bytes) = 0;
+    /// A message of this process that has begun to arrive is not waited for any more.
+    virtual void forget(int from) = 0;
     /// The orderly end, which all processes must come to. No call may follow.
     virtual void end() = 0;
     /// Ends all processes at once, with this exit code where the launcher passes it on.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <list>
 #include <mutex>
 #include <thread>
@@ -18,11 +19,15 @@
 namespace limpid::cluster {
 namespace {
 
-/// MPI counts bytes in an int. Smaller parts also let others have the mutex meanwhile.
+/// Messages up to this size are copied, so that a receiver that hangs does not stop the sender.
+constexpr size_t smallBytes = 1024;
+/// Longer ones are sent in parts: MPI counts bytes in an int, and others have the mutex between parts.
 constexpr size_t partBytes = size_t{16} << 20;
+/// How many long messages are received at a time. Others wait at their senders, which bounds the memory here.
+constexpr size_t maxIncoming = 4;
 
-constexpr int wholeTag = 1;  ///< a message of at most partBytes
-constexpr int sizeTag = 2;   ///< the size of a longer one, whose parts follow
+constexpr int smallTag = 1;
+constexpr int sizeTag = 2;  ///< the size of a long one, whose parts follow
 constexpr int partTag = 3;
 
 /// Sleeps longer the longer it has waited: messages of a busy run are answered within some 50 microseconds,
@@ -53,37 +58,42 @@ class MpiTransport final : public Transport {
     Place place() const override { return place_; }
 
     void send(int to, std::span<const std::byte> bytes) override {
-        if (bytes.size() <= smallBytes) return sendLater(to, bytes);
+        if (bytes.size() <= smallBytes) return sendLater(to, bytes, smallTag);
         const std::lock_guard whole(sending_);  // parts of two messages must not mix
-        if (bytes.size() <= partBytes) return sendPart(to, bytes, wholeTag);
         const uint64_t size = bytes.size();
-        sendPart(to, std::as_bytes(std::span<const uint64_t, 1>(&size, 1)), sizeTag);
+        sendLater(to, std::as_bytes(std::span<const uint64_t, 1>(&size, 1)), sizeTag);
         for (size_t at = 0; at < bytes.size(); at += partBytes)
-            sendPart(to, bytes.subspan(at, std::min(partBytes, bytes.size() - at)), partTag);
+            sendPart(to, bytes.subspan(at, std::min(partBytes, bytes.size() - at)));
     }
 
     bool poll(int& from, std::vector<std::byte>& bytes) override {
-        MPI_Status status{};
-        int count = 0;
-        {
-            const std::lock_guard lock(mpi_);
-            forgetSent();
-            int found = 0;
-            MPI_Iprobe(MPI_ANY_SOURCE, wholeTag, MPI_COMM_WORLD, &found, &status);
-            if (!found) MPI_Iprobe(MPI_ANY_SOURCE, sizeTag, MPI_COMM_WORLD, &found, &status);
-            if (!found) return false;
-            MPI_Get_count(&status, MPI_BYTE, &count);
+        const std::lock_guard lock(mpi_);
+        forgetSent();
+        if (receiveSmall(smallTag, from, bytes)) return true;
+        if (incoming_.size() < maxIncoming && receiveSmall(sizeTag, from, bytes)) {
+            uint64_t size = 0;
+            std::memcpy(&size, bytes.data(), sizeof size);
+            incoming_.push_back({from, std::vector<std::byte>(size), 0, {}});
+            receivePart(incoming_.back());
         }
-        from = status.MPI_SOURCE;
-        bytes.resize(static_cast<size_t>(count));
-        receivePart(from, bytes, status.MPI_TAG);
-        if (status.MPI_TAG == wholeTag) return true;
-        uint64_t size = 0;
-        std::memcpy(&size, bytes.data(), sizeof size);
-        bytes.resize(size);
-        for (size_t at = 0; at < size; at += partBytes)
-            receivePart(from, std::span(bytes).subspan(at, std::min(partBytes, bytes.size() - at)), partTag);
-        return true;
+        for (auto message = incoming_.begin(); message != incoming_.end(); ++message) {
+            if (!goOn(*message)) continue;
+            from = message->from;
+            bytes = std::move(message->bytes);
+            incoming_.erase(message);
+            return true;
+        }
+        return false;
+    }
+
+    void forget(int from) override {
+        const std::lock_guard lock(mpi_);
+        for (auto message = incoming_.begin(); message != incoming_.end();) {
+            const auto next = std::next(message);
+            // MPI may still write into it.
+            if (message->from == from) forgotten_.splice(forgotten_.end(), incoming_, message);
+            message = next;
+        }
     }
 
     void end() override {
@@ -98,19 +108,26 @@ class MpiTransport final : public Transport {
     }
 
   private:
-    /// Small messages are copied, so that a receiver that hangs does not stop the sender.
-    static constexpr size_t smallBytes = 1024;
     struct Sent {
         std::vector<std::byte> bytes;
         MPI_Request request{};
     };
+    /// A long message of which parts have arrived.
+    struct Incoming {
+        int from = 0;
+        std::vector<std::byte> bytes;
+        size_t at = 0;  ///< where the part begins that is awaited
+        MPI_Request request{};
 
-    void sendLater(int to, std::span<const std::byte> bytes) {
+        size_t partSize() const { return std::min(partBytes, bytes.size() - at); }
+    };
+
+    void sendLater(int to, std::span<const std::byte> bytes, int tag) {
         const std::lock_guard lock(mpi_);
         forgetSent();
         Sent& sent = sent_.emplace_back(Sent{{bytes.begin(), bytes.end()}, {}});
-        MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, wholeTag,
-                  MPI_COMM_WORLD, &sent.request);
+        MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
+                  &sent.request);
     }
 
     void forgetSent() {
@@ -121,27 +138,13 @@ class MpiTransport final : public Transport {
         });
     }
 
-    void sendPart(int to, std::span<const std::byte> bytes, int tag) {
+    void sendPart(int to, std::span<const std::byte> bytes) {
         MPI_Request request{};
         {
             const std::lock_guard lock(mpi_);
-            MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
+            MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, partTag, MPI_COMM_WORLD,
                       &request);
         }
-        wait(request);
-    }
-
-    void receivePart(int from, std::span<std::byte> bytes, int tag) {
-        MPI_Request request{};
-        {
-            const std::lock_guard lock(mpi_);
-            MPI_Irecv(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, from, tag, MPI_COMM_WORLD,
-                      &request);
-        }
-        wait(request);
-    }
-
-    void wait(MPI_Request& request) {
         Pause pause;
         while (true) {
             int done = 0;
@@ -154,9 +157,40 @@ class MpiTransport final : public Transport {
         }
     }
 
+    /// Small messages arrive whole, so receiving one does not wait.
+    bool receiveSmall(int tag, int& from, std::vector<std::byte>& bytes) {
+        MPI_Status status{};
+        int found = 0, count = 0;
+        MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &found, &status);
+        if (!found) return false;
+        MPI_Get_count(&status, MPI_BYTE, &count);
+        from = status.MPI_SOURCE;
+        bytes.resize(static_cast<size_t>(count));
+        MPI_Recv(bytes.data(), count, MPI_BYTE, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        return true;
+    }
+
+    static void receivePart(Incoming& message) {
+        MPI_Irecv(message.bytes.data() + message.at, static_cast<int>(message.partSize()), MPI_BYTE,
+                  message.from, partTag, MPI_COMM_WORLD, &message.request);
+    }
+
+    /// Returns whether the last part has arrived.
+    static bool goOn(Incoming& message) {
+        int done = 0;
+        MPI_Test(&message.request, &done, MPI_STATUS_IGNORE);
+        if (!done) return false;
+        message.at += message.partSize();
+        if (message.at == message.bytes.size()) return true;
+        receivePart(message);
+        return false;
+    }
+
     Place place_;
     std::mutex mpi_, sending_;
     std::list<Sent> sent_;
+    std::list<Incoming> incoming_;   ///< at most one of each sender
+    std::list<Incoming> forgotten_;  ///< of processes that hang
 };
 
 }  // namespace
