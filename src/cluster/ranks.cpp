@@ -124,7 +124,7 @@ void Ranks::shareOther(SharedWork& work) {
 // ---- Rank 0.
 
 void Ranks::tellFinished(const std::vector<uint64_t>& pieces) {
-    if (!work_->finished || pieces.empty()) return;
+    if (pieces.empty() || !work_->finished) return;
     uint64_t count = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -180,7 +180,11 @@ std::vector<uint64_t> Ranks::shareFirst(SharedWork& work) {
         lock.unlock();
         fail(faults_.front().code, faults_.front().text);
     }
-    return board_->madeByRank();
+    const std::vector<uint64_t> made = board_->madeByRank();
+    lock.unlock();
+    const std::lock_guard adding(adding_);
+    work_ = nullptr;
+    return made;
 }
 
 void Ranks::greet(int rank) {
@@ -259,9 +263,10 @@ void Ranks::handle(int from, BytesView message) {
     }
     if (kind == Kind::Made) handleMade(from);
     if (kind == Kind::Result) handleResult(from, message);
-    if (kind == Kind::Farewell && work_->addFarewell) {
+    if (kind == Kind::Farewell) {
         const std::lock_guard adding(adding_);
-        work_->addFarewell(reader.rest());
+        // One that was given up may come late.
+        if (work_ && work_->addFarewell) work_->addFarewell(reader.rest());
     }
     const std::lock_guard lock(mutex_);
     peer.heard = Clock::now();
@@ -270,7 +275,7 @@ void Ranks::handle(int from, BytesView message) {
         peer.machine = reader.text();
         peer.device = reader.text();
         peer.greeted = true;
-        if (board_) greet(from);
+        if (work_) greet(from);
     } else if (kind == Kind::Stopped) {
         board_->stop(from);
     } else if (kind == Kind::Farewell) {
