@@ -2,7 +2,7 @@
 # - library: liblimpid.so.0; development: its headers, CMake package and pkg-config file;
 # - neural and neural_development: the same for liblimpid-neural.so.0; shot and shot_development: for
 #   liblimpid-shot.so.0; weights: the network's weights;
-# - program: limpid; python: the Python package.
+# - program: limpid; mpi: its module for clusters (src/cluster); python: the Python package.
 include(CMakePackageConfigHelpers)
 find_program(LIMPID_GZIP gzip REQUIRED)
 

@@ -15,6 +15,9 @@ set(CPACK_COMPONENTS_ALL library development)
 if(LIMPID_APPS)
   list(APPEND CPACK_COMPONENTS_ALL program)
 endif()
+if(TARGET limpid_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+endif()
 if(LIMPID_APPS OR TARGET limpid_neural)
   list(APPEND CPACK_COMPONENTS_ALL weights)
 endif()
@@ -100,6 +103,14 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "mesa-vulkan-drivers, fonts-inter | 
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "real-time path tracer and denoiser for any Vulkan device
 Renders glTF and OBJ scenes, cleans noisy EXR sequences, and compares
 pictures, on GPUs and on CPUs.")
+
+set(CPACK_DEBIAN_MPI_PACKAGE_NAME limpid-mpi)
+set(CPACK_DEBIAN_MPI_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "limpid (= ${LIMPID_DEB_VERSION})")
+set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS openmpi-bin)
+set(CPACK_DEBIAN_MPI_DESCRIPTION "real-time path tracer and denoiser, for clusters
+Lets several processes share a render, the frames of a shot or a dataset: a
+module of the program limpid for MPI.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-limpid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

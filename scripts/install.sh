@@ -7,7 +7,7 @@ packages=(
     libvulkan-dev glslc spirv-tools libspirv-cross-c-shared-dev
     libglm-dev libfmt-dev libspdlog-dev libtbb-dev nlohmann-json3-dev libcli11-dev
     libopenexr-dev zlib1g-dev libstb-dev libpng-dev libturbojpeg0-dev libmeshoptimizer-dev libdraco-dev libdnnl-dev libglfw3-dev libimgui-dev
-    libwebsockets-dev libvpx-dev fonts-inter
+    libwebsockets-dev libvpx-dev libopenmpi-dev fonts-inter
     pybind11-dev python3-dev python3-numpy
     libgtest-dev libgmock-dev
     mesa-vulkan-drivers vulkan-validationlayers

@@ -2,7 +2,7 @@
 # Installs what is missing, builds Release, runs all tests.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-scripts/install.sh libembree-dev chromium ffmpeg python3 python3-numpy python3-torch xvfb xauth xdotool
+scripts/install.sh libembree-dev chromium ffmpeg openmpi-bin python3 python3-numpy python3-torch xvfb xauth xdotool
 scripts/build.sh release -DLIMPID_TESTS=ON "$@"
 [ -d ../shared/scenes ] || echo "NOTE: ../shared/scenes is absent: the tests on real scenes will be skipped."
 ctest --preset release --parallel "$(nproc)"

@@ -8,7 +8,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/commands.h"
+#include "cli/denoise_windows.h"
 #include "cli/help_text.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
@@ -31,6 +33,7 @@ struct DenoiseOptions {
     shot::ShotRequest request;
     std::string dump;
     DeviceChoice device;
+    size_t window = 0;  ///< frames; 0: automatic
     bool json = false, explain = false;
 };
 
@@ -38,16 +41,19 @@ struct DenoiseOptions {
 using Times = std::map<std::string, double>;
 
 void report(const DenoiseOptions& o, const shot::ShotJob& job, const shot::ShotSummary& summary,
-            const Times& lastFrame, uint64_t deviceBytes, gpu::Device& device) {
+            const std::vector<uint64_t>& madeByProcess, const Times& lastFrame, uint64_t deviceBytes,
+            gpu::Device& device) {
     const std::string_view denoiser = job.options.method->name;
     if (o.json) {
-        const nlohmann::json object{{"output", o.request.output},   {"denoiser", denoiser},
-                                    {"device", device.info().name}, {"frames", summary.frames},
-                                    {"seconds", summary.seconds},   {"kept", summary.kept},
-                                    {"skipped", summary.skipped},   {"cuts", summary.cuts},
-                                    {"last_frame_ms", lastFrame},   {"device_bytes", deviceBytes}};
+        nlohmann::json object{{"output", o.request.output},   {"denoiser", denoiser},
+                              {"device", device.info().name}, {"frames", summary.frames},
+                              {"seconds", summary.seconds},   {"kept", summary.kept},
+                              {"skipped", summary.skipped},   {"cuts", summary.cuts},
+                              {"last_frame_ms", lastFrame},   {"device_bytes", deviceBytes}};
+        if (!madeByProcess.empty()) object["pieces_by_process"] = madeByProcess;
         fmt::print("{}\n", jsonText(object));
     } else {
+        if (!madeByProcess.empty()) log::info("{}", describePieces(madeByProcess, "windows"));
         if (summary.kept > 0) log::info("{} frames were complete", summary.kept);
         if (!summary.cuts.empty()) log::info("cuts before frames {}", describeFrames(summary.cuts));
         log::info("wrote {}: {} frames by {}, in {}, on {}", o.request.output, summary.frames, denoiser,
@@ -60,20 +66,17 @@ void denoiseFiles(DenoiseOptions& o) {
         o.request.output.clear();
     else if (o.request.output.empty())
         throw UsageError("--output is missing");
+    refuseInCluster(!o.request.shard.empty(),
+                    "--shard: the processes of a cluster share out the work by themselves");
     shot::ShotJob job = shot::jobOf(o.request);
     if (o.explain) {
-        fmt::print("{}", shot::explainShot(job));
+        if (isFirstProcess()) fmt::print("{}", shot::explainShot(job));
         return;
     }
     const InterruptGuard guard;
     const OpenDevice device = openDevice(o.device);
     job.options.networks = loadNetworks(*device, job.options.method, job.weights, job.options.settings);
     job.messages = log::write;
-    Progress progress("frames", job.endWritten - job.firstWritten);
-    job.progress = [&](size_t done, size_t) {
-        progress.show(done);
-        return !interrupted();
-    };
     Times lastFrame;
     uint64_t deviceBytes = 0;
     job.afterFrame = [&](int frame, gpu::FrameGraph& graph) {
@@ -81,8 +84,9 @@ void denoiseFiles(DenoiseOptions& o) {
         lastFrame = sumByName(graph.passTimes(*device));
         if (!o.dump.empty()) writeDump(outputOf(job, frame), imagesOfPass(graph, *device, o.dump));
     };
-    const shot::ShotSummary summary = shot::denoiseShot(job, *device);
-    report(o, job, summary, lastFrame, deviceBytes, *device);
+    std::vector<uint64_t> madeByProcess;
+    const shot::ShotSummary summary = denoiseInWindows(job, o.window, *device, madeByProcess);
+    if (isFirstProcess()) report(o, job, summary, madeByProcess, lastFrame, deviceBytes, *device);
     if (device->validationMessages() > 0)
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     endIfInterrupted();
@@ -118,7 +122,7 @@ void addLayerOptions(CLI::App& command, shot::ShotRequest& o) {
         "Frame at time 0 of the animation in --camera scene.glb; default 0, as Blender exports");
 }
 
-void addFilmOptions(CLI::App& command, shot::ShotRequest& o) {
+void addFilmOptions(CLI::App& command, shot::ShotRequest& o, size_t& window) {
     const OptionGroup group(command, "Films");
     command.add_option("--frames", o.frames, "Only these frames of the input: 10-20");
     command.add_flag("--bidirectional", o.bidirectional,
@@ -136,6 +140,12 @@ void addFilmOptions(CLI::App& command, shot::ShotRequest& o) {
     command.add_option(
         "--shard", o.shard,
         "Only a part of the frames: 2/4 is the second of four; several processes can share a shot");
+    command
+        .add_option(
+            "--window", window,
+            "Denoise the shot in parts of this many frames, each after a run-up of 16, with the results of "
+            "mpirun; default: all frames in one, or 32 with mpirun")
+        ->check(CLI::Range(1, 1000000));
     command.add_flag(
         "--resume", o.resume,
         "Go on after the last complete output: EXR files say of which input and options they are");
@@ -156,7 +166,7 @@ void addDenoiseCommand(CLI::App& app) {
     auto o = std::make_shared<DenoiseOptions>();
     addFileOptions(*command, o->request);
     addLayerOptions(*command, o->request);
-    addFilmOptions(*command, o->request);
+    addFilmOptions(*command, o->request, o->window);
     command->add_flag(
         "--explain", o->explain,
         "Print how each layer of the input is understood, what is missing and what that costs, and "

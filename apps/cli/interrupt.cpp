@@ -4,6 +4,7 @@
 
 #include <array>
 #include <csignal>
+#include <utility>
 
 #include "base/log.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::array<int, 3> signals{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t received = 0;
 std::array<struct sigaction, 3> actionsBefore{};
-bool said = false;
+bool said = false, endsLater = false, ofCluster = false;
 
 void (*volatile beforeEnd)() = nullptr;
 timespec since;  ///< of the first signal
@@ -58,7 +59,14 @@ InterruptGuard::~InterruptGuard() {
 
 bool interrupted() {
     if (received == 0) return false;
-    if (!said) log::warn("interrupted: what there is will be written; once more ends at once");
+    if (!said && ofCluster) {
+        log::warn(
+            "a process of the run has ended, or the run is to end: a render goes on from its last checkpoint "
+            "with "
+            "--checkpoint FILE --resume, and limpid denoise with --resume");
+    } else if (!said) {
+        log::warn("interrupted: what there is will be written; once more ends at once");
+    }
     said = true;
     return true;
 }
@@ -71,8 +79,12 @@ void beforeInterruptedEnd(void (*action)()) {
     beforeEnd = action;
 }
 
+void endInterruptedLater() {
+    endsLater = ofCluster = true;
+}
+
 void endIfInterrupted() {
-    if (received == 0) return;
+    if (received == 0 || std::exchange(endsLater, false)) return;
     std::signal(received, SIG_DFL);
     std::raise(received);
 }

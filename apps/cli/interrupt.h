@@ -24,5 +24,8 @@ void beforeInterruptedEnd(void (*action)());
 /// Ends the process by the signal that came, so that shells and scripts see it (exit status 130 for Ctrl-C).
 /// Returns if none came. Call it when everything is written.
 void endIfInterrupted();
+/// From now on the first endIfInterrupted() returns: a process that others wait for comes to it again at its
+/// end.
+void endInterruptedLater();
 
 }  // namespace limpid::cli

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text/terminal_text.h"
+#include "cli/cluster/session.h"
 #include "cli/help_text.h"
 #include "commands.h"
 
@@ -19,19 +20,21 @@ namespace limpid::cli {
 namespace {
 
 int fail(ExitCode code, const char* message) {
-    log::error("{}", message);
-    return static_cast<int>(code);
+    return failInCluster(static_cast<int>(code), message);
 }
 
 /// Prints CLI11's message: help on stdout, errors (with the command that was typed) on stderr.
 int answer(const CLI::App& app, const CLI::ParseError& error) {
     std::ostringstream out, faults;
     const int code = app.exit(error, out, faults);
+    if (!isFirstProcess())
+        return leaveCluster(static_cast<int>(code == 0 ? ExitCode::Done : ExitCode::Usage));
     fmt::print("{}", out.str());
     fmt::print(stderr, "{}", terminalText(faults.str(), LineBreaks::Keep));
     const std::string suggestion = code == 0 ? std::string() : suggestionFor(app);
     if (!suggestion.empty()) fmt::print(stderr, "{}\n", terminalText(suggestion, LineBreaks::Keep));
-    return static_cast<int>(code == 0 ? ExitCode::Done : ExitCode::Usage);
+    std::fflush(stdout);
+    return leaveCluster(static_cast<int>(code == 0 ? ExitCode::Done : ExitCode::Usage));
 }
 
 std::string nonFinite(const std::string& text) {
@@ -83,8 +86,10 @@ int run(int argc, char** argv) {
         "'limpid COMMAND --help' explains the options of a command.");
     refuseNonFinite(app);
     try {
-        app.parse(wordsOf(argc, argv));
-        return static_cast<int>(ExitCode::Done);
+        std::vector<std::string> words = wordsOf(argc, argv);
+        joinCluster(words.empty() ? "" : words.back());
+        app.parse(words);
+        return leaveCluster(static_cast<int>(ExitCode::Done));
     } catch (const CLI::ParseError& error) {
         return answer(app, error);
     } catch (const Error& error) {

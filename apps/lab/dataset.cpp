@@ -12,6 +12,8 @@
 #include "base/files/file.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "cli/cluster/cluster_progress.h"
+#include "cli/cluster/session.h"
 #include "cli/commands.h"
 #include "cli/options/device_options.h"
 #include "cli/options/long_render_options.h"
@@ -104,6 +106,7 @@ class Dataset {
         json list = json::array();
         for (uint64_t example = number * o_.perFile;
              example < std::min(examples(), (number + 1) * o_.perFile); ++example) {
+            if (ranks()) ranks()->beat();
             const std::string name = fmt::format("{:06}", example);
             const scene::Scene scene = scene::openScene({.scene = sceneOf(example)});
             const scene::SceneData data = scene::buildSceneData(scene);
@@ -143,8 +146,40 @@ class Dataset {
     const DatasetOptions& o_;
 };
 
+/// The files of the shard, or with several processes all files: each makes the next one that nobody has
+/// begun.
+void makeFiles(const Dataset& dataset, const Shard& shard, gpu::Device& device, scene::Tracer tracer) {
+    const auto makeFile = [&](uint64_t number) {
+        removeStaleTemporaries(dataset.file(number));
+        if (!dataset.finished(number)) dataset.make(device, tracer, number);
+    };
+    if (!ranks()) {
+        Progress progress("files", dataset.files());
+        for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {
+            makeFile(number);
+            progress.show(number);
+        }
+        return;
+    }
+    ClusterProgress progress("files", dataset.files());
+    cluster::SharedWork work;
+    Hash64 identity;
+    identity.add(dataset.parameters().dump() + LIMPID_VERSION);
+    work.identity = identity.value();
+    work.device = device.info().name + ", " + device.info().driver;
+    for (uint64_t number = 0; number < dataset.files(); ++number) work.todo.push_back(number);
+    work.make = [&](uint64_t number) {
+        makeFile(number);
+        return true;
+    };
+    work.finished = [&](const std::vector<uint64_t>&, uint64_t count) { progress.show(count); };
+    const std::vector<uint64_t> made = ranks()->share(work);
+    if (isFirstProcess()) log::info("{}", describePieces(made, "files"));
+}
+
 void run(const DatasetOptions& o) {
     const Shard shard = chosenShard(o.shard);
+    refuseInCluster(shard.count > 1, "--shard: the processes of a cluster share out the work by themselves");
     if (!std::ranges::is_sorted(o.example.samples, std::less_equal{}) || o.example.samples.front() == 0)
         throw UsageError("--samples are above 0 and ascend");
     const Dataset dataset(o);
@@ -152,12 +187,8 @@ void run(const DatasetOptions& o) {
     makeFolder(o.folder);
     const OpenDevice device = openDevice(o.device);
     const scene::Tracer tracer = chosenTracer(o.device, *device);
-    Progress progress("files", dataset.files());
-    for (uint64_t number = shard.index - 1; number < dataset.files(); number += shard.count) {
-        removeStaleTemporaries(dataset.file(number));
-        if (!dataset.finished(number)) dataset.make(*device, tracer, number);
-        progress.show(number);
-    }
+    makeFiles(dataset, shard, *device, tracer);
+    if (!isFirstProcess()) return;
     if (dataset.writeManifest())
         log::info("{} examples in {} files, and their manifest, in {}", dataset.examples(), dataset.files(),
                   o.folder);

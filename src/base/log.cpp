@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "base/log_receiver.h"
 #include "base/text/terminal_text.h"
 
 namespace limpid::log {
@@ -31,13 +32,27 @@ spdlog::level::level_enum toSpdlog(Level level) {
     return spdlog::level::info;
 }
 
+MessageCallback& receiverOfAll() {
+    static MessageCallback receiver;
+    return receiver;
+}
+
 }  // namespace
 
 void setLevel(Level level) {
     logger().set_level(toSpdlog(level));
 }
 
+void setReceiver(MessageCallback receiver) {
+    receiverOfAll() = std::move(receiver);
+}
+
 void write(Level level, const std::string& message) {
+    if (receiverOfAll()) return receiverOfAll()(level, message);
+    print(level, message);
+}
+
+void print(Level level, const std::string& message) {
     logger().log(toSpdlog(level), terminalText(message, LineBreaks::Keep));
 }
 

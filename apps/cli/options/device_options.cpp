@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/cluster/local_share.h"
+#include "cli/cluster/session.h"
 #include "cli/help_text.h"
 #include "gpu/specialise/specialise.h"
 
@@ -29,7 +31,10 @@ void addDeviceOptions(CLI::App& command, DeviceChoice& choice) {
 }
 
 OpenDevice openDevice(const DeviceChoice& choice) {
-    OpenDevice device(new gpu::Device(choice.device));
+    gpu::DeviceOptions options = choice.device;
+    if (ranks() && ranks()->place().localSize > 1)
+        options.select = deviceOfProcess(gpu::enumerateDevices(), options.select, ranks()->place().localRank);
+    OpenDevice device(new gpu::Device(options));
     loadPipelines(*device, pipelineFile(*device));
     return device;
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "cli/cluster/session.h"
 #include "cli/help_text.h"
 
 namespace limpid::cli {
@@ -55,6 +56,7 @@ Shard chosenShard(const std::string& choice) {
 void checkLongRender(const LongRenderChoice& choice) {
     if (choice.resume && choice.checkpoint.empty())
         throw UsageError("--resume needs --checkpoint FILE, the file to go on from");
+    if (!isFirstProcess()) return;  // process 0 has the file, and may have begun to write it
     std::error_code status;
     if (!choice.checkpoint.empty() && !choice.resume && std::filesystem::exists(choice.checkpoint, status)) {
         throw UsageError("'" + choice.checkpoint +

@@ -7,11 +7,13 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/render/render_job.h"
 #include "image/io/exr/exr.h"
 #include "renderer/frame/network_file.h"
+#include "renderer/long/block_renderer.h"
 #include "renderer/long/render_identity.h"
 
 namespace limpid::cli {
@@ -49,12 +51,40 @@ double since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// A few sharp pictures over each other are no blur.
+void warnAboutShutter(const RenderJob& job) {
+    constexpr uint64_t enough = 16;
+    if (!job.options.sequence.timing.shutter.isOpen()) return;
+    if (!job.sequence.isBlurred()) return log::warn("--shutter: nothing moves, there is nothing to blur");
+    const BlockPlan plan = planBlocks(job.device, job.settings, samplesOf(job.options));
+    if (plan.launches() < std::min(plan.samples, enough))
+        log::warn(
+            "--shutter: each launch sees one instant, and there are {} launches; lower --samples-per-launch",
+            plan.launches());
+}
+
 void renderFrames(const RenderJob& job, RenderSummary& summary) {
+    warnAboutShutter(job);
     if (hasIndependentFrames(job.settings.pipeline) && !isProgressive(job.options)) {
         renderIndependentFrames(job, summary);
     } else {
         renderSuccessiveFrames(job, summary);
     }
+}
+
+/// Throws UsageError if there are several processes, which cannot do this.
+void checkCluster(const RenderOptions& o) {
+    const Pipeline pipeline = pipelineOf(o);
+    refuseInCluster(
+        !hasIndependentFrames(pipeline) || isProgressive(o),
+        "several processes share out frames that are independent: the frames of " + pipeline.options() +
+            " build on each other. Render noisy frames with --integrator path --denoiser none --aov all, "
+            "then run 'limpid denoise'; or use one process");
+    refuseInCluster(isClip(FramePattern(o.output).format(0)),
+                    "'" + o.output + "': a clip is written by one process: render frame.%04d.png");
+    refuseInCluster(!o.longRender.shard.empty(),
+                    "--shard: the processes of a cluster share out the work by themselves");
+    refuseInCluster(o.preview, "--preview is for one process");
 }
 
 void renderClip(RenderJob job, RenderSummary& summary) {
@@ -77,6 +107,7 @@ void renderClip(RenderJob job, RenderSummary& summary) {
 
 void render(const RenderOptions& o) {
     checkRenderOptions(o);
+    checkCluster(o);
     const InterruptGuard guard;
     RenderSettings settings = settingsOf(o);
     const FramePattern output(o.output);
@@ -101,8 +132,6 @@ void render(const RenderOptions& o) {
     scene::SceneData data = scene::buildSceneData(scene);
     scene::GpuScene gpuScene(*device, data, {chosenTracer(o.device, *device), {}});
     const Sequence sequence(scene, data, camera, path, o.sequence.timing, o.lens);
-    if (o.sequence.timing.shutter.isOpen() && !sequence.isBlurred())
-        log::warn("--shutter: nothing moves, there is nothing to blur");
     const uint64_t content = sceneHash(scene, data);
     data = {};  // now on the device, like the textures
     scene.textures.clear();
@@ -114,7 +143,7 @@ void render(const RenderOptions& o) {
     } else {
         renderFrames(job, summary);
     }
-    reportRender(o, *device, summary, scene, gpuScene);
+    if (isFirstProcess()) reportRender(o, *device, summary, scene, gpuScene);
     if (device->validationMessages() > 0) {
         throw Error(fmt::format("the validation layer reported {} messages", device->validationMessages()));
     }

@@ -1,12 +1,12 @@
 // `limpid render` with the path tracer and no denoiser: stills, and sequences whose frames are independent.
-#include <algorithm>
-
 #include "base/files/file.h"
 #include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/render/picture_output.h"
 #include "cli/render/render_job.h"
+#include "cli/render/render_sampled.h"
 #include "renderer/frame/camera_text.h"
 #include "renderer/long/long_render.h"
 #include "renderer/long/render_identity.h"
@@ -23,7 +23,8 @@ fs::path previewFile(fs::path output) {
     return isExr(output) ? output.replace_extension(".preview.png") : output;
 }
 
-/// Returns the header that describes this render in files of sums and pictures.
+}  // namespace
+
 AccumulationHeader headerOf(const RenderJob& job) {
     const RenderOptions& o = job.options;
     const RenderSettings& settings = job.settings;
@@ -50,25 +51,33 @@ AccumulationHeader headerOf(const RenderJob& job) {
     return header;
 }
 
-/// A few sharp pictures over each other are no blur.
-void warnOfFewInstants(const Sequence& sequence, const BlockPlan& plan) {
-    constexpr uint64_t enough = 16;
-    if (!sequence.isBlurred() || plan.launches() >= std::min(plan.samples, enough)) return;
-    log::warn(
-        "--shutter: each launch sees one instant, and there are {} launches; lower --samples-per-launch",
-        plan.launches());
+void writeSampled(const RenderJob& job, const AccumulationHeader& header, uint64_t frame,
+                  const FrameSums& sums, FrameRenderer& renderer) {
+    const RenderOptions& o = job.options;
+    const fs::path file = FramePattern(o.output).format(static_cast<int>(frame));
+    if (o.longRender.resume) removeStaleTemporaries(file);
+    if (writesSums(o)) {
+        writeAccumulation(file, header, sums);
+    } else {
+        auto metadata = metadataOf(header, frame, sums.samples(),
+                                   cameraText(job.sequence.camera(frame, job.settings.extent)));
+        if (const auto jitter = jitterOf(job.settings, frame, header.plan.samples))
+            metadata[jitterAttribute] = jitterText(*jitter);
+        writeFrame(job, frame, formatOf(header), sums.means(), metadata);
+    }
+    if (o.dump.empty()) return;
+    if (!renderer.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
+    writeDump(file, renderer.dump(o.dump));
 }
 
-}  // namespace
-
 void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
+    if (ranks()) return renderSharedFrames(job, summary);
     const RenderOptions& o = job.options;
     const AccumulationHeader header = headerOf(job);
     const FramePattern output(o.output);
     FrameRenderer frames(job.device, job.scene, job.settings, header.plan.samples);
     BlockRenderer renderer(frames, header.plan);
     LongRender render(renderer, job.sequence, header);
-    warnOfFewInstants(job.sequence, header.plan);
     if (o.longRender.timeLimit > 0.0) {
         const std::chrono::duration<double> limit(o.longRender.timeLimit);
         render.setDeadline(job.started + std::chrono::duration_cast<LongRender::Clock::duration>(limit));
@@ -81,19 +90,7 @@ void renderIndependentFrames(const RenderJob& job, RenderSummary& summary) {
     const auto file = [&](uint64_t frame) { return output.format(static_cast<int>(frame)); };
     const auto finish = [&](uint64_t frame, const FrameSums& sums) {
         summary.samples = sums.samples();
-        if (o.longRender.resume) removeStaleTemporaries(file(frame));
-        if (writesSums(o)) {
-            writeAccumulation(file(frame), render.header(), sums);
-        } else {
-            auto metadata = metadataOf(render.header(), frame, sums.samples(),
-                                       cameraText(job.sequence.camera(frame, job.settings.extent)));
-            if (const auto jitter = jitterOf(job.settings, frame, header.plan.samples))
-                metadata[jitterAttribute] = jitterText(*jitter);
-            writeFrame(job, frame, formatOf(render.header()), sums.means(), metadata);
-        }
-        if (o.dump.empty()) return;
-        if (!frames.hasLaunched()) return log::warn("nothing was rendered: there is nothing to dump");
-        writeDump(file(frame), frames.dump(o.dump));
+        writeSampled(job, render.header(), frame, sums, frames);
     };
     const auto preview = [&](const FrameSums& sums) {
         PictureFormat format = formatOf(render.header());

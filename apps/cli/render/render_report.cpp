@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/progress.h"
@@ -58,6 +59,8 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
     warnOfNoProgress(o, s);
     const double megaRays =
         static_cast<double>(s.counts.rays) * 1e-6 / std::max(s.timings.renderSeconds, 1e-9);
+    if (!s.piecesByProcess.empty() && !o.json)
+        log::info("{}", describePieces(s.piecesByProcess, s.frames > 1 ? "frames" : "blocks of samples"));
     if (!o.json) {
         const std::string frames = s.frames > 1 ? fmt::format("{} frames of ", s.framesFinished) : "";
         log::info("wrote {}: {}{} samples of {}x{} in {}, {:.2f} million rays per second, on {}", o.output,
@@ -87,6 +90,7 @@ void reportRender(const RenderOptions& o, const gpu::Device& device, const Rende
                           {"rejected_samples", s.counts.rejected},
                           {"last_frame_ms", s.lastFrame},
                           {"validation_messages", device.validationMessages()}};
+    if (!s.piecesByProcess.empty()) object["pieces_by_process"] = s.piecesByProcess;
     if (!s.medians.empty()) object["median_ms"] = s.medians;
     if (s.disocclusion) object["disocclusion"] = disocclusionJson(*s.disocclusion);
     fmt::print("{}\n", jsonText(object));

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/options/render_options.h"
 #include "cli/pass_times.h"
@@ -26,7 +27,8 @@ struct RenderSummary {
     uint64_t blocksFinished = 0;
     uint64_t samples = 0;  ///< of the last picture or file of sums, per pixel
     bool complete = false;
-    SampleCounts counts;  ///< of this run
+    SampleCounts counts;                    ///< of this run
+    std::vector<uint64_t> piecesByProcess;  ///< of several that share the work: blocks of a still, or frames
     Timings timings;
     std::map<std::string, double> lastFrame;                  ///< milliseconds by pass, of the last launch
     std::map<std::string, double> medians;                    ///< ... over all frames; empty with `path`
