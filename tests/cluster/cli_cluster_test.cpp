@@ -40,7 +40,7 @@ class CliClusterTest : public CliTest {
     /// A command for sh, which it becomes.
     static std::string mpirun(int processes, const std::string& arguments,
                               const std::string& variables = "") {
-        return fmt::format("exec env {} {} timeout 25 '{}' -n {} '{}' {}", manners, variables, LIMPID_MPIRUN,
+        return fmt::format("exec env {} {} timeout 120 '{}' -n {} '{}' {}", manners, variables, LIMPID_MPIRUN,
                            processes, LIMPID_PROGRAM, arguments);
     }
     static Result runTogether(int processes, const std::string& arguments,
@@ -221,7 +221,8 @@ TEST_F(CliClusterTest, AProcessThatHangsLosesItsPiecesOnly) {
     expectSame("one.exr", "hung.exr");
 }
 
-/// The slow one takes 2.5 s for a piece, the other one a tenth of that at most, and makes nearly all.
+/// The slow one takes 2.5 s for a piece, the other one a tenth of that, and makes nearly all of 12: all but
+/// one, or a few if the machine is busy. Equal shares would be 6.
 TEST_F(CliClusterTest, ASlowProcessMakesFewPieces) {
     for (const int slow : {0, 1}) {
         const Result result = runTogether(2, std::string(longStill) + "--json -o " + path("slow.exr"),
@@ -229,8 +230,7 @@ TEST_F(CliClusterTest, ASlowProcessMakesFewPieces) {
         expectDone(result);
         const std::vector<int> pieces = piecesIn(result);
         ASSERT_EQ(pieces.size(), 2u);
-        EXPECT_LE(pieces[static_cast<size_t>(slow)], 2)
-            << "of 12: one, unless the machine is busy: " << result.output;
+        EXPECT_LE(pieces[static_cast<size_t>(slow)], 4) << result.output;
         EXPECT_EQ(pieces[0] + pieces[1], 12) << result.output;
     }
 }
@@ -247,7 +247,7 @@ TEST_F(CliClusterTest, AFaultEndsAllWithOneMessage) {
     expectFault(runTogether(2, std::string(still) + "-o " + path("no/such.exr")), 1, "does not exist");
     // On one process only, and different work.
     const auto mixed = [&](const std::string& second) {
-        return runProgram(fmt::format("env {} timeout 25 '{}' -n 1 '{}' {} -o {} : -n 1 '{}' {} -o {}",
+        return runProgram(fmt::format("env {} timeout 120 '{}' -n 1 '{}' {} -o {} : -n 1 '{}' {} -o {}",
                                       manners, LIMPID_MPIRUN, LIMPID_PROGRAM, still, path("a.exr"),
                                       LIMPID_PROGRAM, second, path("a.exr")));
     };
