@@ -300,10 +300,20 @@ TEST_P(GBufferTest, MeanLightIsThePathTracersAtDepthOne) {
     }
 }
 
-/// Under a sky of radiance 1, a floor shows its albedo.
-TEST_P(GBufferTest, MeanLightOfAFloorUnderAWhiteSky) {
+/// Under a sky of radiance 1, a floor shows its albedo, in each pixel and frame.
+TEST_P(GBufferTest, LightOfAFloorUnderAWhiteSky) {
     scene::Scene scene = viewedFloor();
     scene.environment = {16, 8, std::vector<vec3>(128, vec3(1.0f))};
+    Stage stage(device(), scene, GetParam());
+    const CameraLaunch launch = centredLaunch(scene, extent);
+    for (const vec4& light : pixels(stage, look(stage, launch).light)) ASSERT_NEAR(light.x, 0.6f, 1e-5f);
+}
+
+/// The same if all of its light comes from an eighth of the horizon, which is sampled by texel.
+TEST_P(GBufferTest, MeanLightOfAFloorUnderAnUnevenSky) {
+    scene::Scene scene = viewedFloor();
+    scene.environment = {16, 8, {}};
+    for (int i = 0; i < 128; ++i) scene.environment.radiance.emplace_back(i % 16 / 2 == 3 ? 8.0f : 0.0f);
     Stage stage(device(), scene, GetParam());
     CameraLaunch launch = centredLaunch(scene, extent);
     constexpr uint32_t frames = 32;
@@ -316,7 +326,7 @@ TEST_P(GBufferTest, MeanLightOfAFloorUnderAWhiteSky) {
     }
     constexpr double count = double{frames} * extent.width * extent.height;
     const double mean = sum / count, sigma = std::sqrt((squares / count - mean * mean) / count);
-    fmt::print("white sky: mean {:.5f}, exactly 0.6; sigma {:.5f}\n", mean, sigma);
+    fmt::print("uneven sky: mean {:.5f}, exactly 0.6; sigma {:.5f}\n", mean, sigma);
     EXPECT_LT(sigma, 0.003);
     EXPECT_LT(std::abs(mean - 0.6), 4.0 * sigma);
 }
