@@ -10,8 +10,9 @@ namespace {
 
 template <typename T>
 void append(std::vector<std::byte>& bytes, std::span<const T> values) {
-    const auto added = std::as_bytes(values);
-    bytes.insert(bytes.end(), added.begin(), added.end());
+    const size_t at = bytes.size();
+    bytes.resize(at + values.size_bytes());
+    if (!values.empty()) std::memcpy(&bytes[at], values.data(), values.size_bytes());
 }
 
 template <typename T>
