@@ -27,7 +27,8 @@ std::string nameOfMachine() {
     return name.data();
 }
 
-/// Sleeps up to 2 ms, less if there was something to do a short time ago.
+/// Waits between two looks for a message: 50 microseconds at first and after reset(), then twice as long each
+/// time, up to 2 ms.
 class Pause {
   public:
     void reset() { time_ = std::chrono::microseconds(50); }

@@ -14,8 +14,13 @@ CameraParams Sequence::cameraAt(double time, gpu::Extent extent) const {
     return scene::cameraParams(scene::withLens(camera, lens_), extent.width, extent.height);
 }
 
-Moment Sequence::momentAt(double now, std::optional<double> before, gpu::Extent extent) const {
+Moment Sequence::momentAt(uint64_t frame, double offset, gpu::Extent extent) const {
+    const double now = timing_.timeOf(frame) + offset;
+    std::optional<double> before;
+    if (frame > 0) before = timing_.timeOf(frame - 1) + offset;
+    if (before && isCut(*before, now)) before.reset();
     Moment moment;
+    moment.number = frame;
     moment.camera = cameraAt(now, extent);
     if (before) moment.previousCamera = cameraAt(*before, extent);
     if (animator_) moment.scene = animator_->frame(now, before.value_or(now));
@@ -23,27 +28,15 @@ Moment Sequence::momentAt(double now, std::optional<double> before, gpu::Extent 
 }
 
 Moment Sequence::moment(uint64_t frame, gpu::Extent extent) const {
-    const double now = timing_.timeOf(frame);
-    std::optional<double> before;
-    if (frame > 0) before = timing_.timeOf(frame - 1);
-    if (before && isCut(*before, now)) before.reset();
-    Moment moment = momentAt(now, before, extent);
-    moment.number = frame;
-    return moment;
+    return momentAt(frame, 0.0, extent);
 }
 
 Moment Sequence::momentDuring(uint64_t frame, double instant, gpu::Extent extent) const {
-    const double ofFrame = timing_.timeOf(frame);
+    const double time = timing_.timeOf(frame);
     double offset = timing_.shutter.offset(instant) / timing_.framesPerSecond;
-    if (isOtherShot(ofFrame, ofFrame + offset)) offset = -offset;
-    if (isOtherShot(ofFrame, ofFrame + offset)) offset = 0.0;
-    const double now = ofFrame + offset;
-    std::optional<double> before;
-    if (frame > 0) before = timing_.timeOf(frame - 1) + offset;
-    if (before && isCut(*before, now)) before.reset();
-    Moment moment = momentAt(now, before, extent);
-    moment.number = frame;
-    return moment;
+    if (isOtherShot(time, time + offset)) offset = -offset;
+    if (isOtherShot(time, time + offset)) offset = 0.0;
+    return momentAt(frame, offset, extent);
 }
 
 }  // namespace limpid

@@ -48,7 +48,8 @@ class Sequence {
     CameraParams cameraAt(double time, gpu::Extent extent) const;
     bool isCut(double before, double now) const { return path_ && path_->cutBetween(before, now); }
     bool isOtherShot(double a, double b) const { return isCut(std::min(a, b), std::max(a, b)); }
-    Moment momentAt(double now, std::optional<double> before, gpu::Extent extent) const;
+    /// `offset`: from the frame's time, seconds.
+    Moment momentAt(uint64_t frame, double offset, gpu::Extent extent) const;
 
     const scene::Scene& scene_;
     std::optional<scene::SceneAnimator> animator_;

@@ -28,8 +28,8 @@ TEST(ShutterTest, OpensAndClosesWhereItsPositionSays) {
     EXPECT_THROW(parseShutterPosition("middle"), UsageError);
 }
 
-/// The three-distance theorem: the gaps between n points of the golden ratio's sequence are at most 1 + its
-/// square, 2.618, times as wide as 1 / n.
+/// The gaps between n successive points of the golden ratio's sequence are less than its square, 2.618, times
+/// as wide as 1 / n.
 TEST(ShutterTest, InstantsAreEvenForAnyNumberOfLaunches) {
     for (const uint64_t first : {uint64_t{0}, uint64_t{1000}, uint64_t{1} << 24}) {
         for (const size_t count : {1u, 2u, 3u, 5u, 16u, 64u, 1000u}) {
