@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "base/log_receiver.h"
+#include "cluster/pause.h"
 
 namespace limpid::cluster {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds beatEvery{1000};
-constexpr milliseconds longestPause{2};
 /// How long rank 0 may take to find a fault by itself that another rank has told: then its message needs no
 /// name of a machine.
 constexpr milliseconds sameFault{1000};
@@ -26,20 +26,6 @@ std::string nameOfMachine() {
     ::gethostname(name.data(), name.size() - 1);
     return name.data();
 }
-
-/// Waits between two looks for a message: 50 microseconds at first and after reset(), then twice as long each
-/// time, up to 2 ms.
-class Pause {
-  public:
-    void reset() { time_ = std::chrono::microseconds(50); }
-    void operator()() {
-        std::this_thread::sleep_for(time_);
-        time_ = std::min<std::chrono::microseconds>(time_ * 2, longestPause);
-    }
-
-  private:
-    std::chrono::microseconds time_{50};
-};
 
 }  // namespace
 

@@ -5,15 +5,14 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <list>
 #include <mutex>
-#include <thread>
 
+#include "cluster/pause.h"
 #include "cluster/transport.h"
 
 namespace limpid::cluster {
@@ -29,19 +28,6 @@ constexpr size_t maxIncoming = 4;
 constexpr int smallTag = 1;
 constexpr int sizeTag = 2;  ///< the size of a long one, whose parts follow
 constexpr int partTag = 3;
-
-/// Waits between two looks for a message: 20 microseconds at first, then twice as long each time, up to 1 ms.
-/// So a message that comes soon is found soon, and a long wait takes hardly any processor time.
-class Pause {
-  public:
-    void operator()() {
-        std::this_thread::sleep_for(time_);
-        time_ = std::min(time_ * 2, std::chrono::microseconds(1000));
-    }
-
-  private:
-    std::chrono::microseconds time_{20};
-};
 
 class MpiTransport final : public Transport {
   public:
