@@ -15,14 +15,15 @@ class Dataset:
     """The examples of a data set. Each is a dict of tensors (1, channels, rows, columns): the layers, their variances
     ("diffuse.variance" and so on), and the targets "reference.diffuse" and "reference.specular".
 
-    Files are read on first use. Their tensors then stay on the device, in half precision."""
+    Files are mapped on first use, so that all workers of a machine share one copy. A GPU keeps examples in half
+    precision while they take less than half of its free memory."""
 
     def __init__(self, folder, samples, device="cpu"):
         with open(os.path.join(folder, "manifest.json")) as stream:
             self.manifest = json.load(stream)
         if samples not in self.manifest["dataset"]["samples"]:
             raise ValueError(f"{folder} has pictures of {self.manifest['dataset']['samples']} samples, none of {samples}")
-        self.folder, self.device = folder, device
+        self.folder, self.device = folder, torch.device(device)
         self.examples = [
             (file["name"], example["name"], example["scene"])
             for file in self.manifest["files"]
@@ -30,23 +31,30 @@ class Dataset:
         ]
         self.names = {f"{samples}/{layer}{kind}": layer + kind for layer in LAYERS for kind in ("", ".variance")}
         self.names |= {"reference/" + side: "reference." + side for side in features.SIDES}
-        self.kept = {}
+        self.files, self.kept = {}, {}
+        self.room = torch.cuda.mem_get_info(self.device)[0] // 2 if self.device.type == "cuda" else 0
 
     def __len__(self):
         return len(self.examples)
 
-    def read_file(self, file):
-        tensors = tensor_file.read(os.path.join(self.folder, file))[0]
-        for _, name, _ in (example for example in self.examples if example[0] == file):
-            self.kept[name] = {
-                known: tensors[f"{name}/{stored}"].unsqueeze(0).to(self.device) for stored, known in self.names.items()
-            }
+    def on_device(self, file, name):
+        if name in self.kept:
+            return self.kept[name]
+        if file not in self.files:
+            self.files[file] = tensor_file.read(os.path.join(self.folder, file))[0]
+        tensors = {
+            known: self.files[file][f"{name}/{stored}"].unsqueeze(0).to(self.device)
+            for stored, known in self.names.items()
+        }
+        size = sum(tensor.numel() * tensor.element_size() for tensor in tensors.values())
+        if size <= self.room:
+            self.room -= size
+            self.kept[name] = tensors
+        return tensors
 
     def __getitem__(self, index):
         file, name, _ = self.examples[index]
-        if name not in self.kept:
-            self.read_file(file)
-        return {known: tensor.float() for known, tensor in self.kept[name].items()}
+        return {known: tensor.float() for known, tensor in self.on_device(file, name).items()}
 
 
 def importance(frame):

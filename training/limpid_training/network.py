@@ -115,9 +115,10 @@ class Kpcn(nn.Module):
         prepare()."""
         return self.side_and_logits(side, prepared)[0]
 
-    def side_and_logits(self, side, prepared):
-        """Returns side(), and the logits of the kernels; zeros if the network predicts colours."""
-        result = getattr(self, side)(prepared[side + ".input"]).float()
+    def side_and_logits(self, side, prepared, predictor=None):
+        """Returns side(), and the logits of the kernels; zeros if the network predicts colours. `predictor`: this
+        network's own, or a wrapper of it."""
+        result = (predictor or getattr(self, side))(prepared[side + ".input"]).float()
         if self.direct:
             return result, torch.zeros_like(result)
         return apply_kernel(result, prepared[side + ".light"], prepared["faces"], self.facing), result

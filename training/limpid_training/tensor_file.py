@@ -7,6 +7,7 @@ import struct
 import tempfile
 import zlib
 
+import numpy
 import torch
 
 _TYPES = {"F16": torch.float16, "F32": torch.float32}
@@ -53,15 +54,17 @@ def write(path, tensors, metadata=None):
 
 
 def read(path):
-    """Returns the tensors by name, and the metadata. Raises ValueError if the file is damaged."""
-    with open(path, "rb") as stream:
-        content = stream.read()
-    if len(content) < 8:
+    """Returns the tensors by name, and the metadata. Raises ValueError if the file is damaged.
+
+    The file is mapped: processes that read the same file share its memory, and tensors that are never used are never
+    loaded. Changes to a tensor are not written back."""
+    if os.path.getsize(path) < 8:
         raise ValueError(f"{path}: is no safetensors file")
+    content = numpy.memmap(path, dtype=numpy.uint8, mode="c")
     (length,) = struct.unpack_from("<Q", content)
     if length > len(content) - 8:
         raise ValueError(f"{path}: is cut off within its header")
-    header = json.loads(content[8 : 8 + length])
+    header = json.loads(content[8 : 8 + length].tobytes())
     data = content[8 + length :]
     metadata = header.pop(_METADATA, {})
     if "crc32" in metadata and metadata["crc32"] != f"{zlib.crc32(data):08x}":
@@ -73,8 +76,6 @@ def read(path):
         count = (end - begin) // torch.empty(0, dtype=dtype).element_size()
         if end > len(data):
             raise ValueError(f"{path}: is cut off within '{name}'")
-        flat = (
-            torch.frombuffer(bytearray(data[begin:end]), dtype=dtype) if count else torch.empty(0, dtype=dtype)
-        )
+        flat = torch.from_numpy(data[begin:end]).view(dtype) if count else torch.empty(0, dtype=dtype)
         tensors[name] = flat.reshape(entry["shape"])
     return tensors, metadata

@@ -18,11 +18,11 @@ import os
 import time
 
 import torch
-import torch.distributed as distributed
 
 from . import data, features, pictures
 from .evaluate import rel_mse
 from .network import ANY_FACING, FACING, network_of
+from .workers import Workers
 
 PRESETS = {
     "cis565": {
@@ -93,26 +93,6 @@ def split(count, held_out):
     return sorted(set(range(count)) - set(validated)), validated
 
 
-class Workers:
-    """The processes of a distributed training that torchrun started, or this process alone."""
-
-    def __init__(self, device):
-        self.count = int(os.environ.get("WORLD_SIZE", "1"))
-        self.number = int(os.environ.get("RANK", "0"))
-        self.device = torch.device(device)
-        if self.count > 1:
-            distributed.init_process_group("nccl" if self.device.type == "cuda" else "gloo")
-            if self.device.type == "cuda":
-                self.device = torch.device("cuda", int(os.environ["LOCAL_RANK"]))
-
-    def average(self, tensors):
-        if self.count == 1:
-            return
-        for tensor in tensors:
-            distributed.all_reduce(tensor)
-            tensor /= self.count
-
-
 class Trainer:
     def __init__(self, options):
         self.options = options
@@ -124,6 +104,7 @@ class Trainer:
         if self.half:
             self.net = self.net.to(memory_format=torch.channels_last)
             torch.backends.cudnn.benchmark = True
+        self.predictors = {side: self.workers.shared(getattr(self.net, side)) for side in features.SIDES}
         self.examples = data.Dataset(options.data, options.samples, self.workers.device)
         held_out = max(1, round(options.validation * len(self.examples)))
         if held_out >= len(self.examples):
@@ -153,7 +134,8 @@ class Trainer:
         """Returns the loss, which is reported, and the penalty on logits, which is added for the gradient only.
         `side`: "diffuse", "specular" or "both"."""
         with torch.autocast("cuda", dtype=torch.float16) if self.half else contextlib.nullcontext():
-            parts = {name: self.net.side_and_logits(name, batch) for name in (features.SIDES if side == "both" else (side,))}
+            sides = features.SIDES if side == "both" else (side,)
+            parts = {name: self.net.side_and_logits(name, batch, self.predictors[name]) for name in sides}
             if side == "both":
                 result, target = features.recombined({name: part[0] for name, part in parts.items()}, batch["albedo"]), batch["target"]
             else:
@@ -173,7 +155,6 @@ class Trainer:
         optimizer.zero_grad(set_to_none=True)
         loss, decay = self.loss(side, batch)
         self.scaler.scale(loss + decay).backward()
-        self.workers.average(p.grad for group in optimizer.param_groups for p in group["params"] if p.grad is not None)
         self.scaler.step(optimizer)
         self.scaler.update()
         return loss.detach()
@@ -246,6 +227,7 @@ class Trainer:
             "optimizers": {name: optimizer.state_dict() for name, optimizer in self.optimizers.items()},
             "scaler": self.scaler.state_dict(),
             "batches_done": self.batches_done,
+            "workers": self.workers.count,
             "epoch": self.epoch,
             "seconds": self.seconds,
             "losses": self.losses,
@@ -269,7 +251,9 @@ class Trainer:
         for name, optimizer in self.optimizers.items():
             optimizer.load_state_dict(state["optimizers"][name])
         self.scaler.load_state_dict(state["scaler"])
-        self.batches_done = state["batches_done"]
+        # Another number of workers makes another number of batches of an epoch.
+        share = state.get("workers", 1) / self.workers.count
+        self.batches_done = {name: done * share for name, done in state["batches_done"].items()}
         self.epoch, self.seconds, self.losses = state["epoch"], state["seconds"], state["losses"]
         self.times = state["times"]
 
@@ -279,7 +263,8 @@ class Trainer:
             self.resume()
         began, before, judging = time.monotonic(), self.seconds, 0.0
         while self.epoch < self.epochs:
-            if self.options.time_limit and time.monotonic() - began > self.options.time_limit:
+            late = bool(self.options.time_limit) and time.monotonic() - began > self.options.time_limit
+            if self.workers.agreed(late):
                 break
             self.train_epoch()
             self.epoch += 1
@@ -293,6 +278,7 @@ class Trainer:
             judging += time.monotonic() - started
             last = ", ".join(f"{name} {curve[-1]:.5f}" for name, curve in self.losses.items())
             print(f"epoch {self.epoch} of {self.epochs}, {self.seconds:.0f} s: {last}", flush=True)
+        self.workers.close()
         return self.losses
 
 

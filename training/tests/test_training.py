@@ -11,6 +11,8 @@ import torch
 from limpid_training import compare, data, evaluate, export, features, pictures, tensor_file, train
 from limpid_training.network import Kpcn
 
+from . import first_gradients
+
 LAYERS = {"diffuse": 3, "specular": 3, "albedo": 3, "normal": 3, "depth": 1}
 
 
@@ -154,22 +156,57 @@ class TrainingTest(unittest.TestCase):
         with self.assertRaises(SystemExit):
             export.export(os.path.join(self.folder, "colours"), os.path.join(self.folder, "w.safetensors"))
 
-    def test_two_workers(self):
-        """Starts two workers like torchrun. (Debian's torchrun does not work with Debian's Python.)"""
-        command = [sys.executable, "-m", "limpid_training.train"]
-        command += self.options("run", "--epochs", "2", "--tuning-epochs", "1")
+    def start_workers(self, count, *module_and_arguments):
+        """Starts workers like torchrun, and returns their output. (Debian's torchrun does not work with Debian's
+        Python.)"""
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = str(free.getsockname()[1])
         workers = []
-        for rank in ("0", "1"):
-            world = {"WORLD_SIZE": "2", "RANK": rank, "LOCAL_RANK": rank, "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port}
-            environment = dict(os.environ, OMP_NUM_THREADS="1", **world)
-            workers.append(subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT))
+        for rank in map(str, range(count)):
+            world = {"WORLD_SIZE": str(count), "RANK": rank, "LOCAL_RANK": rank, "MASTER_ADDR": "127.0.0.1"}
+            environment = dict(os.environ, OMP_NUM_THREADS="1", MASTER_PORT=port, **world)
+            workers.append(
+                subprocess.Popen([sys.executable, "-m", *module_and_arguments], env=environment, stdout=subprocess.PIPE,
+                                 stderr=subprocess.STDOUT))
         output = [worker.communicate(timeout=240)[0].decode() for worker in workers]
-        self.assertEqual([worker.returncode for worker in workers], [0, 0], output)
+        self.assertEqual([worker.returncode for worker in workers], [0] * count, output)
+        return output
+
+    def train_together(self, count, run, *more):
+        return self.start_workers(count, "limpid_training.train", *self.options(run, *more))
+
+    def losses_of(self, run):
+        with open(os.path.join(self.folder, run, "losses.json")) as stream:
+            return json.load(stream)["losses"]
+
+    def test_two_workers(self):
+        output = self.train_together(2, "run", "--epochs", "2", "--tuning-epochs", "1")
         self.assertIn("epoch 3 of 3", output[0])
         self.assertNotIn("epoch", output[1], "only the first worker reports")
+
+    def test_two_workers_average_their_gradients(self):
+        trainer = train.Trainer(train.parse(self.options("alone")))
+        expected = []
+        for number in (0, 1):
+            trainer.workers.count, trainer.workers.number = 2, number
+            expected.append(first_gradients.of(trainer))
+        file = os.path.join(self.folder, "gradients.pt")
+        self.start_workers(2, "tests.first_gradients", file, *self.options("together"))
+        for mine, yours, mean in zip(*expected, torch.load(file)):
+            self.assertGreater((mine - yours).abs().max(), 0)
+            self.assertTrue(torch.allclose(mean, (mine + yours) / 2, rtol=1e-3, atol=1e-7))
+
+    def test_goes_on_with_another_number_of_workers(self):
+        epochs = ("--epochs", "3", "--tuning-epochs", "1")
+        self.train_together(2, "run", *epochs, "--time-limit", "0.001")
+        self.assertEqual(len(self.losses_of("run")["validation"]), 1)
+        losses, trainer = self.train("run", *epochs, "--resume", "--time-limit", "0.001")
+        self.assertEqual(len(losses["validation"]), 2)
+        self.train_together(2, "run", *epochs, "--resume")
+        losses = self.losses_of("run")
+        self.assertEqual([len(losses[name]) for name in ("diffuse", "both", "validation")], [3, 1, 4])
+        self.assertLess(losses["validation"][-1], losses["validation"][0])
 
 
 class RelMseTest(unittest.TestCase):
