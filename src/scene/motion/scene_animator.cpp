@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "scene/device/pack.h"
@@ -33,6 +35,31 @@ template <typename T>
 void addUpload(SceneFrame& frame, std::string_view buffer, uint64_t offset, const std::vector<T>& values) {
     addUpload(frame, buffer, offset, std::span<const T>(values));
 }
+
+/// Uploads to one buffer. Those that follow one another there become one: each copy costs the device some 15
+/// microseconds, however small.
+class UploadRuns {
+  public:
+    UploadRuns(SceneFrame& frame, std::string_view buffer) : frame_(frame), buffer_(buffer) {}
+
+    template <typename T>
+    void add(uint64_t offset, std::span<const T> values) {
+        const auto bytes = std::as_bytes(values);
+        if (!last_ || end_ != offset) {
+            last_ = frame_.uploads.size();
+            frame_.uploads.push_back({buffer_, offset, {}});
+        }
+        std::vector<std::byte>& run = frame_.uploads[*last_].bytes;
+        run.insert(run.end(), bytes.begin(), bytes.end());
+        end_ = offset + bytes.size();
+    }
+
+  private:
+    SceneFrame& frame_;
+    std::string_view buffer_;
+    std::optional<size_t> last_;  ///< index of the current run's upload
+    uint64_t end_ = 0;            ///< where the run ends
+};
 
 bool isFinite(const mat4& m) {
     return scene::isFinite(m[0]) && scene::isFinite(m[1]) && scene::isFinite(m[2]) && scene::isFinite(m[3]);
@@ -81,6 +108,12 @@ void SceneAnimator::setLights(const SceneData& data) {
     firstPunctual_ = data.lights.size() - scene_.lights.size() * layout::LIGHT_TEXELS;
     punctual_.assign(data.lights.begin() + static_cast<std::ptrdiff_t>(firstPunctual_), data.lights.end());
     motion_.lights = data.motion.lights;
+    lightRecords_.clear();
+    for (const MovingLights& lights : motion_.lights) {
+        const auto first = data.lights.begin() + std::ptrdiff_t{lights.firstLight} * layout::LIGHT_TEXELS;
+        const auto texels = static_cast<std::ptrdiff_t>(lights.triangles.size() * layout::LIGHT_TEXELS);
+        lightRecords_.emplace_back(first, first + texels);
+    }
     motion_.lightTree = data.motion.lightTree;
 }
 
@@ -164,6 +197,8 @@ void SceneAnimator::addPoses(const Moment& now, const Moment& before, SceneFrame
 }
 
 void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneFrame& frame) const {
+    UploadRuns instances(frame, "instances"), geometry(frame, "previousGeometry"),
+        bvhInstances(frame, "bvhInstances");
     for (size_t i = 0; i < motion_.leaves.size(); ++i) {
         const MovingLeaf& leaf = motion_.leaves[i];
         const mat4& transform = now.transforms[i];
@@ -172,16 +207,16 @@ void SceneAnimator::addInstances(const Moment& now, const Moment& before, SceneF
         record[3] = records_[i];
         record[3].w = (record[3].w & ~layout::INSTANCE_MIRRORED) |
                       (isMirrored(transform) ? layout::INSTANCE_MIRRORED : 0u);
-        addUpload<uvec4>(frame, "instances", uint64_t{leaf.instance} * sizeof(record), record);
+        instances.add<uvec4>(uint64_t{leaf.instance} * sizeof(record), record);
 
         std::array<uvec4, layout::PREVIOUS_INSTANCE_TEXELS> previous{};
         packRows(previous.data(), before.transforms[i]);
-        addUpload<uvec4>(frame, "previousGeometry", uint64_t{leaf.instance} * sizeof(previous), previous);
+        geometry.add<uvec4>(uint64_t{leaf.instance} * sizeof(previous), previous);
 
         std::array<uvec4, layout::BVH_INSTANCE_TEXELS> bvh{};
         packRows(bvh.data(), isInvertible(transform) ? glm::inverse(transform) : mat4(1.0f));
         bvh[3] = {leaf.root, leaf.instance, firstTriangles_[leaf.tree], 0};
-        addUpload<uvec4>(frame, "bvhInstances", uint64_t{leaf.record} * sizeof(bvh), bvh);
+        bvhInstances.add<uvec4>(uint64_t{leaf.record} * sizeof(bvh), bvh);
         frame.placements.emplace_back(leaf.record, placementOf(leaf.tree, transform));
     }
 }
@@ -258,45 +293,41 @@ std::vector<vec3> SceneAnimator::worldPositions(uint32_t index, const Moment& mo
 }
 
 void SceneAnimator::addTriangleLights(const Moment& now, SceneFrame& frame, LightTree& tree) const {
-    for (const MovingLights& lights : motion_.lights) {
+    UploadRuns records(frame, "lights"), densities(frame, "lightDensity");
+    for (size_t moving = 0; moving < motion_.lights.size(); ++moving) {
+        const MovingLights& lights = motion_.lights[moving];
         const Instance& instance = scene_.instances[lights.instance];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
         const std::vector<vec3> positions = worldPositions(lights.instance, now);
         const bool mirrored =
             instance.skin == none && isMirrored(now.pose.toWorld[static_cast<size_t>(instance.node)]);
-        const uint64_t stride = layout::LIGHT_TEXELS * sizeof(uvec4);
         for (size_t i = 0; i < lights.triangles.size(); ++i) {
             const uint32_t* index = &mesh.indices[size_t{3} * lights.triangles[i]];
-            const vec3 v0 = positions[index[0]];
-            const vec3 v1 = positions[index[mirrored ? 2 : 1]], v2 = positions[index[mirrored ? 1 : 2]];
-            const uint64_t at = (lights.firstLight + i) * stride;
-            // The fourth word of each texel is unchanged, except for the mirror bit of the kind.
-            const auto addCorner = [&](uint64_t texel, const vec3& v) {
-                addUpload<vec3>(frame, "lights", at + texel * sizeof(uvec4), std::span(&v, 1));
-            };
-            addCorner(0, v0);
-            addCorner(1, v1);
-            addCorner(2, v2);
-            const uint32_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[lights.triangles[i]];
-            const Material& material = scene_.materials[static_cast<size_t>(instance.material) + slot];
-            const uint32_t kind =
-                (material.doubleSided ? layout::LIGHT_TRIANGLE_TWO_SIDED : layout::LIGHT_TRIANGLE) |
-                (mirrored ? layout::LIGHT_MIRRORED : 0u);
-            addUpload<uint32_t>(frame, "lights", at + 3 * sizeof(uint32_t), std::span(&kind, 1));
-            const float area = 0.5f * glm::length(glm::cross(v1 - v0, v2 - v0));
+            const std::array<vec3, 3> corners{positions[index[0]], positions[index[mirrored ? 2 : 1]],
+                                              positions[index[mirrored ? 1 : 2]]};
+            std::array<uvec4, layout::LIGHT_TEXELS> record{};
+            std::copy_n(lightRecords_[moving].begin() + static_cast<std::ptrdiff_t>(i * record.size()),
+                        record.size(), record.begin());
+            for (size_t k = 0; k < 3; ++k) record[k] = bits(corners[k], record[k].w);
+            record[0].w = (record[0].w & ~layout::LIGHT_MIRRORED) | (mirrored ? layout::LIGHT_MIRRORED : 0u);
+            records.add<uvec4>((lights.firstLight + i) * sizeof(record), record);
+
+            const float area =
+                0.5f * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
             const float density = area > 0.0f ? lights.probabilities[i] / area : 0.0f;
-            addUpload<float>(frame, "lightDensity",
-                             (uint64_t{lights.firstDensity} + lights.triangles[i]) * sizeof(float),
-                             std::span(&density, 1));
+            densities.add<float>((uint64_t{lights.firstDensity} + lights.triangles[i]) * sizeof(float),
+                                 std::span(&density, 1));
             if (tree.lightCount() == 0) continue;
-            tree.setLight(
-                lights.firstLight + static_cast<uint32_t>(i),
-                triangleLightBounds({v0, v1, v2}, double{lights.radiances[i]}, material.doubleSided));
+            const bool bothSides =
+                (record[0].w & layout::LIGHT_KIND_MASK) == layout::LIGHT_TRIANGLE_TWO_SIDED;
+            tree.setLight(lights.firstLight + static_cast<uint32_t>(i),
+                          triangleLightBounds(corners, double{lights.radiances[i]}, bothSides));
         }
     }
 }
 
 void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame, LightTree& tree) const {
+    UploadRuns records(frame, "lights");
     for (size_t i = 0; i < scene_.lights.size(); ++i) {
         const PunctualLight& light = scene_.lights[i];
         if (light.node == none) continue;
@@ -305,10 +336,9 @@ void SceneAnimator::addPunctualLights(const Moment& now, SceneFrame& frame, Ligh
         PunctualLight moved = light;
         moved.position = vec3(toWorld[3]);
         moved.direction = -vec3(withoutScale(toWorld)[2]);
-        const std::array<uvec4, 2> texels{bits(moved.position, packed[0].w),
-                                          bits(moved.direction, packed[1].w)};
-        addUpload<uvec4>(frame, "lights", (firstPunctual_ + i * layout::LIGHT_TEXELS) * sizeof(uvec4),
-                         texels);
+        const std::array<uvec4, layout::LIGHT_TEXELS> record{
+            bits(moved.position, packed[0].w), bits(moved.direction, packed[1].w), packed[2], packed[3]};
+        records.add<uvec4>(firstPunctual_ * sizeof(uvec4) + i * sizeof(record), record);
         if (tree.lightCount() == 0 || light.kind == PunctualLight::Kind::Directional) continue;
         tree.setLight(static_cast<uint32_t>(firstPunctual_ / layout::LIGHT_TEXELS + i),
                       punctualLightBounds(moved));

@@ -61,8 +61,10 @@ class SceneAnimator {
     std::vector<uvec4>
         records_;  ///< the last texel of every moving instance's record in `instances`, by leaf
     std::vector<uint32_t> firstTriangles_;  ///< of the trees
-    std::vector<uvec4> punctual_;           ///< the scene's punctual lights as packed
-    uint64_t firstPunctual_ = 0;            ///< first texel of these in `lights`
+    /// Of motion_.lights as packed, LIGHT_TEXELS for each triangle.
+    std::vector<std::vector<uvec4>> lightRecords_;
+    std::vector<uvec4> punctual_;  ///< the scene's punctual lights as packed
+    uint64_t firstPunctual_ = 0;   ///< first texel of these in `lights`
 };
 
 /// Returns the camera at the position of its node at `time`.
