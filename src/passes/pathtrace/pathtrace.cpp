@@ -41,7 +41,7 @@ void dispatch(FrameGraph& graph, const TracerShaders& shaders, const scene::GpuS
     const PathtraceParams params = makeParams(scene, settings, launch);
     dispatchTraced(graph, scene, "pathtrace", shaders, images, gpu::paramsOf(params),
                    {{"SAMPLER", static_cast<uint32_t>(launch.sampler)},
-                    {"LIGHT_TREE", settings.lightTree || scene.needsLightTree() ? 1u : 0u},
+                    {"LIGHT_TREE", scene.usesLightTree(settings.lightTree) ? 1u : 0u},
                     {"HAS_LENS", launch.camera.lensRadius > 0.0f ? 1u : 0u}},
                    launch.extent);
 }
@@ -79,9 +79,11 @@ const ParamTable<PathtraceSettings>& pathtraceParams() {
         t.add("through_glass", &S::throughGlass,
               "Write the layers of what smooth glass shows, or of what it mirrors where it mirrors more, "
               "which helps denoisers, and trace that light for every sample; off: the glass's own layers");
-        t.add("light_tree", &S::lightTree,
-              "Choose lights by what each can send to the point, by a tree over all lights, as always with "
-              "more than 256 point and spot lights; off: by power");
+        t.add(
+            "light_tree", &S::lightTree,
+            "Where choosing lights by power would starve some lamp of samples, choose them by what each can "
+            "send to the point, by a tree over all lights; off: by power, unless there are more than 256 "
+            "point and spot lights");
         return t;
     }();
     return table;

@@ -20,7 +20,7 @@ struct PathtraceSettings {
     bool samplerSobol = true;
     bool throughMirrors = true;
     bool throughGlass = true;
-    bool lightTree = false;
+    bool lightTree = true;
     Sampler sampler() const {
         if (samplerTea) return Sampler::Tea;
         return samplerSobol ? Sampler::Sobol : Sampler::Pcg;

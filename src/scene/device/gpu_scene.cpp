@@ -10,7 +10,7 @@
 namespace limpid::scene {
 namespace {
 
-constexpr uint32_t mostLampsByPower = 256;
+constexpr uint32_t maxEvaluatedLights = 256;
 
 }  // namespace
 
@@ -149,8 +149,8 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"EXPANDED_NODES", gpuTraversal_}};
 }
 
-bool GpuScene::needsLightTree() const {
-    return features_.lightTree && params_.punctualCount > params_.sunCount + mostLampsByPower;
+bool GpuScene::usesLightTree(bool wanted) const {
+    return features_.lightTree && (wanted || params_.punctualCount - params_.sunCount > maxEvaluatedLights);
 }
 
 uint64_t GpuScene::byteCount() const {

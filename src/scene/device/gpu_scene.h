@@ -34,9 +34,9 @@ class GpuScene {
     bool expandsNodes() const { return gpuTraversal_; }
     /// For the `hardware` tracer; null with the other one.
     const gpu::AccelerationStructures* structures() const { return structures_ ? &*structures_ : nullptr; }
-    /// True if there are more than 256 point and spot lights, too many to be evaluated one by one for each
-    /// sample: they are chosen by the light tree whatever the settings say.
-    bool needsLightTree() const;
+    /// True if lights are chosen by the light tree: it was built, and is `wanted`, or there are more than 256
+    /// point and spot lights, too many to be evaluated one by one for each sample.
+    bool usesLightTree(bool wanted) const;
     /// The number of maps in "lightDistances"; 0 if the scene has fewer than two point and spot lights.
     uint32_t mappedLights() const { return mappedLights_; }
     /// True if geometry or lights have changed since the distances were measured, and at first. Stale maps

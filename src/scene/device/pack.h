@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <optional>
 
 #include "scene/device/bvh.h"
 #include "scene/device/scene_data.h"
@@ -19,10 +20,12 @@ DeformingInstance packDeformation(const Scene& scene, uint32_t instance, uint32_
 void findRefitLevels(SceneData& data);
 /// Packs materials, texture references and mip levels, and sets the features that depend on materials.
 void packMaterials(const Scene& scene, SceneData& data, const Progress& progress);
-/// Packs the light list, its alias table, and the environment. Needs the geometry's instances.
-void packLights(const Scene& scene, SceneData& data);
-/// Packs the light list and its alias table only. Needs only the geometry's instances and bounding sphere.
-void packLamps(const Scene& scene, SceneData& data);
+/// Packs the light list, its tables, and the environment. Needs the geometry's instances.
+void packLights(const Scene& scene, SceneData& data, std::optional<bool> hasTree = {});
+/// Packs the light list and its tables only. Needs only the geometry's instances and bounding sphere.
+/// `hasTree`: whether there is a light tree; without a value, what the lights need. Scenes whose lights
+/// change keep what they were loaded with.
+void packLamps(const Scene& scene, SceneData& data, std::optional<bool> hasTree = {});
 /// Sets the environment's factor, rotation and sampling probability for shaders. Call it after packLamps().
 void setEnvironmentParams(const Environment& env, layout::SceneParams& params);
 /// Fills the table with the directional albedo of GGX reflection, and how metals distribute multiple

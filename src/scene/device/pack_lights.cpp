@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "scene/device/lamps.h"
 #include "scene/device/light_tree.h"
 #include "scene/device/mip_levels.h"
 #include "scene/device/pack.h"
@@ -24,9 +25,11 @@ constexpr float evenEnvironmentShare = 0.25f;
 constexpr double maxEvenContrast = 1.0;
 /// The minimum probabilities of triangles and of punctual lights among the other samples, if there are both.
 constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
-/// With fewer lights there is no tree. Its walk would make a scene with one lamp a quarter slower on a CPU,
-/// and their power, or what arrives from each lamp, is enough.
-constexpr size_t minTreeLights = 9;
+/// A lamp of emissive triangles that power would give fewer of all samples needs the tree: near it, it may
+/// cause all the light.
+constexpr double minLampProbability = 0.1;
+/// With more point and spot lights, to evaluate all of them for each choice would take longer than the tree.
+constexpr size_t maxEvaluatedLights = 256;
 /// With fewer point and spot lights there is no choice in which distance maps could help.
 constexpr size_t minMappedLights = 2;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
@@ -82,7 +85,7 @@ class LightPacker {
   public:
     LightPacker(const Scene& scene, SceneData& data) : scene_(scene), data_(data) {}
 
-    void pack() {
+    void pack(std::optional<bool> hasTree) {
         for (size_t i = 0; i < scene_.instances.size(); ++i) packInstance(i);
         data_.features.triangleLights = !weights_.empty();
         packPunctuals();
@@ -101,14 +104,23 @@ class LightPacker {
             }
         }
         data_.params.triangleLightCount = static_cast<uint32_t>(weights_.size());
+        data_.features.lightTree = hasTree.value_or(needsTree(table));
         packTree();
     }
 
   private:
-    /// Packs nodes, trails, and the list of directional lights. Whether there is a tree depends on the number
-    /// of lights only, so that lights can be changed on the device.
+    bool needsTree(const WeightPyramid& table) const {
+        if (scene_.lights.size() - suns_.size() > maxEvaluatedLights) return true;
+        std::vector<double> ofLamp(lampCount_);
+        for (size_t i = 0; i < weights_.size(); ++i) ofLamp[lamps_[i]] += double{table.probabilities[i]};
+        double share = scene_.environment.empty() ? 1.0 : 1.0 - double{environmentShare};
+        if (data_.features.punctualLights) share *= double{data_.params.triangleLightProbability};
+        return std::ranges::any_of(
+            ofLamp, [&](double lamp) { return lamp > 0.0 && share * lamp < minLampProbability; });
+    }
+
+    /// Packs nodes, trails, and the list of directional lights.
     void packTree() {
-        data_.features.lightTree = bounds_.size() - suns_.size() >= minTreeLights;
         data_.features.suns = !suns_.empty();
         data_.features.lightDistances = scene_.lights.size() - suns_.size() >= minMappedLights;
         if (!data_.features.lightTree) return;
@@ -137,11 +149,8 @@ class LightPacker {
     /// reaches a surface.
     std::vector<double> triangleWeights() const {
         const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-        std::vector<double> ofLamp;
-        for (size_t i = 0; i < weights_.size(); ++i) {
-            ofLamp.resize(std::max(ofLamp.size(), lamps_[i] + 1));
-            ofLamp[lamps_[i]] += weights_[i];
-        }
+        std::vector<double> ofLamp(lampCount_);
+        for (size_t i = 0; i < weights_.size(); ++i) ofLamp[lamps_[i]] += weights_[i];
         const auto lamps =
             std::count_if(ofLamp.begin(), ofLamp.end(), [](double power) { return power > 0.0; });
         if (lamps < 2) return weights_;
@@ -171,6 +180,9 @@ class LightPacker {
     void packInstance(size_t index) {
         const Instance& instance = scene_.instances[index];
         const Mesh& mesh = scene_.meshes[static_cast<size_t>(instance.mesh)];
+        const std::vector<uint32_t> emitters = emissiveTriangles(instance, mesh);
+        if (emitters.empty()) return;
+        const std::vector<uint32_t> lamps = lampsOf(mesh, emitters);
         const size_t tableStart = lightOfPrimitive_.size();
         MovingLights moving{static_cast<uint32_t>(index),
                             static_cast<uint32_t>(weights_.size()),
@@ -178,28 +190,35 @@ class LightPacker {
                             {},
                             {},
                             {}};
-        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
-            const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[t];
-            const auto material = static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
-            uint32_t light = layout::NONE;
-            if (isEmitter(scene_.materials[material])) {
-                light = packTriangle(index, instance, mesh, t, material);
-                moving.triangles.push_back(static_cast<uint32_t>(t));
-                moving.radiances.push_back(radiances_.back());
-            }
-            lightOfPrimitive_.push_back(light);
+        lightOfPrimitive_.resize(tableStart + mesh.triangleCount(), layout::NONE);
+        for (size_t i = 0; i < emitters.size(); ++i) {
+            lightOfPrimitive_[tableStart + emitters[i]] =
+                packTriangle(index, instance, mesh, emitters[i], lampCount_ + lamps[i]);
+            moving.triangles.push_back(emitters[i]);
+            moving.radiances.push_back(radiances_.back());
         }
-        if (!moving.triangles.empty()) {
-            data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
-        } else {
-            lightOfPrimitive_.resize(tableStart);
-            return;
-        }
+        lampCount_ += 1 + *std::ranges::max_element(lamps);
+        data_.instances[index * layout::INSTANCE_TEXELS + 3].y = static_cast<uint32_t>(tableStart);
         if (instance.movement != Movement::Still) data_.motion.lights.push_back(std::move(moving));
     }
 
+    static uint32_t materialOf(const Instance& instance, const Mesh& mesh, size_t triangle) {
+        const size_t slot = mesh.materialSlots.empty() ? 0 : mesh.materialSlots[triangle];
+        return static_cast<uint32_t>(static_cast<size_t>(instance.material) + slot);
+    }
+
+    std::vector<uint32_t> emissiveTriangles(const Instance& instance, const Mesh& mesh) const {
+        std::vector<uint32_t> result;
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+            if (isEmitter(scene_.materials[materialOf(instance, mesh, t)]))
+                result.push_back(static_cast<uint32_t>(t));
+        }
+        return result;
+    }
+
     uint32_t packTriangle(size_t instanceIndex, const Instance& instance, const Mesh& mesh, size_t t,
-                          uint32_t materialIndex) {
+                          size_t lamp) {
+        const uint32_t materialIndex = materialOf(instance, mesh, t);
         const Material& material = scene_.materials[materialIndex];
         const uint32_t* index = &mesh.indices[3 * t];
         vec3 v[3];
@@ -223,13 +242,13 @@ class LightPacker {
         data_.lights.push_back(bits(v[0], kind | (mirrored ? layout::LIGHT_MIRRORED : 0u)));
         data_.lights.push_back(bits(v[1], 0u));
         data_.lights.push_back(bits(v[2], firstTriangle + static_cast<uint32_t>(t)));
-        const bool changes = ref || material.clearcoat > 0.0f;  // varies between points, or with direction
+        // Varies between points or with direction, or is not all there.
+        const bool changes = ref || material.clearcoat > 0.0f || material.alphaMode != AlphaMode::Opaque;
         data_.lights.push_back(bits(material.emission, changes ? materialIndex : layout::NONE));
         areas_.push_back(static_cast<float>(area));
         radiances_.push_back(static_cast<float>(radiance.strength));
         bounds_.push_back(triangleLightBounds({v[0], v[1], v[2]}, radiance.strength, material.doubleSided));
-        const auto lamp = lampNumbers_.try_emplace({instanceIndex, materialIndex}, lampNumbers_.size()).first;
-        return addWeight(std::numbers::pi * area * sides * radiance.luminance, lamp->second);
+        return addWeight(std::numbers::pi * area * sides * radiance.luminance, lamp);
     }
 
     /// Returns its power. A spot counts as if it shone in all directions: outside its cone other lights
@@ -267,8 +286,8 @@ class LightPacker {
     const Scene& scene_;
     SceneData& data_;
     std::vector<double> weights_;  ///< powers of the triangle lights, which come first
-    std::vector<size_t> lamps_;    ///< the lamp that each belongs to: one material of one instance
-    std::map<std::pair<size_t, uint32_t>, size_t> lampNumbers_;
+    std::vector<size_t> lamps_;    ///< the lamp that each belongs to (lamps.h)
+    size_t lampCount_ = 0;
     std::vector<float> areas_, radiances_;    ///< of the triangle lights
     std::vector<LightBounds> bounds_;         ///< of all lights; empty ones of directional lights
     std::vector<uint32_t> suns_;              ///< the directional lights
@@ -333,8 +352,8 @@ void packEnvironment(const Environment& env, SceneData& data) {
 
 }  // namespace
 
-void packLamps(const Scene& scene, SceneData& data) {
-    LightPacker(scene, data).pack();
+void packLamps(const Scene& scene, SceneData& data, std::optional<bool> hasTree) {
+    LightPacker(scene, data).pack(hasTree);
 }
 
 void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
@@ -346,8 +365,8 @@ void setEnvironmentParams(const Environment& env, layout::SceneParams& params) {
     params.environmentProbability = params.triangleLightCount + params.punctualCount > 0 ? share : 1.0f;
 }
 
-void packLights(const Scene& scene, SceneData& data) {
-    packLamps(scene, data);
+void packLights(const Scene& scene, SceneData& data, std::optional<bool> hasTree) {
+    packLamps(scene, data, hasTree);
     if (!scene.environment.empty()) packEnvironment(scene.environment, data);
 }
 

@@ -40,13 +40,13 @@ uint64_t SceneData::byteCount() const {
     return sum;
 }
 
-SceneData buildSceneData(const Scene& scene, const Progress& progress) {
+SceneData buildSceneData(const Scene& scene, const Progress& progress, std::optional<bool> hasLightTree) {
     SceneData data;
     data.features.vertexData = hasVertexData(scene);
     packMaterials(scene, data, progress.part(0.0, 0.3));
     packGeometry(scene, data, progress.part(0.3, 0.9));
     progress.at(0.9);
-    packLights(scene, data);
+    packLights(scene, data, hasLightTree);
     if (data.features.specular) fillGgxTable(data.ggxTable);
     if (data.features.sheen) fillSheenTable(data.ggxTable);
     if (data.features.roughGlass) fillDielectricTable(data.dielectricTable);

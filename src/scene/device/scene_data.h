@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/progress.h"
@@ -43,8 +44,9 @@ struct SceneData {
     uint64_t byteCount() const;
 };
 
-/// Builds trees, light tables and mip levels. Throws Error if the textures exceed 4 x 2^27 texels, and
-/// Cancelled as `progress` does.
-SceneData buildSceneData(const Scene& scene, const Progress& progress = {});
+/// Builds trees, light tables and mip levels. `hasLightTree`: see packLamps(). Throws Error if the textures
+/// exceed 4 x 2^27 texels, and Cancelled as `progress` does.
+SceneData buildSceneData(const Scene& scene, const Progress& progress = {},
+                         std::optional<bool> hasLightTree = {});
 
 }  // namespace limpid::scene

@@ -25,6 +25,7 @@ void addWhole(SceneFrame& frame, std::string_view buffer, std::span<const std::b
 LiveLights::LiveLights(const Scene& scene, const SceneData& data) {
     packed_.instances = data.instances;
     packed_.params = data.params;
+    packed_.features.lightTree = data.features.lightTree;
     for (const LightControl& control : lightControlsOf(scene)) {
         if (control.kind == LightControl::Kind::Emitter) emitters_.push_back(control.index);
     }
@@ -34,7 +35,7 @@ void LiveLights::update(const Scene& scene) {
     SceneData fresh;
     fresh.instances = std::move(packed_.instances);
     fresh.params = packed_.params;
-    packLamps(scene, fresh);
+    packLamps(scene, fresh, packed_.features.lightTree);
     packed_ = std::move(fresh);
     emissions_.clear();
     for (const int emitter : emitters_)

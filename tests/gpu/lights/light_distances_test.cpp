@@ -289,7 +289,7 @@ TEST_P(LightDistancesTest, NothingIsHiddenWhereRaysMeetNothing) {
 
 TEST_F(LightChoiceTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
     const Scene scene = house();
-    scene::SceneData data = scene::buildSceneData(scene);
+    scene::SceneData data = scene::buildSceneData(scene, {}, true);
     ASSERT_TRUE(data.features.lightDistances);
     scene::GpuScene mapped = onDevice(data);
     data.features.lightDistances = false;
@@ -312,7 +312,7 @@ TEST_F(LightChoiceTest, AVisibleLampIsSampledDespiteManyHiddenOnes) {
 /// Of every lamp in front of the surface, hidden or not, the samples' 1 / pdf must sum to 1.
 TEST_F(LightChoiceTest, TheDensityIsTheProbability) {
     const Scene scene = house();
-    scene::GpuScene mapped = onDevice(scene::buildSceneData(scene));
+    scene::GpuScene mapped = onDevice(scene::buildSceneData(scene, {}, true));
     measure(mapped);
     for (const bool byTree : {false, true}) {
         size_t tested = 0;

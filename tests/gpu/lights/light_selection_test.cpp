@@ -148,9 +148,8 @@ class LightSelectionTest : public RenderTest {
         scene::prepare(scene);
         const bool moves = !scene.rig.clips.empty();
         if (moves) scene::chooseClip(scene, "");
-        const scene::SceneData data = scene::buildSceneData(scene);
+        const scene::SceneData data = scene::buildSceneData(scene, {}, true);
         scene::GpuScene onDevice(device(), data, {tracer, {}});
-        ASSERT_TRUE(data.features.lightTree);
         Moment moment;
         moment.camera = scene::cameraParams(scene.cameras.at(0), size.width, size.height);
         if (moves) moment.scene = scene::SceneAnimator(scene, data).frame(0.5, 0.5);
@@ -174,7 +173,7 @@ class LightSelectionTest : public RenderTest {
 
     /// One sample for each pixel, through the scene's first camera.
     std::vector<float> firstSample(const Scene& scene, const PathtraceSettings& pathtrace) {
-        scene::GpuScene onDevice(device(), scene::buildSceneData(scene));
+        scene::GpuScene onDevice(device(), scene::buildSceneData(scene, {}, true));
         FrameRenderer renderer(device(), onDevice, {}, 1);
         RenderSettings settings;
         settings.extent = size;

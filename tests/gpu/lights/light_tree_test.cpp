@@ -158,7 +158,7 @@ double weightOf(const Packed& p, const Query& q) {
 class LightTreeTest : public GpuTest {
   protected:
     void load(const scene::Scene& scene) {
-        data_ = scene::buildSceneData(scene);
+        data_ = scene::buildSceneData(scene, {}, true);
         gpuScene_.emplace(device(), data_);
         trails_.assign(data_.lights.size() / layout::LIGHT_TEXELS, uvec4(0u));
         childCount_ = 0;

@@ -99,7 +99,7 @@ class LightsTest : public GpuTest {
     /// Samples lights at a point of a surface with this normal; without one, all directions are equal.
     std::vector<DrawnLight> draw(const scene::Scene& scene, const vec3& from, uint32_t count, uint32_t seed,
                                  const vec3& normal = vec3(0.0f), bool byTree = false) {
-        const scene::SceneData data = scene::buildSceneData(scene);
+        const scene::SceneData data = scene::buildSceneData(scene, {}, byTree);
         const scene::GpuScene gpuScene(device(), data);
         const LightsSampleParams params{data.params, from, normal, count, seed};
         const Job job{.shader = shaders::lights_sample_comp,
