@@ -35,7 +35,8 @@ struct Path {
     bool further;    // what glass does not send where the layers look
     uint reflected;  // the vertex that the first glass reflects directly; 0: none
     uint panes;      // crossed since the vertex at which it got its direction
-    float straight;  // the way from there to the last of them
+    uint blended;    // surfaces that the path might have passed, as chance decided
+    float straight;  // the way from where it got its direction to the last pane or blended surface that it passed
     uint channel;   // of the colour that it carries, once it has met glass with dispersion; else ALL_CHANNELS
 };
 

@@ -118,11 +118,35 @@ float spreadAfter(Path path, float spread, float n) {
     return length(vec2(spread, widened * min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
 }
 
+/// Decides whether the path passes a partly transparent surface that it hits, and moves it behind. Each decision takes
+/// the path's next random number, which is spread evenly over a pixel's samples; during traversal, where the order of
+/// surfaces is unknown, decisions are independent.
+bool passesBlended(inout Path path, inout FirstSight sight, Hit hit, float spread, uint depth, inout uint rng) {
+    bool blended;
+    const float coverage = coverageAt(hit.triangle, hit.instance, hit.barycentrics, blended);
+    if (!blended) return false;
+    ++path.blended;
+    if (random(rng) < coverage) return false;
+    const vec3 direction = path.ray.direction;
+    path.coneWidth += spread * hit.t;
+    path.straight += hit.t;
+    if (depth <= path.primary) sight.traveled += hit.t;
+    if (HAS_VOLUME) path.throughput *= exp(-hit.t * path.medium);
+    const Surface surface =
+        loadSurface(hit.triangle, hit.instance, hit.barycentrics, -direction, RayCone(0.0, true, false));
+    path.ray.origin = leavingPoint(surface, direction);
+    return true;
+}
+
 /// Traces the path's ray to vertex `depth` and scatters it there. Returns false if the path ends.
 bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight, inout float spread, inout uint depth,
                 inout uint culled, uint sampleIndex, inout uint rng) {
     ++path.rays;
-    const Hit hit = traceClosest(path.ray, params.scene.rootNode, rng);
+    const bool stops = HAS_BLENDED && path.blended < MAX_WEAKENING;
+    const Hit hit = traceClosest(path.ray, params.scene.rootNode, stops ? HIT_BLENDED : rng);
+    if (stops && isHit(hit)) {
+        if (passesBlended(path, sight, hit, spread, depth, rng)) return true;
+    }
     if (!isHit(hit)) {
         missed(sight, path, depth);
         addEnvironment(path, depth);
@@ -150,8 +174,8 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
     const LightShares shares = path.shares;
     addDirectLight(path, surface, bsdf, seesThrough, depth, rng);
     if (!scatter(path, branches, surface, bsdf, seesThrough, depth, rng)) return false;
-    if (HAS_PANES) {
-        const bool crossed = path.panes > 0u;
+    if (HAS_PANES || HAS_BLENDED) {
+        const bool crossed = HAS_PANES && path.panes > 0u;
         if (crossed) path.shares = shares;
         path.straight = crossed ? straight : 0.0;
     }
@@ -164,7 +188,7 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
 PathRadiance tracePath(Ray ray, uint sampleIndex, inout uint rng, inout uint rays, out FirstHit first) {
     const Cone cone = pixelCone(params.view, sampleIndex);
     Path path = Path(ray, vec3(1.0), vec3(1.0), 0.0, noLightShares(), true, cone.width, vec3(0.0),
-                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, 0u, 0u, 0.0,
+                     PathRadiance(vec3(0.0), vec3(0.0), vec3(0.0)), 0u, 0u, 0u, false, false, 0u, 0u, 0u, 0.0,
                      ALL_CHANNELS);
     float spread = cone.spread;
     FirstSight sight;

@@ -143,6 +143,7 @@ std::vector<gpu::ConstantValue> GpuScene::constants() const {
             {"HAS_IRIDESCENCE", features_.iridescence},
             {"HAS_LIGHT_DISTANCES", features_.lightDistances},
             {"HAS_PANES", features_.panes},
+            {"HAS_BLENDED", features_.blended},
             {"STACK_SIZE", stackSize_ + 3},  // up to three writes beyond the top are made and ignored
             {"TEXEL_BUFFER_COUNT", texelBufferCount_},
             {"CPU_LOOPS", !gpuTraversal_},

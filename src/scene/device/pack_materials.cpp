@@ -103,6 +103,7 @@ class MaterialPacker {
             (m.transmission > 0.0f || m.diffuseTransmission > 0.0f) && !m.thin && m.absorption != vec3(0.0f);
         features.specularTextures |= m.specularTexture || m.specularColorTexture;
         features.alpha |= m.alphaMode != AlphaMode::Opaque;
+        features.blended |= m.alphaMode == AlphaMode::Blend;
         auto& out = data_.materials;
         out.push_back(bits(vec3(m.baseColor), flagBits(m)));
         out.push_back(bits(m.emission, m.roughness));

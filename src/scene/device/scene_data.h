@@ -22,7 +22,7 @@ struct SceneFeatures {
          mirrored = false, motion = false, clearcoat = false, volume = false, specularTextures = false,
          roughGlass = false, lightTree = false, suns = false, anisotropy = false, sheen = false,
          diffuseTransmission = false, dispersion = false, iridescence = false, lightDistances = false,
-         panes = false;
+         panes = false, blended = false;
     bool operator==(const SceneFeatures&) const = default;
 };
 

@@ -30,6 +30,7 @@ layout(constant_id = 28) const bool HAS_DIFFUSE_TRANSMISSION = true;
 layout(constant_id = 29) const bool HAS_DISPERSION = true;
 layout(constant_id = 30) const bool HAS_IRIDESCENCE = true;
 layout(constant_id = 32) const bool HAS_PANES = true;  // smooth surfaces that light goes straight through
+layout(constant_id = 33) const bool HAS_BLENDED = true;       // BLEND materials
 layout(constant_id = 19) const bool HAS_LIGHT_TREE = false;    // several lights that are not directional
 layout(constant_id = 23) const bool HAS_SUNS = true;          // directional lights
 layout(constant_id = 31) const bool HAS_LIGHT_DISTANCES = false;  // several point and spot lights

@@ -62,16 +62,20 @@ float punctualAttenuation(uint kind, vec3 direction, vec3 axis, float distance, 
 /// leaves.
 vec3 lightEmission(uvec4 record3, uint shadingTriangle, vec2 barycentrics, float cosine) {
     vec3 emission = uintBitsToFloat(record3.xyz);
-    if (HAS_TEXTURES || HAS_CLEARCOAT) {
+    if (HAS_TEXTURES || HAS_CLEARCOAT || HAS_ALPHA) {
         if (record3.w != NONE) {
             const int material = int(record3.w * MATERIAL_TEXELS);
+            const uvec3 indices = imageLoad(triangles, int(shadingTriangle)).xyz;
             float coat = HAS_CLEARCOAT ? uintBitsToFloat(imageLoad(materials, material + 7).y) : 0.0;
             if (HAS_TEXTURES) {
-                const VertexData data = loadVertexData(imageLoad(triangles, int(shadingTriangle)).xyz, barycentrics);
+                const VertexData data = loadVertexData(indices, barycentrics);
                 emission *= materialTexture(imageLoad(materials, material + 4).w, data).rgb;
                 if (HAS_CLEARCOAT) coat *= materialTexture(imageLoad(materials, material + 6).z, data).r;
             }
             if (HAS_CLEARCOAT) emission *= emissionThroughClearcoat(coat, cosine);
+            // Rays that hit the light meet it by chance.
+            bool blended;
+            if (HAS_ALPHA) emission *= coverageOf(material, indices, barycentrics, blended);
         }
     }
     return emission;

@@ -188,24 +188,37 @@ vec4 materialTexture(uint index, VertexData data) {
     return result;
 }
 
-/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by a hash of `rng` and the
-/// triangle, so that neither the order of candidates nor repeated tests make a difference.
-bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) {
-    const TriangleIds ids = loadTriangleIds(triangle, instance);
-    const uvec4 indices = imageLoad(triangles, int(ids.shadingTriangle));
-    const int at = int(materialOf(indices.w, instance) * MATERIAL_TEXELS);
+/// The share of the surface that is there: 0 or 1 for MASK, any share for BLEND, 1 for other materials. `at`: position
+/// in `materials`.
+float coverageOf(int at, uvec3 indices, vec2 barycentrics, out bool blended) {
     const uint flags = imageLoad(materials, at).w;
     const uvec4 alphaTexel = imageLoad(materials, at + 3);
     float alpha = uintBitsToFloat(alphaTexel.x);
     if (HAS_VERTEX_DATA) {
-        const VertexData data = loadVertexData(indices.xyz, barycentrics);
+        const VertexData data = loadVertexData(indices, barycentrics);
         alpha *= data.color.a;
         if (HAS_TEXTURES) alpha *= materialTexture(imageLoad(materials, at + 4).x, data).a;
     }
-    const bool blend = (flags & MATERIAL_BLEND) != 0u;
-    const float threshold = blend ? randomOf(rng, triangle, instance) : uintBitsToFloat(alphaTexel.y);
-    const bool opaque = (flags & (MATERIAL_BLEND | MATERIAL_MASK)) == 0u;
-    return opaque || (blend ? alpha > threshold : alpha >= threshold);
+    blended = (flags & MATERIAL_BLEND) != 0u;
+    if (!blended) alpha = (flags & MATERIAL_MASK) == 0u || alpha >= uintBitsToFloat(alphaTexel.y) ? 1.0 : 0.0;
+    return clamp(alpha, 0.0, 1.0);
+}
+
+float coverageAt(uint triangle, uint instance, vec2 barycentrics, out bool blended) {
+    const uvec4 shading = imageLoad(triangles, int(loadTriangleIds(triangle, instance).shadingTriangle));
+    return coverageOf(int(materialOf(shading.w, instance) * MATERIAL_TEXELS), shading.xyz, barycentrics, blended);
+}
+
+/// In place of a random number: rays hit every BLEND surface that is there at all.
+const uint HIT_BLENDED = 0xffffffffu;
+
+/// True if a candidate hit on a MASK or BLEND material counts. BLEND is decided by a hash of `rng` and the
+/// triangle, so that neither the order of candidates nor repeated tests make a difference.
+bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) {
+    bool blended;
+    const float coverage = coverageAt(triangle, instance, barycentrics, blended);
+    const bool random = blended && rng != HIT_BLENDED;
+    return coverage > (random ? randomOf(rng, triangle, instance) : 0.0);
 }
 
 /// Returns the normal map's normal in world space.
