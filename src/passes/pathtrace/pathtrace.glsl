@@ -126,7 +126,7 @@ bool passesBlended(inout Path path, inout FirstSight sight, Hit hit, float sprea
     const float coverage = coverageAt(hit.triangle, hit.instance, hit.barycentrics, blended);
     if (!blended) return false;
     ++path.blended;
-    if (random(rng) < coverage) return false;
+    if (stratified(rng) < coverage) return false;
     const vec3 direction = path.ray.direction;
     path.coneWidth += spread * hit.t;
     path.straight += hit.t;
