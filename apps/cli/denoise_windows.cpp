@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "cli/cluster/cluster_progress.h"
 #include "cli/cluster/session.h"
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 
 namespace limpid::cli {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/console/json_text.h"
 #include "commands.h"
 #include "gpu/vulkan/device.h"
 #include "info_scene.h"
-#include "json_text.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
 #include "renderer/layers/layers.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text/terminal_text.h"
-#include "json_text.h"
+#include "cli/console/json_text.h"
 #include "scene/model/scene_source.h"
 #include "scene/motion/animation.h"
 

@@ -13,7 +13,7 @@
 #include "base/log.h"
 #include "base/text/terminal_text.h"
 #include "cli/cluster/session.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 #include "commands.h"
 
 namespace limpid::cli {

@@ -9,9 +9,9 @@
 #include "base/error.h"
 #include "base/files/frame_pattern.h"
 #include "base/log.h"
+#include "cli/console/json_text.h"
 #include "cli/render/picture_output.h"
 #include "commands.h"
-#include "json_text.h"
 #include "renderer/long/merge_frames.h"
 #include "renderer/long/render_identity.h"
 

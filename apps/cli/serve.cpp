@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
+#include "cli/console/interrupt.h"
 #include "cli/options/studio_options.h"
 #include "commands.h"
-#include "interrupt.h"
 #ifdef LIMPID_HAVE_SERVE
 #include "serve/serve.h"
 #include "studio/studio.h"

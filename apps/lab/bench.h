@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "cli/console/pass_times.h"
 #include "cli/options/device_options.h"
-#include "cli/pass_times.h"
 #include "scene/model/scene_source.h"
 
 namespace limpid::cli {

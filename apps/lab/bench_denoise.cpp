@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "bench_copy.comp.h"
-#include "cli/json_text.h"
+#include "cli/console/json_text.h"
 #include "cli/options/pipeline_options.h"
 #include "lab/bench.h"
 #include "lab/bench_scene.h"

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/files/frame_pattern.h"
-#include "cli/json_text.h"
+#include "cli/console/json_text.h"
 #include "image/io/exr/exr_document.h"
 #include "lab/bench.h"
 

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "bench_product.comp.h"
-#include "cli/json_text.h"
+#include "cli/console/json_text.h"
 #include "denoise/kpcn/kpcn_params.h"
 #include "lab/bench.h"
 #include "lab/bench_scene.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/files/file.h"
-#include "cli/json_text.h"
+#include "cli/console/json_text.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 #include "lab/bench.h"

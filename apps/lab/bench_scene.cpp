@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "cli/console/pass_times.h"
 #include "cli/options/sequence_options.h"
-#include "cli/pass_times.h"
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid::cli {
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files/file.h"
-#include "cli/json_text.h"
+#include "cli/console/json_text.h"
 #include "lab/bench.h"
 #include "lab/bench_scene.h"
 #include "lab/svg_plot.h"

@@ -12,7 +12,7 @@
 #include "gpu/vulkan/device.h"
 #include "image/image.h"
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/device/gpu_scene.h"
 #include "scene/model/scene_source.h"
 

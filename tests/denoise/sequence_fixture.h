@@ -5,7 +5,7 @@
 #include <string>
 
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/model/prepare.h"
 #include "scene/motion/movement.h"
 #include "tests/gpu/render_fixture.h"

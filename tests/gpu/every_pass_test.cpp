@@ -11,7 +11,7 @@
 #include "denoise/kpcn/kpcn_weights.h"
 #include "passes/tonemap/tonemap.h"
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/motion/movement.h"
 #include "tests/gpu/render_fixture.h"
 #include "tests/reference/moving_scenes.h"

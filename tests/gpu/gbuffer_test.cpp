@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "passes/deform/deform.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
 #include "scene/motion/movement.h"
 #include "tests/gpu/pass_fixture.h"

@@ -3,8 +3,8 @@
 #include <array>
 #include <numbers>
 
-#include "renderer/frame/sequence.h"
 #include "renderer/long/block_renderer.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/motion/movement.h"
 #include "tests/gpu/render_fixture.h"
 #include "tests/gpu/trace_fixture.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/load.h"
 #include "scene/model/prepare.h"

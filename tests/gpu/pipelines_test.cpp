@@ -7,7 +7,7 @@
 #include "image/tonemap.h"
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/frame/parameters.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/prepare.h"
 #include "tests/gpu/render_fixture.h"

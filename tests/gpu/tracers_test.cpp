@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/load.h"
 #include "scene/motion/movement.h"

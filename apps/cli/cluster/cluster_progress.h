@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "cli/progress.h"
+#include "cli/console/progress.h"
 
 namespace limpid::cli {
 

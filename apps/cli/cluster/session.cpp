@@ -16,7 +16,7 @@
 #include "base/log.h"
 #include "base/log_receiver.h"
 #include "cli/cluster/local_share.h"
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 #include "cluster/launcher.h"
 
 namespace limpid::cli {

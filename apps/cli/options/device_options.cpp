@@ -4,7 +4,7 @@
 #include "base/log.h"
 #include "cli/cluster/local_share.h"
 #include "cli/cluster/session.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 #include "gpu/specialise/specialise.h"
 
 namespace limpid::cli {

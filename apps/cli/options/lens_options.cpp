@@ -1,7 +1,7 @@
 #include "cli/options/lens_options.h"
 
 #include "base/error.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 
 namespace limpid::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "cli/cluster/session.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 
 namespace limpid::cli {
 namespace {

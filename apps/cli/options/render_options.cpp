@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/files/file.h"
 #include "base/files/frame_pattern.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 #include "cli/render/clip_output.h"
 #include "cli/render/picture_output.h"
 #include "image/tone_curve.h"

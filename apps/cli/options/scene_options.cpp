@@ -1,7 +1,7 @@
 #include "cli/options/scene_options.h"
 
 #include "base/error.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 #include "scene/builtin/builtin.h"
 #include "scene/model/camera.h"
 

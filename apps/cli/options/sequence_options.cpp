@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 #include "cli/render/clip_output.h"
 #include "scene/motion/movement.h"
 

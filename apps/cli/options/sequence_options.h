@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/files/frame_pattern.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid::cli {
 

@@ -19,7 +19,7 @@
 
 #include "base/error.h"
 #include "base/files/file.h"
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 #include "image/metrics/metrics.h"
 #include "image/tonemap.h"
 

@@ -9,7 +9,7 @@
 #include "base/log.h"
 #include "cli/cluster/session.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 #include "cli/render/render_job.h"
 #include "image/io/exr/exr.h"
 #include "renderer/frame/network_file.h"

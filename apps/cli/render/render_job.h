@@ -14,7 +14,7 @@
 #include "cli/render/picture_output.h"
 #include "cli/render/render_report.h"
 #include "image/image.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid::cli {
 

@@ -7,9 +7,9 @@
 
 #include "base/log.h"
 #include "cli/cluster/session.h"
-#include "cli/interrupt.h"
-#include "cli/json_text.h"
-#include "cli/progress.h"
+#include "cli/console/interrupt.h"
+#include "cli/console/json_text.h"
+#include "cli/console/progress.h"
 
 namespace limpid::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/console/pass_times.h"
 #include "cli/options/render_options.h"
-#include "cli/pass_times.h"
 #include "denoise/methods/temporal/temporal.h"
 #include "gpu/vulkan/device.h"
 #include "renderer/long/accumulation.h"

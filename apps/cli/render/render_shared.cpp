@@ -7,7 +7,7 @@
 #include "base/files/file.h"
 #include "cli/cluster/cluster_progress.h"
 #include "cli/cluster/session.h"
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 #include "cli/render/render_sampled.h"
 #include "cli/render/sums_message.h"
 #include "renderer/long/block_renderer.h"

@@ -1,7 +1,7 @@
 // `limpid render` when frames build on each other: denoisers, and means kept on the device.
 #include "base/log.h"
-#include "cli/interrupt.h"
-#include "cli/progress.h"
+#include "cli/console/interrupt.h"
+#include "cli/console/progress.h"
 #include "cli/render/picture_output.h"
 #include "cli/render/render_job.h"
 #include "renderer/frame/camera_text.h"

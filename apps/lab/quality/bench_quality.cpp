@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "cli/pass_times.h"
+#include "cli/console/pass_times.h"
 #include "image/io/png/png.h"
 #include "image/metrics/flicker.h"
 #include "image/metrics/metrics.h"

@@ -11,8 +11,8 @@
 #include "image/metrics/frame_scores.h"
 #include "lab/quality/quality_methods.h"
 #include "lab/quality/quality_reference.h"
-#include "renderer/frame/sequence.h"
 #include "renderer/frame/settings.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid::cli {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/pass_times.h"
+#include "cli/console/pass_times.h"
 
 namespace limpid::cli {
 namespace {

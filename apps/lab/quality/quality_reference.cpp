@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "cli/progress.h"
+#include "cli/console/progress.h"
 #include "image/io/exr/exr.h"
 #include "renderer/frame/frame_renderer.h"
 #include "renderer/layers/layers.h"

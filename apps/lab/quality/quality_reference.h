@@ -8,8 +8,8 @@
 
 #include "gpu/vulkan/device.h"
 #include "image/metrics/geometry.h"
-#include "renderer/frame/sequence.h"
 #include "renderer/frame/settings.h"
+#include "renderer/sequence/sequence.h"
 #include "scene/device/gpu_scene.h"
 
 namespace limpid::cli {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/frame/moment.h"
+#include "renderer/sequence/moment.h"
 #include "scene/framing/camera_path.h"
 
 namespace limpid::studio {

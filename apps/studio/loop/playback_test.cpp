@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid::studio {
 namespace {

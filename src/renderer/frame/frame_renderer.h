@@ -14,9 +14,9 @@
 #include "renderer/frame/frame.h"
 #include "renderer/frame/frame_download.h"
 #include "renderer/frame/history_reasons.h"
-#include "renderer/frame/moment.h"
 #include "renderer/frame/reset_rule.h"
 #include "renderer/layers/layers.h"
+#include "renderer/sequence/moment.h"
 
 namespace limpid {
 

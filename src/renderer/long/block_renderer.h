@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "renderer/long/accumulation.h"
 
 namespace limpid {

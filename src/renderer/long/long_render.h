@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 #include "renderer/long/block_renderer.h"
 #include "renderer/long/checkpoint.h"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "renderer/frame/sequence.h"
 #include "renderer/frame/settings.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid {
 

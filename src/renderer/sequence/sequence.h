@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "gpu/graph/frame_graph.h"
-#include "renderer/frame/moment.h"
+#include "renderer/sequence/moment.h"
 #include "renderer/sequence/shutter.h"
 #include "scene/framing/camera_path.h"
 #include "scene/model/camera.h"

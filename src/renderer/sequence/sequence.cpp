@@ -1,4 +1,4 @@
-#include "renderer/frame/sequence.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid {
 

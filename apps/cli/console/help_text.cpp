@@ -1,4 +1,4 @@
-#include "cli/help_text.h"
+#include "cli/console/help_text.h"
 
 #include <algorithm>
 #include <sstream>

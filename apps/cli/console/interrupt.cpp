@@ -1,4 +1,4 @@
-#include "cli/interrupt.h"
+#include "cli/console/interrupt.h"
 
 #include <time.h>
 

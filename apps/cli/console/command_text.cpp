@@ -1,4 +1,4 @@
-#include "command_text.h"
+#include "cli/console/command_text.h"
 
 namespace limpid::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/pass_times.h"
+#include "cli/console/pass_times.h"
 
 #include <algorithm>
 
