@@ -1,6 +1,7 @@
 #include "renderer/long/block_renderer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 
@@ -60,22 +61,28 @@ void BlockRenderer::peek(FrameSums& sums) {
     if (block_ == 0 && sums.wantsIds) sums.ids = frames_.ids();
 }
 
-void BlockRenderer::addTo(FrameSums& sums) {
-    const auto samples = static_cast<uint32_t>(frames_.samplesInMean());
-    if (samples == 0) throw Error("nothing has been rendered yet");
-    const auto meansOf = [&](const LayerInfo& layer) { return frames_.download(layer); };
-    const uint64_t clampedBefore = sums.counts.clamped;
-    if (samples == plan_.samplesOf(block_)) {
-        sums.addBlock(block_, meansOf);
-    } else {
-        sums.addPart(samples, meansOf);
-    }
-    if (block_ == 0 && sums.wantsIds) sums.ids = frames_.ids();
+BlockRenderer::Result BlockRenderer::take(const FrameSums& sums) {
+    Result result{.block = block_, .samples = static_cast<uint32_t>(frames_.samplesInMean())};
+    if (result.samples == 0) throw Error("nothing has been rendered yet");
+    for (const LayerSums& layer : sums.layers) result.means[layer.info] = frames_.download(*layer.info);
+    if (block_ == 0 && sums.wantsIds) result.ids = frames_.ids();
     const RenderCounters counters = frames_.counters();
-    SampleCounts added{.rays = counters.rays, .rejected = counters.rejected};
-    sums.counts += added;
-    added.clamped = sums.counts.clamped - clampedBefore;
-    counts_ += added;
+    result.counts = {.rays = counters.rays, .rejected = counters.rejected};
+    return result;
+}
+
+void BlockRenderer::add(Result result, FrameSums& sums) {
+    const auto meansOf = [&](const LayerInfo& layer) { return std::move(result.means.at(&layer)); };
+    const uint64_t clampedBefore = sums.counts.clamped;
+    if (result.samples == plan_.samplesOf(result.block)) {
+        sums.addBlock(result.block, meansOf);
+    } else {
+        sums.addPart(result.samples, meansOf);
+    }
+    if (result.block == 0 && sums.wantsIds) sums.ids = std::move(result.ids);
+    sums.counts += result.counts;
+    result.counts.clamped = sums.counts.clamped - clampedBefore;
+    counts_ += result.counts;
 }
 
 }  // namespace limpid

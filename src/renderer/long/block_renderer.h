@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <vector>
 
 #include "renderer/frame/frame_renderer.h"
-#include "renderer/sequence/sequence.h"
 #include "renderer/long/accumulation.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid {
 
@@ -27,8 +29,19 @@ class BlockRenderer {
     /// is true before a launch. Returns how many samples were rendered: plan.samplesOf(block), or fewer.
     uint32_t render(uint32_t block, const std::function<bool(uint32_t)>& proceed);
 
-    /// Adds the samples of the last render(), a whole block or a part of one. Waits for the device.
-    void addTo(FrameSums& sums);
+    /// The samples of a render(), a whole block or a part of one.
+    struct Result {
+        uint32_t block = 0, samples = 0;
+        std::map<const LayerInfo*, std::vector<float>> means;
+        std::vector<uint32_t> ids;
+        SampleCounts counts;
+    };
+    /// Downloads the layers of `sums` from the last render(). Waits for the device. Then it is free for the
+    /// next block, even before the result is added.
+    Result take(const FrameSums& sums);
+    /// Adds a result on the host, which can take as long as rendering it.
+    void add(Result result, FrameSums& sums);
+    void addTo(FrameSums& sums) { add(take(sums), sums); }
 
     /// Adds the samples so far of the render() that is going on, as a part of a block, and counts nothing.
     void peek(FrameSums& sums);

@@ -41,7 +41,11 @@ void Checkpoint::save(const AccumulationHeader& header, const FrameSums& sums) {
 }
 
 void Checkpoint::saveIfDue(const AccumulationHeader& header, const FrameSums& sums) {
-    if (Clock::now() - saved_ >= 20 * cost_) save(header, sums);
+    if (isDue()) save(header, sums);
+}
+
+bool Checkpoint::isDue() const {
+    return Clock::now() - saved_ >= 20 * cost_;
 }
 
 }  // namespace limpid

@@ -22,7 +22,9 @@ class Checkpoint {
 
     /// Writes the file completely or not at all.
     void save(const AccumulationHeader& header, const FrameSums& sums);
-    /// Writes the file, unless writing would take more than a twentieth of the time.
+    /// Whether writing now takes at most a twentieth of the time.
+    bool isDue() const;
+    /// Writes the file if that is due.
     void saveIfDue(const AccumulationHeader& header, const FrameSums& sums);
 
   private:

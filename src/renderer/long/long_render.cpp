@@ -1,6 +1,7 @@
 #include "renderer/long/long_render.h"
 
 #include <algorithm>
+#include <future>
 
 #include "base/log.h"
 
@@ -111,7 +112,6 @@ bool LongRender::renderFrame(uint64_t k, const LongRenderEvents& events) {
 }
 
 void LongRender::showPreview(const FrameSums& sums, uint32_t done, const LongRenderEvents& events) {
-    if (previewEvery_.count() <= 0.0 || Clock::now() - previewed_ < previewEvery_) return;
     FrameSums shown = sums;
     if (done > 0) renderer_.peek(shown);
     if (shown.samples() > 0) events.preview(shown);
@@ -124,24 +124,39 @@ bool LongRender::renderBlocks(FrameSums& sums, const LongRenderEvents& events) {
     bool whole = true;
     const uint64_t before = launched_;
     const bool mustLaunch = isStill() && !isStillShard() && sums.samples() == 0;
+    // Sums are added while the device renders the next block. Nothing else may look at them meanwhile.
+    std::future<void> adding;
+    const auto settle = [&] {
+        if (adding.valid()) adding.get();
+    };
     for (uint32_t block = 0; block < sums.blocks.size() && whole; ++block) {
         if (sums.blocks[block] || !hasBlock(block)) continue;
         const uint32_t made = renderer_.render(block, [&](uint32_t done) {
             events.progress(launched_ + done);
-            showPreview(sums, done, events);
+            if (previewIsDue()) {
+                settle();
+                showPreview(sums, done, events);
+            }
             return !timeIsUp() || (mustLaunch && block == 0 && done == 0);
         });
         launched_ += made;
         whole = made == sums.plan.samplesOf(block);
+        settle();
         if (!whole) {
             saveState(sums, true);
             if (made > 0 && isStill() && !isStillShard()) renderer_.addTo(sums);
         } else {
-            renderer_.addTo(sums);
+            adding = std::async(std::launch::async, [&, result = renderer_.take(sums)]() mutable {
+                renderer_.add(std::move(result), sums);
+            });
             ++blocks_;
-            saveState(sums, false);
+            if (checkpoint_ && checkpoint_->isDue()) {
+                settle();
+                saveState(sums, true);
+            }
         }
     }
+    settle();
     if (whole && isStill() && launched_ > before) saveState(sums, true);
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     return whole;

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/sequence/sequence.h"
 #include "renderer/long/block_renderer.h"
 #include "renderer/long/checkpoint.h"
+#include "renderer/sequence/sequence.h"
 
 namespace limpid {
 
@@ -65,6 +65,9 @@ class LongRender {
     FrameSums newSums() const { return {header_.extent, header_.plan, header_.layers}; }
     bool renderFrame(uint64_t k, const LongRenderEvents& events);
     bool renderBlocks(FrameSums& sums, const LongRenderEvents& events);
+    bool previewIsDue() const {
+        return previewEvery_.count() > 0.0 && Clock::now() - previewed_ >= previewEvery_;
+    }
     void showPreview(const FrameSums& sums, uint32_t done, const LongRenderEvents& events);
     void saveState(const FrameSums& sums, bool now);
 

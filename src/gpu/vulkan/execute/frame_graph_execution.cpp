@@ -1,5 +1,5 @@
 // The FrameGraph functions that need a device.
-#include <cstring>
+#include <span>
 
 #include "base/error.h"
 #include "base/half.h"
@@ -12,25 +12,19 @@
 namespace limpid::gpu {
 namespace {
 
-std::vector<std::byte> downloadPixels(FrameGraph& graph, Device& device, ImageHandle handle) {
-    const Image& image = graph.downloadable(device, handle);
-    std::vector<std::byte> pixels(uint64_t{image.extent.width} * image.extent.height *
-                                  bytesPerTexel(image.format));
-    device.waitIdle();
-    device.impl().transfer().download(image, pixels);
-    return pixels;
-}
-
+/// `T` divides a texel.
 template <typename T>
-std::vector<T> reinterpretAs(const std::vector<std::byte>& bytes) {
-    std::vector<T> values(bytes.size() / sizeof(T));
-    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+std::vector<T> downloadAs(FrameGraph& graph, Device& device, ImageHandle handle) {
+    const Image& image = graph.downloadable(device, handle);
+    std::vector<T> values(uint64_t{image.extent.width} * image.extent.height * bytesPerTexel(image.format) /
+                          sizeof(T));
+    device.waitIdle();
+    device.impl().transfer().download(image, std::as_writable_bytes(std::span(values)));
     return values;
 }
 
 template <typename T, typename Convert>
-std::vector<float> convertAll(const std::vector<std::byte>& bytes, Convert convert) {
-    const std::vector<T> values = reinterpretAs<T>(bytes);
+std::vector<float> convertAll(const std::vector<T>& values, Convert convert) {
     std::vector<float> result;
     result.reserve(values.size());
     for (const T value : values) result.push_back(convert(value));
@@ -126,13 +120,13 @@ std::vector<float> FrameGraph::downloadFloat(Device& device, ImageHandle image) 
         case Format::R32Float:
         case Format::RG32Float:
         case Format::RGBA32Float:
-            return reinterpretAs<float>(downloadPixels(*this, device, image));
+            return downloadAs<float>(*this, device, image);
         case Format::R16Float:
         case Format::RGBA16Float:
-            return convertAll<uint16_t>(downloadPixels(*this, device, image), halfToFloat);
+            return convertAll(downloadAs<uint16_t>(*this, device, image), halfToFloat);
         case Format::RGBA8Unorm:
-            return convertAll<uint8_t>(downloadPixels(*this, device, image),
-                                       [](uint8_t value) { return static_cast<float>(value) / 255.0f; });
+            return convertAll(downloadAs<uint8_t>(*this, device, image),
+                              [](uint8_t value) { return static_cast<float>(value) / 255.0f; });
         default:
             throw Error(
                 formatText("image '{}' is {}: use downloadUint", name(image), toString(format(image))));
@@ -145,7 +139,7 @@ std::vector<uint32_t> FrameGraph::downloadUint(Device& device, ImageHandle image
         case Format::RG32Uint:
         case Format::RGBA32Uint:
         case Format::RGBA8Unorm:
-            return reinterpretAs<uint32_t>(downloadPixels(*this, device, image));
+            return downloadAs<uint32_t>(*this, device, image);
         default:
             throw Error(
                 formatText("image '{}' is {}: use downloadFloat", name(image), toString(format(image))));
