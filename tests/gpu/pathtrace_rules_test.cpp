@@ -143,11 +143,10 @@ TEST_F(RulesTest, SeeingThroughGlassKeepsTheMean) {
 
 TEST_F(RulesTest, EveryParameterChangesThePicture) {
     scene::Scene scene = scene::cornellSpheresScene();
-    for (int i = 0; i < 9; ++i) {  // fewer lights have no tree
-        scene::PunctualLight lamp;
-        lamp.position = {0.05f * static_cast<float>(i) - 0.2f, 0.4f, 0.1f};
-        lamp.intensity = vec3(0.01f);
-        scene.lights.push_back(lamp);
+    for (int i = 0; i < 2; ++i) {  // power alone would starve these lamps, so there is a tree
+        scene::MeshBuilder lamp("dim lamp");
+        scene::addLamp(lamp, {0.3f * static_cast<float>(i) - 0.15f, 0.3f, 0.0f}, 0.05f, 0.05f, 0);
+        addMesh(scene, lamp.take(), scene::emitter("dim lamp", vec3(0.5f), vec3(0.01f)));
     }
     Renderer renderer(device(), scene);
     RenderSettings settings = small(24, 4);
