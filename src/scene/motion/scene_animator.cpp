@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "base/error.h"
 #include "scene/device/pack.h"
@@ -45,11 +44,12 @@ class UploadRuns {
     template <typename T>
     void add(uint64_t offset, std::span<const T> values) {
         const auto bytes = std::as_bytes(values);
-        if (!last_ || end_ != offset) {
+        if (!begun_ || end_ != offset) {
+            begun_ = true;
             last_ = frame_.uploads.size();
             frame_.uploads.push_back({buffer_, offset, {}});
         }
-        std::vector<std::byte>& run = frame_.uploads[*last_].bytes;
+        std::vector<std::byte>& run = frame_.uploads[last_].bytes;
         run.insert(run.end(), bytes.begin(), bytes.end());
         end_ = offset + bytes.size();
     }
@@ -57,8 +57,9 @@ class UploadRuns {
   private:
     SceneFrame& frame_;
     std::string_view buffer_;
-    std::optional<size_t> last_;  ///< index of the current run's upload
-    uint64_t end_ = 0;            ///< where the run ends
+    bool begun_ = false;
+    size_t last_ = 0;   ///< index of the current run's upload
+    uint64_t end_ = 0;  ///< where the run ends
 };
 
 bool isFinite(const mat4& m) {
