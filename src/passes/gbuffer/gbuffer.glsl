@@ -86,12 +86,14 @@ Seen look(Ray ray, uint rng) {
     Seen seen = Seen(noHit(ray.direction), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
     const Cone cone = pixelCone(params.view, 0u);
     float coneWidth = cone.width, traveled = 0.0;
-    uint culled = 0u;
+    uint culled = 0u, blended = 0u;
     Hit hit;
     Surface surface;
+    bool passes;
     do {
         ++seen.rays;
-        hit = traceClosest(ray, params.scene.rootNode, rng);
+        const bool stops = HAS_BLENDED && blended < MAX_WEAKENING;
+        hit = traceClosest(ray, params.scene.rootNode, stops ? HIT_BLENDED : rng);
         if (!isHit(hit)) {
             if (HAS_ENVIRONMENT) seen.emission = environmentRadiance(latLongOf(ray.direction), params.scene);
             return seen;
@@ -100,7 +102,14 @@ Seen look(Ray ray, uint rng) {
         traveled += hit.t;
         const RayCone rayCone = RayCone(coneWidth, false, params.view.jitter == JITTER_OFF);
         surface = loadSurface(hit.triangle, hit.instance, hit.barycentrics, -ray.direction, rayCone);
-    } while (passesBack(surface, culled, ray.origin));
+        passes = false;
+        if (stops) passes = passesBlended(hit.triangle, hit.instance, hit.barycentrics, blended, rng);
+        if (passes) {
+            ray.origin = leavingPoint(surface, ray.direction);
+        } else {
+            passes = passesBack(surface, culled, ray.origin);
+        }
+    } while (passes);
     return shade(hit, surface, traveled, -ray.direction, rng, seen.rays);
 }
 

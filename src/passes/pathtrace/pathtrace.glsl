@@ -118,15 +118,8 @@ float spreadAfter(Path path, float spread, float n) {
     return length(vec2(spread, widened * min(lobe, MAX_LOBE_SPREAD) * shareOfRay(n)));
 }
 
-/// Decides whether the path passes a partly transparent surface that it hits, and moves it behind. Each decision takes
-/// the path's next random number, which is spread evenly over a pixel's samples; during traversal, where the order of
-/// surfaces is unknown, decisions are independent.
-bool passesBlended(inout Path path, inout FirstSight sight, Hit hit, float spread, uint depth, inout uint rng) {
-    bool blended;
-    const float coverage = coverageAt(hit.triangle, hit.instance, hit.barycentrics, blended);
-    if (!blended) return false;
-    ++path.blended;
-    if (stratified(rng) < coverage) return false;
+/// Moves the path behind a partly transparent surface that it passes.
+void goBehind(inout Path path, inout FirstSight sight, Hit hit, float spread, uint depth) {
     const vec3 direction = path.ray.direction;
     path.coneWidth += spread * hit.t;
     path.straight += hit.t;
@@ -135,7 +128,6 @@ bool passesBlended(inout Path path, inout FirstSight sight, Hit hit, float sprea
     const Surface surface =
         loadSurface(hit.triangle, hit.instance, hit.barycentrics, -direction, RayCone(0.0, true, false));
     path.ray.origin = leavingPoint(surface, direction);
-    return true;
 }
 
 /// Traces the path's ray to vertex `depth` and scatters it there. Returns false if the path ends.
@@ -145,7 +137,10 @@ bool nextVertex(inout Path path, inout Branches branches, inout FirstSight sight
     const bool stops = HAS_BLENDED && path.blended < MAX_WEAKENING;
     const Hit hit = traceClosest(path.ray, params.scene.rootNode, stops ? HIT_BLENDED : rng);
     if (stops && isHit(hit)) {
-        if (passesBlended(path, sight, hit, spread, depth, rng)) return true;
+        if (passesBlended(hit.triangle, hit.instance, hit.barycentrics, path.blended, rng)) {
+            goBehind(path, sight, hit, spread, depth);
+            return true;
+        }
     }
     if (!isHit(hit)) {
         missed(sight, path, depth);

@@ -221,6 +221,17 @@ bool passesAlphaTest(uint triangle, uint instance, vec2 barycentrics, uint rng) 
     return coverage > (random ? randomOf(rng, triangle, instance) : 0.0);
 }
 
+/// Decides whether a ray that was traced with HIT_BLENDED passes what it hit. Each decision takes the ray's next random
+/// number, which is spread evenly over a pixel's samples; during traversal, where the order of surfaces is unknown,
+/// decisions are independent. Counts `decisions`.
+bool passesBlended(uint triangle, uint instance, vec2 barycentrics, inout uint decisions, inout uint rng) {
+    bool blended;
+    const float coverage = coverageAt(triangle, instance, barycentrics, blended);
+    if (!blended) return false;
+    ++decisions;
+    return stratified(rng) >= coverage;
+}
+
 /// Returns the normal map's normal in world space.
 vec3 mappedNormal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
     const vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
