@@ -5,14 +5,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "scene/device/lamps.h"
 #include "scene/model/expanded_nodes.h"
 
 namespace limpid::scene {
-namespace {
-
-constexpr uint32_t maxEvaluatedLights = 256;
-
-}  // namespace
 
 GpuScene::GpuScene(gpu::Device& device, const SceneData& data, const TraceOptions& options)
     : features_(data.features),

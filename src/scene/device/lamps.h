@@ -10,8 +10,12 @@
 
 namespace limpid::scene {
 
-/// Numbers the lamps among some triangles of a mesh. Triangles belong together if they have one material, and
-/// two vertices of equal positions.
+/// With more point and spot lights, to evaluate all of them for each choice would take longer than the light
+/// tree.
+inline constexpr uint32_t maxEvaluatedLights = 256;
+
+/// Numbers the lamps among some triangles of a mesh. Triangles belong together if they have one material and
+/// share an edge, by the positions of its ends.
 /// @param triangles  indices of triangles of the mesh
 /// @return           the number of each one's lamp; numbers begin at 0 and have no gaps
 std::vector<uint32_t> lampsOf(const Mesh& mesh, std::span<const uint32_t> triangles);

@@ -28,8 +28,6 @@ constexpr double minTriangleShare = 0.2, minPunctualShare = 0.35;
 /// A lamp of emissive triangles that power would give fewer of all samples needs the tree: near it, it may
 /// cause all the light.
 constexpr double minLampProbability = 0.1;
-/// With more point and spot lights, to evaluate all of them for each choice would take longer than the tree.
-constexpr size_t maxEvaluatedLights = 256;
 /// With fewer point and spot lights there is no choice in which distance maps could help.
 constexpr size_t minMappedLights = 2;
 /// The share of triangle samples that is divided equally among all lamps; the rest is distributed by power.
@@ -109,6 +107,8 @@ class LightPacker {
     }
 
   private:
+    /// True if power would starve a lamp. An even environment, which takes fewer samples, counts as any
+    /// other.
     bool needsTree(const WeightPyramid& table) const {
         if (scene_.lights.size() - suns_.size() > maxEvaluatedLights) return true;
         std::vector<double> ofLamp(lampCount_);

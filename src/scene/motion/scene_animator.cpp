@@ -35,8 +35,8 @@ void addUpload(SceneFrame& frame, std::string_view buffer, uint64_t offset, cons
     addUpload(frame, buffer, offset, std::span<const T>(values));
 }
 
-/// Uploads to one buffer. Those that follow one another there become one: each copy costs the device some 15
-/// microseconds, however small.
+/// Uploads to one buffer. Those that follow one another there become one copy, since a moving lamp may have
+/// thousands of triangles.
 class UploadRuns {
   public:
     UploadRuns(SceneFrame& frame, std::string_view buffer) : frame_(frame), buffer_(buffer) {}
