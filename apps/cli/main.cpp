@@ -65,6 +65,13 @@ std::vector<std::string> wordsOf(int argc, char** argv) {
     return words;
 }
 
+/// "render", or "bench quality". Empty without words.
+std::string commandIn(const std::vector<std::string>& words) {
+    if (words.empty()) return "";
+    const bool two = words.back() == "bench" && words.size() > 1;
+    return two ? words.back() + " " + words[words.size() - 2] : words.back();
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Limpid: a real-time path tracer and denoiser for every Vulkan device.", "limpid");
     app.set_version_flag("--version", LIMPID_VERSION);
@@ -87,7 +94,7 @@ int run(int argc, char** argv) {
     refuseNonFinite(app);
     try {
         std::vector<std::string> words = wordsOf(argc, argv);
-        joinCluster(words.empty() ? "" : words.back());
+        joinCluster(commandIn(words));
         app.parse(words);
         return leaveCluster(static_cast<int>(ExitCode::Done));
     } catch (const CLI::ParseError& error) {

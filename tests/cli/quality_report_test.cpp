@@ -7,12 +7,12 @@
 #include "base/error.h"
 #include "image/io/png/png.h"
 #include "image/io/temp_folder.h"
-#include "lab/quality/picture_label.h"
-#include "lab/quality/quality_json.h"
 #include "lab/quality/quality_methods.h"
-#include "lab/quality/quality_page.h"
-#include "lab/quality/quality_ranking.h"
 #include "lab/quality/quality_sequences.h"
+#include "lab/quality/report/picture_label.h"
+#include "lab/quality/report/quality_json.h"
+#include "lab/quality/report/quality_page.h"
+#include "lab/quality/report/quality_ranking.h"
 #include "scene/builtin/builtin.h"
 
 namespace limpid::cli {

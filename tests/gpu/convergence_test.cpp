@@ -61,7 +61,7 @@ class ConvergenceTest : public RenderTest {
 };
 
 TEST_F(ConvergenceTest, CornellSpheres) {
-    check(scene::cornellSpheresScene(), 64, 1024);
+    check(scene::cornellSpheresScene(), 48, 1024);
 }
 
 TEST_F(ConvergenceTest, CornellBoxFromAFile) {
@@ -78,7 +78,7 @@ TEST_F(ConvergenceTest, CornellBoxFromAFile) {
     scene::Scene scene = scene::loadScene(file.string());
     scene::prepare(scene);
     scene.name = file.filename().string();
-    check(scene, 64, 1024);
+    check(scene, 48, 1024);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <memory>
@@ -62,7 +63,8 @@ void shareCores(const cluster::Place& place) {
 }  // namespace
 
 void joinCluster(const std::string& command) {
-    if (command != "render" && command != "denoise" && command != "dataset") return;
+    constexpr std::array shared{"render", "denoise", "dataset", "bench quality"};
+    if (std::ranges::find(shared, command) == shared.end()) return;
     const cluster::Launch launch = cluster::findLaunch([](const char* name) { return std::getenv(name); });
     if (!launch.launched) return;
     try {

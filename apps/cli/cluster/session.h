@@ -9,9 +9,9 @@
 namespace limpid::cli {
 
 /// Joins the processes of the run if there are several, or one under a launcher that says so. `command`:
-/// render, denoise or dataset; other commands do their work in each process. Sets the number of threads of
-/// this process, if it shares the machine with others: of TBB, and of lavapipe (LP_NUM_THREADS, unless it is
-/// set already). Throws Error as cluster::startTransport().
+/// render, denoise, dataset or bench quality; other commands do their work in each process. Sets the number
+/// of threads of this process, if it shares the machine with others: of TBB, and of lavapipe (LP_NUM_THREADS,
+/// unless it is set already). Throws Error as cluster::startTransport().
 void joinCluster(const std::string& command);
 
 /// The processes of this run; null if there is only this one.

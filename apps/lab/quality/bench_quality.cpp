@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cli/cluster/session.h"
 #include "cli/console/pass_times.h"
 #include "image/io/png/png.h"
 #include "image/metrics/flicker.h"
@@ -128,6 +129,7 @@ MethodQuality measure(FrameRenderer& renderer, const Sequence& sequence, gpu::Ex
     MethodQuality method;
     PassTimes times;
     for (uint64_t frame = 0; frame < frames.count; ++frame) {
+        if (ranks()) ranks()->beat();
         renderer.render(sequence.moment(frame, extent));
         if (frame < frames.first) continue;
         times.add(sumByName(renderer.passTimes()));

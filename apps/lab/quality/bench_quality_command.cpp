@@ -1,51 +1,29 @@
 // `limpid bench quality`: compares denoised sequences with converged ones, in numbers and pictures.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 
 #include "base/error.h"
 #include "base/files/file.h"
-#include "base/log.h"
+#include "cli/cluster/session.h"
 #include "cli/console/command_text.h"
-#include "cli/console/json_text.h"
 #include "cli/options/former_options.h"
 #include "cli/options/render_options.h"
-#include "image/io/png/png.h"
-#include "image/tonemap.h"
 #include "lab/bench.h"
-#include "lab/quality/bench_quality.h"
-#include "lab/quality/picture_label.h"
-#include "lab/quality/quality_json.h"
-#include "lab/quality/quality_page.h"
+#include "lab/quality/measure_sequence.h"
+#include "lab/quality/measure_together.h"
+#include "lab/quality/quality_options.h"
+#include "lab/quality/quality_output.h"
 #include "lab/quality/quality_sequences.h"
-#include "lab/quality/quality_table.h"
 #include "renderer/frame/network_file.h"
 #include "renderer/frame/parameters.h"
 #include "renderer/frame/presets.h"
-#include "renderer/long/render_identity.h"
 #include "scene/framing/camera_path.h"
-#include "scene/motion/movement.h"
 
 namespace limpid::cli {
 namespace {
-
-struct QualityOptions {
-    DeviceChoice device;
-    MethodChoice methods;
-    std::string preset;
-    std::vector<std::string> scenes, assignments;
-    std::string jitter, integrator, environment, cameraPath = "orbit", folder, report, scenesFolder,
-                                                 pathsFolder, referenceFolder, weights;
-    uint32_t width = 640, height = 360, samples = 1, reportMegabytes = 64;
-    std::optional<uint64_t> referenceSamples;  ///< overrides the sequences' own numbers
-    std::optional<uint64_t> first, frames;     ///< likewise
-    bool lab = false, quick = false, json = false, aliased = false;
-};
 
 std::vector<QualityMethod> methodsOf(const QualityOptions& o) {
     RenderSettings common;
@@ -116,44 +94,6 @@ void checkInputs(const QualityOptions& o) {
         scene::loadCameraPath(o.cameraPath);
 }
 
-/// A sequence loaded onto the device.
-struct LoadedSequence {
-    scene::Scene scene;
-    scene::SceneData data;
-    std::unique_ptr<scene::GpuScene> gpu;
-    std::optional<scene::CameraPath> path;
-    SequenceTiming timing;
-
-    Sequence frames() const { return {scene, data, scene.cameras.front(), path, timing}; }
-};
-
-/// Thrown for sequences that --quick skips.
-struct TooLarge : Error {
-    using Error::Error;
-};
-
-LoadedSequence load(gpu::Device& device, const QualityOptions& o, const QualitySequence& sequence) {
-    LoadedSequence loaded;
-    loaded.scene = scene::openScene({.scene = sequence.scene, .environment = sequence.environment});
-    const uint64_t triangles = loaded.scene.triangleCount();
-    if (o.quick && triangles >= quick::maxTriangles) {
-        throw TooLarge(
-            fmt::format("has {} triangles, and --quick takes less than {}", triangles, quick::maxTriangles));
-    }
-    if (!loaded.scene.rig.clips.empty()) scene::chooseClip(loaded.scene, "");
-    if (scene::isBuiltinCameraPath(sequence.cameraPath)) {
-        loaded.path =
-            scene::builtinCameraPath(sequence.cameraPath, loaded.scene, loaded.scene.cameras.front(),
-                                     loaded.timing.timeOf(sequence.frames.count));
-    } else if (sequence.cameraPath != "none") {
-        loaded.path = scene::loadCameraPath(sequence.cameraPath);
-    }
-    loaded.data = scene::buildSceneData(loaded.scene);
-    loaded.gpu = std::make_unique<scene::GpuScene>(device, loaded.data,
-                                                   scene::TraceOptions{chosenTracer(o.device, device), {}});
-    return loaded;
-}
-
 /// Returns the methods with their networks loaded.
 std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions& o) {
     std::vector<QualityMethod> methods = methodsOf(o);
@@ -165,110 +105,37 @@ std::vector<QualityMethod> loadMethods(gpu::Device& device, const QualityOptions
     return methods;
 }
 
-MeasuredSequence measure(gpu::Device& device, const QualityOptions& o,
-                         const std::vector<QualityMethod>& methods, const QualitySequence& sequence,
-                         LoadedSequence& loaded) {
-    const Sequence frames = loaded.frames();
-    ReferenceFiles files{.folder = o.referenceFolder, .sequence = sequence.name};
-    if (!files.folder.empty()) files.sceneHash = sceneHash(loaded.scene, loaded.data);
-    RenderSettings exact = methods.front().settings;
-    exact.jitter = o.aliased ? Jitter::Off : Jitter::Pixel;
-    const std::vector<Reference> references =
-        makeReferences(device, *loaded.gpu, frames, exact, sequence.frames, sequence.referenceSamples, files);
-    return {sequence, loaded.scene.triangleCount(),
-            measureQuality(device, *loaded.gpu, frames, methods, sequence.frames, references, o.samples,
-                           !o.report.empty())};
-}
-
-/// What is said inside a strip about one of its pictures: two lines, for the frame that is shown.
-std::vector<std::string> labelOf(const MethodQuality& method, uint32_t samples) {
-    const image::FrameScores& scores = method.scores.back();
-    return {fmt::format("{}, {} spp", method.name, samples),
-            fmt::format("{:.1f} dB FLIP {:.3f}", scores.psnr, scores.flip)};
-}
-
-/// Writes the noisy frame, every method and the reference side by side, with labels.
-void writeSideBySide(const std::filesystem::path& file, const MeasuredSequence& measured, uint32_t samples) {
-    const SequenceQuality& quality = measured.quality;
-    std::vector<const image::Image*> pictures;
-    for (const MethodQuality& method : quality.methods) pictures.push_back(&method.last);
-    pictures.push_back(&quality.reference);
-    const uint32_t width = quality.reference.width, height = quality.reference.height;
-    image::Image all(width * static_cast<uint32_t>(pictures.size()), height, 3);
-    for (size_t i = 0; i < pictures.size(); ++i) {
-        for (uint32_t y = 0; y < height; ++y) {
-            std::copy_n(&pictures[i]->pixels[size_t{3} * y * width], 3 * width,
-                        &all.pixels[size_t{3} * (size_t{y} * all.width + i * width)]);
-        }
-    }
-    image::ByteImage bytes = image::toBytes(image::tonemap(all, quality.exposure));
-    for (uint32_t i = 0; i < pictures.size(); ++i) {
-        const std::vector<std::string> label =
-            i < quality.methods.size()
-                ? labelOf(quality.methods[i], samples)
-                : std::vector{std::string("reference"),
-                              fmt::format("{} spp", measured.sequence.referenceSamples)};
-        drawLabel(bytes, {i * width, 0, width, height}, label);
-    }
-    image::writePng(file, bytes);
-}
-
 /// The sequences share what a report may take. Base64 makes four bytes of three.
-uint64_t pictureBytesPerSequence(const QualityOptions& o) {
-    return uint64_t{o.reportMegabytes} * 1'000'000 * 3 / 4 / sequencesOf(o).size();
-}
-
-void skip(const QualitySequence& sequence, const Error& why, QualityRun& run) {
-    log::warn("SKIPPED: {}: {}", sequence.name, why.what());
-    run.skipped.push_back({sequence.name, why.what()});
-}
-
-/// Updates the page after each sequence, so that an interrupted run leaves its results.
-void addSequence(gpu::Device& device, const QualityOptions& o, const std::vector<QualityMethod>& methods,
-                 const QualitySequence& sequence, QualityRun& run) {
-    std::optional<LoadedSequence> loaded;
-    try {
-        loaded = load(device, o, sequence);
-    } catch (const TooLarge& error) {
-        return skip(sequence, error, run);
-    } catch (const Error& error) {
-        if (!sequence.optional) throw;
-        return skip(sequence, error, run);
-    }
-    run.sequences.push_back(measure(device, o, methods, sequence, *loaded));
-    keepWithin(run.sequences.back().quality, pictureBytesPerSequence(o));
-    const MeasuredSequence& measured = run.sequences.back();
-    if (!o.json) printSequence(measured);
-    if (!o.folder.empty()) {
-        const std::filesystem::path folder(o.folder);
-        writeSideBySide(folder / ("quality." + sequence.name + ".png"), measured, o.samples);
-    }
-    if (!o.report.empty()) writeQualityPage(o.report, run);
+uint64_t pictureBytesPerSequence(const QualityOptions& o, size_t sequences) {
+    return uint64_t{o.reportMegabytes} * 1'000'000 * 3 / 4 / sequences;
 }
 
 void run(const QualityOptions& o, const std::string& command) {
     methodsOf(o);  // reports faults before the device is opened
     const std::vector<QualitySequence> sequences = sequencesOf(o);
     checkInputs(o);
-    if (!o.report.empty()) checkWritable(o.report);
+    if (!o.report.empty() && isFirstProcess()) checkWritable(o.report);
     for (const std::string& folder : {o.folder, o.referenceFolder}) {
         if (!folder.empty()) makeFolder(folder);
     }
     const OpenDevice device = openDevice(o.device);
     const std::vector<QualityMethod> methods = loadMethods(*device, o);
-    QualityRun all{.version = LIMPID_VERSION,
-                   .command = command,
-                   .device = device->info().name,
-                   .driver = device->info().driver,
-                   .tracer = std::string(scene::toString(chosenTracer(o.device, *device))),
-                   .extent = {o.width, o.height},
-                   .samples = o.samples};
-    if (!o.json) printHead(all);
-    for (const QualitySequence& sequence : sequences) addSequence(*device, o, methods, sequence, all);
-    if (all.sequences.empty()) throw Error("no sequence could be measured");
-    if (!o.report.empty()) writeQualityPage(o.report, all);  // once more, including skipped sequences
-    if (!o.json && all.sequences.size() > 1) printRanking(all);
-    if (o.json) fmt::print("{}\n", jsonText(qualityJson(all)));
+    const QualityRun head{.version = LIMPID_VERSION,
+                          .command = command,
+                          .device = device->info().name,
+                          .driver = device->info().driver,
+                          .tracer = std::string(scene::toString(chosenTracer(o.device, *device))),
+                          .extent = {o.width, o.height},
+                          .samples = o.samples};
+    const auto measure = [&](size_t index) {
+        return measureSequence(*device, o, methods, sequences[index],
+                               pictureBytesPerSequence(o, sequences.size()));
+    };
+    const QualityDestinations destinations{.folder = o.folder, .report = o.report, .json = o.json};
+    if (ranks()) return measureTogether(head, sequences, destinations, measure);
+    QualityOutput output(head, sequences.size(), destinations);
+    for (size_t index = 0; index < sequences.size(); ++index) output.add(index, measure(index));
+    output.finish();
 }
 
 /// Fills in defaults for options that were not given.

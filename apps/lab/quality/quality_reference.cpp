@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "cli/cluster/session.h"
 #include "cli/console/progress.h"
 #include "image/io/exr/exr.h"
 #include "renderer/frame/frame_renderer.h"
@@ -68,7 +69,9 @@ class ReferenceRenderer {
 
     static RenderedLayers layersOf(FrameRenderer& renderer, Moment moment) {
         renderer.begin(std::move(moment));
-        while (renderer.launch()) continue;
+        while (renderer.launch()) {
+            if (ranks()) ranks()->beat();
+        }
         return renderer.download();
     }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lab/quality/bench_quality.h"
@@ -19,6 +20,8 @@ struct MeasuredSequence {
 struct SkippedSequence {
     std::string name, reason;
 };
+
+using QualityOutcome = std::variant<MeasuredSequence, SkippedSequence>;
 
 struct QualityRun {
     std::string version, command;  ///< of Limpid; the command line that it was run with

@@ -1,8 +1,8 @@
-#include "lab/quality/quality_json.h"
+#include "lab/quality/report/quality_json.h"
 
 #include <cmath>
 
-#include "lab/quality/quality_ranking.h"
+#include "lab/quality/report/quality_ranking.h"
 
 namespace limpid::cli {
 namespace {

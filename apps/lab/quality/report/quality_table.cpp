@@ -1,4 +1,4 @@
-#include "lab/quality/quality_table.h"
+#include "lab/quality/report/quality_table.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "image/metrics/frame_scores.h"
-#include "lab/quality/quality_ranking.h"
+#include "lab/quality/report/quality_ranking.h"
 
 namespace limpid::cli {
 namespace {

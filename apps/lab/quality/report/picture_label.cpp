@@ -1,4 +1,4 @@
-#include "lab/quality/picture_label.h"
+#include "lab/quality/report/picture_label.h"
 
 #include <stb/stb_easy_font.h>
 

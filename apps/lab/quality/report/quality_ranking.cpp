@@ -1,4 +1,4 @@
-#include "lab/quality/quality_ranking.h"
+#include "lab/quality/report/quality_ranking.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "lab/quality/quality_page.h"
+#include "lab/quality/report/quality_page.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "base/files/file.h"
 #include "image/colormap.h"
 #include "image/io/png/png.h"
-#include "lab/quality/quality_json.h"
+#include "lab/quality/report/quality_json.h"
 #include "quality_page.html.h"
 #include "quality_viewer.js.h"
 
