@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "image/io/png/png.h"
 #include "image/io/temp_folder.h"
+#include "lab/quality/quality_message.h"
 #include "lab/quality/quality_methods.h"
 #include "lab/quality/quality_sequences.h"
 #include "lab/quality/report/picture_label.h"
@@ -343,6 +344,31 @@ TEST(QualitySequences, AFoldersScenesAreFoundOneLevelDown) {
     EXPECT_EQ(found[2].scene, (folder / "scenes/two/b.gltf").string());
     EXPECT_TRUE(found[2].optional);
     EXPECT_THROW(sequencesInFolder(folder / "none", {}, {}), InputError);
+}
+
+TEST(QualityMessage, SequencesArriveAsTheyWere) {
+    QualityRun run = runOf(), other = run;
+    run.sequences[1].quality.methods[1].last.pixels[7] = 3.5f;
+    const auto message = encodeOutcomes(
+        {{0, run.sequences[0]}, {3, run.sequences[1]}, {5, SkippedSequence{"third", "has no light"}}});
+    QualityOutcomes arrived = decodeOutcomes(message);
+    ASSERT_EQ(arrived.size(), 3u);
+    for (size_t i = 0; i < 2; ++i) {
+        auto& measured = std::get<MeasuredSequence>(arrived.at(3 * i));
+        measured.sequence = run.sequences[i].sequence;  // is not sent
+        other.sequences[i] = measured;
+    }
+    EXPECT_EQ(qualityPage(other), qualityPage(run)) << "all numbers and pictures";
+    EXPECT_EQ(other.sequences[1].quality.methods[1].last.pixels,
+              run.sequences[1].quality.methods[1].last.pixels);
+    EXPECT_EQ(other.sequences[0].quality.reference.pixels, run.sequences[0].quality.reference.pixels);
+    EXPECT_EQ(std::get<SkippedSequence>(arrived.at(5)).reason, "has no light");
+}
+
+TEST(QualityMessage, WhatIsCutOffIsRefused) {
+    const auto message = encodeOutcomes({{0, sequenceOf("first", 0.2, 0.1)}});
+    for (size_t length = 0; length < message.size(); length += 5)
+        EXPECT_THROW(decodeOutcomes(std::span(message).first(length)), Error) << length;
 }
 
 }  // namespace

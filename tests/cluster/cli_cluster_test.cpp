@@ -186,6 +186,47 @@ TEST_F(CliClusterTest, ADatasetIsThatOfOneProcess) {
     expectSameFiles("one", "two", 4);
 }
 
+/// Without times, which differ, and what names the files.
+nlohmann::json withoutTimes(nlohmann::json report) {
+    report.erase("command");
+    report.erase("ranking");  // has mean times
+    for (nlohmann::json& scene : report["scenes"]) {
+        for (nlohmann::json& method : scene["methods"]) {
+            for (const char* name : {"median_ms", "denoising_ms"}) method.erase(name);
+            for (nlohmann::json& frame : method["frames"]) frame.erase("denoising_ms");
+        }
+    }
+    return report;
+}
+
+TEST_F(CliClusterTest, QualityIsThatOfOneProcess) {
+    put("bad.gltf", "no JSON");
+    fs::create_directories(folder_ / "scenes/bad");
+    fs::rename(path("bad.gltf"), path("scenes/bad/bad.gltf"));
+    const auto quality = [&](const std::string& name) {
+        return "bench quality --device cpu --width 32 --height 18 --first 1 --frames 3 --reference-spp 16 "
+               "--denoiser temporal --scene builtin:cornell --scene builtin:cornell-moving "
+               "--scene builtin:lab-lights --scenes-folder " +
+               path("scenes") + " --json --out " + path(name) + " --report " + path(name + ".html") + " > " +
+               path(name + ".json") + " 2> " + path(name + ".log") + " #";  // not both into one pipe
+    };
+    const auto reportIn = [&](const std::string& name) {
+        return nlohmann::json::parse(get(name + ".json"), nullptr, false);
+    };
+    const Result one = run(quality("one")), two = runTogether(2, quality("two"));
+    expectDone(one);
+    expectDone(two);
+    for (const char* part : {"SKIPPED: bad: ", "2 processes made "})
+        EXPECT_EQ(countOf(part, get("two.log")), 1u) << get("two.log");
+    const nlohmann::json report = reportIn("one");
+    ASSERT_EQ(report["scenes"].size(), 3u) << report;
+    EXPECT_EQ(withoutTimes(report), withoutTimes(reportIn("two")));
+    expectSameFiles("one", "two", 3);
+    // The page's pictures; its data has times.
+    EXPECT_GT(countOf("iVBORw0KGgo", get("one.html")), 10u);
+    EXPECT_EQ(countOf("iVBORw0KGgo", get("one.html")), countOf("iVBORw0KGgo", get("two.html")));
+}
+
 TEST_F(CliClusterTest, AKilledRunGoesOnFromItsCheckpoint) {
     expectDone(run(longStill + ("-o " + path("one.exr"))));
     const std::string resumable =
