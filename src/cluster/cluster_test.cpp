@@ -168,7 +168,7 @@ class ThreadTransport : public Transport {
 /// Sums what `of` gives for each piece, on several ranks. `beforePiece`: to be slow.
 struct SharedSum {
     uint64_t sum = 0, finished = 0;
-    bool orderly = true;
+    bool orderly = true, thrown = false;  ///< by beforePiece, on rank 0
     std::vector<uint64_t> byRank;
 
     void run(int ranks, uint64_t count, bool early,
@@ -187,6 +187,21 @@ struct SharedSum {
         ThreadTransport transport(post, rank);
         Ranks self(transport, patience);
         uint64_t own = 0;
+        std::vector<uint64_t> made;
+        try {
+            made = share(self, rank, own, count, early, beforePiece);
+        } catch (const std::runtime_error&) {
+            thrown = true;
+            std::this_thread::sleep_for(milliseconds(100));  // the others' results still arrive
+        }
+        const bool good = self.end();
+        if (rank != 0) return;
+        sum = own;
+        byRank = made;
+        orderly = good;
+    }
+    std::vector<uint64_t> share(Ranks& self, int rank, uint64_t& own, uint64_t count, bool early,
+                                const auto& beforePiece) {
         std::mutex mutex;
         SharedWork work;
         work.todo = pieces(count);
@@ -209,12 +224,7 @@ struct SharedSum {
             own += value;
         };
         work.finished = [&](const std::vector<uint64_t>&, uint64_t done) { finished = done; };
-        const auto made = self.share(work);
-        const bool good = self.end();
-        if (rank != 0) return;
-        sum = own;
-        byRank = made;
-        orderly = good;
+        return self.share(work);
     }
 };
 
@@ -264,6 +274,18 @@ TEST(Ranks, WhatOneThatHangsHasMadeIsMadeByOthers) {
         EXPECT_EQ(work.byRank[2], 0u) << "it was not collected";
         EXPECT_EQ(work.finished, 30u);
     }
+}
+
+/// Its work is gone while results of the others still arrive.
+TEST(Ranks, AFaultOfTheFirstEndsTheWork) {
+    SharedSum work;
+    work.run(3, 1000, true, [&](int rank, uint64_t piece) {
+        std::this_thread::sleep_for(milliseconds(2));
+        if (rank == 0 && piece > 10) throw std::runtime_error("no scene");
+    });
+    EXPECT_TRUE(work.thrown);
+    EXPECT_FALSE(work.orderly);
+    EXPECT_LT(work.finished, 1000u);
 }
 
 TEST(Launcher, IsKnownByItsVariables) {

@@ -111,7 +111,7 @@ void Ranks::shareOther(SharedWork& work) {
 // ---- Rank 0.
 
 void Ranks::tellFinished(const std::vector<uint64_t>& pieces) {
-    if (pieces.empty() || !work_->finished) return;
+    if (pieces.empty() || !work_ || !work_->finished) return;
     uint64_t count = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -142,6 +142,15 @@ bool Ranks::allGone() const {
 }
 
 std::vector<uint64_t> Ranks::shareFirst(SharedWork& work) {
+    // Also if make() throws: the server goes on until the process ends, and `work` is gone before.
+    const struct Leaving {
+        Ranks& ranks;
+        ~Leaving() {
+            const std::lock_guard adding(ranks.adding_);
+            const std::lock_guard lock(ranks.mutex_);
+            ranks.work_ = nullptr;
+        }
+    } leaving{*this};
     std::unique_lock lock(mutex_);
     work_ = &work;
     board_ =
@@ -167,11 +176,7 @@ std::vector<uint64_t> Ranks::shareFirst(SharedWork& work) {
         lock.unlock();
         fail(faults_.front().code, faults_.front().text);
     }
-    const std::vector<uint64_t> made = board_->madeByRank();
-    lock.unlock();
-    const std::lock_guard adding(adding_);
-    work_ = nullptr;
-    return made;
+    return board_->madeByRank();
 }
 
 void Ranks::greet(int rank) {
@@ -231,6 +236,7 @@ void Ranks::handleResult(int from, BytesView message) {
         const std::lock_guard lock(mutex_);
         if (board_->isLost(from)) return;  // its pieces are others' now
     }
+    if (!work_) return;  // the run ends by a fault of this process
     work_->add(Reader(message).rest());
     std::vector<uint64_t> pieces;
     {

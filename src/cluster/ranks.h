@@ -126,7 +126,7 @@ class Ranks {
     std::condition_variable changed_;
     std::vector<Peer> peers_;            ///< by rank
     std::unique_ptr<PieceBoard> board_;  ///< while there is work
-    SharedWork* work_ = nullptr;
+    SharedWork* work_ = nullptr;         ///< cleared with adding_ and mutex_ held
     struct Fault {
         int code = 0;
         std::string text;
