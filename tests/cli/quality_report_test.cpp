@@ -362,13 +362,16 @@ TEST(QualityMessage, SequencesArriveAsTheyWere) {
     EXPECT_EQ(other.sequences[1].quality.methods[1].last.pixels,
               run.sequences[1].quality.methods[1].last.pixels);
     EXPECT_EQ(other.sequences[0].quality.reference.pixels, run.sequences[0].quality.reference.pixels);
+    EXPECT_EQ(std::get<SkippedSequence>(arrived.at(5)).name, "third");
     EXPECT_EQ(std::get<SkippedSequence>(arrived.at(5)).reason, "has no light");
 }
 
-TEST(QualityMessage, WhatIsCutOffIsRefused) {
-    const auto message = encodeOutcomes({{0, sequenceOf("first", 0.2, 0.1)}});
+TEST(QualityMessage, WhatIsCutOffOrTooLongIsRefused) {
+    auto message = encodeOutcomes({{0, sequenceOf("first", 0.2, 0.1)}});
     for (size_t length = 0; length < message.size(); length += 5)
         EXPECT_THROW(decodeOutcomes(std::span(message).first(length)), Error) << length;
+    message.push_back(std::byte{0});
+    EXPECT_THROW(decodeOutcomes(message), Error);
 }
 
 }  // namespace

@@ -115,9 +115,8 @@ void run(const QualityOptions& o, const std::string& command) {
     const std::vector<QualitySequence> sequences = sequencesOf(o);
     checkInputs(o);
     if (!o.report.empty() && isFirstProcess()) checkWritable(o.report);
-    for (const std::string& folder : {o.folder, o.referenceFolder}) {
-        if (!folder.empty()) makeFolder(folder);
-    }
+    if (!o.folder.empty() && isFirstProcess()) makeFolder(o.folder);
+    if (!o.referenceFolder.empty()) makeFolder(o.referenceFolder);
     const OpenDevice device = openDevice(o.device);
     const std::vector<QualityMethod> methods = loadMethods(*device, o);
     const QualityRun head{.version = LIMPID_VERSION,
@@ -128,7 +127,7 @@ void run(const QualityOptions& o, const std::string& command) {
                           .extent = {o.width, o.height},
                           .samples = o.samples};
     const auto measure = [&](size_t index) {
-        return measureSequence(*device, o, methods, sequences[index],
+        return measureSequence(*device, o, methods, sequences.at(index),
                                pictureBytesPerSequence(o, sequences.size()));
     };
     const QualityDestinations destinations{.folder = o.folder, .report = o.report, .json = o.json};

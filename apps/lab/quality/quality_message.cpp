@@ -1,5 +1,6 @@
 #include "lab/quality/quality_message.h"
 
+#include <concepts>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -9,8 +10,12 @@
 namespace limpid::cli {
 namespace {
 
+constexpr const char* damaged = "a message between the processes is damaged";
+
+/// Sent as its bytes.
 template <typename T>
-concept Plain = std::is_trivially_copyable_v<T>;
+concept Plain = std::is_arithmetic_v<T> || std::same_as<T, image::FrameScores>;
+static_assert(std::is_trivially_copyable_v<image::FrameScores>);
 
 class Encoder {
   public:
@@ -80,12 +85,14 @@ class Decoder {
     template <typename T>
     requires(!Plain<T>) void operator()(T& value) { exchange(*this, value); }
 
+    bool atEnd() const { return left_.empty(); }
+
   private:
     /// Of values of at least `size` bytes each.
     uint64_t count(size_t size) {
         uint64_t number = 0;
         (*this)(number);
-        if (number > left_.size() / size) throw Error("a message between the processes is damaged");
+        if (number > left_.size() / size) throw Error(damaged);
         return number;
     }
     template <typename Values>
@@ -96,7 +103,7 @@ class Decoder {
         if (!taken.empty()) std::memcpy(values.data(), taken.data(), taken.size());
     }
     std::span<const std::byte> take(size_t size) {
-        if (size > left_.size()) throw Error("a message between the processes is damaged");
+        if (size > left_.size()) throw Error(damaged);
         const auto taken = left_.first(size);
         left_ = left_.subspan(size);
         return taken;
@@ -156,8 +163,10 @@ void exchange(Decoder& coder, QualityOutcome& outcome) {
     coder(index);
     if (index == 0) {
         coder(outcome.emplace<MeasuredSequence>());
-    } else {
+    } else if (index == 1) {
         coder(outcome.emplace<SkippedSequence>());
+    } else {
+        throw Error(damaged);
     }
 }
 
@@ -173,6 +182,7 @@ QualityOutcomes decodeOutcomes(std::span<const std::byte> message) {
     QualityOutcomes outcomes;
     Decoder decoder(message);
     decoder(outcomes);
+    if (!decoder.atEnd()) throw Error(damaged);
     return outcomes;
 }
 

@@ -16,7 +16,7 @@ struct QualityDestinations {
 };
 
 /// Takes sequences in any order and shows them in that of the command line, each as soon as all before it are
-/// there. The page is updated with each, so that an interrupted run leaves its results.
+/// there. The page is updated then, so an interrupted run leaves what was shown.
 class QualityOutput {
   public:
     /// `head`: a run without sequences. `count`: of those that will be added.
