@@ -9,6 +9,7 @@
 #include "scene/framing/framing.h"
 #include "scene/framing/light_reach.h"
 #include "scene/model/environment.h"
+#include "scene/model/opaque.h"
 #include "scene/model/tangents.h"
 #include "scene/model/validate.h"
 
@@ -83,6 +84,7 @@ void addSky(Scene& scene, SkyRule rule) {
 
 void prepare(Scene& scene, SkyRule rule) {
     if (const auto fault = findFault(scene)) throw Error("the scene '" + scene.name + "': " + *fault);
+    makeOpaque(scene);
     addTangents(scene);
     if (scene.cameras.empty()) {
         scene.cameras.push_back(frameScene(scene));

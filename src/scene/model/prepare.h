@@ -14,8 +14,9 @@ enum class SkyRule {
 /// `InTheDark`: the minimum share of dark pixels among those that show a surface.
 inline constexpr double darkShareForSky = 0.75;
 
-/// Checks the invariants of scene.h and throws Error with the first violation (validate.h). Then adds what a
-/// renderer needs and the scene lacks:
+/// Checks the invariants of scene.h and throws Error with the first violation (validate.h). Makes
+/// materials opaque that only say that they may be transparent (opaque.h). Then adds what a renderer needs
+/// and the scene lacks:
 ///  - tangents where a normal map is used without them (tangents.h);
 ///  - a camera that shows everything (framing.h), if there is none;
 ///  - a soft sky (environment.h), if there is no environment and the rule allows it.

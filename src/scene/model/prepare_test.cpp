@@ -444,5 +444,47 @@ TEST(Prepare, RefusesBrokenScenes) {
     }
 }
 
+// --- alpha
+
+/// The square with a texture of 2x1 texels, the second of which has this alpha.
+Scene maybeTransparent(AlphaMode mode, uint8_t alpha) {
+    Scene scene = squareScene();
+    scene.textures.push_back({.name = "t", .width = 2, .height = 1, .rgba = {9, 9, 9, 255, 9, 9, 9, alpha}});
+    scene.materials[0].alphaMode = mode;
+    scene.materials[0].baseColorTexture.texture = 0;
+    return scene;
+}
+
+AlphaMode prepared(Scene scene) {
+    prepare(scene);
+    return scene.materials[0].alphaMode;
+}
+
+TEST(Prepare, WhatLetsNothingThroughIsOpaque) {
+    EXPECT_EQ(prepared(maybeTransparent(AlphaMode::Blend, 255)), AlphaMode::Opaque);
+    EXPECT_EQ(prepared(maybeTransparent(AlphaMode::Blend, 254)), AlphaMode::Blend);
+    EXPECT_EQ(prepared(maybeTransparent(AlphaMode::Mask, 128)), AlphaMode::Opaque);
+    EXPECT_EQ(prepared(maybeTransparent(AlphaMode::Mask, 127)), AlphaMode::Mask);
+    Scene scene = maybeTransparent(AlphaMode::Blend, 255);
+    scene.materials[0].baseColor.a = 0.99f;
+    EXPECT_EQ(prepared(scene), AlphaMode::Blend);
+    scene.materials[0].alphaMode = AlphaMode::Mask;
+    scene.materials[0].alphaCutoff = 1.5f;
+    EXPECT_EQ(prepared(scene), AlphaMode::Mask) << "this one is nowhere";
+}
+
+TEST(Prepare, ColoursOfVerticesCountWhereTheMaterialIsUsed) {
+    Scene scene = squareScene();
+    scene.materials.emplace_back();
+    for (Material& material : scene.materials) material.alphaMode = AlphaMode::Blend;
+    Mesh& mesh = scene.meshes[0];
+    mesh.materialSlots = {0, 1};
+    mesh.colors.assign(4, vec4(1.0f));
+    mesh.colors[3].a = 0.5f;  // of the second triangle only
+    prepare(scene);
+    EXPECT_EQ(scene.materials[0].alphaMode, AlphaMode::Opaque);
+    EXPECT_EQ(scene.materials[1].alphaMode, AlphaMode::Blend);
+}
+
 }  // namespace
 }  // namespace limpid::scene::test
