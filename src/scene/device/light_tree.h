@@ -22,7 +22,7 @@ class LightTree {
   public:
     /// Nodes from the root to a leaf.
     static constexpr uint32_t maxDepth = 1 + (128 - layout::LIGHT_TRAIL_ROOT_BITS) / layout::LIGHT_TRAIL_BITS;
-    static constexpr uint32_t maxRootLamps = 64;
+    static constexpr uint32_t maxRootLamps = layout::LIGHT_ROOT_CHILDREN - layout::LIGHT_NODE_WIDTH;
 
     /// A child of a node: another node, or a light. The children of a node are consecutive.
     struct Child {

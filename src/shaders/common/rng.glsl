@@ -87,7 +87,8 @@ vec2 stratified2(inout uint state) {
 }
 
 /// True if a choice and a point for what was chosen should share a number: the points for each of the choices are then
-/// spread evenly, too. For independent numbers that would only cost digits.
+/// spread evenly, too. Independent numbers gain nothing by it. (Walks through the light tree share always, since a new
+/// number for each node would take as long.)
 bool sharesNumbers() {
     return SAMPLER == SAMPLER_SOBOL;
 }

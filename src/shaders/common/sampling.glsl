@@ -138,4 +138,11 @@ uint takePart(float first, float second, inout float u) {
     return isFirst ? 0u : 1u;
 }
 
+/// Takes one of four parts by their weights; like takePart().
+uint takeOfFour(vec4 weights, inout float u) {
+    const uint pair = takePart(weights.x + weights.y, weights.z + weights.w, u);
+    const vec2 of = pair == 0u ? weights.xy : weights.zw;
+    return 2u * pair + takePart(of.x, of.y, u);
+}
+
 #endif

@@ -107,8 +107,9 @@ LIMPID_CONST uint LIGHT_MIRRORED =
 // a texel for each directional light: its index in `lights` | 0 | 0 | 0.
 LIMPID_CONST uint LIGHT_CHILD_TEXELS = 2u;
 LIMPID_CONST uint LIGHT_NODE_WIDTH = 4u;       // largest number of children
+LIMPID_CONST uint LIGHT_ROOT_CHILDREN = 68u;   // the same for the root: also point and spot lights
 LIMPID_CONST uint LIGHT_TRAIL_BITS = 2u;       // number of a child
-LIMPID_CONST uint LIGHT_TRAIL_ROOT_BITS = 8u;  // the same for the root, which may have more
+LIMPID_CONST uint LIGHT_TRAIL_ROOT_BITS = 8u;  // the same for the root
 LIMPID_CONST uint LIGHT_LINK_LEAF =
     0x80000000u;  // the link's index is that of a light, not of a node's first child
 LIMPID_CONST uint LIGHT_LINK_TWO_SIDED = 0x40000000u;

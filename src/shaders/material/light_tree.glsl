@@ -77,14 +77,6 @@ uint linkedIndex(uint link) {
     return link & LIGHT_LINK_INDEX;
 }
 
-/// While the children of a node are compared: those with any weight, their weights, and the one that is taken.
-struct LightShare {
-    float reaching, sum, taken;
-    float takenUniformly;  // the weight of the one that is taken, if chosen uniformly
-    uint next;             // its link
-};
-const LightShare NO_LIGHT_SHARE = LightShare(0.0, 0.0, 0.0, 1.0, 0u);
-
 /// The weights of a child, if chosen by weight and uniformly.
 struct ChildWeights {
     float weight, uniformWeight;
@@ -116,10 +108,67 @@ float uniformShare(float reaching, bool root) {
     return HAS_LIGHT_DISTANCES ? min(max(share, 15.0 / (count * count)), 0.42) : min(share, 0.2);
 }
 
-float probabilityOf(LightShare share, bool root) {
-    const float uniformly = uniformShare(share.reaching, root);
-    const float byWeight = (1.0 - uniformly) * share.taken / max(share.sum, 1e-30);
-    return share.taken > 0.0 ? byWeight + uniformly * share.takenUniformly / share.reaching : 0.0;
+/// A child is taken with the probability chances.byWeight * weight + chances.uniformly * uniformWeight.
+struct Chances {
+    float byWeight, uniformly;
+};
+
+/// `sums`: of the weights and the uniform weights of all children of a node.
+Chances chancesOf(vec2 sums, bool root) {
+    const float uniformly = uniformShare(sums.y, root);
+    return Chances((1.0 - uniformly) / max(sums.x, 1e-37), root ? uniformly / max(sums.y, 1e-37) : 0.0);
+}
+
+/// Up to LIGHT_NODE_WIDTH consecutive children of a node. What is absent, or does not reach the point, has no weights.
+struct ChildGroup {
+    vec4 weights, uniformWeights;
+    uvec4 links;
+    bool isLast;  // no other group of the node follows
+};
+
+ChildGroup loadChildGroup(Receiver from, uint child, uint firstPunctual) {
+    ChildGroup group = ChildGroup(vec4(0.0), vec4(0.0), uvec4(0u), false);
+    for (uint i = 0u; i < LIGHT_NODE_WIDTH && !group.isLast; ++i) {
+        const int at = int((child + i) * LIGHT_CHILD_TEXELS);
+        const uvec4 effect = imageLoad(lightTree, at + 1);
+        const ChildWeights it = childWeights(from, imageLoad(lightTree, at), effect, firstPunctual);
+        group.weights[i] = it.weight;
+        group.uniformWeights[i] = it.weight > 0.0 ? it.uniformWeight : 0.0;
+        group.links[i] = effect.w;
+        group.isLast = (effect.w & LIGHT_LINK_LAST) != 0u;
+    }
+    return group;
+}
+
+vec2 sumsOf(ChildGroup group) {
+    return vec2(dot(group.weights, vec4(1.0)), dot(group.uniformWeights, vec4(1.0)));
+}
+
+/// Point and spot lights may be many children of the root. `group` is the first group, and becomes the one that is taken;
+/// `sums` become those of all; what is left of `u` is again uniform.
+void chooseRootGroup(Receiver from, uint firstPunctual, inout ChildGroup group, inout vec2 sums, inout float u) {
+    vec2 sumsOfGroups[LIGHT_ROOT_CHILDREN / LIGHT_NODE_WIDTH];
+    sumsOfGroups[0] = sums;
+    uint count = 1u;
+    for (bool isLast = false; !isLast; ++count) {
+        const ChildGroup next = loadChildGroup(from, count * LIGHT_NODE_WIDTH, firstPunctual);
+        sumsOfGroups[count] = sumsOf(next);
+        sums += sumsOfGroups[count];
+        isLast = next.isLast;
+    }
+    const Chances chances = chancesOf(sums, true);
+    uint taken = 0u;
+    float start = 0.0, chance = 1.0, end = 0.0;  // of the interval of the group
+    for (uint i = 0u; i < count && u >= end; ++i) {
+        const float width = dot(vec2(chances.byWeight, chances.uniformly), sumsOfGroups[i]);
+        if (width <= 0.0) continue;
+        taken = i;
+        chance = width;
+        start = end;
+        end += width;
+    }
+    u = clamp((u - start) / chance, 0.0, 1.0 - 1.0 / float(0x01000000));
+    group = loadChildGroup(from, taken * LIGHT_NODE_WIDTH, firstPunctual);
 }
 
 /// A light of the tree, the probability of choosing it, and the irradiance that all lights of the tree might cause;
@@ -130,73 +179,59 @@ struct ChosenLight {
 };
 
 /// Goes from the root to a light. `firstPunctual`: the index of the first punctual light. If a node turns out to have
-/// no child that reaches the point, the walk ends without a light.
-ChosenLight chooseFromLightTree(Receiver from, uint firstPunctual, inout uint rng) {
-    ChosenLight chosen = ChosenLight(0u, 1.0, -1.0);
-    LightShare byWeight = NO_LIGHT_SHARE;
-    uint child = 0u, uniformNext = 0u;
-    ChildWeights uniformTaken = ChildWeights(0.0, 1.0);
-    while (true) {
-        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
-        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
-        const ChildWeights it = childWeights(from, place, effect, firstPunctual);
-        const float u = random(rng);
-        byWeight.sum += it.weight;
-        byWeight.reaching += it.weight > 0.0 ? it.uniformWeight : 0.0;
-        if (u * byWeight.sum < it.weight) {
-            byWeight.taken = it.weight;
-            byWeight.takenUniformly = it.uniformWeight;
-            byWeight.next = effect.w;
-        }
-        if (it.weight > 0.0 && u * byWeight.reaching < it.uniformWeight) {
-            uniformTaken = it;
-            uniformNext = effect.w;
-        }
-        ++child;
-        if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
-        const bool root = chosen.irradiance < 0.0;
-        if (random(rng) < uniformShare(byWeight.reaching, root)) {
-            byWeight.taken = uniformTaken.weight;
-            byWeight.takenUniformly = uniformTaken.uniformWeight;
-            byWeight.next = uniformNext;
-        }
-        chosen.probability *= probabilityOf(byWeight, root);
-        if (root) chosen.irradiance = byWeight.sum;
-        child = linkedIndex(byWeight.next);
-        if (byWeight.taken == 0.0 || (byWeight.next & LIGHT_LINK_LEAF) != 0u) break;
-        byWeight = NO_LIGHT_SHARE;
-        uniformTaken = ChildWeights(0.0, 1.0);
+/// no child that reaches the point, the walk ends without a light. `u` chooses; what is left of it, its place in the
+/// light's interval, is again uniform.
+ChosenLight chooseFromLightTree(Receiver from, uint firstPunctual, inout float u, inout uint rng) {
+    ChildGroup group = loadChildGroup(from, 0u, firstPunctual);
+    vec2 sums = sumsOf(group);
+    if (HAS_PUNCTUAL_LIGHTS) {
+        if (!group.isLast) chooseRootGroup(from, firstPunctual, group, sums, u);
     }
-    chosen.light = child;
+    ChosenLight chosen = ChosenLight(0u, 1.0, sums.x);
+    for (bool root = true;; root = false) {
+        const Chances chances = chancesOf(sums, root);
+        const vec4 parts = chances.byWeight * group.weights + chances.uniformly * group.uniformWeights;
+        if (!(sums.x > 0.0)) {
+            chosen.probability = 0.0;
+            break;
+        }
+        const uint taken = takeOfFour(parts, u);
+        chosen.probability *= parts[taken];
+        u = placeWithin(u, 1.0 / parts[taken], rng);
+        chosen.light = linkedIndex(group.links[taken]);
+        if ((group.links[taken] & LIGHT_LINK_LEAF) != 0u) break;
+        group = loadChildGroup(from, chosen.light, firstPunctual);
+        sums = sumsOf(group);
+    }
     return chosen;
 }
 
 /// Returns the probability with which chooseFromLightTree() chooses the light at the end of `trail`.
 float lightTreeProbability(Receiver from, uint firstPunctual, uvec4 trail) {
-    LightShare share = NO_LIGHT_SHARE;
+    vec2 sums = vec2(0.0);
+    ChildWeights taken = ChildWeights(0.0, 0.0);
     float probability = 1.0;
-    uint first = 0u, child = 0u, bits = LIGHT_TRAIL_ROOT_BITS;
+    uint first = 0u, child = 0u, link = 0u, bits = LIGHT_TRAIL_ROOT_BITS;
     while (true) {
         const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
         const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
         const ChildWeights it = childWeights(from, place, effect, firstPunctual);
-        share.sum += it.weight;
-        share.reaching += it.weight > 0.0 ? it.uniformWeight : 0.0;
+        sums += vec2(it.weight, it.weight > 0.0 ? it.uniformWeight : 0.0);
         if (child - first == (trail.x & ((1u << bits) - 1u))) {
-            share.taken = it.weight;
-            share.takenUniformly = it.uniformWeight;
-            share.next = effect.w;
+            taken = it;
+            link = effect.w;
         }
         ++child;
         if ((effect.w & LIGHT_LINK_LAST) == 0u) continue;
-        probability *= probabilityOf(share, bits == LIGHT_TRAIL_ROOT_BITS);
-        first = child = linkedIndex(share.next);
-        if (share.taken == 0.0 || (share.next & LIGHT_LINK_LEAF) != 0u) break;
-        share = NO_LIGHT_SHARE;
+        const Chances chances = chancesOf(sums, bits == LIGHT_TRAIL_ROOT_BITS);
+        if (!(taken.weight > 0.0)) return 0.0;
+        probability *= chances.byWeight * taken.weight + chances.uniformly * taken.uniformWeight;
+        if ((link & LIGHT_LINK_LEAF) != 0u) return probability;
+        first = child = linkedIndex(link);
+        sums = vec2(0.0);
         trail = (trail >> bits) | (uvec4(trail.yzw, 0u) << (32u - bits));
         bits = LIGHT_TRAIL_BITS;
     }
-    return probability;
 }
 
 #endif

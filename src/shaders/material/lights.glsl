@@ -212,9 +212,7 @@ uint chooseTriangle(uint count, inout float u) {
     for (int level = (findMSB(count * 2u - 1u) + 1) / 2; level > 0; --level) {
         const vec4 parts = imageLoad(lightPyramid, int(first + at));
         first += (count + (1u << (2 * level)) - 1u) >> (2 * level);
-        const uint pair = takePart(parts.x + parts.y, parts.z + parts.w, u);
-        const vec2 of = pair == 0u ? parts.xy : parts.zw;
-        at = 4u * at + 2u * pair + takePart(of.x, of.y, u);
+        at = 4u * at + takeOfFour(parts, u);
     }
     return at;
 }
@@ -339,37 +337,49 @@ LightSample sampleListedLight(uint index, Receiver from, vec2 u) {
     return light;
 }
 
+/// The share of the light tree among it and directional lights, by the irradiance that they might cause.
+float treeShare(ChosenLight chosen, SunChoice sun) {
+    if (chosen.irradiance <= 0.0) return 0.0;
+    if (!HAS_SUNS || sun.irradiance <= 0.0) return 1.0;
+    const float share = chosen.irradiance / (chosen.irradiance + sun.irradiance);
+    return clamp(share, MIN_TREE_OR_SUN_SHARE, 1.0 - MIN_TREE_OR_SUN_SHARE);
+}
+
 /// Samples the environment, a directional light or a light of the tree. Each gets samples only if it can reach the
-/// point.
+/// point. One number chooses between environment and lights, walks the tree, and places the point on the light.
 LightSample sampleLightByTree(Receiver from, SceneParams scene, inout uint rng, out LightShares shares) {
-    const ChosenLight chosen = chooseFromLightTree(from, scene.triangleLightCount, rng);
+    const vec2 u = stratified2(rng);
+    shares = LightShares(HAS_ENVIRONMENT ? scene.environmentProbability : 0.0, 0.0, from);
+    float place = u.x;
+    bool ofSky = false;
+    if (HAS_ENVIRONMENT) ofSky = takePart(shares.environment, 1.0 - shares.environment, place) == 0u;
+    float onLight = place;
+    const ChosenLight chosen = chooseFromLightTree(from, scene.triangleLightCount, onLight, rng);
     SunChoice sun = SunChoice(0, 0.0, 0.0);
     if (HAS_SUNS) sun = chooseSun(from, scene, rng);
-    const float both = chosen.irradiance + sun.irradiance;
-    float ofTree = chosen.irradiance > 0.0 ? 1.0 : 0.0;
-    if (HAS_SUNS) {
-        if (chosen.irradiance > 0.0 && sun.irradiance > 0.0)
-            ofTree = clamp(chosen.irradiance / both, MIN_TREE_OR_SUN_SHARE, 1.0 - MIN_TREE_OR_SUN_SHARE);
+    if (HAS_ENVIRONMENT) {
+        if (chosen.irradiance + sun.irradiance <= 0.0) {
+            shares.environment = 1.0;
+            ofSky = true;
+            place = u.x;
+        }
     }
-    shares = LightShares(0.0, 0.0, from);
-    if (HAS_ENVIRONMENT) shares.environment = both > 0.0 ? scene.environmentProbability : 1.0;
-    shares.triangles = (1.0 - shares.environment) * ofTree;
-    const float choice = stratified(rng);
-    const vec2 u = stratified2(rng);
+    shares.triangles = (1.0 - shares.environment) * treeShare(chosen, sun);
     LightSample light = noLight();
     if (chosen.probability > 0.0) {
-        light = sampleListedLight(chosen.light, from, u);
+        light = sampleListedLight(chosen.light, from, vec2(onLight, u.y));
         light.pdf *= chosen.probability * shares.triangles;
     }
     if (HAS_SUNS) {
-        if (sun.probability > 0.0 && choice >= shares.environment + shares.triangles) {
+        const float suns = 1.0 - shares.environment - shares.triangles;
+        if (stratified(rng) * (1.0 - shares.environment) >= shares.triangles && sun.probability > 0.0) {
             light = samplePunctualLight(sun.at, from.position);
-            light.pdf = sun.probability * (1.0 - shares.environment - shares.triangles);
+            light.pdf = sun.probability * suns;
         }
     }
     if (HAS_ENVIRONMENT) {
-        if (choice < shares.environment) {
-            light = environmentLight(from, u, scene);
+        if (ofSky) {
+            light = environmentLight(from, vec2(placeWithin(place, 1.0 / shares.environment, rng), u.y), scene);
             light.pdf *= shares.environment;
         }
     }

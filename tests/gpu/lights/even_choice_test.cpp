@@ -9,12 +9,11 @@ constexpr uint32_t samples = 64;
 
 class EvenChoiceTest : public RenderTest {
   protected:
-    /// Mean squared error of the picture relative to its mean, by two renders with different seeds. Lights
-    /// are chosen by power.
-    static double errorOf(Renderer& renderer, bool sobol) {
+    /// Mean squared error of the picture relative to its mean, by two renders with different seeds.
+    static double errorOf(Renderer& renderer, bool sobol, bool tree = false) {
         RenderSettings settings = centred(32, 24, 1);
         settings.pathtrace.samplerSobol = sobol;
-        settings.pathtrace.lightTree = false;
+        settings.pathtrace.lightTree = tree;
         const Rendered a = renderer(settings, samples);
         settings.seed = 1;
         const Rendered b = renderer(settings, samples);
@@ -29,10 +28,10 @@ class EvenChoiceTest : public RenderTest {
     }
 
     /// Returns the error with Sobol' points divided by that with independent numbers.
-    double gain(scene::Scene scene) {
+    double gain(scene::Scene scene, bool tree = false) {
         scene.cameras = {scene::lookAt({0, 3, 4}, {0, 0, 0}, {0, 1, 0}, 0.6f)};
         Renderer renderer(device(), scene);
-        const double sobol = errorOf(renderer, true), independent = errorOf(renderer, false);
+        const double sobol = errorOf(renderer, true, tree), independent = errorOf(renderer, false, tree);
         fmt::print("relative error {:.3g} with Sobol' points, {:.3g} with independent numbers\n", sobol,
                    independent);
         return sobol / independent;
@@ -77,6 +76,7 @@ TEST_F(EvenChoiceTest, LampsOfDifferentPower) {
         addMesh(scene, builder.take(), material);
     }
     EXPECT_LT(gain(scene), 0.1);
+    EXPECT_LT(gain(scene, true), 0.1) << "by the light tree";
 }
 
 }  // namespace

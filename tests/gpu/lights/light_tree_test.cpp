@@ -29,6 +29,7 @@ struct Answer {
     float weight, probability;
     uint32_t light;
     float chosenProbability;
+    float left;  ///< of the number that has chosen
 };
 
 class Random {
@@ -302,22 +303,25 @@ TEST_F(LightTreeTest, ProbabilitiesAreSharesOfTheWeights) {
     EXPECT_LT(lostOfAll, 0.25);
 }
 
+/// And what is left of the number that has chosen is uniform for each light.
 TEST_F(LightTreeTest, LightsAreChosenWithTheirProbabilities) {
     load(randomScene(60, 40, 5));
-    constexpr uint32_t walks = 1u << 17;
+    constexpr uint32_t walks = 1u << 18, parts = 4;
     Random random(6);
     for (uint32_t round = 0; round < 3; ++round) {
         Query point = random.query();
         const std::vector<double> probabilities = probabilitiesAt(point);
         point.seed = round;
-        std::vector<double> observed(trails_.size() + 1, 0.0), expected;
-        for (const double p : probabilities) expected.push_back(p * walks);
+        std::vector<double> observed(trails_.size() * parts + 1, 0.0), expected;
+        for (const double p : probabilities) expected.insert(expected.end(), parts, p * walks / parts);
         double sum = 0.0;
         for (const double p : probabilities) sum += p;
         expected.push_back(std::max(1.0 - sum, 0.0) * walks);
         for (const Answer& answer : ask(std::vector<Query>(walks, point))) {
             const bool none = answer.chosenProbability == 0.0f;
-            ++observed[none ? trails_.size() : answer.light];
+            ASSERT_TRUE(none || (answer.left >= 0.0f && answer.left < 1.0f)) << answer.left;
+            ++observed[none ? observed.size() - 1
+                            : answer.light * parts + static_cast<uint32_t>(answer.left * parts)];
             if (none) continue;
             ASSERT_NEAR(double{answer.chosenProbability} / probabilities[answer.light], 1.0, 1e-5)
                 << "light " << answer.light << ", probability " << probabilities[answer.light];

@@ -14,7 +14,7 @@ struct Query {
 struct Answer {
     float weight, probability;
     uint light;
-    float chosenProbability;
+    float chosenProbability, left;
 };
 
 layout(set = 0, binding = 20, scalar) uniform Params {
@@ -35,7 +35,8 @@ void main() {
     uint rng = startStream(i, 0u, q.seed);
     const int at = int(q.child * LIGHT_CHILD_TEXELS);
     const uint noMaps = 0x7FFFFFFFu;
-    const ChosenLight chosen = chooseFromLightTree(from, noMaps, rng);
+    float u = random(rng);
+    const ChosenLight chosen = chooseFromLightTree(from, noMaps, u, rng);
     results.values[i] = Answer(lightWeight(from, imageLoad(lightTree, at), imageLoad(lightTree, at + 1)),
-                               lightTreeProbability(from, noMaps, q.trail), chosen.light, chosen.probability);
+                               lightTreeProbability(from, noMaps, q.trail), chosen.light, chosen.probability, u);
 }
