@@ -278,8 +278,13 @@ class Trainer:
             judging += time.monotonic() - started
             last = ", ".join(f"{name} {curve[-1]:.5f}" for name, curve in self.losses.items())
             print(f"epoch {self.epoch} of {self.epochs}, {self.seconds:.0f} s: {last}", flush=True)
-        self.workers.close()
+        self.close()
         return self.losses
+
+    def close(self):
+        """Nothing more can be learnt afterwards."""
+        self.predictors = {}
+        self.workers.close()
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 torchrun starts them, and tells each its number by environment variables. A process that was started alone trains
 alone."""
 
+import gc
 import os
 
 import torch
@@ -42,6 +43,9 @@ class Workers:
         return bool(value.item())
 
     def close(self):
+        """Nothing may use a module of shared() any more. If one were the last to hold the connection, PyTorch would wait
+        for its own thread, which waits for Python, for ever."""
         if self.count > 1:
+            gc.collect()
             distributed.barrier()  # the first worker may still be judging and saving
             distributed.destroy_process_group()

@@ -21,4 +21,4 @@ if __name__ == "__main__":
     gradients = of(started)
     if started.workers.number == 0:
         torch.save(gradients, sys.argv[1])
-    started.workers.close()
+    started.close()

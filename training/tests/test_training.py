@@ -169,7 +169,11 @@ class TrainingTest(unittest.TestCase):
             workers.append(
                 subprocess.Popen([sys.executable, "-m", *module_and_arguments], env=environment, stdout=subprocess.PIPE,
                                  stderr=subprocess.STDOUT))
-        output = [worker.communicate(timeout=240)[0].decode() for worker in workers]
+        try:
+            output = [worker.communicate(timeout=240)[0].decode() for worker in workers]
+        finally:
+            for worker in workers:
+                worker.kill()  # what has not ended
         self.assertEqual([worker.returncode for worker in workers], [0] * count, output)
         return output
 
