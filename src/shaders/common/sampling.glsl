@@ -138,11 +138,17 @@ uint takePart(float first, float second, inout float u) {
     return isFirst ? 0u : 1u;
 }
 
-/// Takes one of four parts by their weights; like takePart().
+/// Takes one of four parts by their weights; like takePart(). Never one without weight.
 uint takeOfFour(vec4 weights, inout float u) {
-    const uint pair = takePart(weights.x + weights.y, weights.z + weights.w, u);
-    const vec2 of = pair == 0u ? weights.xy : weights.zw;
-    return 2u * pair + takePart(of.x, of.y, u);
+    const vec2 halves = vec2(weights.x + weights.y, weights.z + weights.w);
+    u *= halves.x + halves.y;
+    const bool upper = u >= halves.x && halves.y > 0.0;
+    u -= upper ? halves.x : 0.0;
+    const vec2 pair = upper ? weights.zw : weights.xy;
+    const bool second = u >= pair.x && pair.y > 0.0;
+    u = (u - (second ? pair.x : 0.0)) / (second ? pair.y : pair.x);
+    u = clamp(u, 0.0, 1.0 - 1.0 / float(0x01000000));
+    return (upper ? 2u : 0u) + (second ? 1u : 0u);
 }
 
 #endif

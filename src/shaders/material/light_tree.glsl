@@ -119,56 +119,22 @@ Chances chancesOf(vec2 sums, bool root) {
     return Chances((1.0 - uniformly) / max(sums.x, 1e-37), root ? uniformly / max(sums.y, 1e-37) : 0.0);
 }
 
-/// Up to LIGHT_NODE_WIDTH consecutive children of a node. What is absent, or does not reach the point, has no weights.
+/// The weights of up to LIGHT_NODE_WIDTH consecutive children of a node; 0 for what is absent or does not reach the
+/// point.
 struct ChildGroup {
     vec4 weights, uniformWeights;
-    uvec4 links;
-    bool isLast;  // no other group of the node follows
 };
+const ChildGroup NO_CHILDREN = ChildGroup(vec4(0.0), vec4(0.0));
 
-ChildGroup loadChildGroup(Receiver from, uint child, uint firstPunctual) {
-    ChildGroup group = ChildGroup(vec4(0.0), vec4(0.0), uvec4(0u), false);
-    for (uint i = 0u; i < LIGHT_NODE_WIDTH && !group.isLast; ++i) {
-        const int at = int((child + i) * LIGHT_CHILD_TEXELS);
-        const uvec4 effect = imageLoad(lightTree, at + 1);
-        const ChildWeights it = childWeights(from, imageLoad(lightTree, at), effect, firstPunctual);
-        group.weights[i] = it.weight;
-        group.uniformWeights[i] = it.weight > 0.0 ? it.uniformWeight : 0.0;
-        group.links[i] = effect.w;
-        group.isLast = (effect.w & LIGHT_LINK_LAST) != 0u;
-    }
-    return group;
+void setChild(inout ChildGroup group, uint i, ChildWeights child) {
+    // Not by an index, for which GPUs would keep the group in memory.
+    const bvec4 isThis = equal(uvec4(0u, 1u, 2u, 3u), uvec4(i));
+    group.weights = mix(group.weights, vec4(child.weight), isThis);
+    group.uniformWeights = mix(group.uniformWeights, vec4(child.weight > 0.0 ? child.uniformWeight : 0.0), isThis);
 }
 
 vec2 sumsOf(ChildGroup group) {
     return vec2(dot(group.weights, vec4(1.0)), dot(group.uniformWeights, vec4(1.0)));
-}
-
-/// Point and spot lights may be many children of the root. `group` is the first group, and becomes the one that is taken;
-/// `sums` become those of all; what is left of `u` is again uniform.
-void chooseRootGroup(Receiver from, uint firstPunctual, inout ChildGroup group, inout vec2 sums, inout float u) {
-    vec2 sumsOfGroups[LIGHT_ROOT_CHILDREN / LIGHT_NODE_WIDTH];
-    sumsOfGroups[0] = sums;
-    uint count = 1u;
-    for (bool isLast = false; !isLast; ++count) {
-        const ChildGroup next = loadChildGroup(from, count * LIGHT_NODE_WIDTH, firstPunctual);
-        sumsOfGroups[count] = sumsOf(next);
-        sums += sumsOfGroups[count];
-        isLast = next.isLast;
-    }
-    const Chances chances = chancesOf(sums, true);
-    uint taken = 0u;
-    float start = 0.0, chance = 1.0, end = 0.0;  // of the interval of the group
-    for (uint i = 0u; i < count && u >= end; ++i) {
-        const float width = dot(vec2(chances.byWeight, chances.uniformly), sumsOfGroups[i]);
-        if (width <= 0.0) continue;
-        taken = i;
-        chance = width;
-        start = end;
-        end += width;
-    }
-    u = clamp((u - start) / chance, 0.0, 1.0 - 1.0 / float(0x01000000));
-    group = loadChildGroup(from, taken * LIGHT_NODE_WIDTH, firstPunctual);
 }
 
 /// A light of the tree, the probability of choosing it, and the irradiance that all lights of the tree might cause;
@@ -178,31 +144,100 @@ struct ChosenLight {
     float probability, irradiance;
 };
 
+/// Of the root, where point and spot lights may be more children than a group has.
+struct RootGroups {
+    vec2 sums[LIGHT_ROOT_CHILDREN / LIGHT_NODE_WIDTH];
+    uint count;
+};
+
+/// Takes one of the groups. What is left of `u` is again uniform.
+uint takeGroup(RootGroups groups, Chances chances, inout float u) {
+    uint taken = 0u;
+    float start = 0.0, chance = 1.0, end = 0.0;  // of the interval of the group
+    for (uint i = 0u; i < groups.count && u >= end; ++i) {
+        const float width = dot(vec2(chances.byWeight, chances.uniformly), groups.sums[i]);
+        if (width <= 0.0) continue;
+        taken = i;
+        chance = width;
+        start = end;
+        end += width;
+    }
+    u = clamp((u - start) / chance, 0.0, 1.0 - 1.0 / float(0x01000000));
+    return taken;
+}
+
+/// Of a group of the root that is taken, once more.
+ChildGroup loadRootGroup(Receiver from, uint first, uint firstPunctual) {
+    ChildGroup group = NO_CHILDREN;
+    for (uint i = 0u; i < LIGHT_NODE_WIDTH; ++i) {
+        const int at = int((first + i) * LIGHT_CHILD_TEXELS);
+        const uvec4 effect = imageLoad(lightTree, at + 1);
+        setChild(group, i, childWeights(from, imageLoad(lightTree, at), effect, firstPunctual));
+        if ((effect.w & LIGHT_LINK_LAST) != 0u) break;
+    }
+    return group;
+}
+
+/// Takes a child of the group that begins with `first`, and returns its link. Multiplies the probability by that of the
+/// choice. What is left of `u` is again uniform.
+uint takeChild(ChildGroup group, uint first, Chances chances, inout float u, inout float probability, inout uint rng) {
+    const vec4 parts = chances.byWeight * group.weights + chances.uniformly * group.uniformWeights;
+    const uint taken = takeOfFour(parts, u);
+    const vec2 pair = taken > 1u ? parts.zw : parts.xy;
+    const float part = (taken & 1u) != 0u ? pair.y : pair.x;
+    probability *= part;
+    u = placeWithin(u, 1.0 / part, rng);
+    return imageLoad(lightTree, int((first + taken) * LIGHT_CHILD_TEXELS) + 1).w;
+}
+
 /// Goes from the root to a light. `firstPunctual`: the index of the first punctual light. If a node turns out to have
 /// no child that reaches the point, the walk ends without a light. `u` chooses; what is left of it, its place in the
 /// light's interval, is again uniform.
 ChosenLight chooseFromLightTree(Receiver from, uint firstPunctual, inout float u, inout uint rng) {
-    ChildGroup group = loadChildGroup(from, 0u, firstPunctual);
-    vec2 sums = sumsOf(group);
-    if (HAS_PUNCTUAL_LIGHTS) {
-        if (!group.isLast) chooseRootGroup(from, firstPunctual, group, sums, u);
-    }
-    ChosenLight chosen = ChosenLight(0u, 1.0, sums.x);
-    for (bool root = true;; root = false) {
+    ChosenLight chosen = ChosenLight(0u, 1.0, -1.0);
+    ChildGroup group = NO_CHILDREN;
+    RootGroups groups;
+    groups.count = 0u;
+    vec2 sums = vec2(0.0);
+    uint first = 0u, child = 0u;
+    // One loop over the children of all nodes: a loop in a loop takes longer where neighbours walk different ways.
+    while (true) {
+        const uvec4 place = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS));
+        const uvec4 effect = imageLoad(lightTree, int(child * LIGHT_CHILD_TEXELS) + 1);
+        setChild(group, child - first, childWeights(from, place, effect, firstPunctual));
+        ++child;
+        const bool isLast = (effect.w & LIGHT_LINK_LAST) != 0u;
+        if (!isLast && (!HAS_PUNCTUAL_LIGHTS || child - first < LIGHT_NODE_WIDTH)) continue;
+        const bool root = chosen.irradiance < 0.0;
+        sums += sumsOf(group);
+        if (HAS_PUNCTUAL_LIGHTS && root) {
+            groups.sums[groups.count] = sumsOf(group);
+            ++groups.count;
+            if (!isLast) {
+                first = child;
+                group = NO_CHILDREN;
+                continue;
+            }
+        }
         const Chances chances = chancesOf(sums, root);
-        const vec4 parts = chances.byWeight * group.weights + chances.uniformly * group.uniformWeights;
+        if (root) chosen.irradiance = sums.x;
         if (!(sums.x > 0.0)) {
             chosen.probability = 0.0;
             break;
         }
-        const uint taken = takeOfFour(parts, u);
-        chosen.probability *= parts[taken];
-        u = placeWithin(u, 1.0 / parts[taken], rng);
-        chosen.light = linkedIndex(group.links[taken]);
-        if ((group.links[taken] & LIGHT_LINK_LEAF) != 0u) break;
-        group = loadChildGroup(from, chosen.light, firstPunctual);
-        sums = sumsOf(group);
+        if (HAS_PUNCTUAL_LIGHTS) {
+            if (root && groups.count > 1u) {
+                first = takeGroup(groups, chances, u) * LIGHT_NODE_WIDTH;
+                group = loadRootGroup(from, first, firstPunctual);
+            }
+        }
+        const uint link = takeChild(group, first, chances, u, chosen.probability, rng);
+        first = child = linkedIndex(link);
+        if ((link & LIGHT_LINK_LEAF) != 0u) break;
+        group = NO_CHILDREN;
+        sums = vec2(0.0);
     }
+    chosen.light = child;
     return chosen;
 }
 
