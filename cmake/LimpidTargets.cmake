@@ -31,8 +31,8 @@ if(LIMPID_SANITIZE)
                                                   -fno-omit-frame-pointer)
   target_link_options(limpid_options INTERFACE -fsanitize=address,undefined)
 endif()
-# The files of test programs: compiling them takes longer than running them, so the compiler optimises them little. What they
-# call (Limpid itself, the reference versions) is compiled as everything else.
+# The files of test programs: compiling them takes longer than running them, so the compiler optimises them little. What
+# they call (Limpid itself, the reference versions) is compiled as everything else.
 add_library(limpid_test_options INTERFACE)
 if(LIMPID_SANITIZE)
   target_compile_options(limpid_test_options INTERFACE -O0)

@@ -209,9 +209,10 @@ ChosenLight chooseFromLightTree(Receiver from, uint firstPunctual, inout float u
         const bool isLast = (effect.w & LIGHT_LINK_LAST) != 0u;
         if (!isLast && (!HAS_PUNCTUAL_LIGHTS || child - first < LIGHT_NODE_WIDTH)) continue;
         const bool root = chosen.irradiance < 0.0;
-        sums += sumsOf(group);
+        const vec2 sumsOfGroup = sumsOf(group);
+        sums += sumsOfGroup;
         if (HAS_PUNCTUAL_LIGHTS && root) {
-            groups.sums[groups.count] = sumsOf(group);
+            groups.sums[groups.count] = sumsOfGroup;
             ++groups.count;
             if (!isLast) {
                 first = child;
