@@ -155,7 +155,7 @@ void addCompareCommand(CLI::App& app) {
         app.add_subcommand("compare", "Measure the error of pictures or sequences against a reference");
     command
         ->add_option("TEST", arguments->test,
-                     "Picture to measure: EXR, HDR, PNG or JPEG; or a sequence, as in test.%04d.exr")
+                     "Picture to measure: EXR, HDR, PFM, PNG or JPEG; or a sequence, as in test.%04d.exr")
         ->required();
     command
         ->add_option("REFERENCE", arguments->reference,
@@ -165,7 +165,7 @@ void addCompareCommand(CLI::App& app) {
     command->add_flag(
         "--json", arguments->json,
         "Print one JSON object: psnr (dB; null for equal pictures, where it is infinite), ssim, "
-        "relmse, flip, hdr_flip (null unless both are EXR or HDR), exposure (stops), width, height, "
+        "relmse, flip, hdr_flip (null unless both are EXR, HDR or PFM), exposure (stops), width, height, "
         "invalid_pixels. For a sequence: frames (an array of these, flicker and temporal_error), "
         "mean, worst");
     command->add_option("--error-map", arguments->errorMap,
@@ -177,8 +177,8 @@ void addCompareCommand(CLI::App& app) {
         ->add_option("--exposure", arguments->exposure,
                      "Exposure, stops, before psnr, ssim, flip, flicker and temporal_error clamp to [0,1] "
                      "and encode as sRGB; 'auto' brings the reference's average luminance to 0.18 (of a "
-                     "sequence: over all frames). Default: auto for an EXR or HDR reference, 0 for PNG or "
-                     "JPEG. relmse and hdr_flip use unexposed linear values")
+                     "sequence: over all frames). Default: auto for an EXR, HDR or PFM reference, 0 for PNG "
+                     "or JPEG. relmse and hdr_flip use unexposed linear values")
         ->type_name("STOPS|auto");
     command->footer(
         "psnr, ssim: higher is better; ssim uses luma and an 11x11 Gaussian window within the picture. flip: "

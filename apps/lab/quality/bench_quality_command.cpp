@@ -218,7 +218,7 @@ void addQualityBench(CLI::App& bench) {
     command->add_option("--weights", o->weights,
                         "Weights file for kpcn instead of the one that comes with Limpid");
     command->add_option("--preset", o->preset,
-                        "Preset of a denoiser from a paper or course (repeatable); 'limpid info' lists them");
+                        "Preset of a denoiser from a paper or course; 'limpid info' lists them");
     command->add_option("--set", o->assignments,
                         "Set a parameter: group.name=value; 'limpid info' lists them (repeatable)");
     command->add_option("--variant", o->methods.variants,
